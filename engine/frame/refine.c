@@ -3,265 +3,224 @@
 #include "engine/base/status.h"
 #include "engine/film/tone.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define CHANNELS_MAX 4 ///< of codes, which may have alpha
-#define BAND 16 ///< rows that one thread compares, one after the other
+#define ESTIMATED ((GLINT_DIFFER_LENGTH + GLINT_GROUP - 1) / GLINT_GROUP * GLINT_GROUP) ///< numbers of a line
 
-/// Pixels that are compared at a time: the compiler makes vectors of loops of so many.
-#define RUN 16
+static glint_refine_tile *tile_at(const glint_refine *refine, uint32_t column, uint32_t row)
+{
+    return &refine->tiles[(size_t)row * refine->across + column];
+}
 
-// ---- How far apart colours are ----
-//
-// A base without codes has their estimates, which need no table and are made by vectors: of the code before it is rounded, sRGB's power
-// by a sum of three roots. That has sRGB's derivative but for a share of ESTIMATE_SHARE, so that the estimates of two colours are as far
-// apart as their codes but for that share of it, and for the rounding of three codes and of float. Only where that leaves the
-// choice open the codes are made, by their definition.
+static glint_status make_room(glint_refine *refine, const glint_image *image, glint_error *error)
+{
+    const uint32_t across = ((uint32_t)image->width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
+    const uint32_t down = (uint32_t)glint_image_stamps(image);
+    if (refine->tiles && refine->across == across && refine->down == down)
+        return GLINT_OK;
+    free(refine->tiles);
+    free(refine->edges);
+    refine->across = across;
+    refine->down = down;
+    refine->edge_length = (size_t)across * GLINT_TILE_WIDTH + GLINT_DIFFER_LENGTH;
+    refine->tiles = calloc((size_t)across * down, sizeof *refine->tiles);
+    refine->edges = calloc((size_t)down * 2 * GLINT_DIFFER_VALUES, refine->edge_length * sizeof *refine->edges);
+    return refine->tiles && refine->edges ? GLINT_OK : glint_fail_nomem(error);
+}
 
-#define ESTIMATE_SHARE 0.004f
-#define ESTIMATE_SLACK 4.0f ///< codes
+glint_status glint_refine_begin(glint_refine *refine, const glint_stages *stages, const glint_image *image,
+                                const glint_render_desc *desc, glint_error *error)
+{
+    const glint_status status = make_room(refine, image, error);
+    refine->stages = stages;
+    refine->base = image;
+    refine->tone = glint_plan_compared(desc);
+    refine->coded = glint_plan_compares_codes(desc);
+    refine->gain = glint_tone_gain(&refine->tone);
+    refine->least = (uint32_t)(desc->adaptive * 65535);
+    refine->low = refine->high = (float)refine->least;
+    if (!refine->coded) {
+        refine->low = (1 - 2 * GLINT_ESTIMATE_SHARE) * refine->low - GLINT_ESTIMATE_SLACK;
+        refine->high = (1 + 2 * GLINT_ESTIMATE_SHARE) * refine->high + GLINT_ESTIMATE_SLACK;
+    }
+    return status;
+}
 
-typedef struct chooser {
-    const glint_image *base;
-    const glint_extent *extent;
-    const glint_tone_desc *tone; ///< of the codes
+// ---- Borders of tiles ---------------------------------------------------------------------------------------------
+
+typedef struct joiner {
     glint_refine *refine;
-    uint32_t least; ///< sum of differences of codes that is not enough
-    float low, high; ///< a sum of differences of estimates that is not enough for certain; that is enough if it is exceeded
-} chooser;
+    const glint_extent *extent;
+} joiner;
 
-/// The codes of `count` values of light after exposure as they would be without rounding, less or more. `rest`: room for as many, so
-/// that both parts of sRGB are made by vectors.
-static void estimate(float gain, const float *restrict light, size_t count, float *restrict rest, float *restrict out)
+/// Two lines at a border as they are compared: with codes, or estimates of them.
+typedef struct border {
+    const float *p[GLINT_DIFFER_VALUES], *q[GLINT_DIFFER_VALUES];
+    _Alignas(64) float code[2][3][ESTIMATED];
+} border;
+
+static void estimate_line(const glint_refine *refine, const float *line[GLINT_DIFFER_VALUES], float code[3][ESTIMATED])
 {
-    for (size_t i = 0; i < count; i++) {
-        float x = gain * light[i];
-        x = x > 0 ? x : 0; // NaN gives 0
-        out[i] = x < 1 ? x : 1;
-    }
-    for (size_t i = 0; i < count; i++) {
-        const float second = sqrtf(out[i]), fourth = sqrtf(second), eighth = sqrtf(fourth);
-        rest[i] = (float)(65535 * 0.5723742167) * second + (float)(65535 * 0.8301947475) * fourth -
-                  (float)(65535 * 0.4193434603) * eighth + (float)(65535 * 0.01599656894);
-    }
-    for (size_t i = 0; i < count; i++) {
-        const float dark = (float)(65535 * 12.92) * out[i], bright = rest[i];
-        out[i] = dark <= (float)(65535 * 12.92 * 0.0031308) ? dark : bright;
+    _Alignas(64) float light[ESTIMATED] = { 0 };
+    for (int c = 0; c < 3; c++) {
+        memcpy(light, line[GLINT_DIFFER_CODE + c], GLINT_DIFFER_LENGTH * sizeof *light);
+        const glint_estimate_args args = { .count = ESTIMATED, .gain = refine->gain, .light = light, .code = code[c] };
+        refine->stages->estimate(&args);
+        line[GLINT_DIFFER_CODE + c] = code[c];
     }
 }
 
-/// What is rendered of a row of the base, and its codes or their estimates as numbers, channel by channel.
-typedef struct row_view {
-    const float *id, *normal[3], *code[CHANNELS_MAX];
-    size_t channels, first; ///< where the row begins in the planes
-} row_view;
-
-static void take_codes(const chooser *c, size_t first, float *memory)
+static void estimate_border(const glint_refine *refine, border *b)
 {
-    const size_t width = (size_t)c->extent->width, channels = (size_t)c->base->channels;
-    const uint16_t *codes = (const uint16_t *)c->base->codes + first * channels;
-    for (size_t k = 0; k < channels; k++)
-        for (size_t x = 0; x < width; x++)
-            memory[k * width + x] = codes[x * channels + k];
-}
-
-static void estimate_codes(const chooser *c, size_t first, float *memory)
-{
-    const size_t width = (size_t)c->extent->width;
-    const float gain = glint_tone_gain(c->tone);
-    for (size_t k = 0; k < 3; k++)
-        estimate(gain, c->base->plane[GLINT_PASS_BEAUTY][k] + first, width, memory + 3 * width, memory + k * width);
-}
-
-static row_view view_row(const chooser *c, size_t y, float *memory)
-{
-    const glint_image *base = c->base;
-    const size_t width = (size_t)c->extent->width;
-    const size_t first = y * (size_t)base->width + (size_t)c->extent->x;
-    row_view row = { .id = base->plane[GLINT_PASS_OBJECT_ID][0] + first,
-                     .channels = base->codes ? (size_t)base->channels : 3,
-                     .first = first };
-    for (size_t k = 0; k < 3; k++)
-        row.normal[k] = base->plane[GLINT_PASS_NORMAL][k] + first;
-    for (size_t k = 0; k < row.channels; k++)
-        row.code[k] = memory + k * width;
-    if (base->codes)
-        take_codes(c, first, memory);
-    else
-        estimate_codes(c, first, memory);
-    return row;
-}
-
-/// Whether the codes of two pixels of the base are far enough apart.
-static bool exceeds(const chooser *c, size_t p, size_t q)
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++) {
-        const float *light = c->base->plane[GLINT_PASS_BEAUTY][k];
-        sum += fabs(glint_tone_value(c->tone, (double)light[p]) - glint_tone_value(c->tone, (double)light[q]));
-    }
-    return sum > c->least;
-}
-
-enum { DIFFER = 1, MAY_DIFFER = 2 };
-
-/// Which of `count` pixels, at most RUN, from p of a row on are worth a closer look, as are as many from q of another on: bits of the
-/// above. Returns whether any is.
-static inline int differ(const chooser *c, const row_view *a, size_t p, const row_view *b, size_t q, size_t count,
-                         int *restrict out)
-{
-    float sum[RUN];
-    int any = 0;
-    for (size_t i = 0; i < count; i++)
-        sum[i] = (fabsf(a->code[0][p + i] - b->code[0][q + i]) + fabsf(a->code[1][p + i] - b->code[1][q + i])) +
-                 fabsf(a->code[2][p + i] - b->code[2][q + i]);
-    for (size_t i = 0; a->channels > 3 && i < count; i++)
-        sum[i] += fabsf(a->code[3][p + i] - b->code[3][q + i]);
-    for (size_t i = 0; i < count; i++) {
-        const float cosine = (a->normal[0][p + i] * b->normal[0][q + i] + a->normal[1][p + i] * b->normal[1][q + i]) +
-                             a->normal[2][p + i] * b->normal[2][q + i];
-        out[i] = (a->id[p + i] != b->id[q + i]) | (sum[i] > c->high) |
-                 ((a->id[p + i] > 0) & (cosine < GLINT_REFINE_NORMAL)) | (sum[i] > c->low) << 1;
-    }
-    for (size_t i = 0; i < count; i++)
-        any |= out[i];
-    return any;
-}
-
-/// Marks both of each pair of pixels that differ: `count` pairs, from pixel p of a row and q of another on.
-static void mark(const chooser *c, const row_view *a, size_t p, const row_view *b, size_t q, size_t count,
-                 uint8_t *first, uint8_t *second)
-{
-    int differs[RUN];
-    for (size_t x = 0; x < count; x += RUN) {
-        const size_t run = count - x < RUN ? count - x : RUN;
-        const int any = run == RUN ? differ(c, a, p + x, b, q + x, RUN, differs) : differ(c, a, p + x, b, q + x, run, differs);
-        for (size_t i = 0; any && i < run; i++)
-            if (differs[i] & DIFFER || (differs[i] && exceeds(c, a->first + p + x + i, b->first + q + x + i)))
-                first[p + x + i] = second[q + x + i] = 1;
-    }
-}
-
-/// Compares a row's pixels with each other and with those of the row below; marks of the latter are put aside, so that no
-/// two rows write to one place.
-static void choose_row(const chooser *c, size_t y, const row_view *here, const row_view *next)
-{
-    const size_t width = (size_t)c->extent->width, stride = (size_t)c->base->width, row = here->first;
-    uint8_t *own = c->refine->chosen + row;
-    memset(own, 0, width);
-    if (y == (size_t)c->extent->y)
-        memset(c->refine->below + row, 0, width);
-    mark(c, here, 0, here, 1, width - 1, own, own);
-    if (!next)
+    if (refine->coded)
         return;
-    uint8_t *below = c->refine->below + row + stride;
-    memset(below, 0, width);
-    mark(c, here, 0, next, 0, width, own, below);
-    mark(c, here, 0, next, 1, width - 1, own, below);
-    mark(c, here, 1, next, 0, width - 1, own, below);
+    estimate_line(refine, b->p, b->code[0]);
+    estimate_line(refine, b->q, b->code[1]);
 }
 
-/// The rows of band `index`, from above.
-static void choose_band(void *context, size_t index, int worker)
+/// Compares the last column of a tile with the first of the tile to its right.
+static void join_columns(const glint_refine *refine, glint_refine_tile *left, glint_refine_tile *right, size_t first,
+                         uint32_t width, uint32_t height)
 {
-    const chooser *c = context;
-    const size_t length = CHANNELS_MAX * (size_t)c->extent->width, first = (size_t)c->extent->y,
-                 end = first + (size_t)c->extent->height, from = first + index * BAND;
-    float *memory = c->refine->rows + (size_t)worker * 2 * length;
-    row_view here = view_row(c, from, memory), next;
-    for (size_t y = from; y < from + BAND && y < end; y++, here = next) {
-        if (y + 1 < end)
-            next = view_row(c, y + 1, memory + ((y + 1 - from) % 2) * length);
-        choose_row(c, y, &here, y + 1 < end ? &next : NULL);
+    border b;
+    uint32_t differ[GLINT_DIFFER_WAYS];
+    for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
+        b.p[v] = left->side[1][v];
+        b.q[v] = right->side[0][v];
+    }
+    estimate_border(refine, &b);
+    const glint_refine_lines lines = { .args = { .p = b.p, .q = b.q, .count = height, .ahead = height - 1 },
+                                       .first = { first, first + 1 },
+                                       .step = (size_t)refine->base->width };
+    glint_refine_compare(refine, &lines, differ);
+    const uint32_t across = differ[GLINT_DIFFER_ACROSS], falling = differ[GLINT_DIFFER_FALLING];
+    const uint32_t rising = differ[GLINT_DIFFER_RISING];
+    for (uint32_t own = across | falling | rising << 1; own; own &= own - 1)
+        left->chosen[__builtin_ctz(own)] |= 1u << (width - 1);
+    for (uint32_t other = across | falling << 1 | rising; other; other &= other - 1)
+        right->chosen[__builtin_ctz(other)] |= 1;
+}
+
+/// Compares what lies in `column` of a row of tiles' last row of pixels with what is below it.
+static void join_rows(const joiner *j, uint32_t column, uint32_t row)
+{
+    glint_refine *refine = j->refine;
+    const size_t stride = (size_t)refine->base->width, x = (size_t)column * GLINT_TILE_WIDTH;
+    const size_t end = (size_t)(j->extent->x + j->extent->width), y = (size_t)(row + 1) * GLINT_TILE_HEIGHT;
+    const uint32_t count = end - x < GLINT_TILE_WIDTH ? (uint32_t)(end - x) : GLINT_TILE_WIDTH;
+    border b;
+    uint32_t differ[GLINT_DIFFER_WAYS];
+    for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
+        b.p[v] = glint_refine_edge(refine, row, 1, v) + x;
+        b.q[v] = glint_refine_edge(refine, row + 1, 0, v) + x;
+    }
+    estimate_border(refine, &b);
+    const uint32_t ahead = x + count < end ? count : count - 1;
+    const glint_refine_lines lines = { .args = { .p = b.p, .q = b.q, .count = count, .ahead = ahead },
+                                       .first = { (y - 1) * stride + x, y * stride + x },
+                                       .step = 1 };
+    glint_refine_compare(refine, &lines, differ);
+    const uint32_t across = differ[GLINT_DIFFER_ACROSS], falling = differ[GLINT_DIFFER_FALLING];
+    const uint32_t rising = differ[GLINT_DIFFER_RISING], last = GLINT_TILE_WIDTH - 1;
+    tile_at(refine, column, row)->chosen[GLINT_TILE_HEIGHT - 1] |= across | falling | rising << 1;
+    tile_at(refine, column, row + 1)->above |= across | falling << 1 | rising;
+    if (rising >> last)
+        tile_at(refine, column + 1, row)->chosen[GLINT_TILE_HEIGHT - 1] |= 1;
+    if (falling >> last)
+        tile_at(refine, column + 1, row + 1)->above |= 1;
+}
+
+/// A row of tiles: those beside each other, and those of the row below, of which `above` alone is written.
+static void join_row(void *context, size_t index, int worker)
+{
+    const joiner *j = context;
+    const glint_extent *e = j->extent;
+    const uint32_t row = e->tile_y + (uint32_t)index, end = e->tile_x + e->across, y = row * GLINT_TILE_HEIGHT;
+    const uint32_t bottom = (uint32_t)(e->y + e->height), height = bottom - y < GLINT_TILE_HEIGHT ? bottom - y : GLINT_TILE_HEIGHT;
+    (void)worker;
+    for (uint32_t x = e->tile_x; x < end; x++) {
+        glint_refine_tile *tile = tile_at(j->refine, x, row);
+        memcpy(tile->chosen, tile->inside, sizeof tile->chosen);
+        if (index == 0)
+            tile->above = 0;
+        if (index + 1 < e->down)
+            tile_at(j->refine, x, row + 1)->above = 0;
+    }
+    for (uint32_t x = e->tile_x; x + 1 < end; x++)
+        join_columns(j->refine, tile_at(j->refine, x, row), tile_at(j->refine, x + 1, row),
+                     (size_t)y * (size_t)j->refine->base->width + (size_t)(x + 1) * GLINT_TILE_WIDTH - 1, GLINT_TILE_WIDTH, height);
+    for (uint32_t x = e->tile_x; x < end && index + 1 < e->down; x++)
+        join_rows(j, x, row);
+}
+
+// ---- A lens -------------------------------------------------------------------------------------------------------
+
+static uint32_t *word_at(const glint_refine *refine, uint32_t column, int y)
+{
+    return &tile_at(refine, column, (uint32_t)y / GLINT_TILE_HEIGHT)->chosen[y % GLINT_TILE_HEIGHT];
+}
+
+/// Of a row of pixels, those that are near a chosen one of it.
+static void spread_row(const glint_refine *refine, const glint_extent *e, int y)
+{
+    uint32_t before = 0;
+    for (uint32_t x = e->tile_x; x < e->tile_x + e->across; x++) {
+        uint32_t *word = word_at(refine, x, y);
+        const uint32_t after = x + 1 < e->tile_x + e->across ? *word_at(refine, x + 1, y) : 0;
+        const uint32_t columns = (uint32_t)(e->x + e->width) - x * GLINT_TILE_WIDTH, own = *word;
+        for (int step = 1; step <= GLINT_REFINE_SPREAD; step++)
+            *word |= own << step | own >> step | before >> (GLINT_TILE_WIDTH - step) | after << (GLINT_TILE_WIDTH - step);
+        if (columns < GLINT_TILE_WIDTH)
+            *word &= (1u << columns) - 1;
+        before = own;
     }
 }
 
-// ---- Marks ----
-
-/// Brings the marks of two rows together.
-static void join_chosen(glint_refine *refine, const glint_extent *extent, size_t stride)
+/// Of a column of tiles, the pixels that are near a chosen one above or below.
+static void spread_column(const glint_refine *refine, const glint_extent *e, uint32_t column)
 {
-    for (int y = extent->y; y < extent->y + extent->height; y++) {
-        const size_t row = (size_t)y * stride + (size_t)extent->x, width = (size_t)extent->width;
-        uint8_t *restrict to = refine->chosen + row;
-        const uint8_t *restrict from = refine->below + row;
-        for (size_t i = 0; i < width; i++)
-            to[i] |= from[i];
+    uint32_t before[GLINT_REFINE_SPREAD] = { 0 }; // rows above as they were, the nearest first
+    const int end = e->y + e->height;
+    for (int y = e->y; y < end; y++) {
+        uint32_t *word = word_at(refine, column, y);
+        const uint32_t own = *word;
+        for (int step = 1; step <= GLINT_REFINE_SPREAD; step++)
+            *word |= before[step - 1] | (y + step < end ? *word_at(refine, column, y + step) : 0);
+        memmove(before + 1, before, sizeof before - sizeof *before);
+        before[0] = own;
     }
 }
 
-/// Of `count` marks that are `step` apart, those that are near one of `from`.
-static void spread_line(const uint8_t *from, uint8_t *to, int count, size_t step)
+static void spread(const glint_refine *refine, const glint_extent *e)
 {
-    int last = -GLINT_REFINE_SPREAD - 1; // the last mark up to here, and as far ahead as matters
-    for (int i = 0; i < count + GLINT_REFINE_SPREAD; i++) {
-        if (i < count && from[(size_t)i * step])
-            last = i;
-        const int at = i - GLINT_REFINE_SPREAD;
-        if (at >= 0)
-            to[(size_t)at * step] = at - last <= GLINT_REFINE_SPREAD;
-    }
+    for (int y = e->y; y < e->y + e->height; y++)
+        spread_row(refine, e, y);
+    for (uint32_t x = e->tile_x; x < e->tile_x + e->across; x++)
+        spread_column(refine, e, x);
 }
 
-static void spread_chosen(glint_refine *refine, const glint_extent *extent, size_t stride)
-{
-    const size_t first = (size_t)extent->y * stride + (size_t)extent->x;
-    for (size_t y = 0; y < (size_t)extent->height; y++)
-        spread_line(refine->chosen + first + y * stride, refine->below + first + y * stride, extent->width, 1);
-    for (size_t x = 0; x < (size_t)extent->width; x++)
-        spread_line(refine->below + first + x, refine->chosen + first + x, extent->height, stride);
-}
+// -------------------------------------------------------------------------------------------------------------------
 
-static void count_chosen(glint_refine *refine, const glint_extent *extent, size_t stride)
+void glint_refine_choose(glint_refine *refine, const glint_extent *extent, bool lens, glint_pool *pool)
 {
-    refine->count = 0;
-    for (int y = extent->y; y < extent->y + extent->height; y++) {
-        const uint8_t *row = refine->chosen + (size_t)y * stride + (size_t)extent->x;
-        uint32_t count = 0;
-        for (size_t i = 0; i < (size_t)extent->width; i++)
-            count += row[i];
-        refine->count += count;
-    }
-}
-
-glint_status glint_refine_choose(glint_refine *refine, const glint_image *base, const glint_extent *extent,
-                                 const glint_render_desc *desc, double threshold, bool lens, glint_pool *pool,
-                                 glint_error *error)
-{
-    const size_t pixels = (size_t)base->width * (size_t)base->height;
-    const size_t rows = 2 * CHANNELS_MAX * (size_t)base->width * (size_t)glint_pool_threads(pool);
-    chooser c = {
-        .base = base, .extent = extent, .tone = &desc->tone, .refine = refine, .least = (uint32_t)(threshold * 65535)
-    };
-    c.low = c.high = (float)c.least;
-    if (!base->codes) {
-        c.low = (1 - 2 * ESTIMATE_SHARE) * c.low - ESTIMATE_SLACK;
-        c.high = (1 + 2 * ESTIMATE_SHARE) * c.high + ESTIMATE_SLACK;
-    }
-    if (refine->capacity < pixels || refine->row_capacity < rows) {
-        glint_refine_clear(refine);
-        refine->chosen = malloc(pixels);
-        refine->below = malloc(pixels);
-        refine->rows = glint_alloc(rows, sizeof *refine->rows);
-        if (!refine->chosen || !refine->below || !refine->rows)
-            return glint_fail_nomem(error);
-        refine->capacity = pixels;
-        refine->row_capacity = rows;
-    }
-    glint_pool_run(pool, ((size_t)extent->height + BAND - 1) / BAND, choose_band, &c);
-    join_chosen(refine, extent, (size_t)base->width);
+    joiner j = { refine, extent };
+    glint_pool_run(pool, extent->down, join_row, &j);
+    for (uint32_t y = extent->tile_y; y < extent->tile_y + extent->down; y++)
+        for (uint32_t x = extent->tile_x; x < extent->tile_x + extent->across; x++)
+            tile_at(refine, x, y)->chosen[0] |= tile_at(refine, x, y)->above;
     if (lens)
-        spread_chosen(refine, extent, (size_t)base->width);
-    count_chosen(refine, extent, (size_t)base->width);
-    return GLINT_OK;
+        spread(refine, extent);
+    refine->count = 0;
+    for (uint32_t y = extent->tile_y; y < extent->tile_y + extent->down; y++)
+        for (uint32_t x = extent->tile_x; x < extent->tile_x + extent->across; x++)
+            for (int k = 0; k < GLINT_TILE_HEIGHT; k++)
+                refine->count += (uint64_t)__builtin_popcount(tile_at(refine, x, y)->chosen[k]);
 }
 
 void glint_refine_clear(glint_refine *refine)
 {
-    free(refine->chosen);
-    free(refine->below);
-    free(refine->rows);
+    free(refine->tiles);
+    free(refine->edges);
     *refine = (glint_refine) { 0 };
 }

@@ -1,12 +1,5 @@
-/// Adaptive sampling: which pixels of a picture of one sample each are worth all samples. Internal.
-///
-/// A frame with it is two: a base, of one sample in the middle of each pixel, and of the pixels chosen here the frame with
-/// all its samples. Each pixel has the bits of the one or of the other. The base is done before the choice begins, so that
-/// no pixel's neighbours depend on tiles, threads or what was kept.
-///
-/// Two of eight neighbours are both chosen where they show two objects, or one and nothing; where their normals are more
-/// than 25.8 degrees apart; or where the codes that they would be shown with differ, red, green and blue together, by more
-/// than the threshold: as POV-Ray's +A does, in shares of the code for white, sRGB.
+/// Adaptive sampling: which pixels of a picture of one sample each are worth all samples. Internal. The rule, and the pixels inside
+/// of a tile: tile/refine.h.
 ///
 /// Through a lens a pixel of the base shows one point of it, and 4 x 4 neighbours all 16 that there are: what any of them see
 /// otherwise is in the blur of all. So pixels are chosen as well that are up to GLINT_REFINE_SPREAD from such a pair.
@@ -14,26 +7,17 @@
 #define GLINT_REFINE_H
 
 #include "engine/base/pool.h"
-#include "engine/film/image.h"
 #include "engine/plan/plan.h"
+#include "engine/tile/refine.h"
 
-#define GLINT_REFINE_NORMAL 0.9f ///< cosine
 #define GLINT_REFINE_SPREAD 2 ///< pixels, in every direction
 
-typedef struct glint_refine {
-    uint8_t *chosen; ///< a byte a pixel: whether it gets all samples
-    uint8_t *below; ///< likewise: chosen for the sake of the row before
-    size_t capacity; ///< of each
-    float *rows; ///< codes of two rows, or their estimates, for each thread
-    size_t row_capacity; ///< of these
-    uint64_t count; ///< pixels chosen
-} glint_refine;
-
-/// Chooses among the pixels of `extent`. `base` was rendered as glint_plan_base describes, which is `desc`, with or without a lens. Any
-/// number of threads gives the same.
-glint_status glint_refine_choose(glint_refine *refine, const glint_image *base, const glint_extent *extent,
-                                 const glint_render_desc *desc, double threshold, bool lens, glint_pool *pool,
-                                 glint_error *error);
+/// Before a base is rendered into `image`. `desc`: of it, with the threshold.
+glint_status glint_refine_begin(glint_refine *refine, const glint_stages *stages, const glint_image *image,
+                                const glint_render_desc *desc, glint_error *error);
+/// After that: brings together what its tiles have found, and compares pixels across their borders. Any number of threads gives the
+/// same.
+void glint_refine_choose(glint_refine *refine, const glint_extent *extent, bool lens, glint_pool *pool);
 void glint_refine_clear(glint_refine *refine);
 
 #endif

@@ -41,7 +41,8 @@ struct glint_renderer {
     glint_key last_key;
     double last_region[4];
     glint_frame_stats last_stats;
-    glint_refine refine;
+    glint_refine own_refine, *refine; ///< likewise
+    double refined_by[3]; ///< threshold, curve and exposure that the last base was compared by
     /// Makes the pictures that adaptive sampling looks at, with the pool and the tiles of this one; NULL until a frame
     /// has it, and again after one that has not.
     struct glint_renderer *base;
@@ -82,6 +83,7 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
     glint_tone_store_open();
     renderer->stop = &renderer->cancelled;
     renderer->grids = &renderer->own_grids;
+    renderer->refine = &renderer->own_refine;
     renderer->time_stages = desc->time_stages;
     renderer->count_work = desc->count_work;
     glint_hits_choice hits = desc->hits;
@@ -120,7 +122,7 @@ void glint_renderer_destroy(glint_renderer *renderer)
     if (!renderer)
         return;
     glint_renderer_destroy(renderer->base);
-    glint_refine_clear(&renderer->refine);
+    glint_refine_clear(&renderer->own_refine);
     for (int i = 0; !renderer->shares && renderer->tiles && i < glint_pool_threads(renderer->pool); i++)
         glint_tile_destroy(renderer->tiles[i]);
     if (!renderer->shares)
@@ -359,7 +361,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
                             .reuse = &renderer->reuse,
                             .shading_points = &renderer->shading_points,
                             .base = base,
-                            .refined = renderer->refine.chosen,
+                            .refine = renderer->refine,
                             .cancelled = renderer->stop,
                             .time_stages = renderer->time_stages,
                             .count_work = renderer->count_work } };
@@ -368,6 +370,8 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     const uint32_t across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     const size_t tiles = across * glint_image_stamps(image), rendered = (size_t)f.extent.across * f.extent.down;
     glint_status status = prepare(renderer, plan, &f.shared, tiles, error);
+    if (!status && plan->is_base)
+        status = glint_refine_begin(renderer->refine, renderer->stages, image, &plan->desc, error);
     if (image->film && (base || !renderer->reuse.tile_count)) // what is put there is not signed
         memset(image->film, 0, tiles * sizeof *image->film);
     if (!status)
@@ -471,6 +475,12 @@ static glint_status take_image(glint_renderer *renderer, const glint_render_desc
 
 // ---- Adaptive sampling ----
 
+static void forget(glint_renderer *renderer)
+{
+    glint_image_release(renderer->last);
+    renderer->last = NULL;
+}
+
 /// A renderer that keeps its own, half of what may be kept, and shares the rest.
 static glint_status open_base(glint_renderer *renderer, glint_error *error)
 {
@@ -486,6 +496,7 @@ static glint_status open_base(glint_renderer *renderer, glint_error *error)
     base->stages = renderer->stages;
     base->stop = renderer->stop;
     base->grids = renderer->grids;
+    base->refine = renderer->refine;
     base->time_stages = renderer->time_stages;
     base->count_work = renderer->count_work;
     glint_reuse_init(&base->reuse, renderer->reuse.on, renderer->reuse.budget / 2 + 1, renderer->reuse.hits);
@@ -525,9 +536,9 @@ void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more,
         }
 }
 
-/// Adds what the base took, and the choice.
+/// Adds what the base took, and the choice, of which compare_ms were within it.
 static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const glint_plan *plan, double choose_ms,
-                     bool time_stages)
+                     double compare_ms, bool time_stages)
 {
     const double pixels = (double)to->pixels;
     const double all = pixels + (double)to->refined * plan->desc.samples; // samples
@@ -535,33 +546,96 @@ static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const
     to->render_ms += choose_ms;
     for (int i = 0; i < to->stage_count; i++)
         if (time_stages && to->stage_name[i] == glint_stage_names[GLINT_STAGE_REFINE])
-            to->stage_ms[i] = choose_ms;
+            to->stage_ms[i] = choose_ms + compare_ms;
 }
 
-/// The base of a frame, then the pixels that are worth it, then those.
+/// Of the last base nothing is taken where its pixels would be compared otherwise, or were given up half way.
+static glint_status render_base(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
+                                glint_error *error)
+{
+    const glint_render_desc *desc = &plan->base->desc;
+    const double by[] = { desc->adaptive, desc->tone.curve, desc->tone.exposure };
+    glint_renderer *base = renderer->base;
+    if (memcmp(renderer->refined_by, by, sizeof by) != 0)
+        forget(base);
+    memcpy(renderer->refined_by, by, sizeof by);
+    const glint_status status = glint_render_instant(base, plan->base, out, stats, error);
+    if (status)
+        forget(base);
+    return status;
+}
+
+/// The base in the picture that is made of it: `base` is that picture, with planes of `*more` where it has none. Nothing is kept.
+static glint_status render_in_place(glint_renderer *renderer, const glint_plan *plan, const glint_image *image,
+                                    const glint_tone_table *table, glint_image *base, glint_image **more,
+                                    glint_frame_stats *stats, glint_error *error)
+{
+    glint_render_desc desc = plan->base->desc;
+    glint_status status = GLINT_OK;
+    *base = *image;
+    base->film = NULL;
+    desc.codes = false;
+    desc.passes &= ~plan->desc.passes;
+    if (desc.passes)
+        status = renderer->reuse.on ? glint_image_create_for(&desc, more, error) : take_image(renderer->base, &desc, more, error);
+    for (int pass = 0; pass < GLINT_PLANE_COUNT && *more; pass++)
+        for (int c = 0; c < 3; c++)
+            if ((*more)->plane[pass][c])
+                base->plane[pass][c] = (*more)->plane[pass][c];
+    renderer->base->reuse.on = false;
+    if (!status)
+        status = run(renderer->base, plan->base, base, NULL, table, stats, error);
+    renderer->base->reuse.on = renderer->reuse.on;
+    return status;
+}
+
+/// What comparing took of the time of the tiles last rendered, where stages are timed.
+static double comparing_ms(const glint_renderer *renderer)
+{
+    double ms = 0;
+    for (int i = 0; i < glint_pool_threads(renderer->pool); i++)
+        ms += (double)renderer->tiles[i]->counts.ns[GLINT_STAGE_REFINE] * 1e-6;
+    return ms;
+}
+
+/// The pixels of a base that are worth it, then those.
+static glint_status refine_base(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,
+                                const glint_tone_table *table, const glint_frame_stats *first, glint_frame_stats *stats,
+                                glint_error *error)
+{
+    const double compare_ms = comparing_ms(renderer), start = now_ms();
+    const glint_extent extent = glint_plan_extent(&plan->desc);
+    renderer->refine->base = base; // it may be that of the last frame
+    glint_refine_choose(renderer->refine, &extent, plan->lens != NULL, renderer->pool);
+    const double choose_ms = now_ms() - start;
+    const glint_status status = run(renderer, plan, image, base, table, stats, error);
+    if (status)
+        return status;
+    stats->refined = renderer->refine->count;
+    add_base(stats, first, plan, choose_ms, compare_ms, renderer->time_stages);
+    return GLINT_OK;
+}
+
+/// The base of a frame, then what is worth more. The base stands in the frame's own picture where nothing of it is kept: without
+/// reuse, and in the first frame.
 static glint_status run_adaptive(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
                                  const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
 {
-    glint_image *base = NULL;
+    glint_refine *refine = renderer->refine;
+    glint_image *kept = NULL, in_place;
     glint_frame_stats first;
+    const bool alone = !renderer->reuse.on || !renderer->base;
+    refine->whole = !glint_plan_compares_codes(&plan->desc) && !plan->derivatives &&
+                    !(plan->lens && glint_tile_wants_geometry(plan));
+    refine->in_place = refine->whole && alone;
     glint_status status = open_base(renderer, error);
     if (!status)
-        status = glint_render_instant(renderer->base, plan->base, &base, &first, error);
-    if (status)
-        return status;
-    const double start = now_ms();
-    const glint_extent extent = glint_plan_extent(&plan->desc);
-    status = glint_refine_choose(&renderer->refine, base, &extent, &plan->base->desc, plan->desc.adaptive, plan->lens != NULL,
-                                 renderer->pool, error);
-    const double choose_ms = now_ms() - start;
+        status = refine->in_place ? render_in_place(renderer, plan, image, table, &in_place, &kept, &first, error)
+                                  : render_base(renderer, plan, &kept, &first, error);
     if (!status)
-        status = run(renderer, plan, image, base, table, stats, error);
-    glint_image_release(base);
-    if (status)
-        return status;
-    stats->refined = renderer->refine.count;
-    add_base(stats, &first, plan, choose_ms, renderer->time_stages);
-    return GLINT_OK;
+        status = refine_base(renderer, plan, image, refine->in_place ? &in_place : kept, table, &first, stats, error);
+    glint_image_release(kept);
+    return status;
 }
 
 glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *plan, glint_image **out,

@@ -46,18 +46,30 @@ void glint_plan_sample_offset(const glint_plan *plan, uint32_t k, double out[2])
         out[i] = fmin(fmax(out[i] + (plan->camera.pixel_offset - 0.5), 0), 1);
 }
 
+bool glint_plan_compares_codes(const glint_render_desc *desc)
+{
+    return desc->alpha || desc->tone.curve != GLINT_TONE_CLAMP;
+}
+
+glint_tone_desc glint_plan_compared(const glint_render_desc *desc)
+{
+    glint_tone_desc tone = glint_tone_desc_default();
+    tone.curve = desc->tone.curve;
+    tone.exposure = desc->tone.exposure;
+    tone.bits = 16;
+    return tone;
+}
+
 glint_render_desc glint_plan_base(const glint_render_desc *desc)
 {
     glint_render_desc base = *desc;
     base.samples = 1;
-    base.adaptive = 0;
     base.outline = GLINT_OUTLINE_NONE;
     base.passes = desc->passes & ~(1u << GLINT_PASS_REFINED | 1u << GLINT_PASS_OUTLINE) & ((1u << GLINT_PASS_COUNT) - 1);
-    base.passes |= 1u << GLINT_PASS_BEAUTY | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID;
-    base.codes = desc->alpha || desc->tone.curve != GLINT_TONE_CLAMP; // else the choice makes what it needs of them
-    base.tone = glint_tone_desc_default();
-    base.tone.curve = desc->tone.curve;
-    base.tone.exposure = desc->tone.exposure;
-    base.tone.bits = 16;
+    base.passes |= 1u << GLINT_PASS_BEAUTY;
+    if (glint_plan_compares_codes(desc)) {
+        base.codes = true;
+        base.tone = glint_plan_compared(desc);
+    }
     return base;
 }

@@ -237,7 +237,10 @@ bool glint_plan_adds_up(const glint_plan *plan, glint_plan *const *times, size_t
 glint_status glint_plan_take_lights(glint_plan *plan, glint_plan *const *times, size_t count, glint_error *error);
 void glint_plan_free_times(glint_plan **times, size_t count); ///< and the list; NULL: nothing
 
-/// The base frame of adaptive sampling, of one sample a pixel: the passes of `desc`, and the geometry and codes that are compared.
+/// Adaptive sampling of a frame compares codes of this tone, which the base has where it must: else they are estimated.
+glint_tone_desc glint_plan_compared(const glint_render_desc *desc);
+bool glint_plan_compares_codes(const glint_render_desc *desc);
+/// The base frame, of one sample a pixel: the passes and codes of `desc`, or the codes that are compared.
 glint_render_desc glint_plan_base(const glint_render_desc *desc);
 
 /// What of a frame is rendered: a rectangle of tiles, and its pixels.

@@ -49,6 +49,9 @@ typedef struct glint_stages {
     void (*shade)(const glint_shade_args *args);
     void (*resolve)(const glint_resolve_args *args);
     void (*resolve_samples)(const glint_shade_args *sample, uint32_t count);
+    void (*estimate)(const glint_estimate_args *args);
+    void (*range)(const glint_range_args *args, float out[2]);
+    void (*differ)(const glint_differ_args *args, glint_differences *out);
     void (*tone)(const glint_tone_args *args);
 } glint_stages;
 

@@ -279,8 +279,10 @@ bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
     const glint_key key = glint_reuse_film_key(frame->reuse, tile->cached, plan);
     if (!is_known(key) || !glint_key_equal(key, last->film[tile->index].key))
         return false;
+    if (plan->is_base && !glint_key_equal(key, frame->refine->tiles[tile->index].key))
+        return false;
     if (!glint_key_equal(key, frame->image->film[tile->index].key))
-        glint_tile_copy(tile, frame);
+        glint_tile_copy(tile, frame, last);
     frame->image->film[tile->index] = last->film[tile->index];
     tile->counts.clipped += tile->cached->clipped;
     tile->counts.nonfinite += tile->cached->nonfinite;
@@ -304,6 +306,8 @@ void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint
     const bool moved = tile->counts.runs[GLINT_STAGE_LIGHT] != before.lights; // then codes seldom stay as they are
     const bool same = last && last->codes && !moved && glint_tile_has_codes_of(tile, frame->image, frame->last);
     frame->image->film[tile->index] = (glint_film_stamp) { .key = key, .codes = same ? last->codes : key.low };
+    if (frame->plan->is_base)
+        frame->refine->tiles[tile->index].key = key;
     cached->clipped = tile->counts.clipped - before.clipped;
     cached->nonfinite = tile->counts.nonfinite - before.nonfinite;
 }

@@ -14,6 +14,8 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
     }
     if (plan->runs[GLINT_STAGE_BOUNCE] && !tile->bounce)
         good = (tile->bounce = glint_bounce_create()) && good;
+    if (plan->is_base && !tile->differ)
+        good = (tile->differ = glint_differ_work_create()) && good;
     if (plan->runs[GLINT_STAGE_VERTEX] && !tile->vertex)
         good = (tile->vertex = glint_vertex_create()) && good;
     if (plan->runs[GLINT_STAGE_DEPTH_CUE] && !tile->depth_cue)
@@ -51,6 +53,7 @@ void glint_tile_destroy(glint_tile *tile)
         return;
     glint_bounce_destroy(tile->bounce);
     glint_transparent_shadow_destroy(tile->transparent_shadow);
+    glint_differ_work_destroy(tile->differ);
     glint_vertex_destroy(tile->vertex);
     glint_raster_rest_destroy(tile->raster_rest);
     glint_visible_light_destroy(tile->visible_light);

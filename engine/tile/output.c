@@ -44,8 +44,15 @@ double glint_tile_direction(const glint_tile *tile, glint_precision precision, i
 
 bool glint_tile_wants_geometry(const glint_plan *plan)
 {
-    return plan->desc.passes &
-           (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID | 1u << GLINT_PASS_ALBEDO);
+    return plan->is_base ||
+           plan->desc.passes &
+               (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID | 1u << GLINT_PASS_ALBEDO);
+}
+
+/// Where the normals or the numbers of objects go: those of a base are compared.
+static float *geometry_of(const glint_tile *tile, const glint_tile_frame *frame, int value, float *own)
+{
+    return frame->plan->is_base ? glint_differ_values(tile->differ, value) : own;
 }
 
 static bool sees_light(const glint_tile *tile, const glint_plan *plan, uint32_t i)
@@ -82,10 +89,21 @@ static void part_normals(const glint_tile *tile, const glint_tile_frame *frame, 
     }
 }
 
+/// A component of those of group g.
+static void round_normals(const void *reals, glint_precision precision, uint32_t g, float *restrict out)
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    for (size_t i = 0; i < GLINT_GROUP && precision == GLINT_DOUBLE; i++)
+        out[i] = (float)((const double *)reals)[at + i];
+    if (precision == GLINT_FLOAT)
+        memcpy(out, (const float *)reals + at, GLINT_GROUP * sizeof *out);
+}
+
 static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
 {
-    float normal[3][GLINT_TILE_SAMPLES];
-    double group[GLINT_GROUP];
+    float own[3][GLINT_TILE_SAMPLES], *normal[3];
+    for (int c = 0; c < 3; c++)
+        normal[c] = geometry_of(tile, frame, GLINT_DIFFER_NORMAL + c, own[c]);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         if (!tile->at.hits[g] && !frame->plan->visible_light_count) {
             for (int c = 0; c < 3; c++)
@@ -93,21 +111,18 @@ static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
             continue;
         }
         if (tile->at.hits[g] != 0xffff) {
-            part_normals(tile, frame, g, (float *const[3]) { normal[0], normal[1], normal[2] });
+            part_normals(tile, frame, g, normal);
             continue;
         }
-        for (int c = 0; c < 3; c++) {
-            glint_reals_of(tile->surface.normal[c], frame->plan->desc.precision, g, group);
-            for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
-                normal[c][g * GLINT_GROUP + lane] = (float)group[lane];
-        }
+        for (int c = 0; c < 3; c++)
+            round_normals(tile->surface.normal[c], frame->plan->desc.precision, g, normal[c] + g * GLINT_GROUP);
     }
     glint_tile_store_pass(tile, frame, GLINT_PASS_NORMAL, normal[0]);
 }
 
 static void store_object_id(const glint_tile *tile, const glint_tile_frame *frame)
 {
-    float id[GLINT_TILE_SAMPLES], object = 0;
+    float own[GLINT_TILE_SAMPLES], *id = geometry_of(tile, frame, GLINT_DIFFER_ID, own), object = 0;
     uint32_t last = GLINT_MISS;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const uint32_t *prim = tile->at.prim + (size_t)g * GLINT_GROUP;
@@ -144,9 +159,9 @@ void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *f
     const uint32_t passes = frame->plan->desc.passes;
     if (passes >> GLINT_PASS_DEPTH & 1)
         store_depth(tile, frame);
-    if (passes >> GLINT_PASS_NORMAL & 1)
+    if (passes >> GLINT_PASS_NORMAL & 1 || frame->plan->is_base)
         store_normal(tile, frame);
-    if (passes >> GLINT_PASS_OBJECT_ID & 1)
+    if (passes >> GLINT_PASS_OBJECT_ID & 1 || frame->plan->is_base)
         store_object_id(tile, frame);
     if (passes >> GLINT_PASS_ALBEDO & 1)
         store_albedo(tile, frame);
@@ -209,19 +224,13 @@ void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
         glint_tile_store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film.terms[k][0]);
 }
 
-/// Where in the tile's arrays pixel (x, y) of it is.
-static uint32_t place_of(const glint_tile *tile, uint32_t x, uint32_t y)
-{
-    return ((y / 4) * tile->groups_across + x / 4) * GLINT_GROUP + y % 4 * 4 + x % 4;
-}
-
 static void tone_alpha(glint_tile *tile, const glint_tile_frame *frame)
 {
     float row[3][GLINT_TILE_WIDTH], alpha[GLINT_TILE_WIDTH];
     const glint_image *image = frame->image;
     for (uint32_t y = 0; y < tile->height; y++) {
         for (uint32_t x = 0; x < tile->width; x++) {
-            const uint32_t i = place_of(tile, x, y);
+            const uint32_t i = glint_tile_place(tile, x, y);
             alpha[x] = coverage_at(tile, frame->plan, i);
             for (int c = 0; c < 3; c++)
                 row[c][x] = tile->film.beauty[c][i];
@@ -240,7 +249,7 @@ static void tone16(glint_tile *tile, const glint_tile_frame *frame)
     for (uint32_t y = 0; y < tile->height; y++) {
         for (uint32_t x = 0; x < tile->width; x++)
             for (int c = 0; c < 3; c++)
-                row[c][x] = tile->film.beauty[c][place_of(tile, x, y)];
+                row[c][x] = tile->film.beauty[c][glint_tile_place(tile, x, y)];
         uint16_t *to = codes + 3 * ((size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0);
         glint_tone_row16(frame->tone_table, frame->gain, row[0], row[1], row[2], tile->width, to, &tile->counts.clipped,
                          &tile->counts.nonfinite);
@@ -293,21 +302,20 @@ bool glint_tile_has_codes_of(const glint_tile *tile, const glint_image *a, const
     return true;
 }
 
-void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame)
+void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame, const glint_image *from)
 {
-    const glint_image *from = frame->last;
     const size_t stride = (size_t)from->width, at = (size_t)tile->y0 * stride + tile->x0;
-    const size_t pixel = from->codes ? glint_image_pixel_bytes(from) : 0;
+    const size_t pixel = from->codes && frame->image->codes ? glint_image_pixel_bytes(from) : 0;
     for (size_t y = 0; y < tile->height; y++) {
         const size_t row = at + y * stride;
         if (pixel)
             memcpy((char *)frame->image->codes + row * pixel, (const char *)from->codes + row * pixel,
                    tile->width * pixel);
-        if (from->shadows)
+        if (from->shadows && frame->image->shadows)
             memcpy(frame->image->shadows + row, from->shadows + row, tile->width * sizeof *from->shadows);
         for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
             for (int c = 0; c < 3; c++)
-                if (from->plane[pass][c])
+                if (from->plane[pass][c] && frame->image->plane[pass][c])
                     memcpy(frame->image->plane[pass][c] + row, from->plane[pass][c] + row, tile->width * sizeof(float));
     }
 }

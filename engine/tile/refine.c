@@ -19,22 +19,45 @@ static group_pixels pixels_of(const glint_tile *tile, const glint_tile_frame *fr
 
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame)
 {
+    const uint32_t *chosen = frame->refine->tiles[tile->index].chosen;
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        const group_pixels at = pixels_of(tile, frame, g);
+        const uint32_t x = 4 * (g % tile->groups_across), *row = chosen + 4 * (g / tile->groups_across);
         unsigned lanes = 0;
-        for (uint32_t y = 0; y < at.rows; y++) {
-            const uint8_t *row = frame->refined + at.first + y * (size_t)frame->image->width;
-            uint32_t four = 1;
-            if (at.columns == 4)
-                memcpy(&four, row, sizeof four);
-            for (uint32_t x = 0; four && x < at.columns; x++)
-                lanes |= (unsigned)(row[x] != 0) << (4 * y + x);
-        }
+        for (uint32_t y = 0; y < 4; y++)
+            lanes |= (row[y] >> x & 15) << 4 * y;
         tile->active[g] = (uint16_t)lanes;
         any |= lanes;
     }
     return any;
+}
+
+static void mark_refined(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const uint32_t *chosen = frame->refine->tiles[tile->index].chosen;
+    for (uint32_t y = 0; y < tile->height && frame->plan->desc.passes >> GLINT_PASS_REFINED & 1; y++) {
+        const size_t row = (size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0;
+        for (uint32_t x = 0; x < tile->width; x++)
+            frame->image->plane[GLINT_PASS_REFINED][0][row + x] = chosen[y] >> x & 1;
+    }
+}
+
+bool glint_tile_is_base(glint_tile *tile, const glint_tile_frame *frame)
+{
+    uint32_t any = 0;
+    if (!frame->base || !frame->refine->whole)
+        return false;
+    const glint_refine_tile *own = &frame->refine->tiles[tile->index];
+    for (uint32_t y = 0; y < tile->height; y++)
+        any |= own->chosen[y];
+    if (any)
+        return false;
+    if (!frame->refine->in_place)
+        glint_tile_copy(tile, frame, frame->base);
+    mark_refined(tile, frame);
+    tile->counts.clipped += own->clipped;
+    tile->counts.nonfinite += own->nonfinite;
+    return true;
 }
 
 void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame, const void *plane, void *groups)
@@ -67,20 +90,18 @@ static void take_coverage(glint_tile *tile, const glint_tile_frame *frame)
             tile->film.covered[i] = alpha[i] > 0 ? (uint32_t)frame->plan->desc.samples : 0;
 }
 
-/// What is of the base for all pixels, and which were refined.
+/// What is of the base for all pixels.
 static void copy_whole(const glint_tile *tile, const glint_tile_frame *frame)
 {
     static const glint_pass whole[] = { GLINT_PASS_DEPTH, GLINT_PASS_NORMAL, GLINT_PASS_OBJECT_ID, GLINT_PASS_ALBEDO };
     const uint32_t passes = frame->plan->desc.passes;
-    const size_t count = frame->plan->lens ? 0 : sizeof whole / sizeof *whole; // a lens's geometry is not the base's
+    const size_t count = frame->plan->lens || frame->refine->in_place ? 0 : sizeof whole / sizeof *whole; // a lens's geometry is not the base's
     for (uint32_t y = 0; y < tile->height; y++) {
         const size_t row = (size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0;
         for (size_t k = 0; k < count; k++)
             for (int c = 0; passes >> whole[k] & 1 && c < glint_pass_channels(whole[k]); c++)
                 memcpy(frame->image->plane[whole[k]][c] + row, frame->base->plane[whole[k]][c] + row,
                        tile->width * sizeof(float));
-        for (uint32_t x = 0; passes >> GLINT_PASS_REFINED & 1 && x < tile->width; x++)
-            frame->image->plane[GLINT_PASS_REFINED][0][row + x] = frame->refined[row + x];
     }
 }
 
@@ -96,5 +117,6 @@ void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame)
     if (glint_tile_wants_coverage(frame->plan))
         take_coverage(tile, frame);
     copy_whole(tile, frame);
+    mark_refined(tile, frame);
     glint_tile_activate(tile);
 }

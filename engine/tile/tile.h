@@ -7,6 +7,7 @@
 #include "engine/plan/plan.h"
 #include "engine/reuse/reuse.h"
 #include "engine/plan/raster.h"
+#include "engine/tile/refine.h"
 #include "engine/tile/shading_points.h"
 
 /// Results of patterns that are no reflectances.
@@ -38,7 +39,7 @@ typedef struct glint_tile_counts {
 typedef struct glint_tile_frame {
     const glint_plan *plan;
     const glint_image *base; ///< adaptive sampling: the picture of one sample a pixel; else NULL
-    const uint8_t *refined; ///< of it, a byte a pixel: whether all samples are taken
+    glint_refine *refine; ///< which pixels of it all samples are taken of; of a base, what is compared
     const glint_image *last; ///< the last picture, of the same format, or NULL
     glint_geometry_table geometry; ///< the plan's, with its index
     const glint_light_grid *grids[GLINT_TILE_GRIDS]; ///< of some lights; NULL: that light has none
@@ -160,6 +161,7 @@ typedef struct glint_tile {
     struct glint_raster_rest *raster_rest; ///< of tile/raster.c: what is cast because it is no triangle; likewise
     struct glint_visible_light
         *visible_light; ///< of tile/visible_lights.c; NULL unless the frame has lights that are seen
+    struct glint_differ_work *differ; ///< of tile/differ.c; NULL until a frame is a base
     struct glint_indirect *indirect; ///< memory of tile/indirect.c; likewise
     struct glint_environment *environment; ///< of tile/environment.c; NULL unless a program gives the background
     uint64_t clock; ///< end of the last timed stage, ns
@@ -335,8 +337,17 @@ bool glint_tile_sees_environment(const glint_tile *tile);
 /// Adds what such rays see to the sums.
 void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame);
 
+/// tile/differ.c: compares the pixels of a base, which are stored, and leaves what the tiles around compare.
+struct glint_differ_work *glint_differ_work_create(void);
+void glint_differ_work_destroy(struct glint_differ_work *work); ///< NULL: nothing
+/// Where the numbers of its objects and normals go, in the order of groups.
+float *glint_differ_values(struct glint_differ_work *work, int value);
+void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
+
 /// tile/refine.c: leaves the pixels active that get all samples; returns whether there are any.
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
+/// Whether the base's pixels are all that there is to the tile; then the picture has them.
+bool glint_tile_is_base(glint_tile *tile, const glint_tile_frame *frame);
 /// Takes the lanes that are not refined from a plane of the base, of numbers of four bytes, into an array of the tile.
 void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame, const void *plane, void *groups);
 /// The other pixels' light, and all pixels' geometry, are those of the base; all are active again.
@@ -390,6 +401,12 @@ static inline const glint_light_sample *glint_tile_light_sample_of(const glint_t
                                                                    const glint_plan_light *light)
 {
     return light->light_samples ? &light->light_samples[tile->sample % light->turn_count] : NULL;
+}
+
+/// Where in the tile's arrays pixel (x, y) of it is.
+static inline uint32_t glint_tile_place(const glint_tile *tile, uint32_t x, uint32_t y)
+{
+    return ((y / 4) * tile->groups_across + x / 4) * GLINT_GROUP + y % 4 * 4 + x % 4;
 }
 
 /// Arrays of real.
@@ -490,7 +507,7 @@ void glint_tile_prefetch_codes(const glint_tile *tile, const glint_image *image)
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether two pictures of one format have the same codes, if any, in the tile's pixels.
 bool glint_tile_has_codes_of(const glint_tile *tile, const glint_image *a, const glint_image *b);
-/// Takes the tile's pixels from the last picture.
-void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame);
+/// Takes the tile's pixels from another picture, what both have of them.
+void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame, const glint_image *from);
 
 #endif

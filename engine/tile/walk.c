@@ -419,6 +419,8 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
         tile->counts.runs[GLINT_STAGE_TONE]++;
     }
     tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - rendered;
+    if (plan->is_base)
+        glint_tile_compare(tile, frame, before);
     glint_tile_sign_film(tile, frame, before);
     glint_tile_note_way(tile);
 }
@@ -432,7 +434,7 @@ void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t
     tile->clock = start;
     tile->cached = frame->reuse->tile_count ? &frame->reuse->tiles[tile->index] : NULL;
     place(tile, plan, column, row);
-    if (!glint_tile_is_unchanged(tile, frame))
+    if (!glint_tile_is_unchanged(tile, frame) && !glint_tile_is_base(tile, frame))
         run_stages(tile, frame);
     tile->counts.tile_ns += clock_of(tile, frame) - start;
 }

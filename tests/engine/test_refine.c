@@ -1,32 +1,19 @@
-/// What adaptive sampling chooses by estimates of codes is what it chooses by the codes.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-#include <math.h>
-#include <string.h>
+/// The choice of adaptive sampling: its kernels on every instruction set against the scalar reference, and what is chosen by estimates
+/// of codes against what is chosen by the codes.
+#include "tests/engine/cases/stage_case.h"
 
 #include "engine/film/tone.h"
 #include "engine/frame/refine.h"
 
-enum { WIDTH = 83, HEIGHT = 41, PIXELS = WIDTH * HEIGHT };
+enum { WIDTH = 32, HEIGHT = 41, PIXELS = WIDTH * HEIGHT };
 
-static uint64_t state = 1;
-
-static double uniform(double low, double high)
-{
-    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return low + (high - low) * (double)(state >> 33) / 0x1p31;
-}
-
-static glint_render_desc desc_of(float exposure)
+static glint_render_desc desc_of(double exposure, double threshold)
 {
     glint_render_desc desc = glint_render_desc_default();
     desc.width = WIDTH;
     desc.height = HEIGHT;
-    desc.tone.exposure = (double)exposure;
+    desc.adaptive = threshold;
+    desc.tone.exposure = exposure;
     return glint_plan_base(&desc);
 }
 
@@ -36,58 +23,65 @@ static void paint(glint_image *image, double threshold)
     const float odd[4] = { NAN, HUGE_VALF, -1, 0x1p-140F };
     double of_row[3] = { 0 };
     for (size_t i = 0; i < PIXELS; i++) {
-        const double step = i % WIDTH % 2 ? threshold / 3 * uniform(0.985, 1.015) : 0;
+        const double step = i % WIDTH % 2 ? threshold / 3 * between(0.985, 1.015) : 0;
         for (int c = 0; c < 3; c++) {
             if (i % WIDTH == 0)
-                of_row[c] = uniform(-0.02, 1.02);
+                of_row[c] = between(-0.02, 1.02);
             image->plane[GLINT_PASS_BEAUTY][c][i] = i % 97 == 5 ? odd[i / 97 % 4] : (float)glint_srgb_decode(of_row[c] + step);
-            image->plane[GLINT_PASS_NORMAL][c][i] = c == 1;
         }
-        image->plane[GLINT_PASS_OBJECT_ID][0][i] = 1;
     }
 }
 
-/// The choice by the codes of a picture, or where it has none by estimates; row by row.
-static void choose(glint_pool *pool, const glint_image *image, const glint_render_desc *desc, double threshold,
-                   uint8_t chosen[PIXELS])
+/// A row of the picture as a line: by its codes, or by estimates of them.
+static uint32_t compare_row(const glint_refine *refine, size_t y)
 {
-    glint_refine refine = { 0 };
-    for (int y = 0; y < HEIGHT; y++) {
-        const glint_extent row = { .y = y, .width = WIDTH, .height = 1 };
-        assert_int_equal(glint_refine_choose(&refine, image, &row, desc, threshold, false, pool, NULL), GLINT_OK);
-        memcpy(chosen + y * WIDTH, refine.chosen + y * WIDTH, WIDTH);
+    _Alignas(64) float light[48] = { 0 }, code[4][48], id[48] = { 0 };
+    const float *line[GLINT_DIFFER_VALUES] = { id, id, id, id, code[0], code[1], code[2], code[3] };
+    const glint_estimate_args estimate = { .count = 48, .gain = refine->gain, .light = light };
+    uint32_t differ[GLINT_DIFFER_WAYS];
+    for (int c = 0; c < 3; c++) {
+        glint_estimate_args args = estimate;
+        args.code = code[c];
+        memcpy(light, refine->base->plane[GLINT_PASS_BEAUTY][c] + y * WIDTH, WIDTH * sizeof *light);
+        refine->stages->estimate(&args);
+        for (size_t x = 0; x < WIDTH && refine->coded; x++)
+            code[c][x] = ((const uint16_t *)refine->base->codes)[3 * (y * WIDTH + x) + (size_t)c];
     }
-    glint_refine_clear(&refine);
+    const glint_refine_lines lines = { .args = { .p = line, .ahead = WIDTH - 1, .count = WIDTH, .along = true },
+                                       .first = { y * WIDTH, 0 },
+                                       .step = 1 };
+    glint_refine_compare(refine, &lines, differ);
+    return differ[GLINT_DIFFER_ALONG];
 }
 
-static long try(glint_pool *pool, float exposure, double threshold)
+/// Returns how many pairs differ.
+static long try(double exposure, double threshold)
 {
-    uint8_t by_codes[PIXELS], by_estimates[PIXELS];
-    glint_render_desc desc = desc_of(exposure), coded = desc;
+    glint_render_desc desc = desc_of(exposure, threshold), coded = desc;
     const glint_tone_table *table;
-    glint_image *image, *with;
+    glint_refine by_codes = { 0 }, by_estimates = { 0 };
+    glint_image *image;
     long count = 0;
     coded.codes = true;
-    assert_int_equal(glint_image_create_for(&desc, &image, NULL), GLINT_OK);
-    assert_int_equal(glint_image_create_for(&coded, &with, NULL), GLINT_OK);
-    assert_null(image->codes);
+    coded.tone = glint_plan_compared(&desc);
+    assert_int_equal(glint_image_create_for(&coded, &image, NULL), GLINT_OK);
     paint(image, threshold);
-    for (int c = 0; c < 3; c++) {
-        memcpy(with->plane[GLINT_PASS_BEAUTY][c], image->plane[GLINT_PASS_BEAUTY][c], PIXELS * sizeof(float));
-        memcpy(with->plane[GLINT_PASS_NORMAL][c], image->plane[GLINT_PASS_NORMAL][c], PIXELS * sizeof(float));
-    }
-    memcpy(with->plane[GLINT_PASS_OBJECT_ID][0], image->plane[GLINT_PASS_OBJECT_ID][0], PIXELS * sizeof(float));
     assert_int_equal(glint_tone_table_shared(&coded.tone, &table, NULL), GLINT_OK);
-    glint_tone_row16(table, glint_tone_gain(&coded.tone), with->plane[GLINT_PASS_BEAUTY][0], with->plane[GLINT_PASS_BEAUTY][1],
-                     with->plane[GLINT_PASS_BEAUTY][2], PIXELS, with->codes, NULL, NULL);
-    choose(pool, with, &coded, threshold, by_codes);
-    choose(pool, image, &desc, threshold, by_estimates);
-    for (size_t i = 0; i < PIXELS; i++) {
-        assert_int_equal(by_estimates[i], by_codes[i]);
-        count += by_codes[i];
+    glint_tone_row16(table, glint_tone_gain(&coded.tone), image->plane[GLINT_PASS_BEAUTY][0], image->plane[GLINT_PASS_BEAUTY][1],
+                     image->plane[GLINT_PASS_BEAUTY][2], PIXELS, image->codes, NULL, NULL);
+    assert_int_equal(glint_refine_begin(&by_estimates, running, image, &desc, NULL), GLINT_OK);
+    assert_int_equal(glint_refine_begin(&by_codes, running, image, &desc, NULL), GLINT_OK);
+    assert_false(by_estimates.coded);
+    by_codes.coded = true;
+    by_codes.low = by_codes.high = (float)by_codes.least;
+    for (size_t y = 0; y < HEIGHT; y++) {
+        const uint32_t codes = compare_row(&by_codes, y);
+        assert_int_equal(compare_row(&by_estimates, y), codes);
+        count += __builtin_popcount(codes);
     }
+    glint_refine_clear(&by_codes);
+    glint_refine_clear(&by_estimates);
     glint_image_release(image);
-    glint_image_release(with);
     return count;
 }
 
@@ -95,21 +89,111 @@ static void test_choice(void **unused)
 {
     (void)unused;
     static const double thresholds[] = { 0.0005, 0.004, 0.03, 0.2, 0.9 };
-    glint_pool *pool;
     glint_tone_store_open();
-    assert_int_equal(glint_pool_create(2, &pool, NULL), GLINT_OK);
-    for (size_t k = 0; k < sizeof thresholds / sizeof *thresholds; k++) {
-        long count = 0;
-        for (int run = 0; run < 40; run++)
-            count += try(pool, run % 4 ? 0 : (float)uniform(-2, 2), thresholds[k]);
-        assert_true(count > 40 * PIXELS / 10 && count < 40 * PIXELS * 9 / 10);
+    FOR_EACH_TESTED
+    {
+        random_state = 1;
+        for (size_t k = 0; k < COUNT_OF(thresholds); k++) {
+            long count = 0;
+            for (int run = 0; run < 40; run++)
+                count += try(run % 4 ? 0 : between(-2, 2), thresholds[k]);
+            assert_true(count > 40 * PIXELS / 20 && count < 40 * PIXELS * 9 / 10);
+        }
     }
-    glint_pool_destroy(pool);
     glint_tone_store_close();
+}
+
+// ---- The kernels --------------------------------------------------------------------------------------------------
+
+static void estimate_case(int precision, bool odd)
+{
+    const uint32_t count = GLINT_GROUP * (1 + below(5));
+    float *light = input(KIND_FLOAT, count);
+    const float gain = one_in(2) ? 1 : 1.7F;
+    (void)precision;
+    for (uint32_t i = 0; i < count; i++)
+        light[i] = (float)maybe_odd(odd, one_in(3) ? power_of_ten(-6, 1) : between(-0.1, 1.2));
+    FOR_EACH_TESTED
+    {
+        const glint_estimate_args args = { count, gain, light, output("code", KIND_FLOAT, count) };
+        running->estimate(&args);
+        compare_outputs("estimate");
+    }
+}
+
+/// Numbers of a line that are often those of another, and its codes near the bounds.
+static void fill_line(float *const line[GLINT_DIFFER_VALUES], bool odd)
+{
+    for (uint32_t i = 0; i < GLINT_DIFFER_LENGTH; i++) {
+        line[GLINT_DIFFER_ID][i] = (float)(one_in(4) ? below(3) : 1);
+        for (int c = 0; c < 3; c++)
+            line[GLINT_DIFFER_NORMAL + c][i] = (float)maybe_odd(odd, one_in(3) ? between(-0.3, 0.3) : c == 1);
+        for (int c = 0; c < 4; c++)
+            line[GLINT_DIFFER_CODE + c][i] = (float)between(0, 100);
+    }
+}
+
+static void differ_case(int precision, bool odd)
+{
+    float *lines[2][GLINT_DIFFER_VALUES];
+    const uint32_t count = 1 + below(GLINT_DIFFER_PAIRS), ahead = one_in(2) ? count - 1 : count;
+    const float low = (float)between(0, 150), high = low + (float)(one_in(2) ? 0 : between(0, 60));
+    const bool along = one_in(2), across = !along || one_in(2), alpha = one_in(2);
+    (void)precision;
+    for (int line = 0; line < 2; line++) {
+        for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
+            float *array = input(KIND_FLOAT, GLINT_DIFFER_LENGTH + 1);
+            lines[line][v] = array + 1; // aligned to nothing
+        }
+        fill_line(lines[line], odd);
+    }
+    const glint_differ_args args = { .p = (const float *const *)lines[0],
+                                     .q = across ? (const float *const *)lines[1] : NULL,
+                                     .count = count,
+                                     .ahead = ahead,
+                                     .along = along,
+                                     .alpha = alpha,
+                                     .low = low,
+                                     .high = high,
+                                     .cosine = GLINT_REFINE_NORMAL };
+    FOR_EACH_TESTED
+    {
+        uint32_t *bits = output("differences", KIND_U32, 2 * GLINT_DIFFER_WAYS);
+        glint_differences found;
+        running->differ(&args, &found);
+        memcpy(bits, &found, sizeof found);
+        compare_outputs("differ");
+    }
+}
+
+static void range_case(int precision, bool odd)
+{
+    const uint32_t count = GLINT_GROUP * (1 + below(5));
+    float *numbers = input(KIND_FLOAT, count);
+    glint_range_args args = { .count = count, .gain = one_in(2) ? 1 : 1.7F, .floor = one_in(2) ? 0 : -1, .top = one_in(2) ? 1 : HUGE_VALF, .numbers = numbers };
+    (void)precision;
+    for (uint32_t i = 0; i < count; i++)
+        numbers[i] = (float)maybe_odd(odd, between(-1.2, 1.2));
+    FOR_EACH_TESTED
+    {
+        running->range(&args, output("range", KIND_FLOAT, 2));
+        compare_outputs("range");
+    }
+}
+
+static void test_kernels(void **unused)
+{
+    (void)unused;
+    run_cases(400, 23000, estimate_case);
+    run_cases(400, 23500, range_case);
+    run_cases(2000, 24000, differ_case);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_choice) };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    find_tested();
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels), cmocka_unit_test(test_choice) };
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    print_skipped();
+    return failed;
 }

@@ -1,4 +1,4 @@
-/// The contract of the stages from there to the picture: vertex, bounce, scatter, sky, shade, resolve, tone. Begin with stages.h.
+/// The contract of the stages from there to the picture: vertex, bounce, scatter, sky, shade, resolve, differ, tone. Begin with stages.h.
 #ifndef GLINT_CONTRACT_FILM_H
 #define GLINT_CONTRACT_FILM_H
 
@@ -148,6 +148,54 @@ typedef struct glint_resolve_args {
 // `first`, and `lights` of GLINT_LIGHT_CHUNK in all at most. They have groups, active, background, highlights and film and
 // beauty, which groups without an active lane leave as they are, in common; `sum` is not read, and no material is of
 // GLINT_PLANE_SHADED.
+
+// ---- estimate, range, differ: which neighbours show different things, for adaptive sampling ----
+
+#define GLINT_DIFFER_PAIRS 32 ///< most in a call
+#define GLINT_DIFFER_LENGTH 40 ///< numbers that an array of a line may be read up to, however few pairs there are
+enum { GLINT_DIFFER_ID, GLINT_DIFFER_NORMAL, GLINT_DIFFER_CODE = 4, GLINT_DIFFER_VALUES = 8 };
+enum { GLINT_DIFFER_ALONG, GLINT_DIFFER_ACROSS, GLINT_DIFFER_FALLING, GLINT_DIFFER_RISING, GLINT_DIFFER_WAYS };
+
+/// estimate: codes of 16 bits as sRGB gives them before they are rounded, by a sum of three roots. That has sRGB's derivative but for
+/// a share of GLINT_ESTIMATE_SHARE, so that the estimates of two colours are as far apart as their codes but for that share of it
+/// and for GLINT_ESTIMATE_SLACK, the rounding of three codes and of float.
+#define GLINT_ESTIMATE_SHARE 0.004f
+#define GLINT_ESTIMATE_SLACK 4.0f ///< codes
+
+typedef struct glint_estimate_args {
+    uint32_t count; ///< a multiple of GLINT_GROUP
+    float gain; ///< what light is multiplied by
+    const float *light;
+    float *code; ///< out
+} glint_estimate_args;
+// The arithmetic: ref/differ.h.
+
+typedef struct glint_range_args {
+    uint32_t count; ///< a multiple of GLINT_GROUP, above 0
+    float gain, floor, top; ///< numbers are multiplied by the gain, then those below `floor` and NaN are `floor`, those above `top` are `top`
+    const float *numbers;
+} glint_range_args;
+// range: the least and the most of so many.
+
+/// Two lines of pixels, p[0] .. and q[0] ..: rows, or columns, that lie side by side. Each value of a line is an array of
+/// GLINT_DIFFER_LENGTH numbers or more.
+typedef struct glint_differ_args {
+    const float *const *p, *const *q; ///< GLINT_DIFFER_VALUES each: number of the object, its normal, codes. q: NULL, there is no such line
+    uint32_t count; ///< pairs (p[i], q[i])
+    uint32_t ahead; ///< pairs of which one is a place further on. Both at most GLINT_DIFFER_PAIRS
+    bool along; ///< p's pixels are compared with each other
+    bool alpha; ///< codes have four channels, else three
+    float low, high; ///< a sum of differences of codes that is not enough for certain; that is enough if it is exceeded
+    float cosine; ///< of normals: below it they differ
+} glint_differ_args;
+
+/// A bit a pair. `sure`: it differs. `open`: it does if its codes do, which low and high leave open; of a pair that is
+/// sure as well it means nothing.
+typedef struct glint_differences {
+    uint32_t sure[GLINT_DIFFER_WAYS], open[GLINT_DIFFER_WAYS];
+} glint_differences;
+// Bit i is of (p[i], p[i + 1]) along, (p[i], q[i]) across, (p[i], q[i + 1]) falling and (p[i + 1], q[i]) rising.
+// Pixels differ by objects, where these are the same and not 0 by normals, and by codes. The arithmetic: ref/differ.h.
 
 // ---- tone: 8-bit codes, written into the image ----
 

@@ -259,6 +259,7 @@ static void resolve_samples(const glint_shade_args *sample, uint32_t count)
 }
 
 #include "engine/stages/ref/program.h"
+#include "engine/stages/ref/differ.h"
 
 // ---- tone --------------------------------------------------------------------------------------------------------
 
@@ -317,5 +318,8 @@ const glint_stages glint_stages_ref = {
     .shade = shade,
     .resolve = resolve,
     .resolve_samples = resolve_samples,
+    .estimate = estimate,
+    .range = range,
+    .differ = differ,
     .tone = tone,
 };

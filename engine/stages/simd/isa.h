@@ -29,6 +29,7 @@
 #include "engine/stages/shade/sky.h"
 #include "engine/stages/film/resolve.h"
 #include "engine/stages/film/samples.h"
+#include "engine/stages/film/differ.h"
 #include "engine/stages/film/tone.h"
 
 // Of one precision.
@@ -53,5 +54,8 @@ const glint_stages GLINT_STAGES_SYMBOL = {
     .shade = shade,
     .resolve = GLINT_WITH_SAMPLES ? resolve : NULL,
     .resolve_samples = GLINT_WITH_SAMPLES ? resolve_samples : NULL,
+    .estimate = GLINT_WITH_SAMPLES ? estimate : NULL,
+    .range = GLINT_WITH_SAMPLES ? range : NULL,
+    .differ = GLINT_WITH_SAMPLES ? differ : NULL,
     .tone = tone,
 };

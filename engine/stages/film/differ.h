@@ -1,0 +1,84 @@
+// estimate, range and differ: which neighbours show different things. Contract: stages.h.
+
+static void estimate(const glint_estimate_args *args)
+{
+    const vf gain = f_set(args->gain), top = f_set((float)(65535 * 12.92 * 0.0031308));
+    for (uint32_t i = 0; i < args->count; i += VF) {
+        const vf x = f_min(f_max(gain * f_load(args->light + i), f_set(0)), f_set(1));
+        const vf second = f_sqrt(x), fourth = f_sqrt(second), eighth = f_sqrt(fourth);
+        const vf dark = f_set((float)(65535 * 12.92)) * x;
+        const vf bright = ((f_set((float)(65535 * 0.5723742167)) * second + f_set((float)(65535 * 0.8301947475)) * fourth) -
+                           f_set((float)(65535 * 0.4193434603)) * eighth) +
+                          f_set((float)(65535 * 0.01599656894));
+        f_store(args->code + i, f_select(f_le(dark, top), dark, bright));
+    }
+}
+
+static void range(const glint_range_args *args, float out[2])
+{
+    const vf gain = f_set(args->gain), floor = f_set(args->floor), top = f_set(args->top);
+    vf least = top, most = floor;
+    for (uint32_t i = 0; i < args->count; i += VF) {
+        const vf x = f_min(f_max(gain * f_load(args->numbers + i), floor), top);
+        least = f_min(x, least);
+        most = f_max(x, most);
+    }
+    out[0] = f_min_all(least);
+    out[1] = f_max_all(most);
+}
+
+/// How far apart codes are: from number i of one line's arrays and k of another's on.
+static inline vf apart_in(const float *const *p, int value, uint32_t i, const float *const *q, uint32_t k)
+{
+    return f_abs(f_load_any(p[value] + i) - f_load_any(q[value] + k));
+}
+
+/// VF pairs, from pixel i of one line and k of another on.
+static inline void differ_pairs(const glint_differ_args *args, const float *const *p, uint32_t i, const float *const *q,
+                                uint32_t k, uint32_t bit, uint32_t *sure, uint32_t *open)
+{
+    vf cosine = f_load_any(p[GLINT_DIFFER_NORMAL] + i) * f_load_any(q[GLINT_DIFFER_NORMAL] + k);
+    for (int c = 1; c < 3; c++)
+        cosine = cosine + f_load_any(p[GLINT_DIFFER_NORMAL + c] + i) * f_load_any(q[GLINT_DIFFER_NORMAL + c] + k);
+    vf sum = apart_in(p, GLINT_DIFFER_CODE, i, q, k);
+    for (int c = 1; c < (args->alpha ? 4 : 3); c++)
+        sum = sum + apart_in(p, GLINT_DIFFER_CODE + c, i, q, k);
+    const vf id = f_load_any(p[GLINT_DIFFER_ID] + i);
+    const fm same = f_eq(id, f_load_any(q[GLINT_DIFFER_ID] + k));
+    const fm bent = fm_and(f_lt(f_set(0), id), f_lt(cosine, f_set(args->cosine)));
+    const unsigned all = (1u << VF) - 1;
+    *sure |= ((~fm_bits(same) & all) | fm_bits(fm_or(bent, f_lt(f_set(args->high), sum)))) << bit;
+    *open |= fm_bits(f_lt(f_set(args->low), sum)) << bit;
+}
+
+/// The first so many bits of 32.
+static inline uint32_t first_bits(uint32_t count) { return count < 32 ? (1u << count) - 1 : UINT32_MAX; }
+
+static inline void differ_lines(const glint_differ_args *args, bool along, bool across, glint_differences *out)
+{
+    *out = (glint_differences) { .sure = { 0 } };
+    for (uint32_t i = 0; i < args->count; i += VF) {
+        if (along)
+            differ_pairs(args, args->p, i, args->p, i + 1, i, &out->sure[GLINT_DIFFER_ALONG], &out->open[GLINT_DIFFER_ALONG]);
+        if (!across)
+            continue;
+        differ_pairs(args, args->p, i, args->q, i, i, &out->sure[GLINT_DIFFER_ACROSS], &out->open[GLINT_DIFFER_ACROSS]);
+        differ_pairs(args, args->p, i, args->q, i + 1, i, &out->sure[GLINT_DIFFER_FALLING],
+                     &out->open[GLINT_DIFFER_FALLING]);
+        differ_pairs(args, args->p, i + 1, args->q, i, i, &out->sure[GLINT_DIFFER_RISING], &out->open[GLINT_DIFFER_RISING]);
+    }
+    for (int way = 0; way < GLINT_DIFFER_WAYS; way++) {
+        const uint32_t pairs = first_bits(way == GLINT_DIFFER_ACROSS ? args->count : args->ahead);
+        out->sure[way] &= pairs;
+        out->open[way] &= pairs;
+    }
+}
+
+/// Each way is compiled for its constant.
+static void differ(const glint_differ_args *args, glint_differences *out)
+{
+    if (args->along && args->q)
+        differ_lines(args, true, true, out);
+    else
+        differ_lines(args, args->along, args->q != NULL, out);
+}

@@ -1,0 +1,60 @@
+/// What adaptive sampling remembers of a base: which pixels of a tile are worth all samples, and what its neighbours compare. Internal.
+///
+/// A frame with it is two: a base, of one sample in the middle of each pixel, and of the pixels chosen here the frame with
+/// all its samples. Each pixel has the bits of the one or of the other. Pixels of one tile are compared as soon as it is rendered,
+/// those at its borders when all are (frame/refine.h), so that the choice does not depend on tiles, threads or what was kept.
+///
+/// Two of eight neighbours are both chosen where they show two objects, or one and nothing; where their normals are more
+/// than 25.8 degrees apart; or where the codes that they would be shown with differ, red, green and blue together, by more
+/// than the threshold: as POV-Ray's +A does, in shares of the code for white, sRGB.
+///
+/// A base without codes has their estimates, which need no table and are made by vectors. Only where these leave the choice open the
+/// codes are made, by their definition.
+#ifndef GLINT_TILE_REFINE_H
+#define GLINT_TILE_REFINE_H
+
+#include "engine/film/image.h"
+
+#define GLINT_REFINE_NORMAL 0.9f ///< cosine
+
+typedef struct glint_refine_tile {
+    glint_key key; ///< of the base's pixels that were compared; all zero: not known
+    uint32_t inside[GLINT_TILE_HEIGHT]; ///< of each row, top first, a bit a pixel, the leftmost lowest: chosen for a pixel of the tile
+    uint32_t chosen[GLINT_TILE_HEIGHT]; ///< chosen for any
+    uint64_t clipped, nonfinite; ///< pixels of the base, where it has codes
+    uint32_t above; ///< of the first row: chosen for a pixel of the tiles above
+    float side[2][GLINT_DIFFER_VALUES][GLINT_DIFFER_LENGTH]; ///< what is compared of the first and last column; light where codes are estimated
+} glint_refine_tile;
+
+typedef struct glint_refine {
+    const glint_stages *stages;
+    const glint_image *base;
+    bool coded; ///< its codes are compared; else estimates of them
+    bool whole; ///< tiles without a chosen pixel are the base's as they are
+    bool in_place; ///< the base is in the picture that is made of it
+    glint_tone_desc tone; ///< of the codes
+    uint32_t least; ///< sum of differences of codes that is not enough
+    float low, high, gain; ///< see glint_differ_args, glint_estimate_args
+    glint_refine_tile *tiles; ///< of the whole picture, left to right, top to bottom
+    uint32_t across, down; ///< of them
+    float *edges; ///< see glint_refine_edge
+    size_t edge_length;
+    uint64_t count; ///< pixels chosen
+} glint_refine;
+
+/// The same of the first (0) or last (1) rows of pixels of a row of tiles: a line as long as the picture.
+static inline float *glint_refine_edge(const glint_refine *refine, uint32_t row, int last, int value)
+{
+    return refine->edges + ((2 * (size_t)row + (size_t)last) * GLINT_DIFFER_VALUES + (size_t)value) * refine->edge_length;
+}
+
+/// Two lines of the base.
+typedef struct glint_refine_lines {
+    glint_differ_args args; ///< lines and counts
+    size_t first[2], step; ///< where in a plane of the base they begin; from a pixel to the next
+} glint_refine_lines;
+
+/// Which of their pixels differ, as glint_differences has it.
+void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *lines, uint32_t differ[GLINT_DIFFER_WAYS]);
+
+#endif
