@@ -17,7 +17,7 @@ static glint_status make_room(glint_refine *refine, const glint_image *image, gl
 {
     const uint32_t across = ((uint32_t)image->width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     const uint32_t down = (uint32_t)glint_image_stamps(image);
-    if (refine->tiles && refine->across == across && refine->down == down)
+    if (refine->tiles && refine->edges && refine->across == across && refine->down == down)
         return GLINT_OK;
     free(refine->tiles);
     free(refine->edges);

@@ -544,6 +544,10 @@ static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const
     const double all = pixels + (double)to->refined * plan->desc.samples; // samples
     glint_frame_stats_add(to, base, pixels / all);
     to->render_ms += choose_ms;
+    if (!glint_plan_compares_codes(&plan->desc)) { // its codes are the picture's
+        to->render_ms -= base->tone_ms;
+        to->tone_ms += base->tone_ms;
+    }
     for (int i = 0; i < to->stage_count; i++)
         if (time_stages && to->stage_name[i] == glint_stage_names[GLINT_STAGE_REFINE])
             to->stage_ms[i] = choose_ms + compare_ms;
@@ -609,6 +613,7 @@ static glint_status refine_base(glint_renderer *renderer, const glint_plan *plan
     glint_refine_choose(renderer->refine, &extent, plan->lens != NULL, renderer->pool);
     const double choose_ms = now_ms() - start;
     const glint_status status = run(renderer, plan, image, base, table, stats, error);
+    renderer->refine->base = NULL;
     if (status)
         return status;
     stats->refined = renderer->refine->count;

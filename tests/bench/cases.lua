@@ -126,6 +126,7 @@ local measurements = {
   { "p.floor.area", "povray", "frame scene=floor100 area=1", runs = 1 },
   { "p.lamps16", "povray", "frame lamps=16", runs = 1 },
   { "p.box", "povray", "frame scene=box shadows=0", runs = 1 },
+  { "p.mesh100k", "povray", "frame scene=mesh100k", runs = 3 },
   { "p.glass", "povray", "frame scene=glass", runs = 3 },
   { "p.adaptive", "povray", "frame samples=16 adaptive=1", runs = 3 },
   { "p.glassball", "povray", "frame scene=glassball area=1", runs = 1 },
@@ -210,6 +211,7 @@ local rows = {
   { "many", "1,000,000 spheres on a floor", "g.floor1M:render", "e.floor1M:render" },
   { "many", "500,000 triangles, render", "g.mesh:render", "e.mesh:render", bar = 1 },
   { "many", "100,000 triangles, render", "g.mesh100k:render", "e.mesh100k:render" },
+  { "peers", "100,000 triangles, render", "g.mesh100k:render", "p.mesh100k:cpu", bar = 40, more = true },
   { "many", "500,000 triangles, index build", "g.mesh.build:build", "e.mesh:build" },
   { "many", "500,000 triangles, scene to first ray", "g.mesh.build:ready", nil },
 

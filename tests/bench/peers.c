@@ -1,6 +1,6 @@
 /// Writes a scene to stdout for POV-Ray 3.7 or Tachyon 0.99, so that they render what the other sides do.
 ///
-///   peers povray|tachyon [scene=workshop|glassball|1k|1M|glass|box|floor100|cut1k|pieces1k|tori] [shadows=0] [lens=1] [samples=N]
+///   peers povray|tachyon [scene=workshop|glassball|1k|1M|glass|box|floor100|mesh100k|cut1k|pieces1k|tori] [shadows=0] [lens=1] [samples=N]
 ///       [area=1] [lamps=N] [change=light|shininess]
 ///       [pattern=NAME]
 ///
@@ -117,6 +117,19 @@ static void povray_solid(const bench_solid *solid)
     cut ? printf(" %.9g } texture { M%u } }\n", (double)ball[3], m) : printf(" %.9g texture { M%u } }\n", (double)ball[3], m);
 }
 
+static void povray_mesh(const bench_scene *s)
+{
+    printf("mesh2 { vertex_vectors { %zu", s->vertex_count);
+    for (size_t i = 0; i < s->vertex_count; i++)
+        print3(",\n<%.9g, %.9g, %.9g>", s->vertices + 3 * i);
+    printf(" }\nface_indices { %zu", s->triangle_count);
+    for (size_t i = 0; i < s->triangle_count; i++) {
+        const uint32_t *corner = s->triangles + 3 * i;
+        printf(",\n<%u, %u, %u>", (unsigned)corner[0], (unsigned)corner[1], (unsigned)corner[2]);
+    }
+    puts(" } texture { M0 } }");
+}
+
 static void write_povray(const bench_scene *s, const bench_options *o)
 {
     bool changes = strcmp(o->change, "none") != 0, shines = strcmp(o->change, "shininess") == 0;
@@ -156,6 +169,8 @@ static void write_povray(const bench_scene *s, const bench_options *o)
     }
     for (size_t i = 0; i < s->solid_count; i++)
         povray_solid(&s->solids[i]);
+    if (s->triangle_count > 0)
+        povray_mesh(s);
 }
 
 // ---- Tachyon ----
