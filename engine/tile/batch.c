@@ -202,6 +202,7 @@ bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
         take_hits(batch, frame);
     for (uint32_t g = 0; g < tile->group_count; g++)
         any |= tile->at.hits[g];
+    tile->at.only = NULL;
     if (any && !batch->distances)
         glint_tile_find_surfaces(tile, frame);
     if (frame->plan->absorbs)

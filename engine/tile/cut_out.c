@@ -73,12 +73,9 @@ void glint_tile_find_holes(glint_tile *tile, const glint_tile_frame *frame, cons
 {
     memset(holes, 0, points->group_count * sizeof *holes);
     const uint32_t count = glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, points, is_cut);
-    for (uint32_t first = 0; first < count; first++) {
-        glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
-        const uint32_t taken = glint_pattern_take(tile->pattern, first, count, entries);
-        if (taken)
-            find_material_holes(tile, frame, points, entries, taken, holes);
-    }
+    glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
+    for (uint32_t first = 0, taken; (taken = glint_pattern_take(tile->pattern, &first, count, entries));)
+        find_material_holes(tile, frame, points, entries, taken, holes);
 }
 
 /// Keeps those of cut->hits whose materials have holes. Returns whether there are any.

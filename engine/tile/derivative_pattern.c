@@ -169,10 +169,7 @@ void glint_derivative_repaint(const glint_tile *tile, const glint_tile_frame *fr
     for (size_t k = 0; k < planes; k++)
         memset(tile->derivative->painted + k * GLINT_TILE_SAMPLES, 0, tile->group_count * GLINT_GROUP * sizeof(double));
     const uint32_t count = glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, repaints);
-    for (uint32_t first = 0; first < count; first++) {
-        glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
-        const uint32_t taken = glint_pattern_take(tile->pattern, first, count, entries);
-        if (taken)
-            run_material(tile, frame, &points, entries, taken);
-    }
+    glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
+    for (uint32_t first = 0, taken; (taken = glint_pattern_take(tile->pattern, &first, count, entries));)
+        run_material(tile, frame, &points, entries, taken);
 }

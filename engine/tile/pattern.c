@@ -78,34 +78,36 @@ uint32_t glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_pla
                                   const glint_pattern_points *points,
                                   bool (*wants)(const glint_plan_pattern *own, uint32_t fields))
 {
-    uint32_t count = 0;
+    uint32_t count = 0, last = GLINT_MISS;
+    bool wanted = false; // is `last`
     for (uint32_t g = 0; g < points->group_count; g++) {
         const uint32_t *material = points->material + (size_t)g * GLINT_GROUP;
         for (unsigned left = points->hits[g], lanes; left; left &= ~lanes) {
-            lanes = alike(material, left);
+            lanes = points->only ? left : alike(material, left);
             const uint32_t m = material[__builtin_ctz(left)];
-            if (wants(&patterns->of[m], points->fields))
+            if (m != last)
+                wanted = wants(&patterns->of[m], points->fields);
+            last = m;
+            if (wanted)
                 pattern->lanes[count++] = (glint_pattern_lanes) { m, (uint16_t)g, (uint16_t)lanes };
         }
     }
     return count;
 }
 
-uint32_t glint_pattern_take(struct glint_pattern *pattern, uint32_t first, uint32_t count,
+uint32_t glint_pattern_take(struct glint_pattern *pattern, uint32_t *first, uint32_t count,
                             glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS])
 {
+    glint_pattern_lanes *lanes = pattern->lanes;
     uint32_t taken = 0;
-    if (!pattern->lanes[first].lanes)
-        return 0;
-    for (uint32_t k = first; k < count && taken < GLINT_PROGRAM_GROUPS; k++) {
-        glint_pattern_lanes *entry = &pattern->lanes[k];
-        if (!entry->lanes || entry->material != pattern->lanes[first].material)
+    while (*first < count && !lanes[*first].lanes)
+        ++*first;
+    for (uint32_t k = *first; k < count && taken < GLINT_PROGRAM_GROUPS; k++) {
+        if (!lanes[k].lanes || (taken && lanes[k].material != entries[0].material))
             continue;
-        entries[taken++] = *entry;
-        if (k > first)
-            entry->lanes = 0;
+        entries[taken++] = lanes[k];
+        lanes[k].lanes = 0;
     }
-    pattern->lanes[first].lanes = 0;
     return taken;
 }
 
@@ -191,8 +193,10 @@ void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *f
     args->code = code;
     args->rows = pattern->rows;
     args->same = inputs->same;
-    for (int input = 0; input < GLINT_INPUT_COUNT; input++)
+    for (uint32_t left = inputs->used; left; left &= left - 1) {
+        const int input = __builtin_ctz(left);
         args->input[input] = inputs->from[input] + (inputs->same >> input & 1 ? 0 : first * GLINT_GROUP);
+    }
     frame->stages->program(args);
 }
 
@@ -270,13 +274,9 @@ bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *fr
                        glint_tile_counts *counts)
 {
     const uint32_t count = glint_pattern_find_lanes(pattern, frame->plan->patterns, points, has_planes);
-    for (uint32_t first = 0; first < count; first++) {
-        glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
-        const uint32_t taken = glint_pattern_take(pattern, first, count, entries);
-        if (taken)
-            run_material(pattern, frame, points, &frame->plan->patterns->of[entries[0].material], entries, taken,
-                         counts);
-    }
+    glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
+    for (uint32_t first = 0, taken; (taken = glint_pattern_take(pattern, &first, count, entries));)
+        run_material(pattern, frame, points, &frame->plan->patterns->of[entries[0].material], entries, taken, counts);
     return count > 0;
 }
 
@@ -287,6 +287,7 @@ glint_pattern_points glint_pattern_points_of(const glint_tile *tile)
                                     .back = tile->hit.back,
                                     .prim = tile->at.prim,
                                     .material = tile->surface.material,
+                                    .only = tile->at.only,
                                     .t = tile->owner ? NULL : tile->at.t,
                                     .tile = tile,
                                     .planes = tile->at.planes,
@@ -318,9 +319,27 @@ uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan)
                 continue;
             last = m;
             fields |= plan->patterns->of[m].made;
+            if (tile->at.only)
+                return fields;
         }
     }
     return fields;
+}
+
+bool glint_tile_find_painted(const glint_tile *tile, const glint_plan *plan, uint16_t painted[GLINT_TILE_GROUPS])
+{
+    unsigned any = 0;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const uint32_t *material = tile->surface.material + (size_t)g * GLINT_GROUP;
+        painted[g] = 0;
+        for (unsigned left = tile->at.hits[g], lanes; left; left &= ~lanes) {
+            lanes = tile->at.only ? left : alike(material, left);
+            if (plan->patterns->of[material[__builtin_ctz(left)]].made & GLINT_FIELDS_PLANES)
+                painted[g] |= (uint16_t)lanes;
+        }
+        any |= painted[g];
+    }
+    return any;
 }
 
 bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)

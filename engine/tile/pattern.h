@@ -19,6 +19,7 @@ typedef struct glint_pattern_points {
     uint32_t group_count;
     const uint16_t *hits, *back;
     const uint32_t *prim, *material;
+    const uint32_t *only; ///< the primitive of all hits, where they have one; NULL: not known
     const void *point[3], *normal[3]; ///< real; the normal geometric, or of smooth meshes theirs
     const void *t; ///< NULL: no pixel is as wide as anything there
     const glint_tile *tile; ///< whose rays found them
@@ -39,6 +40,8 @@ float *glint_pattern_planes(struct glint_pattern *pattern, glint_walk walk);
 bool glint_pattern_needs_normals(const glint_plan *plan);
 /// The fields that programs give of the materials in sight, which are named; a bit each.
 uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan);
+/// The lanes that show materials, which are named, of which programs fill planes. Returns whether there are any.
+bool glint_tile_find_painted(const glint_tile *tile, const glint_plan *plan, uint16_t painted[GLINT_TILE_GROUPS]);
 /// Points the planes of sample k to where they are kept, or go. Returns whether they are there already.
 bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 /// Writes down what the kept planes hold now.

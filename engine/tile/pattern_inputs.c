@@ -243,6 +243,7 @@ static void gather_uv(const gathering *g, uint32_t reads, unsigned lanes)
 double *glint_pattern_row(glint_pattern_inputs *inputs, glint_input input)
 {
     inputs->from[input] = inputs->row[input];
+    inputs->used |= 1u << input;
     inputs->same &= ~(1u << input);
     return inputs->row[input];
 }
@@ -289,7 +290,7 @@ static bool read_points(glint_pattern_inputs *inputs, const glint_tile_frame *fr
     const glint_pattern_place *place = plain_place(frame, points, &entries[0]);
     if (!place)
         return false;
-    for (uint32_t k = 1; k < count; k++)
+    for (uint32_t k = 1; k < count && !points->only; k++)
         if (plain_place(frame, points, &entries[k]) != place)
             return false;
     for (int c = 0; c < 3; c++)
@@ -336,8 +337,9 @@ void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *
                           const glint_pattern_points *points, uint32_t reads, const glint_pattern_lanes *entries,
                           uint32_t count)
 {
-    for (int input = 0; input < GLINT_INPUT_COUNT; input++)
-        glint_pattern_row(inputs, (glint_input)input);
+    inputs->used = 0;
+    for (uint32_t rest = reads; rest; rest &= rest - 1)
+        glint_pattern_row(inputs, (glint_input)__builtin_ctz(rest));
     const uint32_t left = read_in_place(inputs, frame, points, reads, entries, count);
     for (uint32_t k = 0; left && k < count; k++) {
         const gathering g = { inputs, frame, points, (size_t)entries[k].group * GLINT_GROUP, (size_t)k * GLINT_GROUP };

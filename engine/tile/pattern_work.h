@@ -28,9 +28,9 @@ glint_pattern_points glint_pattern_points_of(const glint_tile *tile);
 uint32_t glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
                                   const glint_pattern_points *points,
                                   bool (*wants)(const glint_plan_pattern *own, uint32_t fields));
-/// Takes entry `first` and those after it of the same material, as many as a call has room for, off the list. Returns how
-/// many: 0, where it has been taken.
-uint32_t glint_pattern_take(struct glint_pattern *pattern, uint32_t first, uint32_t count,
+/// Takes the first entry that is left and those after it of the same material, as many as a call has room for, off the list;
+/// *first, 0 to begin with: none is left before it. Returns how many: 0, where the list is empty.
+uint32_t glint_pattern_take(struct glint_pattern *pattern, uint32_t *first, uint32_t count,
                             glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS]);
 /// Runs a program on the inputs that are gathered, from entry `first` on.
 void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_program_code *code,

@@ -146,6 +146,8 @@ static void take_box(glint_tile *tile, const glint_tile_frame *frame, const glin
     if (filled)
         glint_tile_keep_box(tile, frame, filled);
     tile->at.box = filled ? filled : &tile->cached->box;
+    if (!tile->at.only && tile->at.box->only != GLINT_MISS)
+        tile->at.only = &tile->at.box->only;
 }
 
 static glint_surface_args surface_args(glint_tile *tile, const glint_tile_frame *frame)
@@ -185,20 +187,34 @@ void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
         glint_tile_bump(tile, frame);
 }
 
+void glint_tile_find_points(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *hits)
+{
+    glint_surface_args args = surface_args(tile, frame);
+    args.hits = hits;
+    for (int c = 0; c < 3; c++)
+        args.normal[c] = NULL;
+    args.box = NULL;
+    frame->stages->geometry[frame->plan->desc.precision].surface(&args);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_SURFACE, false);
+}
+
 void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_prim *prims = frame->geometry.prims;
-    uint32_t last = GLINT_MISS, material = 0;
-    for (uint32_t g = 0; tile->at.only && g < tile->group_count; g++)
-        for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
-            tile->surface.material[g * GLINT_GROUP + lane] = prims[*tile->at.only].material;
-    if (tile->at.only)
-        return;
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        const uint32_t prim = tile->at.prim[i];
-        if (prim != last && prim != GLINT_MISS)
-            material = prims[last = prim].material;
-        tile->surface.material[i] = material;
+    uint32_t last = tile->at.only ? *tile->at.only : GLINT_MISS, material = tile->at.only ? prims[last].material : 0;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const uint32_t *prim = tile->at.prim + (size_t)g * GLINT_GROUP;
+        uint32_t *to = tile->surface.material + (size_t)g * GLINT_GROUP;
+        if (tile->at.only || glint_all_are(prim, last)) { // the common case
+            for (int i = 0; i < GLINT_GROUP; i++)
+                to[i] = material;
+            continue;
+        }
+        for (int i = 0; i < GLINT_GROUP; i++) {
+            if (prim[i] != last && prim[i] != GLINT_MISS)
+                material = prims[last = prim[i]].material;
+            to[i] = material;
+        }
     }
 }
 

@@ -243,6 +243,8 @@ bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame);
 /// What is not in sight needs no rays.
 void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
+/// The points alone, of some of the lanes that are hit; all of these are balls and planes.
+void glint_tile_find_points(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *hits);
 /// The same and light number `light` of the plan, a plain one, in slot 0; without normals.
 void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light);
 /// One light, samples of one, or lights that are alike: light `first + slot[i]` of the plan, for each of `count` slots of the

@@ -66,6 +66,21 @@ static void need_points(glint_tile *tile, const glint_tile_frame *frame, walk *w
     w->points = true;
 }
 
+/// What patterns of known hits read. Returns whether there is any.
+static bool need_painted(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    uint16_t painted[GLINT_TILE_GROUPS];
+    if (!glint_tile_find_painted(tile, frame->plan, painted))
+        return false;
+    if (glint_pattern_needs_normals(frame->plan) || frame->geometry.triangles || frame->geometry.solids) {
+        need_points(tile, frame, w);
+        return true;
+    }
+    need_rays(tile, frame, w);
+    glint_tile_find_points(tile, frame, painted);
+    return true;
+}
+
 /// What programs give of the materials in sight, which are named.
 static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
@@ -76,12 +91,8 @@ static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, walk 
         glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, true);
         return;
     }
-    if (!w->lit && !w->points) {
-        if (!(glint_tile_fields_shown(tile, frame->plan) & GLINT_FIELDS_PLANES))
-            return;
-        need_points(tile, frame, w);
-    }
-    glint_tile_pattern(tile, frame);
+    if (w->lit || w->points || need_painted(tile, frame, w))
+        glint_tile_pattern(tile, frame);
 }
 
 /// Whether the picture's geometry is that of this walk: of sample 0; where the camera has a lens, of the ray through its middle.

@@ -128,7 +128,7 @@ typedef struct glint_surface_args {
     const glint_camera_args *camera; ///< the rays, of a perspective camera; NULL: they are in origin and direction
     const void *origin[3], *direction[3]; ///< real, one a ray
     const void *t;
-    void *point[3], *normal[3]; ///< out, real; the normal is unit and turned to the viewer
+    void *point[3], *normal[3]; ///< out, real; the normal is unit and turned to the viewer; normal[0] NULL: points alone
     uint32_t *material; ///< out
     uint16_t *back; ///< out: lanes seen from behind (from inside), whose normal was turned to the viewer
     uint16_t *dark; ///< out: of these, lanes of one-sided surfaces: ambient only
@@ -139,6 +139,7 @@ typedef struct glint_surface_args {
 // and material = 0. Where it is not NULL, `slack` of lanes that hit no triangle is
 // -(point_slack |point|_max): as large as what rounding may have moved the point by, and told apart by its sign. Points of a face
 // or plane that is square to an axis of the world are exactly there.
+// Of points alone, which are not of a mixed table, `box` and `slack` are NULL, and material, back and dark are not written.
 // The arithmetic: ref/real.h, ref/triangle.h, ref/solid.h. Of a sphere that is close, the normal is as long as it should be but
 // for F^2 + 8 roundings, F = |origin - center| / radius: the error of t at a point that is seen at an angle i goes along the
 // ray, and grows as 1 / cos i does. From further away it is brought to its length, from afar made of the line's distance from

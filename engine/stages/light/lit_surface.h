@@ -25,21 +25,7 @@ INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args
     const R(seen_prim) *seen = &call->walk.seen;
     const int i = j * VR;
     vr d[3], n[3], p[3], l[3];
-    R(load_direction)(directions, surface->direction, at, i, d);
-    const vr t = r_load((const real *)surface->t + at + i);
-    if (sphere) {
-        const vr f[3] = { r_set(seen->f[0]), r_set(seen->f[1]), r_set(seen->f[2]) };
-        if (seen->range == R(RANGE_CLOSE))
-            R(sphere_surface)(f, d, t, seen->prim, seen->scale, seen->inverse_radius, R(RANGE_CLOSE), n, p);
-        else
-            R(sphere_surface)(f, d, t, seen->prim, seen->scale, seen->inverse_radius, R(RANGE_NEAR), n, p);
-    }
-    for (int k = 0; k < 3 && !sphere; k++) {
-        n[k] = r_set(seen->normal[k]);
-        p[k] = r_set(seen->from[k]) + r_set(seen->way[k]) * (t * d[k]);
-    }
-    if (!sphere && seen->level == 3)
-        R(onto_plane_of)(seen->prim, n, p);
+    R(find_whole)(surface, seen, sphere, directions, at, i, d, n, p);
     for (int k = 0; k < 3; k++) {
         r_store((real *)surface->point[k] + at + i, p[k]);
         l[k] = r_set(call->position[k]);
@@ -187,7 +173,7 @@ static void R(lit_surface)(const glint_surface_args *surface, const glint_light_
             surface->back[g] = surface->dark[g] = 0;
             light->lit[0][g] = 0;
         } else if (!R(light_whole)(surface, light, &call, place, &box, &group.brightest)) {
-            R(surface_group)(surface, &call.walk, &box, place, false);
+            R(surface_group)(surface, &call.walk, &box, place, R(BALLS_AND_PLANES));
             R(light_group)(light, LIGHT_PLAIN, 1, NULL, place, &point, &group);
             light->lit[0][g] = (uint16_t)group.lit;
             if (group.lit)

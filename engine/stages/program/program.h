@@ -75,16 +75,24 @@ static inline void find_operand(const glint_program_args *args, uint32_t row, co
 /// A number as a reflectance; NaN gives 0.
 static inline vd reflectance(vd v) { return d_min(d_max(v, d_set(0)), d_set(GLINT_REFLECTANCE_MAX)); }
 
-/// A group of one output as reflectances, where wanted.
-INNER void store_plane(const double *from, unsigned wanted, float *plane)
+/// A group of one output as reflectances, where wanted. Returns the lanes that are none.
+INNER unsigned store_plane(const double *from, unsigned wanted, float *plane)
 {
+    unsigned even = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const vf v = f_join(reflectance(d_load(from + i)), reflectance(d_load(from + i + VD)));
+        vd half[VF / VD];
+        for (int k = 0; k < VF / VD; k++) {
+            const vd x = d_load(from + i + k * VD);
+            half[k] = reflectance(x);
+            even |= dm_bits(d_eq(half[k], x)) << (i + k * VD);
+        }
+        const vf v = f_join(half[0], half[1]);
         if (wanted == 0xffff)
             f_store(plane + i, v);
         else
             f_store(plane + i, f_select(fm_from_bits(wanted >> i & ((1u << VF) - 1)), v, f_load(plane + i)));
     }
+    return ~even & wanted;
 }
 
 /// Adds a group of one output, as store_plane rounds it, times `share`.
@@ -112,17 +120,6 @@ static void store_result(const double *from, unsigned wanted, double *result)
         d_store(result + i, d_select(dm_from_bits(wanted >> i & D_ALL), d_load(from + i), d_load(result + i)));
 }
 
-/// The lanes of a group that are no reflectance.
-static unsigned odd_lanes(const double *from)
-{
-    unsigned even = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VD) {
-        const vd v = d_load(from + i);
-        even |= dm_bits(dm_and(d_le(d_set(0), v), d_le(v, d_set(GLINT_REFLECTANCE_MAX)))) << i;
-    }
-    return ~even;
-}
-
 static void store_output(const glint_program_args *args, uint32_t k)
 {
     const double *row;
@@ -134,18 +131,19 @@ static void store_output(const glint_program_args *args, uint32_t k)
         const unsigned wanted = args->wanted[g];
         if (args->result[k])
             store_result(from, wanted, args->result[k] + to);
+        unsigned odd = 0;
         if (args->plane[k] && wanted == 0xffff)
-            store_plane(from, 0xffff, args->plane[k] + to);
+            odd = store_plane(from, 0xffff, args->plane[k] + to);
         else if (args->plane[k])
-            store_plane(from, wanted, args->plane[k] + to);
+            odd = store_plane(from, wanted, args->plane[k] + to);
         if (args->total[k] && args->share)
             add_total(from, wanted, args->share + (size_t)g * GLINT_GROUP, args->total[k] + to);
         else if (args->total[k] && wanted == 0xffff)
             add_total(from, 0xffff, NULL, args->total[k] + to);
         else if (args->total[k] && wanted)
             add_total(from, wanted, NULL, args->total[k] + to);
-        if (args->plane[k] && args->odd)
-            args->odd[g] |= (uint16_t)(odd_lanes(from) & wanted);
+        if (args->odd)
+            args->odd[g] |= (uint16_t)odd;
     }
 }
 

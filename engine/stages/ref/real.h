@@ -197,20 +197,24 @@ static bool NAME(surface_hit)(const glint_surface_args *args, uint32_t i)
     else if (back)
         n = NAME(negated)(n);
     NAME(store)(args->point, i, point);
-    NAME(store)(args->normal, i, n);
+    if (args->normal[0])
+        NAME(store)(args->normal, i, n);
     if (args->slack)
         ((REAL *)args->slack)[i] = slack;
-    args->material[i] = prim->material;
+    if (args->normal[0])
+        args->material[i] = prim->material;
     return back;
 }
 
 static void NAME(surface_miss)(const glint_surface_args *args, uint32_t i)
 {
     NAME(store)(args->point, i, NAME(vec)(0, 0, 0));
-    NAME(store)(args->normal, i, NAME(vec)(0, 0, 0));
+    if (args->normal[0])
+        NAME(store)(args->normal, i, NAME(vec)(0, 0, 0));
     if (args->slack)
         ((REAL *)args->slack)[i] = 0;
-    args->material[i] = 0;
+    if (args->normal[0])
+        args->material[i] = 0;
 }
 
 static void NAME(surface_group)(const glint_surface_args *args, uint32_t group)
@@ -226,6 +230,8 @@ static void NAME(surface_group)(const glint_surface_args *args, uint32_t group)
                 dark |= 1u << lane;
         }
     }
+    if (!args->normal[0])
+        return;
     args->back[group] = (uint16_t)back;
     args->dark[group] = (uint16_t)dark;
 }

@@ -107,48 +107,99 @@ static inline void sum_plane_shares(const glint_shade_args *args, const glint_sh
         d_store_f(sum + i, total[i / VD]);
 }
 
-/// What a term takes from planes in a channel, read once a group: stores may change what pointers lead to.
-typedef struct plane_factor {
-    const float *plane; ///< NULL: `color` is all
-    double number; ///< what the plane is multiplied by
-    float color;
-} plane_factor;
+/// A vector of a plane, in double.
+typedef struct wide_lanes {
+    vd part[VF / VD];
+} wide_lanes;
 
-static inline plane_factor factor_of(const glint_shade_args *args, const glint_shade_material *material, int term, int c,
-                                     double light, size_t at)
+static inline wide_lanes wide_of(const float *plane)
 {
-    const double constant = (term ? material->specular : material->diffuse)[c];
-    const float *plane = plane_of(args, material, term, c, at);
-    return (plane_factor) { plane, constant * light, plane ? 0 : share_color(constant, light) };
+    wide_lanes wide;
+    f_split(f_load(plane), wide.part);
+    return wide;
 }
 
-static inline vf factor_lanes(const plane_factor *factor, int i)
+static inline vf narrow(const wide_lanes *wide, double number)
 {
-    return factor->plane ? plane_color(factor->plane + i, factor->number) : f_set(factor->color);
+    return f_join(wide->part[0] * d_set(number), wide->part[1] * d_set(number));
 }
 
-/// As shade_whole.
-static __attribute__((noinline)) void whole_planes(const glint_shade_args *args, const glint_shade_material *material,
-                                                   bool shines, const light_factors *factors, size_t at)
+/// Of one channel what planes are multiplied by, and the products where there are none: read once, as stores may change what
+/// pointers lead to.
+typedef struct channel_numbers {
+    double ambient, diffuse, specular;
+    float ambient_color, diffuse_color, specular_color;
+} channel_numbers;
+
+static inline channel_numbers numbers_of(const glint_shade_args *args, const glint_shade_material *material,
+                                         const glint_shade_light *light, int c)
 {
-    const glint_shade_light *light = factors->count ? factors->light[0] : NULL;
-    const bool follows = material->planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE,
-               made = follows || material->planes & GLINT_PLANE_AMBIENT;
-    for (int c = 0; c < 3; c++) {
-        const float *ambient = made ? (follows ? args->planes->diffuse : args->planes->ambient)[c] + at : NULL;
-        const double strength = made ? args->planes->ambient_light[c] : material->ambient[c];
-        const plane_factor diffuse = factor_of(args, material, 0, c, light ? light->diffuse[c] : 0, at),
-                           specular = factor_of(args, material, 1, c, light ? light->specular[c] : 0, at);
-        float *beauty = args->beauty[c] + at;
-        for (int i = 0; i < GLINT_GROUP; i += VF) {
-            vf sum = made ? f_join(d_load_f(ambient + i) * d_set(strength), d_load_f(ambient + i + VD) * d_set(strength))
-                          : f_set((float)strength);
-            if (light)
-                sum = sum + f_load(factors->diffuse[0] + i) * factor_lanes(&diffuse, i);
-            if (light && shines)
-                sum = sum + f_load(factors->specular[0] + i) * factor_lanes(&specular, i);
-            f_store(beauty + i, sum);
+    const double diffuse = light ? light->diffuse[c] : 0, specular = light ? light->specular[c] : 0;
+    return (channel_numbers) { args->planes->ambient_light[c],
+                               material->diffuse[c] * diffuse,
+                               material->specular[c] * specular,
+                               (float)material->ambient[c],
+                               share_color(material->diffuse[c], diffuse),
+                               share_color(material->specular[c], specular) };
+}
+
+/// One channel of a group. `has`: the material's planes.
+INNER void whole_channel(const glint_shade_args *args, const channel_numbers *by, unsigned has, bool shines,
+                         const light_factors *factors, int c, size_t at)
+{
+    const glint_shade_planes *planes = args->planes;
+    const bool follows = has & GLINT_PLANE_AMBIENT_IS_DIFFUSE, painted = follows || has & GLINT_PLANE_DIFFUSE;
+    const float *diffuse = painted ? planes->diffuse[c] + at : NULL,
+                *ambient = has & GLINT_PLANE_AMBIENT ? planes->ambient[c] + at : NULL,
+                *specular = has & GLINT_PLANE_SPECULAR ? planes->specular[c] + at : NULL;
+    float *beauty = args->beauty[c] + at;
+    const bool lit = factors->count;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        wide_lanes kd, other;
+        vf sum = f_set(by->ambient_color), color = f_set(by->diffuse_color), shine = f_set(by->specular_color);
+        if (diffuse)
+            kd = wide_of(diffuse + i);
+        if (follows) {
+            sum = narrow(&kd, by->ambient);
+        } else if (ambient) {
+            other = wide_of(ambient + i);
+            sum = narrow(&other, by->ambient);
         }
+        if (has & GLINT_PLANE_DIFFUSE)
+            color = f_min(narrow(&kd, by->diffuse), f_set(FLT_MAX));
+        if (lit)
+            sum = sum + f_load(factors->diffuse[0] + i) * color;
+        if (lit && shines && specular)
+            shine = plane_color(specular + i, by->specular);
+        if (lit && shines)
+            sum = sum + f_load(factors->specular[0] + i) * shine;
+        f_store(beauty + i, sum);
+    }
+}
+
+/// Those of the last group, which are often those of the next.
+typedef struct plane_numbers {
+    const glint_shade_material *material; ///< NULL: none yet
+    const glint_shade_light *light; ///< NULL: none reaches it
+    channel_numbers channel[3];
+} plane_numbers;
+
+/// As shade_whole. Diffuse reflectances that are the ambient ones, too, are the common case.
+static __attribute__((noinline)) void whole_planes(const glint_shade_args *args, const glint_shade_material *material,
+                                                   bool shines, const light_factors *factors, size_t at,
+                                                   plane_numbers *numbers)
+{
+    const unsigned painted = GLINT_PLANE_DIFFUSE | GLINT_PLANE_AMBIENT_IS_DIFFUSE, has = material->planes;
+    const glint_shade_light *light = factors->count ? factors->light[0] : NULL;
+    for (int c = 0; c < 3 && (numbers->material != material || numbers->light != light); c++)
+        numbers->channel[c] = numbers_of(args, material, light, c);
+    numbers->material = material;
+    numbers->light = light;
+    for (int c = 0; c < 3; c++) {
+        if ((has & ~(unsigned)GLINT_PLANE_SHININESS) == painted)
+            whole_channel(args, &numbers->channel[c], painted, shines, factors, c, at);
+        else
+            whole_channel(args, &numbers->channel[c], has, shines, factors, c, at);
     }
 }
 

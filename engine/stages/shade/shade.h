@@ -302,7 +302,7 @@ static inline bool wants_terms(const glint_shade_args *args)
 }
 
 /// A group whose terms are final; `simple` is a constant.
-INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t g)
+INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t g, plane_numbers *numbers)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
     unsigned left = args->hits[g];
@@ -331,7 +331,7 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
             find_factors(args, material, specular, g, &factors);
         if (!shaded && simple && lanes == 0xffff && factors.count <= 1 && !has_facets(material)) {
             if (planes)
-                whole_planes(args, material, specular && factors.shiny, &factors, at);
+                whole_planes(args, material, specular && factors.shiny, &factors, at, numbers);
             else
                 shade_whole(args, material, specular, &factors, at);
             return;
@@ -354,6 +354,7 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
 static void shade(const glint_shade_args *args)
 {
     const bool simple = !wants_terms(args);
+    plane_numbers numbers = { 0 };
     if (GLINT_WITH_SAMPLES && args->sum[0][0]) {
         for (uint32_t g = 0; g < args->group_count; g++) {
             const group_sums sums = { args->sum, (size_t)g * GLINT_GROUP };
@@ -361,9 +362,9 @@ static void shade(const glint_shade_args *args)
         }
     } else if (simple) {
         for (uint32_t g = 0; g < args->group_count; g++)
-            shade_group(args, true, g);
+            shade_group(args, true, g, &numbers);
     } else {
         for (uint32_t g = 0; g < args->group_count; g++)
-            shade_group(args, false, g);
+            shade_group(args, false, g, &numbers);
     }
 }

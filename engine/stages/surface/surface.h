@@ -250,19 +250,28 @@ static void R(write_box)(R(point_box) box, glint_point_box *out)
     }
 }
 
+/// What a call finds: each way is compiled by itself.
+typedef enum R(surface_way) {
+    R(MIXED), ///< there are triangles or solids
+    R(BALLS_AND_PLANES),
+    R(POINTS_ALONE) ///< of balls and planes
+} R(surface_way);
+
 /// Writes some lanes of a vector and leaves the others as they are. Returns the lanes that are seen from behind.
 INNER unsigned R(put_found)(const glint_surface_args *args, const R(found) * found, size_t at, unsigned lanes,
-                            bool mixed, R(point_box) * box)
+                            R(surface_way) way, R(point_box) * box)
 {
     const bool whole = lanes == (1u << VR) - 1;
     const rm mask = rm_from_bits(lanes);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++)
         R(put)(args->point[k], at, whole, mask, found->point[k]);
+    if (way == R(POINTS_ALONE))
+        return 0;
+    for (int k = 0; k < 3; k++)
         R(put)(args->normal[k], at, whole, mask, found->normal[k]);
-    }
     if (args->box)
         R(enclose)(box, found->point, whole, mask);
-    if (mixed && args->slack)
+    if (way == R(MIXED) && args->slack)
         R(put)(args->slack, at, whole, mask, found->slack);
     return rm_bits(found->back) & lanes;
 }
@@ -273,11 +282,13 @@ static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < GLINT_GROUP; i += VR) {
             r_store((real *)args->point[k] + at + i, r_set(0));
-            r_store((real *)args->normal[k] + at + i, r_set(0));
+            if (args->normal[0])
+                r_store((real *)args->normal[k] + at + i, r_set(0));
             if (args->slack)
                 r_store((real *)args->slack + at + i, r_set(0));
         }
-    lanes_put(args->material + at, 0xffff, 0);
+    if (args->normal[0])
+        lanes_put(args->material + at, 0xffff, 0);
 }
 
 /// What is known while the groups of a tile are gone through.
@@ -331,14 +342,58 @@ INNER unsigned R(surface_mesh)(const glint_surface_args *args, R(surface_walk) *
             continue;
         R(found) found;
         R(find_mesh_lanes)(args, &mesh, directions, at, i, &found);
-        back |= R(put_found)(args, &found, at + (size_t)i, here, true, box) << i;
+        back |= R(put_found)(args, &found, at + (size_t)i, here, R(MIXED), box) << i;
     }
     return back;
 }
 
+/// Whether find_whole knows such a primitive.
+static inline bool R(is_near_or_plane)(const R(seen_prim) * seen)
+{
+    const uint32_t kind = seen->prim->kind;
+    return kind == GLINT_PRIM_PLANE || (kind == GLINT_PRIM_SPHERE && seen->range != R(RANGE_ANY));
+}
+
+/// Directions, outward normals and points of lanes i .. of a group that shows one plane, or one sphere that the camera is not far
+/// from, in every lane; `sphere` is a constant.
+INNER void R(find_whole)(const glint_surface_args *args, const R(seen_prim) * seen, const bool sphere,
+                         R(group_directions) directions, size_t at, int i, vr d[3], vr n[3], vr p[3])
+{
+    R(load_direction)(directions, args->direction, at, i, d);
+    const vr t = r_load((const real *)args->t + at + i);
+    if (sphere) {
+        const vr f[3] = { r_set(seen->f[0]), r_set(seen->f[1]), r_set(seen->f[2]) };
+        if (seen->range == R(RANGE_CLOSE))
+            R(sphere_surface)(f, d, t, seen->prim, seen->scale, seen->inverse_radius, R(RANGE_CLOSE), n, p);
+        else
+            R(sphere_surface)(f, d, t, seen->prim, seen->scale, seen->inverse_radius, R(RANGE_NEAR), n, p);
+    }
+    for (int k = 0; k < 3 && !sphere; k++) {
+        n[k] = r_set(seen->normal[k]);
+        p[k] = r_set(seen->from[k]) + r_set(seen->way[k]) * (t * d[k]);
+    }
+    if (!sphere && seen->level == 3)
+        R(onto_plane_of)(seen->prim, n, p);
+}
+
+/// The points alone of such a group.
+INNER void R(place_whole)(const glint_surface_args *args, const R(seen_prim) * seen, R(group_directions) directions,
+                          size_t at)
+{
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        vr d[3], n[3], p[3];
+        if (seen->prim->kind == GLINT_PRIM_SPHERE)
+            R(find_whole)(args, seen, true, directions, at, i, d, n, p);
+        else
+            R(find_whole)(args, seen, false, directions, at, i, d, n, p);
+        for (int k = 0; k < 3; k++)
+            r_store((real *)args->point[k] + at + i, p[k]);
+    }
+}
+
 /// One group that is hit: its triangles together, where there are several, and the rest primitive by primitive.
 INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * walk, R(point_box) * box,
-                            R(group_place) place, bool mixed)
+                            R(group_place) place, R(surface_way) way)
 {
     const uint32_t g = place.g;
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -346,7 +401,7 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
     unsigned left = args->hits[g], back = 0, dark = 0;
     if (left != 0xffff)
         R(clear_surface)(args, at);
-    const unsigned mesh = mixed ? R(mesh_lanes)(args, at, left) : 0;
+    const unsigned mesh = way == R(MIXED) ? R(mesh_lanes)(args, at, left) : 0;
     if (mesh) {
         back = R(surface_mesh)(args, walk, box, directions, at, mesh);
         dark = back & R(put_materials)(args, at, mesh);
@@ -357,26 +412,33 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
         const unsigned lanes = lanes_equal(args->prim + at, id);
         unsigned behind = 0;
         R(look_at)(args, walk, id);
-        for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const bool placed =
+            way == R(POINTS_ALONE) && args->camera && lanes == 0xffff && R(is_near_or_plane)(&walk->seen);
+        if (placed)
+            R(place_whole)(args, &walk->seen, directions, at);
+        for (int i = placed ? GLINT_GROUP : 0; i < GLINT_GROUP; i += VR) {
             const unsigned here = lanes >> i & ((1u << VR) - 1);
             if (!here)
                 continue;
             R(found) found;
-            R(find_lanes)(args, &walk->seen, directions, at, i, mixed, &found);
-            behind |= R(put_found)(args, &found, at + (size_t)i, here, mixed, box) << i;
+            R(find_lanes)(args, &walk->seen, directions, at, i, way == R(MIXED), &found);
+            behind |= R(put_found)(args, &found, at + (size_t)i, here, way, box) << i;
         }
-        lanes_put(args->material + at, lanes, walk->seen.prim->material);
+        if (way != R(POINTS_ALONE))
+            lanes_put(args->material + at, lanes, walk->seen.prim->material);
         back |= behind;
         if (!walk->seen.prim->two_sided)
             dark |= behind;
         left &= ~lanes;
     }
+    if (way == R(POINTS_ALONE))
+        return;
     args->back[g] = (uint16_t)back;
     args->dark[g] = (uint16_t)dark;
     walk->turned = walk->turned || back;
 }
 
-INNER void R(surface_groups)(const glint_surface_args *args, bool mixed)
+INNER void R(surface_groups)(const glint_surface_args *args, R(surface_way) way)
 {
     R(surface_walk) walk;
     R(point_box) box;
@@ -384,18 +446,19 @@ INNER void R(surface_groups)(const glint_surface_args *args, bool mixed)
     R(empty_box)(&box);
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
         if (args->hits[place.g])
-            R(surface_group)(args, &walk, &box, place, mixed);
-        else
+            R(surface_group)(args, &walk, &box, place, way);
+        else if (way != R(POINTS_ALONE))
             args->back[place.g] = args->dark[place.g] = 0;
     }
     R(end_walk)(args, &walk, &box);
 }
 
-/// Each way is compiled for its constant.
 static void R(surface)(const glint_surface_args *args)
 {
-    if (args->mixed)
-        R(surface_groups)(args, true);
+    if (!args->normal[0])
+        R(surface_groups)(args, R(POINTS_ALONE));
+    else if (args->mixed)
+        R(surface_groups)(args, R(MIXED));
     else
-        R(surface_groups)(args, false);
+        R(surface_groups)(args, R(BALLS_AND_PLANES));
 }
