@@ -566,6 +566,42 @@ static void surface_case(int precision, bool odd)
     end_rays(&c);
 }
 
+/// Points alone: those that are found with normals, of the lanes that are asked for.
+static void points_case(int precision, bool odd)
+{
+    static _Alignas(64) double points[3][GLINT_TILE_SAMPLES], normals[3][GLINT_TILE_SAMPLES];
+    static _Alignas(64) uint32_t material[GLINT_TILE_SAMPLES];
+    static uint16_t back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
+    ray_case c;
+    glint_surface_args args;
+    const uint32_t n = make_surface_case(&c, &args, precision, odd);
+    args.material = material;
+    args.back = back;
+    args.dark = dark;
+    for (int k = 0; k < 3; k++) {
+        args.point[k] = points[k];
+        args.normal[k] = normals[k];
+    }
+    glint_stages_ref.geometry[precision].surface(&args);
+    uint16_t *hits = masks(args.group_count);
+    for (uint32_t g = 0; g < args.group_count; g++)
+        hits[g] = one_in(4) ? hits[g] & c.cast.hits[g] : c.cast.hits[g];
+    args.hits = hits;
+    args.normal[0] = args.normal[1] = args.normal[2] = NULL;
+    FOR_EACH_TESTED
+    {
+        output3(args.point, "point", real_kind(precision), n);
+        geometry(precision)->surface(&args);
+        compare_outputs("points");
+        for (uint32_t i = 0; i < n; i++)
+            for (int k = 0; k < 3 && lane_of(hits, i); k++) {
+                const double alone = get(args.point[k], precision, i), with_normal = get(points[k], precision, i);
+                assert_memory_equal(&alone, &with_normal, sizeof alone);
+            }
+    }
+    end_rays(&c);
+}
+
 /// A lamp near what is hit, or far from it, for materials of every kind.
 static void make_lamp(const ray_case *c, glint_light_args *light)
 {
@@ -636,6 +672,12 @@ static void test_surface(void **state)
     run_cases(2 * CASES, 6000, surface_case);
 }
 
+static void test_points(void **state)
+{
+    (void)state;
+    run_cases(2 * CASES, 6500, points_case);
+}
+
 static void test_lit_surface(void **state)
 {
     (void)state;
@@ -649,6 +691,7 @@ int main(void)
         cmocka_unit_test(test_camera),    cmocka_unit_test(test_cast),    cmocka_unit_test(test_in_sight),
         cmocka_unit_test(test_from_afar), cmocka_unit_test(test_borders), cmocka_unit_test(test_ties),
         cmocka_unit_test(test_surface),   cmocka_unit_test(test_leaving), cmocka_unit_test(test_lit_surface),
+        cmocka_unit_test(test_points),
         cmocka_unit_test(test_filled),    cmocka_unit_test(test_tiles),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
