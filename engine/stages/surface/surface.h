@@ -409,7 +409,7 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
     }
     while (left) {
         const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(left)];
-        const unsigned lanes = lanes_equal(args->prim + at, id);
+        const unsigned lanes = lanes_equal(args->prim + at, id) & left;
         unsigned behind = 0;
         R(look_at)(args, walk, id);
         const bool placed =
