@@ -271,17 +271,18 @@ static void see_from_origin(struct glint_cut_out *cut, glint_tile *tile, const g
                             double off[GLINT_TILE_SAMPLES])
 {
     static const uint32_t only = 0;
-    const glint_prim *seen = &frame->geometry.prims[prim];
-    const bool torus = seen->kind == GLINT_PRIM_SOLID && frame->geometry.solids[seen->item].form == GLINT_FORM_TORUS;
-    const bool any = seen->kind != GLINT_PRIM_SPHERE && !torus;
+    glint_prim seen = frame->geometry.prims[prim];
+    const bool torus = seen.kind == GLINT_PRIM_SOLID && frame->geometry.solids[seen.item].form == GLINT_FORM_TORUS;
+    const bool any = seen.kind != GLINT_PRIM_SPHERE && !torus;
     glint_geometry_table one = frame->geometry;
-    one.prims += prim;
+    seen.filter_bound = HUGE_VALF; // parts of combined solids have no filter, and these rays meet it
+    one.prims = &seen;
     one.prim_count = one.unbounded_count = 1;
     one.unbounded = &only;
     one.nodes = NULL;
     cast(cut, tile, frame, &one, cut->active, false);
     take_nearer(cut, tile, frame, any, off);
-    if (is_flat(&frame->geometry, one.prims))
+    if (is_flat(&frame->geometry, &seen))
         return;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
         cut->leaving[i] = glint_has_lane(cut->active, i) ? only : GLINT_MISS;

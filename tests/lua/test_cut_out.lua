@@ -106,6 +106,42 @@ function tests.what_is_not_there_changes_nothing()
   end
 end
 
+-- What shows in a hole is a part, which is no primitive that rays meet by itself.
+function tests.combined_solids_are_seen_through_holes()
+  local red, grey = glint.material { diffuse = "red" }, glint.material { diffuse = "grey" }
+  local parts = {
+    sphere = function() return glint.sphere { center = { 0, 1, 0 }, radius = 1, material = red } end,
+    box = function() return glint.box { min = { -0.8, 0.3, -0.8 }, max = { 0.8, 1.8, 0.8 }, material = red } end,
+    cylinder = function() return glint.cylinder { base = { -1, 0.8, 0 }, top = { 1, 1.2, 0 }, radius = 0.6, material = red } end,
+    cone = function() return glint.cone { base = { 0, 0.2, 0 }, top = { 0.2, 2.2, 0 }, radius = 1, material = red } end,
+    torus = function() return glint.torus { center = { 0, 1, 0 }, axis = { 0.3, 1, 1 }, major = 0.8, minor = 0.3, material = red } end,
+    half = function() return glint.plane { point = { 0, 1.2, 0 }, normal = { 0.1, 1, 0.2 }, material = red } end,
+    mesh = function() return glint.sphere_mesh { center = { 0, 1, 0 }, radius = 1, segments = 8, shading = "faceted", material = red } end,
+  }
+  local function cutter() return glint.sphere { center = { 0.6, 1.4, 0.6 }, radius = 0.8, material = grey } end
+  local kinds = { glint.union, glint.intersection, glint.difference }
+  local ends = { eye = { 0, 1.5, 4 }, background = { 0.3, 0.6, -4 } } -- before it, and before a mirror that shows it
+  for name, part in pairs(parts) do
+    for _, kind in ipairs(kinds) do
+      for _, precision in ipairs { "double", "float" } do
+        local solid, plain = kind { part(), cutter() }, scene_of()
+        plain:add(solid)
+        plain:add(glint.plane { point = { 0, 0, -4 }, normal = { 0, 0, 1 }, material = glint.material { mirror = 0.5 } })
+        local without = render(plain, { precision = precision })
+        for place, center in pairs(ends) do
+          local pane = glint.sphere { center = center, radius = 1.5, material = glint.material { opacity = 0 } }
+          plain:add(pane)
+          local with = render(plain, { precision = precision })
+          for _, pass in ipairs { "diffuse", "depth", "normal" } do
+            check(differing(with, without, pass) == 0, "%s, %s, %s: %s", name, precision, place, pass)
+          end
+          plain:remove(pane)
+        end
+      end
+    end
+  end
+end
+
 function tests.a_number_is_the_same_everywhere()
   local plain = render(scene_of())
   for opacity, gone in pairs { [0] = true, [0.49] = true, [0.5] = false, [1] = false } do
