@@ -257,9 +257,12 @@ static void release(void *object) { glint_overlay_release(object); }
 // The one of at and position set last is the one used.
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
-    (void)L;
-    if (field->read == read_at)
-        ((desc_type *)desc)->has_position = false;
+    desc_type *d = desc;
+    if (field->read != read_at)
+        return;
+    if (d->has_box)
+        glintL_error(L, "axes.at: of axes without a box; with one they lie at its edges");
+    d->has_position = false;
 }
 
 static const glintL_class CLASS = {

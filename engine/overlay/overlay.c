@@ -58,8 +58,11 @@ static glint_status check_bar(const glint_overlay_desc *desc, glint_error *error
         return glint_fail(error, GLINT_ERR_INVALID, "orientation: vertical or horizontal expected");
     if (!isfinite(desc->low))
         return glint_fail(error, GLINT_ERR_INVALID, "low: finite number expected, got %g", desc->low);
-    if (desc->low == desc->high || !isfinite(desc->high - desc->low))
+    if (desc->low == desc->high)
         return glint_fail(error, GLINT_ERR_INVALID, "high: another number than low (%.15g) expected, got %.15g",
+                          desc->low, desc->high);
+    if (!isfinite(desc->high - desc->low))
+        return glint_fail(error, GLINT_ERR_INVALID, "high: number at a finite distance from low (%.15g) expected, got %.15g",
                           desc->low, desc->high);
     if (desc->tick_count > GLINT_OVERLAY_TICKS_MAX)
         return glint_fail(error, GLINT_ERR_INVALID, "ticks: at most %d numbers expected, got %zu",
