@@ -1,53 +1,12 @@
 /// A frame: its tiles on the worker pool, each walked through the plan's stages; progress and cancel.
 #include "engine/base/alloc.h"
-#include "engine/base/pool.h"
 #include "engine/base/status.h"
-#include "engine/film/image.h"
-#include "engine/film/tone.h"
-#include "engine/frame/grids.h"
 #include "engine/frame/outline.h"
-#include "engine/frame/refine.h"
 #include "engine/frame/render.h"
-#include "engine/reuse/reuse.h"
-#include "engine/tile/tile.h"
-#include "engine/plan/tints.h"
+#include "engine/frame/renderer.h"
 
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-/// Pictures whose memory a renderer holds on to, for a job with two in its queue: these, the one that is encoded and the one
-/// that is rendered. A fifth would be new memory and a whole picture to copy or make each time.
-#define GLINT_SPARE_IMAGES 4
-
-struct glint_renderer {
-    glint_pool *pool;
-    const glint_stages *stages;
-    bool time_stages, count_work;
-    atomic_bool cancelled;
-    atomic_bool *stop; ///< that; of a renderer of bases, that of its frames
-    atomic_size_t tiles_done;
-    atomic_size_t tile_count;
-    glint_tile **tiles; ///< a tile's working memory for each worker
-    glint_reuse reuse;
-    glint_shading_points_cached shading_points;
-    glint_raster raster;
-    glint_tints tints; ///< of frames where what transmits tints shadows
-    glint_grids own_grids, *grids; ///< a renderer of bases has that of its frames
-    glint_image *last; ///< the last frame, given again when nothing it reads changed
-    /// Pictures given before, whose memory is used again once no other reference holds them.
-    glint_image *spare[GLINT_SPARE_IMAGES];
-    glint_key last_key;
-    double last_region[4];
-    glint_frame_stats last_stats;
-    glint_refine own_refine, *refine; ///< likewise
-    double refined_by[3]; ///< threshold, curve and exposure that the last base was compared by
-    /// Makes the pictures that adaptive sampling looks at, with the pool and the tiles of this one; NULL until a frame
-    /// has it, and again after one that has not.
-    struct glint_renderer *base;
-    bool shares; ///< it is such a one
-};
 
 /// One call of glint_render.
 typedef struct frame {
@@ -162,13 +121,6 @@ static void render_item(void *context, size_t index, int worker)
     atomic_fetch_add(&renderer->tiles_done, 1);
 }
 
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
-
 /// A row of tiles is stamped by the stamps of its tiles.
 static void stamp_rows(glint_image *image, uint32_t across)
 {
@@ -181,78 +133,6 @@ static void stamp_rows(glint_image *image, uint32_t across)
             key = glint_key_mix(key, (glint_key) { film[x].codes, film[x].codes });
         }
         image->row_stamp[row] = known ? key.low : 0;
-    }
-}
-
-static void collect_stats(glint_renderer *renderer, const glint_plan *plan, const glint_extent *extent, double wall_ms,
-                          glint_frame_stats *stats)
-{
-    glint_tile_counts sum = { 0 };
-    for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
-        const glint_tile_counts *part = &renderer->tiles[i]->counts;
-        for (int k = 0; k < GLINT_STAGE_COUNT; k++) {
-            sum.ns[k] += part->ns[k];
-            sum.runs[k] += part->runs[k];
-            sum.reuses[k] += part->reuses[k];
-        }
-        sum.tile_ns += part->tile_ns;
-        sum.primary += part->primary;
-        sum.shadow += part->shadow;
-        sum.work.tests += part->work.tests;
-        sum.work.light_samples += part->work.light_samples;
-        sum.work.powers += part->work.powers;
-        sum.work.sites += part->work.sites;
-        sum.work.lights_seen += part->work.lights_seen;
-        sum.work.overlaps += part->work.overlaps;
-        sum.work.patterns += part->work.patterns;
-        sum.work.environment += part->work.environment;
-        sum.mirror += part->mirror;
-        sum.refraction += part->refraction;
-        sum.indirect += part->indirect;
-        sum.clipped += part->clipped;
-        sum.nonfinite += part->nonfinite;
-        sum.compared += part->compared;
-        for (int way = 0; way < 2; way++) {
-            sum.ways[way] += part->ways[way];
-            sum.way_ns[way] += part->way_ns[way];
-        }
-    }
-    sum.reuses[GLINT_STAGE_VERTEX] += renderer->shading_points.ready;
-    sum.ns[GLINT_STAGE_CAST] += (uint64_t)(renderer->raster.ms * 1e6) * (uint64_t)glint_pool_threads(renderer->pool);
-    const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
-    glint_odd_pattern odd = { 0 };
-    for (int i = 0; i < glint_pool_threads(renderer->pool); i++)
-        glint_odd_pattern_add(&odd, &renderer->tiles[i]->counts.odd);
-    *stats = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned), .tone_ms = wall_ms * toned };
-    stats->rays = (glint_ray_counts) { .primary = sum.primary,
-                                       .shadow = sum.shadow,
-                                       .mirror = sum.mirror,
-                                       .refraction = sum.refraction,
-                                       .indirect = sum.indirect };
-    stats->work = sum.work;
-    stats->hits_kept = sum.ways[0];
-    stats->hits_anew = sum.ways[1];
-    stats->hits_kept_us = sum.compared ? sum.way_ns[0] * 1e-3 / (double)sum.compared : 0;
-    stats->hits_anew_us = sum.compared ? sum.way_ns[1] * 1e-3 / (double)sum.compared : 0;
-    stats->pixels = (uint64_t)extent->width * (uint64_t)extent->height;
-    stats->clipped = sum.clipped;
-    stats->nonfinite = sum.nonfinite;
-    if (odd.count) {
-        stats->odd = odd.count;
-        stats->odd_field = glint_field_name(odd.field);
-        if (odd.field != GLINT_FIELD_BACKGROUND)
-            memcpy(stats->odd_material, plan->patterns->of[odd.material].desc.name, sizeof stats->odd_material);
-        memcpy(stats->odd_point, odd.point, sizeof stats->odd_point);
-    }
-    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
-        if (!plan->runs[id])
-            continue;
-        stats->stage_name[stats->stage_count] = glint_stage_names[id];
-        if (renderer->time_stages)
-            stats->stage_ms[stats->stage_count] = (double)sum.ns[id] * 1e-6;
-        const uint64_t calls = sum.runs[id] + sum.reuses[id];
-        stats->stage_reused[stats->stage_count++] =
-            calls ? (double)sum.reuses[id] / (double)calls : sum.reuses[GLINT_STAGE_CAST] > 0;
     }
 }
 
@@ -300,9 +180,9 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
     renderer->raster.ms = 0;
     if (!plan->raster || !casts(&renderer->reuse, plan))
         return GLINT_OK;
-    const double begin = now_ms();
+    const double begin = glint_frame_now_ms();
     status = glint_raster_begin(&renderer->raster, plan, &shared->geometry, renderer->pool, error);
-    renderer->raster.ms = now_ms() - begin;
+    renderer->raster.ms = glint_frame_now_ms() - begin;
     if (!shared->geometry.nodes)
         atomic_fetch_add(&geometry->index->frames_without, 1);
     shared->raster = !status && renderer->raster.on ? &renderer->raster : NULL;
@@ -321,81 +201,73 @@ static bool has_format(const glint_image *image, const glint_render_desc *desc)
            (!desc->codes || glint_tone_same(&image->code_tone, &desc->tone));
 }
 
-/// Pixels of a row from whose samples other things are kept than from those of one beside them, or not from all the same. `up` and
-/// `down`: the rows beside it; at an edge itself.
-static uint64_t count_row(const uint32_t *at, const uint32_t *up, const uint32_t *down, int width)
+static frame frame_of(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,
+                      const glint_tone_table *table)
 {
-    uint64_t count = 0;
-    uint32_t before = 0, own = at[0]; // before: what parts this pixel from the one before it
-    for (int x = 0; x < width; x++) {
-        const uint32_t next = x + 1 < width ? at[x + 1] : own, after = own ^ next;
-        count += own == 0 || (before | after | (own ^ up[x]) | (own ^ down[x])) != 0;
-        before = after;
-        own = next;
-    }
-    return count;
+    const glint_image *last = renderer->last;
+    return (frame) { .renderer = renderer,
+                     .shared = { .plan = plan,
+                                 .stages = renderer->stages,
+                                 .image = image,
+                                 .last = last && has_format(last, &plan->desc) ? last : NULL,
+                                 .tone_table = table,
+                                 .gain = glint_tone_gain(&plan->desc.tone),
+                                 .reuse = &renderer->reuse,
+                                 .shading_points = &renderer->shading_points,
+                                 .base = base,
+                                 .refine = renderer->refine,
+                                 .cancelled = renderer->stop,
+                                 .time_stages = renderer->time_stages,
+                                 .count_work = renderer->count_work },
+                     .extent = glint_plan_extent(&plan->desc) };
 }
 
-/// Pixels at the edges of shadows that a derivative's parameter moves.
-static uint64_t count_shifted(const glint_image *image, const glint_extent *e)
+/// What the tiles read and write besides the picture's planes. `tiles`: of the whole picture.
+static glint_status begin_tiles(frame *f, size_t tiles, glint_error *error)
 {
-    uint64_t count = 0;
-    for (int y = e->y; y < e->y + e->height; y++) {
-        const uint32_t *row = image->shadows + (size_t)y * (size_t)image->width + (size_t)e->x;
-        count += count_row(row, y > e->y ? row - image->width : row, y + 1 < e->y + e->height ? row + image->width : row, e->width);
-    }
-    return count;
-}
-
-/// `base`: of adaptive sampling, after the choice; else NULL.
-static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,
-                        const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
-{
-    frame f = { .renderer = renderer,
-                .shared = { .plan = plan,
-                            .stages = renderer->stages,
-                            .image = image,
-                            .last = renderer->last && has_format(renderer->last, &plan->desc) ? renderer->last : NULL,
-                            .tone_table = table,
-                            .gain = glint_tone_gain(&plan->desc.tone),
-                            .reuse = &renderer->reuse,
-                            .shading_points = &renderer->shading_points,
-                            .base = base,
-                            .refine = renderer->refine,
-                            .cancelled = renderer->stop,
-                            .time_stages = renderer->time_stages,
-                            .count_work = renderer->count_work } };
-    const double begin = now_ms();
-    f.extent = glint_plan_extent(&plan->desc);
-    const uint32_t across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
-    const size_t tiles = across * glint_image_stamps(image), rendered = (size_t)f.extent.across * f.extent.down;
-    glint_status status = prepare(renderer, plan, &f.shared, tiles, error);
+    glint_renderer *renderer = f->renderer;
+    const glint_plan *plan = f->shared.plan;
+    glint_image *image = f->shared.image;
+    const int threads = glint_pool_threads(renderer->pool);
+    glint_status status = prepare(renderer, plan, &f->shared, tiles, error);
     if (!status && plan->is_base)
         status = glint_refine_begin(renderer->refine, renderer->stages, image, &plan->desc, error);
-    if (image->film && (base || !renderer->reuse.tile_count)) // what is put there is not signed
+    if (image->film && (f->shared.base || !renderer->reuse.tile_count)) // what is put there is not signed
         memset(image->film, 0, tiles * sizeof *image->film);
     if (!status)
-        status = glint_grids_begin(renderer->grids, &f.shared, &f.extent, glint_pool_threads(renderer->pool), error);
+        status = glint_grids_begin(renderer->grids, &f->shared, &f->extent, threads, error);
     if (!status)
         status = glint_shading_points_begin(&renderer->shading_points, plan, &renderer->reuse, error);
     if (status)
         return status;
-    if (renderer->reuse.tile_count && !image->film &&
-        !(image->film = calloc(tiles, sizeof *image->film)))
+    if (renderer->reuse.tile_count && !image->film && !(image->film = calloc(tiles, sizeof *image->film)))
         return glint_fail_nomem(error);
-    for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
+    for (int i = 0; i < threads; i++) {
         renderer->tiles[i]->counts = (glint_tile_counts) { 0 };
         if (!glint_tile_extend(renderer->tiles[i], plan))
             return glint_fail_nomem(error);
     }
+    return GLINT_OK;
+}
+
+glint_status glint_renderer_run(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,
+                                const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
+{
+    const double begin = glint_frame_now_ms();
+    const uint32_t across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
+    frame f = frame_of(renderer, plan, image, base, table);
+    const size_t rendered = (size_t)f.extent.across * f.extent.down;
+    const glint_status status = begin_tiles(&f, across * glint_image_stamps(image), error);
+    if (status)
+        return status;
     atomic_store(&renderer->tiles_done, 0);
     atomic_store(&renderer->tile_count, rendered);
-    const double start = now_ms();
+    const double start = glint_frame_now_ms();
     glint_pool_run(renderer->pool, rendered, render_item, &f);
     finish(renderer, plan, &f.extent, image);
-    collect_stats(renderer, plan, &f.extent, now_ms() - start + renderer->raster.ms, stats);
+    glint_renderer_collect(renderer, plan, &f.extent, glint_frame_now_ms() - start + renderer->raster.ms, stats);
     stats->build_ms = start - begin - renderer->raster.ms;
-    stats->shifted = plan->derivatives && plan->derivatives->moves ? count_shifted(image, &f.extent) : 0;
+    stats->shifted = plan->derivatives && plan->derivatives->moves ? glint_count_shifted(image, &f.extent) : 0;
     if (atomic_load(renderer->stop))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
     if (image->film)
@@ -448,9 +320,8 @@ static void remember(glint_renderer *renderer, const glint_plan *plan, glint_ima
     renderer->last_stats = *stats;
 }
 
-/// A picture to render into: one given before with no other reference, or a new one.
-static glint_status take_image(glint_renderer *renderer, const glint_render_desc *desc, glint_image **out,
-                               glint_error *error)
+glint_status glint_renderer_take_image(glint_renderer *renderer, const glint_render_desc *desc, glint_image **out,
+                                       glint_error *error)
 {
     int free_slot = -1;
     for (int i = 0; i < GLINT_SPARE_IMAGES; i++) {
@@ -473,176 +344,6 @@ static glint_status take_image(glint_renderer *renderer, const glint_render_desc
     return status;
 }
 
-// ---- Adaptive sampling ----
-
-static void forget(glint_renderer *renderer)
-{
-    glint_image_release(renderer->last);
-    renderer->last = NULL;
-}
-
-/// A renderer that keeps its own, half of what may be kept, and shares the rest.
-static glint_status open_base(glint_renderer *renderer, glint_error *error)
-{
-    glint_renderer *base = renderer->base;
-    if (base)
-        return GLINT_OK;
-    base = calloc(1, sizeof *base);
-    if (!base)
-        return glint_fail_nomem(error);
-    base->shares = true;
-    base->pool = renderer->pool;
-    base->tiles = renderer->tiles;
-    base->stages = renderer->stages;
-    base->stop = renderer->stop;
-    base->grids = renderer->grids;
-    base->refine = renderer->refine;
-    base->time_stages = renderer->time_stages;
-    base->count_work = renderer->count_work;
-    glint_reuse_init(&base->reuse, renderer->reuse.on, renderer->reuse.budget / 2 + 1, renderer->reuse.hits);
-    renderer->base = base;
-    return GLINT_OK;
-}
-
-void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more, double share)
-{
-    to->build_ms += more->build_ms;
-    to->render_ms += more->render_ms + more->tone_ms;
-    to->rays.primary += more->rays.primary;
-    to->rays.shadow += more->rays.shadow;
-    to->rays.mirror += more->rays.mirror;
-    to->rays.refraction += more->rays.refraction;
-    to->rays.indirect += more->rays.indirect;
-    to->work.tests += more->work.tests;
-    to->work.light_samples += more->work.light_samples;
-    to->work.powers += more->work.powers;
-    to->work.sites += more->work.sites;
-    to->work.lights_seen += more->work.lights_seen;
-    to->work.patterns += more->work.patterns;
-    to->work.environment += more->work.environment;
-    to->work.overlaps += more->work.overlaps;
-    if (!to->odd && more->odd) {
-        to->odd_field = more->odd_field;
-        memcpy(to->odd_material, more->odd_material, sizeof to->odd_material);
-        memcpy(to->odd_point, more->odd_point, sizeof to->odd_point);
-    }
-    to->odd += more->odd;
-    for (int i = 0; i < to->stage_count; i++)
-        for (int k = 0; k < more->stage_count; k++) {
-            if (to->stage_name[i] != more->stage_name[k] || to->stage_name[i] == glint_stage_names[GLINT_STAGE_TONE])
-                continue;
-            to->stage_ms[i] += more->stage_ms[k];
-            to->stage_reused[i] += share * (more->stage_reused[k] - to->stage_reused[i]);
-        }
-}
-
-/// Adds what the base took, and the choice, of which compare_ms were within it.
-static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const glint_plan *plan, double choose_ms,
-                     double compare_ms, bool time_stages)
-{
-    const double pixels = (double)to->pixels;
-    const double all = pixels + (double)to->refined * plan->desc.samples; // samples
-    glint_frame_stats_add(to, base, pixels / all);
-    to->render_ms += choose_ms;
-    if (!glint_plan_compares_codes(&plan->desc)) { // its codes are the picture's
-        to->render_ms -= base->tone_ms;
-        to->tone_ms += base->tone_ms;
-    }
-    for (int i = 0; i < to->stage_count; i++)
-        if (time_stages && to->stage_name[i] == glint_stage_names[GLINT_STAGE_REFINE])
-            to->stage_ms[i] = choose_ms + compare_ms;
-}
-
-/// Of the last base nothing is taken where its pixels would be compared otherwise, or were given up half way.
-static glint_status render_base(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
-                                glint_error *error)
-{
-    const glint_render_desc *desc = &plan->base->desc;
-    const double by[] = { desc->adaptive, desc->tone.curve, desc->tone.exposure };
-    glint_renderer *base = renderer->base;
-    if (memcmp(renderer->refined_by, by, sizeof by) != 0)
-        forget(base);
-    memcpy(renderer->refined_by, by, sizeof by);
-    const glint_status status = glint_render_instant(base, plan->base, out, stats, error);
-    if (status)
-        forget(base);
-    return status;
-}
-
-/// The base in the picture that is made of it: `base` is that picture, with planes of `*more` where it has none. Nothing is kept.
-static glint_status render_in_place(glint_renderer *renderer, const glint_plan *plan, const glint_image *image,
-                                    const glint_tone_table *table, glint_image *base, glint_image **more,
-                                    glint_frame_stats *stats, glint_error *error)
-{
-    glint_render_desc desc = plan->base->desc;
-    glint_status status = GLINT_OK;
-    *base = *image;
-    base->film = NULL;
-    desc.codes = false;
-    desc.passes &= ~plan->desc.passes;
-    if (desc.passes)
-        status = renderer->reuse.on ? glint_image_create_for(&desc, more, error) : take_image(renderer->base, &desc, more, error);
-    for (int pass = 0; pass < GLINT_PLANE_COUNT && *more; pass++)
-        for (int c = 0; c < 3; c++)
-            if ((*more)->plane[pass][c])
-                base->plane[pass][c] = (*more)->plane[pass][c];
-    renderer->base->reuse.on = false;
-    if (!status)
-        status = run(renderer->base, plan->base, base, NULL, table, stats, error);
-    renderer->base->reuse.on = renderer->reuse.on;
-    return status;
-}
-
-/// What comparing took of the time of the tiles last rendered, where stages are timed.
-static double comparing_ms(const glint_renderer *renderer)
-{
-    double ms = 0;
-    for (int i = 0; i < glint_pool_threads(renderer->pool); i++)
-        ms += (double)renderer->tiles[i]->counts.ns[GLINT_STAGE_REFINE] * 1e-6;
-    return ms;
-}
-
-/// The pixels of a base that are worth it, then those.
-static glint_status refine_base(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,
-                                const glint_tone_table *table, const glint_frame_stats *first, glint_frame_stats *stats,
-                                glint_error *error)
-{
-    const double compare_ms = comparing_ms(renderer), start = now_ms();
-    const glint_extent extent = glint_plan_extent(&plan->desc);
-    renderer->refine->base = base; // it may be that of the last frame
-    glint_refine_choose(renderer->refine, &extent, plan->lens != NULL, renderer->pool);
-    const double choose_ms = now_ms() - start;
-    const glint_status status = run(renderer, plan, image, base, table, stats, error);
-    renderer->refine->base = NULL;
-    if (status)
-        return status;
-    stats->refined = renderer->refine->count;
-    add_base(stats, first, plan, choose_ms, compare_ms, renderer->time_stages);
-    return GLINT_OK;
-}
-
-/// The base of a frame, then what is worth more. The base stands in the frame's own picture where nothing of it is kept: without
-/// reuse, and in the first frame.
-static glint_status run_adaptive(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
-                                 const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
-{
-    glint_refine *refine = renderer->refine;
-    glint_image *kept = NULL, in_place;
-    glint_frame_stats first;
-    const bool alone = !renderer->reuse.on || !renderer->base;
-    refine->whole = !glint_plan_compares_codes(&plan->desc) && !plan->derivatives &&
-                    !(plan->lens && glint_tile_wants_geometry(plan));
-    refine->in_place = refine->whole && alone;
-    glint_status status = open_base(renderer, error);
-    if (!status)
-        status = refine->in_place ? render_in_place(renderer, plan, image, table, &in_place, &kept, &first, error)
-                                  : render_base(renderer, plan, &kept, &first, error);
-    if (!status)
-        status = refine_base(renderer, plan, image, refine->in_place ? &in_place : kept, table, &first, stats, error);
-    glint_image_release(kept);
-    return status;
-}
-
 glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
                                   glint_frame_stats *stats, glint_error *error)
 {
@@ -654,7 +355,7 @@ glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *pl
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
     if (unchanged(renderer, plan, out, stats))
         return GLINT_OK;
-    glint_status status = take_image(renderer, desc, &image, error);
+    glint_status status = glint_renderer_take_image(renderer, desc, &image, error);
     if (!status && desc->codes)
         status = glint_tone_table_shared(&desc->tone, &table, error);
     if (!plan->base) {
@@ -664,9 +365,9 @@ glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *pl
     for (size_t i = 0; !status && plan->derivatives && i < plan->derivatives->count; i++)
         memcpy(image->derivative[i], plan->derivatives->of[i].name, sizeof image->derivative[i]);
     if (!status && plan->base)
-        status = run_adaptive(renderer, plan, image, table, &counted, error);
+        status = glint_renderer_run_adaptive(renderer, plan, image, table, &counted, error);
     else if (!status)
-        status = run(renderer, plan, image, NULL, table, &counted, error);
+        status = glint_renderer_run(renderer, plan, image, NULL, table, &counted, error);
     if (status) {
         glint_image_release(image);
         return status;

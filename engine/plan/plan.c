@@ -193,6 +193,17 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, const glint
     return status ? status : glint_plan_explain(plan, scene, error);
 }
 
+static glint_status take_overlays(glint_plan *plan, const glint_scene *scene, glint_error *error)
+{
+    const glint_plan_camera *c = &plan->camera;
+    glint_overlays_camera camera = { .orthographic = c->orthographic, .pixel_offset = c->pixel_offset };
+    vec_copy(camera.eye, c->eye);
+    vec_copy(camera.view[0], c->right);
+    vec_copy(camera.view[1], c->up);
+    vec_copy(camera.view[2], c->forward);
+    return glint_overlays_take(scene, (int)plan->desc.width, (int)plan->desc.height, &camera, &plan->overlays, error);
+}
+
 /// times: see `fill`. shutter_times: 0, or how many times the frame has, however they are rendered.
 static glint_status create(const glint_scene *scene, const glint_render_desc *desc, glint_plan *const *times,
                            uint32_t shutter_times, glint_plan **out, glint_error *error)
@@ -216,15 +227,8 @@ static glint_status create(const glint_scene *scene, const glint_render_desc *de
     if (plan->desc.passes >> GLINT_PASS_OUTLINE & 1)
         plan->desc.passes |= GLINT_OUTLINE_READS;
     status = fill(plan, scene, desc, times, error);
-    if (!status) {
-        const glint_plan_camera *c = &plan->camera;
-        glint_overlays_camera camera = { .orthographic = c->orthographic, .pixel_offset = c->pixel_offset };
-        vec_copy(camera.eye, c->eye);
-        vec_copy(camera.view[0], c->right);
-        vec_copy(camera.view[1], c->up);
-        vec_copy(camera.view[2], c->forward);
-        status = glint_overlays_take(scene, (int)desc->width, (int)desc->height, &camera, &plan->overlays, error);
-    }
+    if (!status)
+        status = take_overlays(plan, scene, error);
     if (!status && plan->runs[GLINT_STAGE_REFINE]) {
         glint_render_desc base = glint_plan_base(&plan->desc);
         base.derivatives = desc->derivatives;

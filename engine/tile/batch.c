@@ -37,15 +37,8 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
 void glint_batch_end(const glint_batch *batch, glint_tile *to)
 {
     to->counts.shadow += batch->tile.counts.shadow;
-    to->counts.work.light_samples += batch->tile.counts.work.light_samples;
-    to->counts.work.powers += batch->tile.counts.work.powers;
-    to->counts.work.tests += batch->tile.counts.work.tests;
-    to->counts.work.sites += batch->tile.counts.work.sites;
+    glint_work_add(&to->counts.work, &batch->tile.counts.work);
     to->counts.runs[GLINT_STAGE_VERTEX] += batch->tile.counts.runs[GLINT_STAGE_VERTEX];
-    to->counts.work.lights_seen += batch->tile.counts.work.lights_seen;
-    to->counts.work.overlaps += batch->tile.counts.work.overlaps;
-    to->counts.work.patterns += batch->tile.counts.work.patterns;
-    to->counts.work.environment += batch->tile.counts.work.environment;
     glint_odd_pattern_add(&to->counts.odd, &batch->tile.counts.odd);
 }
 

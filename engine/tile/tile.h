@@ -28,10 +28,22 @@ typedef struct glint_tile_counts {
     glint_work work;
     glint_odd_pattern odd;
     uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls made, and results taken from the last frame
-    uint64_t ways[2]; ///< tiles whose points are needed and hits known: that read them; that find them anew
-    uint64_t compared; ///< of these, the ones that have gone both ways, and what they took at the least:
-    double way_ns[2];
+    uint64_t ways[2]; ///< tiles whose hits are known and whose points are needed: those that read the hits; that find them anew
+    uint64_t compared; ///< of these, the ones that have gone both ways
+    double way_ns[2]; ///< the least that those took each way, summed
 } glint_tile_counts;
+
+static inline void glint_work_add(glint_work *to, const glint_work *more)
+{
+    to->tests += more->tests;
+    to->light_samples += more->light_samples;
+    to->powers += more->powers;
+    to->sites += more->sites;
+    to->lights_seen += more->lights_seen;
+    to->patterns += more->patterns;
+    to->environment += more->environment;
+    to->overlaps += more->overlaps;
+}
 
 #define GLINT_TILE_GRIDS 4 ///< lights that have a grid, at most
 

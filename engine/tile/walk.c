@@ -66,7 +66,7 @@ static void need_points(glint_tile *tile, const glint_tile_frame *frame, walk *w
     w->points = true;
 }
 
-/// What patterns of known hits read. Returns whether there is any.
+/// Where a pattern is seen and hits are known, finds what it reads: where that is points alone, of no other lanes. Returns whether one is.
 static bool need_painted(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
     uint16_t painted[GLINT_TILE_GROUPS];
@@ -387,6 +387,16 @@ static uint64_t clock_of(const glint_tile *tile, const glint_tile_frame *frame)
     return frame->time_stages || tile->index % TIMED_TILES == 0 ? glint_tile_now_ns() : 0;
 }
 
+static void tone(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const uint64_t start = clock_of(tile, frame);
+    if (!frame->plan->runs[GLINT_STAGE_TONE])
+        return;
+    glint_tile_tone(tile, frame);
+    tile->counts.runs[GLINT_STAGE_TONE]++;
+    tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - start;
+}
+
 /// Every stage that the tile needs.
 static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
 {
@@ -424,12 +434,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     if (frame->base)
         glint_tile_take_base(tile, frame);
     glint_tile_store_light(tile, frame);
-    const uint64_t rendered = clock_of(tile, frame);
-    if (plan->runs[GLINT_STAGE_TONE]) {
-        glint_tile_tone(tile, frame);
-        tile->counts.runs[GLINT_STAGE_TONE]++;
-    }
-    tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - rendered;
+    tone(tile, frame);
     if (plan->is_base)
         glint_tile_compare(tile, frame, before);
     glint_tile_sign_film(tile, frame, before);

@@ -1,0 +1,152 @@
+/// What a frame took and found: the counts of its tiles as stats, and stats of several parts as one.
+#include "engine/frame/render.h"
+#include "engine/frame/renderer.h"
+
+#include <string.h>
+#include <time.h>
+
+double glint_frame_now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+// ---- Of the tiles ----
+
+static void add_counts(glint_tile_counts *to, const glint_tile_counts *more)
+{
+    for (int k = 0; k < GLINT_STAGE_COUNT; k++) {
+        to->ns[k] += more->ns[k];
+        to->runs[k] += more->runs[k];
+        to->reuses[k] += more->reuses[k];
+    }
+    to->tile_ns += more->tile_ns;
+    to->primary += more->primary;
+    to->shadow += more->shadow;
+    to->mirror += more->mirror;
+    to->refraction += more->refraction;
+    to->indirect += more->indirect;
+    to->clipped += more->clipped;
+    to->nonfinite += more->nonfinite;
+    to->compared += more->compared;
+    for (int way = 0; way < 2; way++) {
+        to->ways[way] += more->ways[way];
+        to->way_ns[way] += more->way_ns[way];
+    }
+    glint_work_add(&to->work, &more->work);
+    glint_odd_pattern_add(&to->odd, &more->odd);
+}
+
+static void name_odd(const glint_odd_pattern *odd, const glint_plan *plan, glint_frame_stats *out)
+{
+    if (!odd->count)
+        return;
+    out->odd = odd->count;
+    out->odd_field = glint_field_name(odd->field);
+    if (odd->field != GLINT_FIELD_BACKGROUND)
+        memcpy(out->odd_material, plan->patterns->of[odd->material].desc.name, sizeof out->odd_material);
+    memcpy(out->odd_point, odd->point, sizeof out->odd_point);
+}
+
+static void list_stages(const glint_tile_counts *sum, const glint_plan *plan, bool timed, glint_frame_stats *out)
+{
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
+        if (!plan->runs[id])
+            continue;
+        const uint64_t calls = sum->runs[id] + sum->reuses[id];
+        const int i = out->stage_count++;
+        out->stage_name[i] = glint_stage_names[id];
+        out->stage_ms[i] = timed ? (double)sum->ns[id] * 1e-6 : 0;
+        out->stage_reused[i] = calls ? (double)sum->reuses[id] / (double)calls : sum->reuses[GLINT_STAGE_CAST] > 0;
+    }
+}
+
+void glint_renderer_collect(const glint_renderer *renderer, const glint_plan *plan, const glint_extent *extent, double wall_ms,
+                            glint_frame_stats *out)
+{
+    glint_tile_counts sum = { 0 };
+    const int threads = glint_pool_threads(renderer->pool);
+    for (int i = 0; i < threads; i++)
+        add_counts(&sum, &renderer->tiles[i]->counts);
+    sum.reuses[GLINT_STAGE_VERTEX] += renderer->shading_points.ready;
+    sum.ns[GLINT_STAGE_CAST] += (uint64_t)(renderer->raster.ms * 1e6) * (uint64_t)threads;
+    const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
+    const double compared = sum.compared ? (double)sum.compared : 1;
+    *out = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned),
+                                 .tone_ms = wall_ms * toned,
+                                 .rays = { .primary = sum.primary,
+                                           .shadow = sum.shadow,
+                                           .mirror = sum.mirror,
+                                           .refraction = sum.refraction,
+                                           .indirect = sum.indirect },
+                                 .hits_kept = sum.ways[0],
+                                 .hits_anew = sum.ways[1],
+                                 .hits_kept_us = sum.way_ns[0] * 1e-3 / compared,
+                                 .hits_anew_us = sum.way_ns[1] * 1e-3 / compared,
+                                 .work = sum.work,
+                                 .pixels = (uint64_t)extent->width * (uint64_t)extent->height,
+                                 .clipped = sum.clipped,
+                                 .nonfinite = sum.nonfinite };
+    name_odd(&sum.odd, plan, out);
+    list_stages(&sum, plan, renderer->time_stages, out);
+}
+
+/// Pixels of a row from whose samples other things are kept than from those of one beside them, or not from all the same. `up` and
+/// `down`: the rows beside it; at an edge itself.
+static uint64_t count_row(const uint32_t *at, const uint32_t *up, const uint32_t *down, int width)
+{
+    uint64_t count = 0;
+    uint32_t before = 0, own = at[0]; // before: what parts this pixel from the one before it
+    for (int x = 0; x < width; x++) {
+        const uint32_t next = x + 1 < width ? at[x + 1] : own, after = own ^ next;
+        count += own == 0 || (before | after | (own ^ up[x]) | (own ^ down[x])) != 0;
+        before = after;
+        own = next;
+    }
+    return count;
+}
+
+uint64_t glint_count_shifted(const glint_image *image, const glint_extent *extent)
+{
+    uint64_t count = 0;
+    const int end = extent->y + extent->height;
+    for (int y = extent->y; y < end; y++) {
+        const uint32_t *row = image->shadows + (size_t)y * (size_t)image->width + (size_t)extent->x;
+        const uint32_t *up = y > extent->y ? row - image->width : row, *down = y + 1 < end ? row + image->width : row;
+        count += count_row(row, up, down, extent->width);
+    }
+    return count;
+}
+
+// ---- Of several parts ----
+
+static void add_odd(glint_frame_stats *to, const glint_frame_stats *more)
+{
+    if (!to->odd && more->odd) {
+        to->odd_field = more->odd_field;
+        memcpy(to->odd_material, more->odd_material, sizeof to->odd_material);
+        memcpy(to->odd_point, more->odd_point, sizeof to->odd_point);
+    }
+    to->odd += more->odd;
+}
+
+void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more, double share)
+{
+    to->build_ms += more->build_ms;
+    to->render_ms += more->render_ms + more->tone_ms;
+    to->rays.primary += more->rays.primary;
+    to->rays.shadow += more->rays.shadow;
+    to->rays.mirror += more->rays.mirror;
+    to->rays.refraction += more->rays.refraction;
+    to->rays.indirect += more->rays.indirect;
+    glint_work_add(&to->work, &more->work);
+    add_odd(to, more);
+    for (int i = 0; i < to->stage_count; i++)
+        for (int k = 0; k < more->stage_count; k++) {
+            if (to->stage_name[i] != more->stage_name[k] || to->stage_name[i] == glint_stage_names[GLINT_STAGE_TONE])
+                continue;
+            to->stage_ms[i] += more->stage_ms[k];
+            to->stage_reused[i] += share * (more->stage_reused[k] - to->stage_reused[i]);
+        }
+}
