@@ -121,6 +121,19 @@ uint64_t glint_count_shifted(const glint_image *image, const glint_extent *exten
 
 // ---- Of several parts ----
 
+/// The mean of tiles that were measured, of which either part may have none.
+static void add_hits(glint_frame_stats *to, const glint_frame_stats *more)
+{
+    const double own = to->hits_kept_us > 0 ? (double)(to->hits_kept + to->hits_anew) : 0;
+    const double other = more->hits_kept_us > 0 ? (double)(more->hits_kept + more->hits_anew) : 0;
+    if (other > 0) {
+        to->hits_kept_us = (own * to->hits_kept_us + other * more->hits_kept_us) / (own + other);
+        to->hits_anew_us = (own * to->hits_anew_us + other * more->hits_anew_us) / (own + other);
+    }
+    to->hits_kept += more->hits_kept;
+    to->hits_anew += more->hits_anew;
+}
+
 static void add_odd(glint_frame_stats *to, const glint_frame_stats *more)
 {
     if (!to->odd && more->odd) {
@@ -141,6 +154,7 @@ void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more,
     to->rays.refraction += more->rays.refraction;
     to->rays.indirect += more->rays.indirect;
     glint_work_add(&to->work, &more->work);
+    add_hits(to, more);
     add_odd(to, more);
     for (int i = 0; i < to->stage_count; i++)
         for (int k = 0; k < more->stage_count; k++) {

@@ -743,8 +743,9 @@ static void a_highlight_that_a_tile_does_not_show(void **unused)
     glint_scene_release(scene);
 }
 
-/// Frames of a lamp that moves: which way tiles go, and that the pictures are those of a renderer that keeps nothing.
-static void move_the_light(glint_hits_choice hits, int frames, glint_frame_stats *stats)
+/// Frames of a lamp that moves: which way tiles go, and that the pictures are those of a renderer that keeps nothing. adaptive: the
+/// threshold, of four samples a pixel; 0: none.
+static void move_the_light(glint_hits_choice hits, double adaptive, int frames, glint_frame_stats *stats)
 {
     world w;
     glint_renderer *reusing, *fresh;
@@ -759,6 +760,8 @@ static void move_the_light(glint_hits_choice hits, int frames, glint_frame_stats
         glint_material_desc m = glint_material_desc_default();
         glint_material_set(w.materials[i], &m, NULL);
     }
+    w.render.adaptive = adaptive;
+    w.render.samples = adaptive > 0 ? 4 : w.render.samples;
     for (int frame = 0; frame < frames; frame++) {
         glint_plan *plan;
         glint_image *a, *b;
@@ -783,15 +786,17 @@ static void hits_are_read_or_found_anew(void **unused)
 {
     (void)unused;
     glint_frame_stats stats;
-    move_the_light(GLINT_HITS_KEPT, 5, &stats);
+    move_the_light(GLINT_HITS_KEPT, 0, 5, &stats);
     assert_true(stats.hits_kept > 0 && stats.hits_anew == 0 && reused_share(&stats, "cast") == 1);
-    move_the_light(GLINT_HITS_ANEW, 5, &stats);
+    move_the_light(GLINT_HITS_ANEW, 0, 5, &stats);
     assert_true(stats.hits_kept == 0 && stats.hits_anew > 0 && reused_share(&stats, "cast") < 1);
     unsetenv("GLINT_HITS");
-    move_the_light(GLINT_HITS_MEASURED, 9, &stats);
+    move_the_light(GLINT_HITS_MEASURED, 0, 9, &stats);
+    assert_true(stats.hits_kept + stats.hits_anew > 0 && stats.hits_kept_us > 0 && stats.hits_anew_us > 0);
+    move_the_light(GLINT_HITS_MEASURED, 0.1, 9, &stats); // those of the first sample of each pixel
     assert_true(stats.hits_kept + stats.hits_anew > 0 && stats.hits_kept_us > 0 && stats.hits_anew_us > 0);
     setenv("GLINT_HITS", "anew", 1);
-    move_the_light(GLINT_HITS_MEASURED, 5, &stats);
+    move_the_light(GLINT_HITS_MEASURED, 0, 5, &stats);
     assert_true(stats.hits_kept == 0 && stats.hits_anew > 0);
     setenv("GLINT_HITS", "sometimes", 1);
     glint_renderer *renderer;
