@@ -28,22 +28,40 @@ static const char *read_end(const char *text, double *out)
     return end > text && (*end == ',' || *end == '\0') ? end : NULL;
 }
 
-// MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE. False: it is neither.
-static bool read_colorbar(const char *text, glint_overlay_desc *bar)
+// False: no map has that name, and the message says so.
+static bool find_map(const char *name, glint_colormap *out, char message[GLINTL_MESSAGE_SIZE])
 {
+    const char *near = NULL;
+    for (int map = 0; map < GLINT_COLORMAP_COUNT; map++) {
+        const char *known = glint_colormap_name((glint_colormap)map);
+        *out = (glint_colormap)map;
+        if (strcmp(known, name) == 0)
+            return true;
+        near = glintL_nearer(name, near, known);
+    }
+    snprintf(message, GLINTL_MESSAGE_SIZE, "--colorbar: viridis, magma, cividis, turbo or coolwarm expected, got '%s'%s%s%s", name,
+             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    return false;
+}
+
+// MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE. False: it is neither, and the message says so.
+static bool read_colorbar(const char *text, glint_overlay_desc *bar, char message[GLINTL_MESSAGE_SIZE])
+{
+    char map[32];
     const size_t size = strcspn(text, ",");
-    int map = 0;
     *bar = glint_overlay_desc_default(GLINT_OVERLAY_COLORBAR);
-    while (map < GLINT_COLORMAP_COUNT &&
-           (strncmp(glint_colormap_name((glint_colormap)map), text, size) != 0 || glint_colormap_name((glint_colormap)map)[size]))
-        map++;
-    if (map == GLINT_COLORMAP_COUNT || text[size] != ',')
-        return false;
-    bar->map = (glint_colormap)map;
-    const char *low = read_end(text + size + 1, &bar->low);
+    snprintf(message, GLINTL_MESSAGE_SIZE, "--colorbar: MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE expected, got '%.80s'", text);
+    const char *low = text[size] ? read_end(text + size + 1, &bar->low) : NULL;
     const char *high = low && *low ? read_end(low + 1, &bar->high) : NULL;
-    if (!high || strlen(high) > GLINT_OVERLAY_TEXT_SIZE)
+    if (!high || size >= sizeof map)
         return false;
+    snprintf(map, sizeof map, "%.*s", (int)size, text);
+    if (!find_map(map, &bar->map, message))
+        return false;
+    if (strlen(high) > GLINT_OVERLAY_TEXT_SIZE) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "--colorbar: a title of at most %d bytes expected", GLINT_OVERLAY_TEXT_SIZE - 1);
+        return false;
+    }
     snprintf(bar->text, sizeof bar->text, "%s", *high ? high + 1 : "");
     return true;
 }
@@ -56,9 +74,8 @@ int cli_sheet(const cli_options *options, cli_output *output)
     int code = GLINTL_EXIT_USAGE;
     if (!options->output)
         return refuse(output, code, "sheet", "-o NAME.png or -o NAME.html expected");
-    if (options->colorbar && !read_colorbar(options->colorbar, &bar))
-        return refuse(output, code, "sheet",
-                      "--colorbar: MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE expected, MAP being viridis, magma, cividis, turbo or coolwarm");
+    if (options->colorbar && !read_colorbar(options->colorbar, &bar, message))
+        return refuse(output, code, "sheet", message);
     if (cli_list_files(options, &options->request.selection, &list, message)) {
         glintL_sheet sheet = { .path = options->output, .files = list.files, .count = list.count };
         sheet.label = options->label;

@@ -120,7 +120,11 @@ says "has none to leave out" 'transparent: it means nothing to a page'
 exits 0 "a colour bar of all pictures" sheet grid/000*.png -o bar.png --colorbar 'viridis,0,2.5,T / K'
 exits 3 "at the right of the others" compare bar.png again.png
 exits 2 "of no map" sheet grid/000*.png -o wrong.png --colorbar jet,0,1
-says "is refused" 'colorbar: MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE expected, MAP being viridis'
+says "is refused" "colorbar: viridis, magma, cividis, turbo or coolwarm expected, got 'jet'"
+exits 2 "of a misspelt one" sheet grid/000*.png -o wrong.png --colorbar magmo,0,1
+says "is answered" "did you mean 'magma'?"
+exits 2 "of a title without end" sheet grid/000*.png -o wrong.png --colorbar "magma,0,1,$(printf '%0400d' 0)"
+says "is refused" 'colorbar: a title of at most 383 bytes'
 exits 2 "without its last number" sheet grid/000*.png -o wrong.png --colorbar magma,0
 says "is refused" 'colorbar: MAP,LOW,HIGH or'
 exits 2 "of one number" sheet grid/000*.png -o wrong.png --colorbar magma,1,1
