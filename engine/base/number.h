@@ -7,7 +7,7 @@
 #include <xlocale.h> // locale_t is there
 #endif
 
-/// strtod in the locale `c`, which is that of newlocale(LC_ALL_MASK, "C", 0).
+/// strtod in the locale `c`, which is that of newlocale(LC_ALL_MASK, "C", 0). The thread's locale is the same afterwards.
 double glint_read_double(const char *text, char **end, locale_t c);
 
 #endif

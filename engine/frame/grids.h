@@ -19,8 +19,9 @@ typedef struct glint_grids {
     } of[GLINT_TILE_GRIDS];
 } glint_grids;
 
-/// Makes the grids of a frame's lights without samples that throw shadows, where the tiles that it runs, or those of the next frames,
-/// pay for them and they are within what may be kept, drops others, and names them in `frame`. A refined frame has those of its base. Zeroed memory is a beginning.
+/// Makes the grids of a frame's lights without samples that throw shadows, and names them in `frame`; drops those that it has no use
+/// for. A grid is made where the tiles that the frame runs, or those of the next frames, pay for it, and where it takes no more than
+/// 1 / GLINT_TILE_GRIDS of what may be kept. A refined frame has those of its base. Zeroed memory is a beginning.
 glint_status glint_grids_begin(glint_grids *grids, glint_tile_frame *frame, const glint_extent *extent, int threads,
                                glint_error *error);
 void glint_grids_clear(glint_grids *grids);

@@ -12,12 +12,14 @@
 
 #define GLINT_REFINE_SPREAD 2 ///< pixels, in every direction
 
-/// Before a base is rendered into `image`. `desc`: of it, with the threshold.
+/// Before a base is rendered into `image`, which must stay until the choice. `desc`: of it, with the threshold. Makes room for its tiles;
+/// the keys of those that are there are kept. GLINT_ERR_NOMEM.
 glint_status glint_refine_begin(glint_refine *refine, const glint_stages *stages, const glint_image *image,
                                 const glint_render_desc *desc, glint_error *error);
-/// After that: brings together what its tiles have found, and compares pixels across their borders. Any number of threads gives the
-/// same.
+/// After that: brings together what its tiles have found, compares pixels across their borders, and sets `count`. lens: pixels around
+/// those chosen are chosen as well. Any number of threads gives the same.
 void glint_refine_choose(glint_refine *refine, const glint_extent *extent, bool lens, glint_pool *pool);
+/// Frees what it owns; zeroed memory is a beginning.
 void glint_refine_clear(glint_refine *refine);
 
 #endif

@@ -1,3 +1,5 @@
+/// Balls against what a tile's rays pass (a pyramid or bar), and against all ways from its points to a light: first by one cylinder
+/// around these, then by slabs around the hull of light and points.
 #include "engine/reuse/between.h"
 #include "engine/base/vec.h"
 
@@ -8,7 +10,7 @@ static double loosened(double radius, double distance) { return radius * (1 + 1e
 
 static double length_of(const double v[3]) { return sqrt(vec_dot(v, v)); }
 
-/// The sides of a tile in pixels' halves from the picture's middle, to the right and up.
+/// The sides of a tile: half pixels from the picture's middle, to the right (x) and up (y).
 static void find_edges(const glint_plan *plan, uint32_t column, uint32_t row, double x[2], double y[2])
 {
     const double width = plan->desc.width, height = plan->desc.height;
@@ -122,7 +124,7 @@ typedef struct slabs {
     double normal[18][3], length[18], low[18], high[18];
 } slabs;
 
-/// Where both corners of an edge are: their numbers differ in one bit.
+/// The corners that edge 0 .. 11 of a body joins: their numbers differ in one bit.
 static int edge_begin(int edge) { return edge / 4 == 0 ? 2 * (edge % 4) : edge / 4 == 1 ? edge % 2 + edge % 4 / 2 * 4 : edge % 4; }
 static int edge_end(int edge) { return edge_begin(edge) + (1 << edge / 4); }
 
@@ -170,7 +172,7 @@ static void find_slabs(slabs *s, double (*corner)[3], const source *light)
     }
 }
 
-/// Whether a ball is clear of all the ways: it may be outside of every slab's heights, of a normal of no length of none.
+/// Whether a ball is clear of all the ways, as it is when it lies beyond one slab's heights. A normal of length 0 excludes nothing.
 static bool is_clear_of(const slabs *s, const glint_ball *ball)
 {
     double way[3];
@@ -191,7 +193,8 @@ static void find_box_corners(const glint_point_box *box, double corner[8][3])
             corner[k][c] = (k >> c & 1 ? box->upper : box->lower)[c];
 }
 
-/// Of the part of a tile's pyramid or bar that is as far along the view as the box: where that is deep and askew, it is much smaller.
+/// The corners of that part of a tile's pyramid or bar which is as far along the view as the box. It is much smaller than the box where
+/// that is deep and oblique to the axes.
 static void find_beam_corners(const glint_plan *plan, const glint_point_box *box, uint32_t column, uint32_t row,
                               double corner[8][3])
 {
@@ -218,7 +221,7 @@ bool glint_may_shade(const glint_plan *plan, const glint_plan_light *light, cons
 {
     const source from = source_of(light);
     const bool has_points = box->lower[0] <= box->upper[0] && box->lower[1] <= box->upper[1] && box->lower[2] <= box->upper[2];
-    const int bodies = plan->lens || (from.directional && from.radius > 0) ? 1 : 2;
+    const int bodies = plan->lens || (from.directional && from.radius > 0) ? 1 : 2; // rays of a lens leave the tile's pyramid
     slabs around[2];
     bool found = false;
     for (uint32_t i = 0; i < count; i++) {

@@ -49,7 +49,8 @@ bool glint_tile_wants_geometry(const glint_plan *plan)
                (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID | 1u << GLINT_PASS_ALBEDO);
 }
 
-/// Where the normals or the numbers of objects go: those of a base are compared.
+/// Where normals and numbers of objects go before they are stored: of a base to where they are compared, the arrays of which follow one
+/// another; else to `own`.
 static float *geometry_of(const glint_tile *tile, const glint_tile_frame *frame, int value, float *own)
 {
     return frame->plan->is_base ? glint_differ_values(tile->differ, value) : own;

@@ -79,7 +79,7 @@ uint32_t glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_pla
                                   bool (*wants)(const glint_plan_pattern *own, uint32_t fields))
 {
     uint32_t count = 0, last = GLINT_MISS;
-    bool wanted = false; // is `last`
+    bool wanted = false; // whether material `last` is
     for (uint32_t g = 0; g < points->group_count; g++) {
         const uint32_t *material = points->material + (size_t)g * GLINT_GROUP;
         for (unsigned left = points->hits[g], lanes; left; left &= ~lanes) {

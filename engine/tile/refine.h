@@ -19,11 +19,13 @@
 
 typedef struct glint_refine_tile {
     glint_key key; ///< of the base's pixels that were compared; all zero: not known
-    uint32_t inside[GLINT_TILE_HEIGHT]; ///< of each row, top first, a bit a pixel, the leftmost lowest: chosen for a pixel of the tile
-    uint32_t chosen[GLINT_TILE_HEIGHT]; ///< chosen for any
-    uint64_t clipped, nonfinite; ///< pixels of the base, where it has codes
-    uint32_t above; ///< of the first row: chosen for a pixel of the tiles above
-    float side[2][GLINT_DIFFER_VALUES][GLINT_DIFFER_LENGTH]; ///< what is compared of the first and last column; light where codes are estimated
+    // Pixels chosen: of each row, top first, a bit a pixel, the leftmost lowest.
+    uint32_t inside[GLINT_TILE_HEIGHT]; ///< they differ from another of the tile
+    uint32_t chosen[GLINT_TILE_HEIGHT]; ///< from any
+    uint32_t above; ///< of the first row: from one of the tiles above
+    uint64_t clipped, nonfinite; ///< counts of the base's pixels, where it has codes
+    /// What is compared of the first and last column; light where codes are estimated
+    float side[2][GLINT_DIFFER_VALUES][GLINT_DIFFER_LENGTH];
 } glint_refine_tile;
 
 typedef struct glint_refine {
@@ -37,12 +39,13 @@ typedef struct glint_refine {
     float low, high, gain; ///< see glint_differ_args, glint_estimate_args
     glint_refine_tile *tiles; ///< of the whole picture, left to right, top to bottom
     uint32_t across, down; ///< of them
-    float *edges; ///< see glint_refine_edge
-    size_t edge_length;
+    float *edges; ///< owned, as `tiles` is; see glint_refine_edge
+    size_t edge_length; ///< numbers of a line of these
     uint64_t count; ///< pixels chosen
 } glint_refine;
 
-/// The same of the first (0) or last (1) rows of pixels of a row of tiles: a line as long as the picture.
+/// One value (GLINT_DIFFER_ID ..) of the first (last = 0) or last (1) row of pixels of a row of tiles: a line as wide as the picture, with
+/// light where codes are estimated.
 static inline float *glint_refine_edge(const glint_refine *refine, uint32_t row, int last, int value)
 {
     return refine->edges + ((2 * (size_t)row + (size_t)last) * GLINT_DIFFER_VALUES + (size_t)value) * refine->edge_length;
