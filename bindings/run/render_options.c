@@ -151,6 +151,15 @@ static bool set_choice(glintL_render *render, const detail *what, const char *te
     return false;
 }
 
+// NULL: none is near.
+static const char *nearest_choice(const detail *what, const char *text)
+{
+    const char *near = NULL;
+    for (const char *const *name = what->names; *name; name++)
+        near = glintL_nearer(text, near, *name);
+    return near;
+}
+
 static bool set_flag(glintL_render *render, const detail *what, const char *text)
 {
     const bool value = strcmp(text, "true") == 0;
@@ -275,11 +284,13 @@ static bool set_word(glintL_render *render, const detail *what, const char *text
         good = set_region(render->desc.region, text);
     else if (what->sort == PASSES)
         return read_passes(text, render, message);
-    if (!good) {
-        describe(what, allowed);
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%s expected, got '%.200s'", allowed, text);
-    }
-    return good;
+    if (good)
+        return true;
+    describe(what, allowed);
+    const char *near = what->sort == CHOICE ? nearest_choice(what, text) : NULL;
+    snprintf(message, GLINTL_MESSAGE_SIZE, "%s expected, got '%.200s'%s%s%s", allowed, text, near ? "; did you mean '" : "",
+             near ? near : "", near ? "'?" : "");
+    return false;
 }
 
 bool glintL_render_set_text(glintL_render *render, int field, const char *text, char message[GLINTL_MESSAGE_SIZE])

@@ -298,6 +298,8 @@ options() {
     says "names what it is called here" "--widht: no such option; did you mean '--size'"
     exits 2 "a pass that is none" ten.lua --passes diffuse,normals
     says "names it and the nearest" "^glint: error: --passes: 'normals' is no pass; did you mean 'normal'\\?$"
+    exits 2 "a misspelt word" ten.lua --colormap magmo
+    says "names the nearest" "^glint: error: --colormap: .* expected, got 'magmo'; did you mean 'magma'\\?$"
     exits 2 "a pass like none" ten.lua --passes diffuse,xyzzy
     says "names it and all" "'xyzzy' is no pass; list of beauty, .*, albedo, d:NAME expected$"
     exits 0 "--version --verbose" --version --verbose
