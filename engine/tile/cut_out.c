@@ -129,6 +129,9 @@ static void find_holes(struct glint_cut_out *cut, glint_tile *tile, const glint_
 
 // ---- Rays ----
 
+/// Not a part of a combined solid: what a ray that starts on a part has ahead is told from its very point.
+static bool stands_alone(const glint_geometry_table *geometry, uint32_t prim) { return prim < geometry->prim_count; }
+
 static bool is_flat(const glint_geometry_table *geometry, const glint_prim *prim)
 {
     return prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_PLANE ||
@@ -227,7 +230,7 @@ static void see_next(struct glint_cut_out *cut, glint_tile *tile, const glint_ti
     for (uint32_t g = 0; g < tile->group_count; g++) {
         for (unsigned left = cut->holes[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const bool first = eye && !(cut->passed[g] & left & -left);
+            const bool first = eye && !(cut->passed[g] & left & -left) && stands_alone(&frame->geometry, cut->prim[i]);
             leave_hole(cut, frame, i, first && is_flat(&frame->geometry, &frame->geometry.prims[cut->prim[i]]));
         }
         cut->active[g] = cut->holes[g];

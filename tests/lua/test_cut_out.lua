@@ -142,6 +142,26 @@ function tests.combined_solids_are_seen_through_holes()
   end
 end
 
+-- A pane before them makes the hole in a flat part another one than the first of its ray.
+function tests.flat_parts_have_holes()
+  local red, gone = glint.material { diffuse = "red" }, glint.material { opacity = 0 }
+  local function half(z) return glint.plane { point = { 0, 1, 0.3 }, normal = { 0.2, 0.1, z }, material = gone } end
+  local function mesh() return glint.sphere_mesh { center = { 0.3, 1.2, 0.6 }, radius = 0.8, segments = 6, shading = "faceted", material = gone } end
+  local function ball() return glint.sphere { center = { 0, 1, 0 }, radius = 1, material = red } end
+  local solids = {
+    glint.difference { ball(), half(-1) }, glint.intersection { ball(), half(1) }, glint.difference { ball(), mesh() },
+    glint.union { glint.difference { ball(), half(-1) }, glint.plane { point = { 0, 0.2, 0 }, normal = { 0, 1, 0 }, material = red } },
+  }
+  for i, solid in ipairs(solids) do
+    local scene = scene_of()
+    scene:add(solid)
+    local without = render(scene)
+    scene:add(glint.sphere { center = { 0, 1.5, 4 }, radius = 1.8, material = gone })
+    local with = render(scene)
+    for _, pass in ipairs { "diffuse", "depth", "normal" } do check(differing(with, without, pass) == 0, "solid %d: %s", i, pass) end
+  end
+end
+
 function tests.a_number_is_the_same_everywhere()
   local plain = render(scene_of())
   for opacity, gone in pairs { [0] = true, [0.49] = true, [0.5] = false, [1] = false } do
