@@ -33,6 +33,7 @@ typedef struct glint_tile_counts {
     double way_ns[2]; ///< the least that those took each way, summed
 } glint_tile_counts;
 
+/// Adds every count of `more`.
 static inline void glint_work_add(glint_work *to, const glint_work *more)
 {
     to->tests += more->tests;
