@@ -152,32 +152,38 @@ static void gather_points(const gathering *g, unsigned lanes)
 
 // ---- The viewer ----
 
+/// The camera whose rays show the points, where the stage `unit` can read them; NULL: load_way_back does.
+static const glint_camera_args *camera_of(const glint_tile_frame *frame, const glint_pattern_points *points)
+{
+    return points->direction[0] || frame->plan->desc.precision != GLINT_DOUBLE ? NULL : glint_tile_rays_of(points->tile);
+}
+
 /// A component of the ways back along the group's rays, not unit: see glint_tile_direction.
 static void load_way_back(const gathering *g, int c, double *restrict out)
 {
     const glint_tile *tile = g->points->tile;
-    const bool arrays = g->points->direction[c] || glint_tile_has_arrays(tile);
-    const uint32_t group = (uint32_t)(g->at / GLINT_GROUP), columns = arrays ? 1 : tile->groups_across;
-    const size_t x = (3 * (group % columns) + (uint32_t)c) * GLINT_GROUP;
-    const size_t y = (3 * (group / columns) + (uint32_t)c) * GLINT_GROUP;
-    if (arrays) {
+    if (g->points->direction[c] || glint_tile_has_arrays(tile)) {
         load_group(g, g->points->direction[c] ? g->points->direction[c] : tile->rays.direction[c], out);
         for (int i = 0; i < GLINT_GROUP; i++)
             out[i] = -out[i];
-    } else if (g->frame->plan->desc.precision == GLINT_DOUBLE) {
-        const double *across = (const double *)tile->rays.across + x, *down = (const double *)tile->rays.down + y;
-        for (int i = 0; i < GLINT_GROUP; i++)
-            out[i] = -(across[i] + down[i]);
-    } else {
-        const float *across = (const float *)tile->rays.across + x, *down = (const float *)tile->rays.down + y;
-        for (int i = 0; i < GLINT_GROUP; i++)
-            out[i] = -(double)(across[i] + down[i]);
+        return;
     }
+    const uint32_t group = (uint32_t)(g->at / GLINT_GROUP), columns = tile->groups_across;
+    const float *across = (const float *)tile->rays.across + (3 * (group % columns) + (uint32_t)c) * GLINT_GROUP;
+    const float *down = (const float *)tile->rays.down + (3 * (group / columns) + (uint32_t)c) * GLINT_GROUP;
+    for (int i = 0; i < GLINT_GROUP; i++)
+        out[i] = -(double)(across[i] + down[i]);
 }
 
-static void make_views(glint_pattern_inputs *inputs, const glint_tile_frame *frame, uint32_t count)
+static void make_views(glint_pattern_inputs *inputs, const glint_tile_frame *frame, const glint_pattern_points *points,
+                       const glint_pattern_lanes *entries, uint32_t count)
 {
-    glint_unit_args args = { .group_count = count, .length = inputs->length };
+    uint32_t groups[GLINT_PROGRAM_GROUPS];
+    glint_unit_args args = {
+        .group_count = count, .camera = camera_of(frame, points), .groups = groups, .length = inputs->length
+    };
+    for (uint32_t k = 0; k < count; k++)
+        groups[k] = entries[k].group;
     for (int c = 0; c < 3; c++) {
         args.to[c] = inputs->row[GLINT_INPUT_V_X + c];
         args.unit[c] = inputs->row[GLINT_INPUT_V_X + c];
@@ -340,11 +346,12 @@ void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *
     inputs->used = 0;
     for (uint32_t rest = reads; rest; rest &= rest - 1)
         glint_pattern_row(inputs, (glint_input)__builtin_ctz(rest));
-    const uint32_t left = read_in_place(inputs, frame, points, reads, entries, count);
+    uint32_t left = read_in_place(inputs, frame, points, reads, entries, count);
+    left &= camera_of(frame, points) ? ~(uint32_t)READS_V : ~0u;
     for (uint32_t k = 0; left && k < count; k++) {
         const gathering g = { inputs, frame, points, (size_t)entries[k].group * GLINT_GROUP, (size_t)k * GLINT_GROUP };
         gather_group(&g, left, entries[k].lanes);
     }
-    if (left & READS_V)
-        make_views(inputs, frame, count);
+    if (reads & READS_V)
+        make_views(inputs, frame, points, entries, count);
 }

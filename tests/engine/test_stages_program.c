@@ -173,12 +173,32 @@ static void test_damaged_programs(void **state)
     assert_true(damaged[0] > CASES / 4 && damaged[1] > CASES / 10);
 }
 
-/// Ways of every size, from points or along directions, in rows of their own or in those that they are read from.
+/// The axes of a camera's rays, of any size.
+static glint_camera_args any_camera(bool odd)
+{
+    glint_camera_args camera = { .groups_across = 1 + below(4) };
+    const uint32_t rows = 1 + below(4), across = 3 * camera.groups_across * GLINT_GROUP, down = 3 * rows * GLINT_GROUP;
+    double *x = input(KIND_DOUBLE, across), *y = input(KIND_DOUBLE, down);
+    for (uint32_t i = 0; i < across; i++)
+        x[i] = maybe_odd(odd, between(-2, 2));
+    for (uint32_t i = 0; i < down; i++)
+        y[i] = maybe_odd(odd, one_in(6) ? -x[i % across] : between(-2, 2));
+    camera.across = x;
+    camera.down = y;
+    camera.group_count = rows * camera.groups_across;
+    return camera;
+}
+
+/// Ways of every size, from points or along directions or back along a camera's rays, in rows of their own or in those that they are read from.
 static void unit_case(int precision, bool odd)
 {
     (void)precision;
     const uint32_t groups = 1 + below(GLINT_PROGRAM_GROUPS), n = groups * GLINT_GROUP;
-    const bool same = one_in(2), from = one_in(2), in_place = !same && one_in(2);
+    const bool same = one_in(2), from = one_in(2), in_place = !same && one_in(2), back = one_in(3);
+    const glint_camera_args camera = any_camera(odd);
+    uint32_t *places = input(KIND_U32, groups);
+    for (uint32_t g = 0; g < groups; g++)
+        places[g] = below(camera.group_count);
     double *to[3], *start[3];
     for (int c = 0; c < 3; c++) {
         to[c] = input(KIND_DOUBLE, n);
@@ -193,7 +213,11 @@ static void unit_case(int precision, bool odd)
     }
     FOR_EACH_TESTED
     {
-        glint_unit_args args = { .group_count = groups, .same = same, .length = output("length", KIND_DOUBLE, n) };
+        glint_unit_args args = { .group_count = groups,
+                                 .camera = back ? &camera : NULL,
+                                 .groups = places,
+                                 .same = same,
+                                 .length = output("length", KIND_DOUBLE, n) };
         for (int c = 0; c < 3; c++) {
             args.unit[c] = output("unit", KIND_DOUBLE, n);
             args.to[c] = to[c];

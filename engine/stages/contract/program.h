@@ -4,6 +4,7 @@
 #define GLINT_CONTRACT_PROGRAM_H
 
 #include "engine/base/math.h" // operations and inputs are those of glint.h
+#include "engine/stages/contract/hits.h"
 
 #define GLINT_PROGRAM_GROUPS 8 ///< groups at a time
 #define GLINT_PROGRAM_LANES 128 ///< a row: one double a lane, 1 KB
@@ -63,9 +64,11 @@ typedef struct glint_program_args {
 
 #define GLINT_REFLECTANCE_MAX 0x1p100
 
-/// Ways and distances: length = sqrt(length2(d)) and unit = d / length, where d = to - from.
+/// Ways and distances: length = sqrt(length2(d)) and unit = d / length, where d = to - from, or the way back along a camera's ray.
 typedef struct glint_unit_args {
     uint32_t group_count;
+    const glint_camera_args *camera; ///< perspective, of doubles: d = -(across + down) of `groups`; NULL: of to and from
+    const uint32_t *groups; ///< those of the camera's
     const double *to[3]; ///< 16 numbers a group
     bool same; ///< `to` is one place, which stands there GLINT_NUMBER_LANES times
     const double *from[3]; ///< 16 numbers a group; NULL: d = to

@@ -75,8 +75,8 @@ static inline void find_operand(const glint_program_args *args, uint32_t row, co
 /// A number as a reflectance; NaN gives 0.
 static inline vd reflectance(vd v) { return d_min(d_max(v, d_set(0)), d_set(GLINT_REFLECTANCE_MAX)); }
 
-/// A group of one output as reflectances, where wanted. Returns the lanes that are none.
-INNER unsigned store_plane(const double *from, unsigned wanted, float *plane)
+/// A group of one output as reflectances, where wanted. Returns the lanes that are none, where `odd`, a constant, says so.
+INNER unsigned store_plane(const double *from, unsigned wanted, float *plane, bool odd)
 {
     unsigned even = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
@@ -84,7 +84,8 @@ INNER unsigned store_plane(const double *from, unsigned wanted, float *plane)
         for (int k = 0; k < VF / VD; k++) {
             const vd x = d_load(from + i + k * VD);
             half[k] = reflectance(x);
-            even |= dm_bits(d_eq(half[k], x)) << (i + k * VD);
+            if (odd)
+                even |= dm_bits(d_eq(half[k], x)) << (i + k * VD);
         }
         const vf v = f_join(half[0], half[1]);
         if (wanted == 0xffff)
@@ -131,19 +132,18 @@ static void store_output(const glint_program_args *args, uint32_t k)
         const unsigned wanted = args->wanted[g];
         if (args->result[k])
             store_result(from, wanted, args->result[k] + to);
-        unsigned odd = 0;
-        if (args->plane[k] && wanted == 0xffff)
-            odd = store_plane(from, 0xffff, args->plane[k] + to);
+        if (args->plane[k] && args->odd)
+            args->odd[g] |= (uint16_t)store_plane(from, wanted, args->plane[k] + to, true);
+        else if (args->plane[k] && wanted == 0xffff)
+            store_plane(from, 0xffff, args->plane[k] + to, false);
         else if (args->plane[k])
-            odd = store_plane(from, wanted, args->plane[k] + to);
+            store_plane(from, wanted, args->plane[k] + to, false);
         if (args->total[k] && args->share)
             add_total(from, wanted, args->share + (size_t)g * GLINT_GROUP, args->total[k] + to);
         else if (args->total[k] && wanted == 0xffff)
             add_total(from, 0xffff, NULL, args->total[k] + to);
         else if (args->total[k] && wanted)
             add_total(from, wanted, NULL, args->total[k] + to);
-        if (args->odd)
-            args->odd[g] |= (uint16_t)odd;
     }
 }
 
