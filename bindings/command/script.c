@@ -169,14 +169,28 @@ static void run_results(lua_State *L, const task *work)
     }
 }
 
+static bool is_picture(const char *path)
+{
+    static const char png[] = "\x89PNG\r\n\x1a\n";
+    char begins[sizeof png - 1];
+    FILE *file = fopen(path, "rb");
+    const bool is = file && fread(begins, sizeof begins, 1, file) == 1 && memcmp(begins, png, sizeof begins) == 0;
+    if (file)
+        fclose(file);
+    return is;
+}
+
 // Loads a script, from standard input where its name is "-". What it waits for without an end is no script.
 static int load_script(lua_State *L, const char *path)
 {
     const bool is_input = strcmp(path, "-") == 0;
     const char *other = is_input ? NULL : glintL_other_kind(path);
-    if (!other)
+    if (other)
+        lua_pushfstring(L, "%s: a script expected, got a %s", path, other);
+    else if (!is_input && is_picture(path))
+        lua_pushfstring(L, "%s: a script expected, got a PNG (glint reproduce %s renders it again)", path, path);
+    else
         return luaL_loadfilex(L, is_input ? NULL : path, "t");
-    lua_pushfstring(L, "%s: a script expected, got a %s", path, other);
     return LUA_ERRFILE;
 }
 

@@ -105,6 +105,7 @@ for bad in pipe folder /dev/zero huge.xyz; do
         refused "$command $bad" "(a script expected, got a (pipe|folder|device)|unexpected symbol)" $command "$bad"
     done
 done
+refused "a picture for a script" "good.png: a script expected, got a PNG .glint reproduce good.png renders it again" good.png
 refused "reproduce with a pipe for a script" "pipe: a script expected, got a pipe" reproduce good.png pipe
 limited timeout $seconds "$glint" - --size 8x8 -o piped.png -q <scene.lua >out 2>err && "$glint" compare piped.png good.png >out
 result $? "a script from standard input"
