@@ -189,6 +189,7 @@ static inline rm R(meet_shared_edge)(const glint_cast_args *args, size_t at, uns
     unsigned begins = 0, anew = 0, through = 0;
     const unsigned by_edge = R(may_be_near)(table, edges, *t) & ~rm_bits(hit);
     unsigned left = (~rm_bits(r_lt(r_set(most), R(abs)(h))) | rm_bits(soon) | by_edge) & ~own & ((1u << VR) - 1);
+    left &= (unsigned)args->active[at / GLINT_GROUP] >> at % GLINT_GROUP; // others leave anything
     if (left)
         r_store(way, *t);
     for (; left; left &= left - 1) {
