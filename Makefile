@@ -103,7 +103,7 @@ LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(LINK_NEEDED)
 
 # ---- Sources ----
 
-ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/stages/*/*.c))
+ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/stages/*/*.c engine/tile/*/*.c))
 BINDINGS_SRC := $(sort $(wildcard bindings/*/*.c))
 # The instruction sets of this machine; KERNELS=avx2 compiles that alone, in a quarter of the time, for work on a kernel.
 KERNELS := generic $(if $(PORTABLE),,$(if $(findstring x86_64,$(TARGET)),sse2 avx2 avx512))

@@ -35,7 +35,10 @@ layer engine/film engine/overlay engine/stages $base
 layer engine/program engine/file $stages $base
 layer engine/plan engine/program engine/geometry engine/scene engine/overlay engine/film $stages $base
 layer engine/reuse engine/plan engine/film $stages $base
-layer engine/tile engine/program engine/reuse engine/plan engine/film $stages engine/stages/light engine/stages/program $base
+for room in engine/tile engine/tile/pattern engine/tile/derivative; do
+    layer $room engine/tile engine/tile/pattern engine/tile/derivative engine/program engine/reuse engine/plan engine/film $stages \
+        engine/stages/light engine/stages/program $base
+done
 layer engine/frame engine/program engine/tile engine/reuse engine/plan engine/film $base
 layer engine/file engine/text engine/overlay engine/film engine/stages $base
 layer engine/compare engine/file engine/film $base

@@ -4,7 +4,7 @@
 #ifndef GLINT_BATCH_H
 #define GLINT_BATCH_H
 
-#include "engine/tile/pattern.h"
+#include "engine/tile/pattern/pattern.h"
 #include "engine/tile/rays.h"
 
 #define GLINT_WEIGHT_MAX 1e150 ///< products with what a surface gives stay finite

@@ -14,7 +14,7 @@
 /// the plan's bound of what any ray can bring. That is 1/318 of the smallest step between two 8-bit sRGB codes.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/tile/derivative_work.h"
+#include "engine/tile/derivative/work.h"
 
 #include <stdlib.h>
 #include <string.h>

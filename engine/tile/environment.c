@@ -5,7 +5,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
-#include "engine/tile/pattern_inputs.h"
+#include "engine/tile/pattern/inputs.h"
 #include "engine/tile/rays.h"
 
 #include <stdlib.h>

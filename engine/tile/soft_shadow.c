@@ -1,5 +1,5 @@
 /// Sums the samples of an area light where they are found, without storing each.
-#include "engine/tile/pattern.h"
+#include "engine/tile/pattern/pattern.h"
 
 #include <string.h>
 

@@ -8,7 +8,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/tile/batch.h"
-#include "engine/tile/cut_out.h"
+#include "engine/tile/pattern/cut_out.h"
 #include "engine/plan/tints.h"
 
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 /// The groups that show a material are taken eight at a time. What they are is gathered once, what each light does there follows,
 /// and the program's results are added up in double before the next eight come.
 #include "engine/program/program.h"
-#include "engine/tile/pattern_work.h"
+#include "engine/tile/pattern/work.h"
 
 #include <math.h>
 #include <string.h>

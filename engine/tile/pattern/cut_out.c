@@ -4,12 +4,12 @@
 /// The distance of what is seen at last is found once more from where the ray began: what stands behind holes is where it
 /// would be without them, to the last bit. A first hole in what is flat is passed over from the eye, too, so that a surface
 /// in the same plane shows in it; surfaces in the plane of a later hole are passed with it.
-#include "engine/tile/cut_out.h"
+#include "engine/tile/pattern/cut_out.h"
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
 #include "engine/tile/batch.h"
-#include "engine/tile/pattern_work.h"
+#include "engine/tile/pattern/work.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /// The formulas of light and shade (stages/ref/light.h, shade.h, microfacets.h) on dual numbers, two lanes at a time and the same
 /// on every instruction set.
-#include "engine/tile/derivative_light.h"
+#include "engine/tile/derivative/light.h"
 
 #include "engine/stages/simd/generic.h"
 #include "engine/stages/simd/elementary.h"

@@ -2,7 +2,7 @@
 #ifndef GLINT_PATTERN_INPUTS_H
 #define GLINT_PATTERN_INPUTS_H
 
-#include "engine/tile/pattern.h"
+#include "engine/tile/pattern/pattern.h"
 
 /// The lanes of a group that show one material.
 typedef struct glint_pattern_lanes {

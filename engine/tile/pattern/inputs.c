@@ -1,7 +1,7 @@
-#include "engine/tile/pattern_inputs.h"
+#include "engine/tile/pattern/inputs.h"
 #include "engine/base/vec.h"
 #include "engine/tile/batch.h"
-#include "engine/tile/surface_uv.h"
+#include "engine/tile/pattern/uv.h"
 
 #define BITS(first, count) (((1u << (count)) - 1) << (first))
 #define READS_P BITS(GLINT_INPUT_P_X, 3)

@@ -2,7 +2,7 @@
 #ifndef GLINT_PATTERN_WORK_H
 #define GLINT_PATTERN_WORK_H
 
-#include "engine/tile/pattern_inputs.h"
+#include "engine/tile/pattern/inputs.h"
 
 #define GLINT_BUMP_SLOPES 8 ///< by the point in the shape's own space, in the world, and on the surface
 

@@ -1,4 +1,4 @@
-#include "engine/tile/surface_uv.h"
+#include "engine/tile/pattern/uv.h"
 #include "engine/base/vec.h"
 #include "engine/program/builder.h"
 

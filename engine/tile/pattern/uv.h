@@ -1,6 +1,6 @@
 /// Coordinates on the surfaces of shapes: u and v. Internal.
-#ifndef GLINT_SURFACE_UV_H
-#define GLINT_SURFACE_UV_H
+#ifndef GLINT_PATTERN_UV_H
+#define GLINT_PATTERN_UV_H
 
 #include "engine/plan/plan.h"
 

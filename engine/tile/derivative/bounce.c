@@ -3,7 +3,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/dual.h"
 #include "engine/base/vec.h"
-#include "engine/tile/derivative_work.h"
+#include "engine/tile/derivative/work.h"
 
 #include <string.h>
 

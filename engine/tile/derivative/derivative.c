@@ -1,5 +1,5 @@
 /// The stage derivative: how fast the light of each sample changes with parameters, hits and shadows held as they are.
-#include "engine/tile/derivative_work.h"
+#include "engine/tile/derivative/work.h"
 
 #include "engine/base/alloc.h"
 #include "engine/stages/light/cone_sample.h"

@@ -1,8 +1,8 @@
 /// Bumps: the normals that light sees, turned by the slope of a program's height.
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
-#include "engine/tile/pattern_inputs.h"
-#include "engine/tile/pattern_work.h"
+#include "engine/tile/pattern/inputs.h"
+#include "engine/tile/pattern/work.h"
 
 #include <string.h>
 

@@ -36,7 +36,7 @@ typedef struct glint_derivative_source {
     bool both; ///< radiant: to both sides
 } glint_derivative_source;
 
-/// tile/derivative_bend.c: the slopes of those points of a group, among `lanes`, that derivative number `index` moves; returns
+/// bend.c: the slopes of those points of a group, among `lanes`, that derivative number `index` moves; returns
 /// which they are.
 struct glint_tile;
 struct glint_tile_frame;

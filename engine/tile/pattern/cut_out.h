@@ -1,8 +1,8 @@
 /// Cut-outs: surfaces that are not there where the opacity of their material is below one half. Internal.
-#ifndef GLINT_CUT_OUT_H
-#define GLINT_CUT_OUT_H
+#ifndef GLINT_PATTERN_CUT_OUT_H
+#define GLINT_PATTERN_CUT_OUT_H
 
-#include "engine/tile/pattern.h"
+#include "engine/tile/pattern/pattern.h"
 
 struct glint_cut_out *glint_cut_out_create(void);
 void glint_cut_out_destroy(struct glint_cut_out *cut_out); ///< NULL: nothing

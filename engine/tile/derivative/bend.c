@@ -1,6 +1,6 @@
 /// How fast a hit moves on its surface, held to its ray, where the surface does or what sees it.
 #include "engine/base/vec.h"
-#include "engine/tile/derivative_work.h"
+#include "engine/tile/derivative/work.h"
 
 /// What of a way from the eye changes as the view turns: as far along it as the hit is.
 static void turn_way(const glint_plan *plan, const glint_derivative_view *view, const double way[3], double out[3])

@@ -1,10 +1,10 @@
 /// Programs of materials, run for the points that show them: up to eight groups at a time, each with its own lanes.
-#include "engine/tile/pattern.h"
+#include "engine/tile/pattern/pattern.h"
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
-#include "engine/tile/cut_out.h"
-#include "engine/tile/pattern_work.h"
+#include "engine/tile/pattern/cut_out.h"
+#include "engine/tile/pattern/work.h"
 
 #include <stdlib.h>
 #include <string.h>

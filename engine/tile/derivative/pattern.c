@@ -2,8 +2,8 @@
 #include "engine/base/alloc.h"
 #include "engine/base/dual.h"
 #include "engine/program/program.h"
-#include "engine/tile/derivative_work.h"
-#include "engine/tile/pattern_work.h"
+#include "engine/tile/derivative/work.h"
+#include "engine/tile/pattern/work.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -35,7 +35,7 @@ static double *painted_at(const glint_tile *tile, const glint_plan *plan, size_t
     return (double *)(uintptr_t)glint_derivative_painted(tile, plan, index, field, channel);
 }
 
-// ---- What follows from what programs give; see `finish` in tile/pattern.c -----------------------------------------
+// ---- What follows from what programs give; see `finish` in tile/pattern/pattern.c -----------------------------------------
 
 /// What makes Phong's and Blinn-Phong's highlights even.
 static glint_dual even_factor(const glint_material_desc *desc, glint_dual s)

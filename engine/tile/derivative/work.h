@@ -3,7 +3,7 @@
 #define GLINT_DERIVATIVE_WORK_H
 
 #include "engine/tile/batch.h"
-#include "engine/tile/derivative_light.h"
+#include "engine/tile/derivative/light.h"
 
 #define GLINT_SHADOW_MIXER 0x9e3779b1u
 
@@ -46,12 +46,12 @@ static inline bool glint_derivatives_weigh(const glint_plan_derivatives *all)
 /// tile/derivative.c: the group that sample i is in, after glint_tile_derive.
 glint_derivative_points glint_derivative_points_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g);
 
-/// tile/derivative_pattern.c: finds the slopes of what programs give the current sample.
+/// pattern.c: finds the slopes of what programs give the current sample.
 void glint_derivative_repaint(const glint_tile *tile, const glint_tile_frame *frame);
 /// Those of a field by derivative number `index`; NULL: no program gives the field, or none changes.
 const double *glint_derivative_painted(const glint_tile *tile, const glint_plan *plan, size_t index, int field, int channel);
 
-/// tile/derivative_bounce.c: beside glint_batch_split, the slopes of both rays by all derivatives.
+/// bounce.c: beside glint_batch_split, the slopes of both rays by all derivatives.
 void glint_derive_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                         glint_ray_slope *mirror, glint_ray_slope *through);
 /// After glint_batch_light: the slopes of the rays' weights by what the rays went through.
@@ -59,7 +59,7 @@ void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *f
 /// Adds the slopes of what the rays found to those of their pixels.
 void glint_derive_collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to);
 
-/// tile/derivative_bend.c: by derivative number `index`. False: nothing moves it.
+/// bend.c: by derivative number `index`. False: nothing moves it.
 bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
                        const glint_derivative_points *points, glint_bend *out);
 
