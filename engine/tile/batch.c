@@ -7,6 +7,15 @@
 
 // ---- Before and after ----
 
+/// Whether some light has a sample a lane.
+static bool has_area_light(const glint_plan *plan)
+{
+    for (uint32_t i = 0; i < plan->light_count; i++)
+        if (plan->lights[i].light_samples)
+            return true;
+    return false;
+}
+
 void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_tile_frame *frame, glint_walk walk)
 {
     glint_tile *tile = &batch->tile;
@@ -15,6 +24,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     if (!batch->rays)
         batch->rays = &batch->own;
     batch->ordered = batch->distances = false;
+    batch->by_lane = has_area_light(frame->plan);
     tile->batch = batch;
     tile->vertex = to->vertex;
     tile->facets = to->facets;
@@ -106,33 +116,42 @@ static void move_hit(glint_batch *batch, glint_precision precision, uint32_t i, 
     batch->ray_of[to] = (uint16_t)i;
 }
 
-/// Rays that meet something get the first samples of their lane, by which area lights choose their points.
+/// Marks the samples that hits have been moved to. next: of each lane, the first without one.
+static void mark_hits(glint_tile *tile, const uint32_t next[GLINT_GROUP])
+{
+    uint32_t least = UINT32_MAX, most = 0; // groups
+    for (uint32_t lane = 0; lane < GLINT_GROUP; lane++) {
+        least = next[lane] / GLINT_GROUP < least ? next[lane] / GLINT_GROUP : least;
+        most = next[lane] / GLINT_GROUP > most ? next[lane] / GLINT_GROUP : most;
+    }
+    for (uint32_t g = 0; g < most; g++) {
+        unsigned hits = g < least ? 0xffff : 0;
+        for (uint32_t lane = 0; g >= least && lane < GLINT_GROUP; lane++)
+            if (g < next[lane] / GLINT_GROUP)
+                hits |= 1u << lane;
+            else
+                tile->at.prim[g * GLINT_GROUP + lane] = GLINT_MISS;
+        tile->active[g] = tile->at.hits[g] = (uint16_t)hits;
+    }
+    tile->group_count = most;
+}
+
+/// Rays that meet something get the first samples, of their own lane where area lights choose their points by it.
 static void take_hits(glint_batch *batch, const glint_tile_frame *frame)
 {
-    glint_tile *tile = &batch->tile;
-    uint32_t next[GLINT_GROUP];
+    const glint_precision precision = frame->plan->desc.precision;
+    uint32_t next[GLINT_GROUP], count = 0;
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
         next[lane] = lane;
     for (uint32_t g = 0; g < batch->rays->group_count; g++) {
-        batch->met[g] = tile->at.hits[g];
+        batch->met[g] = batch->tile.at.hits[g];
         for (unsigned left = batch->met[g]; left; left &= left - 1) {
-            const uint32_t lane = (uint32_t)__builtin_ctz(left);
-            move_hit(batch, frame->plan->desc.precision, g * GLINT_GROUP + lane, next[lane]);
-            next[lane] += GLINT_GROUP;
+            const uint32_t lane = (uint32_t)__builtin_ctz(left), own = batch->by_lane ? lane : count++ % GLINT_GROUP;
+            move_hit(batch, precision, g * GLINT_GROUP + lane, next[own]);
+            next[own] += GLINT_GROUP;
         }
     }
-    tile->group_count = 0;
-    for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
-        tile->group_count = next[lane] / GLINT_GROUP > tile->group_count ? next[lane] / GLINT_GROUP : tile->group_count;
-    for (uint32_t g = 0; g < tile->group_count; g++) {
-        tile->at.hits[g] = 0;
-        for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
-            if (g < next[lane] / GLINT_GROUP)
-                tile->at.hits[g] |= (uint16_t)(1u << lane);
-            else
-                tile->at.prim[g * GLINT_GROUP + lane] = GLINT_MISS;
-        tile->active[g] = tile->at.hits[g];
-    }
+    mark_hits(&batch->tile, next);
 }
 
 /// What is inside the surface of sample i.
@@ -340,20 +359,32 @@ static void inherit(const glint_rays *rays, const glint_plan *plan, uint32_t i, 
         ray->media = rays->media[i];
 }
 
-glint_ray glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
-                                uint32_t i)
+/// What a ray of the eye has as it comes.
+static void begin_ray(const glint_plan *plan, uint32_t i, glint_ray *ray)
 {
-    glint_ray ray = { .weight = { 1, 1, 1 }, .pixel = i };
-    if (tile == &batch->tile)
-        inherit(batch->rays, frame->plan, batch->ray_of[i], &ray);
-    else if (frame->plan->transmits)
-        ray.media = frame->plan->eye_media;
-    if (frame->plan->patterns)
-        ray.way += glint_real_at(tile->at.t, frame->plan->desc.precision, i);
-    ray.leaving = tile->at.prim[i];
     for (int c = 0; c < 3; c++)
-        ray.origin[c] = glint_real_at(tile->surface.point[c], frame->plan->desc.precision, i);
-    return ray;
+        ray->weight[c] = 1;
+    ray->way = ray->least = 0;
+    ray->pixel = i;
+    ray->point = ray->depth = ray->scatters = 0;
+    ray->term = 0;
+    if (plan->transmits)
+        ray->media = plan->eye_media;
+}
+
+void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                           glint_ray *ray)
+{
+    if (tile == &batch->tile)
+        inherit(batch->rays, frame->plan, batch->ray_of[i], ray);
+    else
+        begin_ray(frame->plan, i, ray);
+    ray->inward = false;
+    if (frame->plan->patterns)
+        ray->way += glint_real_at(tile->at.t, frame->plan->desc.precision, i);
+    ray->leaving = tile->at.prim[i];
+    for (int c = 0; c < 3; c++)
+        ray->origin[c] = glint_real_at(tile->surface.point[c], frame->plan->desc.precision, i);
 }
 
 /// What is totally reflected has not crossed the surface: all of it goes on, of which a mirror sends its part already.
@@ -384,7 +415,7 @@ void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const g
     const double mirrored = m->fresnel ? glint_real_at(batch->reflectance, precision, i) : 1;
     double rest[3];
     total_share(m, rest);
-    *mirror = glint_batch_start_ray(batch, tile, frame, i);
+    glint_batch_start_ray(batch, tile, frame, i, mirror);
     mirror->depth++;
     *through = *mirror;
     send(mirror, batch->reflected, precision, i, m->mirror, mirrored);
@@ -392,6 +423,6 @@ void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const g
     send(through, total ? batch->reflected : batch->refracted, precision, i, total ? rest : m->transmission,
          m->fresnel ? 1 - mirrored : 1);
     through->inward = total ? back : !back;
-    if (!total)
+    if (!total && frame->plan->transmits)
         glint_media_cross(&through->media, medium_of(tile, frame, i), back);
 }

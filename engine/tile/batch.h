@@ -18,6 +18,7 @@ typedef struct glint_batch {
     glint_rays own; ///< what that is at first
     bool ordered; ///< every ray is to have the sample of its own number
     bool distances; ///< of what is met the distance is read alone: surfaces are not found
+    bool by_lane; ///< packed samples keep the lane of their ray
     bool whole; ///< it has: what meets nothing has a sample as well
     uint16_t met[GLINT_TILE_GROUPS]; ///< else: the rays that have one
     uint16_t sample[GLINT_TILE_SAMPLES]; ///< of each ray that has one
@@ -65,9 +66,10 @@ double glint_batch_light_of(const glint_batch *batch, const glint_plan *plan, in
 /// Where light goes on from the samples of `tile` in batch->wanted: mirrored and refracted. `tile` is the batch's own, or
 /// one that the eye sees.
 void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame);
-/// A ray that starts where sample `i` of the tile hits, before its direction and weight are known.
-glint_ray glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
-                                uint32_t i);
+/// A ray that starts where sample `i` of the tile hits, before its direction and weight are known: its direction is not set, and
+/// its media only in frames with transparent materials.
+void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                           glint_ray *ray);
 /// The mirrored and the refracted ray of sample `i`, weighed, after glint_batch_find_ways. Where batch->total is set both
 /// go the same way.
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,

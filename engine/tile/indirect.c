@@ -46,9 +46,18 @@ void glint_indirect_destroy(struct glint_indirect *indirect)
 
 static double mean(const double c[3]) { return ((c[0] + c[1]) + c[2]) / 3; }
 
-static double largest(const double c[3]) { return fmax(c[0], fmax(c[1], c[2])); }
+/// As fmax: of a NaN and a number the number.
+static double larger(double a, double b) { return a > b || b != b ? a : b; }
+
+static double largest(const double c[3]) { return larger(c[0], larger(c[1], c[2])); }
 
 // ---- Numbers that are as good as random ----
+
+/// 4 x 4 pixels at a place among mirrors, which have a number.
+typedef struct pixel_block {
+    bool known;
+    uint64_t at, place, number;
+} pixel_block;
 
 /// Pixels of 2 x 2 belong together first, so that these have an even set as well.
 static uint32_t lane_order(uint32_t lane)
@@ -57,16 +66,20 @@ static uint32_t lane_order(uint32_t lane)
     return (x & 1) | (y & 1) << 1 | (x >> 1) << 2 | (y >> 1) << 3;
 }
 
-/// Notes which block of pixels point i of `seen` belongs to.
+/// Notes which block of pixels point i of `seen` belongs to; `block`: the last one found.
 static void find_block(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan,
-                       const glint_ray *ray, uint32_t i)
+                       const glint_ray *ray, uint32_t i, pixel_block *block)
 {
     const uint32_t group = ray->pixel / GLINT_GROUP;
     const uint32_t x = to->x0 / 4 + group % to->groups_across, y = to->y0 / 4 + group / to->groups_across;
-    const uint64_t place =
-        ray->term == GLINT_TERM_INDIRECT ? 0 : 1 + 2 * (uint64_t)ray->depth + (ray->term == GLINT_TERM_MIRROR);
-    uint64_t block = glint_sequence_mix(x | (uint64_t)y << 32, (uint64_t)plan->desc.seed);
-    indirect->block[i] = glint_sequence_mix(block, place);
+    const uint64_t at = x | (uint64_t)y << 32, place = ray->term == GLINT_TERM_INDIRECT
+                                                           ? 0
+                                                           : 1 + 2 * (uint64_t)ray->depth + (ray->term == GLINT_TERM_MIRROR);
+    if (!block->known || block->at != at || block->place != place) {
+        const uint64_t number = glint_sequence_mix(glint_sequence_mix(at, (uint64_t)plan->desc.seed), place);
+        *block = (pixel_block) { .known = true, .at = at, .place = place, .number = number };
+    }
+    indirect->block[i] = block->number;
     indirect->lane[i] = lane_order(ray->pixel % GLINT_GROUP);
 }
 
@@ -90,15 +103,13 @@ static void draw(const struct glint_indirect *indirect, uint32_t i, uint64_t num
     glint_sequence_scrambled((uint32_t)k, seed_of(indirect, i, k, which), out);
 }
 
-/// Notes it in place `at` for the stage scatter, which takes the point `further` than what is noted.
-static void note_draw(const struct glint_indirect *indirect, uint32_t i, uint64_t k, uint32_t which, uint32_t further,
-                      draws *to, uint32_t at)
+/// Notes point k of a sequence in place `at` for the stage scatter, which takes the point `further` than what is noted.
+static void note_draw(draws *to, uint32_t at, uint64_t k, const glint_sequence_seed *seed, uint32_t further)
 {
-    const glint_sequence_seed seed = glint_sequence_seed_of(seed_of(indirect, i, k, which));
     to->number[at] = (uint32_t)k - further;
-    to->order[at] = seed.order;
-    to->digits[0][at] = seed.digits[0];
-    to->digits[1][at] = seed.digits[1];
+    to->order[at] = seed->order;
+    to->digits[0][at] = seed->digits[0];
+    to->digits[1][at] = seed->digits[1];
 }
 
 /// One sample of each light, as strong as all of them: another for each path and turn.
@@ -131,15 +142,27 @@ static const double *first_weight(const glint_tile *seen, const glint_plan *plan
     return room;
 }
 
-/// The first ray of point i, for each of `paths`: all that it is but for its direction.
-static glint_ray first_ray(const struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
-                           const glint_batch *from, uint32_t i, uint32_t paths)
+/// How many paths a point gets, which is fewer times seen where mirrors leave little of it.
+static uint32_t paths_of(const glint_plan *plan, const glint_batch *from, uint32_t i)
+{
+    const double samples = plan->indirect.samples;
+    double weight = 0;
+    for (int c = 0; from && c < 3; c++)
+        weight = larger(weight, from->rays->weight[c][from->ray_of[i]]);
+    return from ? (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples) : (uint32_t)plan->indirect.samples;
+}
+
+/// Begins at point i, whose paths are multiplied by `found`: their first rays are alike but for the direction. Returns how many paths it
+/// gets.
+static uint32_t begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
+                            const glint_tile *seen, const glint_batch *from, uint32_t i, const double *found,
+                            pixel_block *block)
 {
     const glint_plan *plan = frame->plan;
+    const uint32_t paths = paths_of(plan, from, i);
     const double part = 1.0 / paths;
-    double room[3];
-    const double *found = first_weight(seen, plan, i, room);
-    glint_ray ray = glint_batch_start_ray(from ? from : &indirect->batch, seen, frame, i);
+    glint_ray ray;
+    glint_batch_start_ray(from ? from : &indirect->batch, seen, frame, i, &ray);
     if (!from)
         ray.term = GLINT_TERM_INDIRECT;
     ray.point = i;
@@ -148,26 +171,11 @@ static glint_ray first_ray(const struct glint_indirect *indirect, const glint_ti
     ray.scatters++;
     for (int c = 0; c < 3; c++) {
         ray.direction[c] = 0;
-        ray.weight[c] = glint_weight(ray.weight[c] * (found[c] * part));
+        ray.weight[c] = indirect->weight[c][i] = glint_weight(ray.weight[c] * (found[c] * part));
     }
-    return ray;
-}
-
-/// Begins at point i, which is fewer times seen where mirrors leave little of it. Returns how many paths it gets.
-static uint32_t begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
-                            const glint_tile *seen, const glint_batch *from, uint32_t i)
-{
-    const double samples = frame->plan->indirect.samples;
-    double weight = 0;
-    for (int c = 0; c < 3; c++)
-        weight = from ? fmax(weight, from->rays->weight[c][from->ray_of[i]]) : 1;
-    const uint32_t paths = (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples);
-    const glint_ray ray = first_ray(indirect, frame, seen, from, i, paths);
-    glint_rays_put(&indirect->first, frame->plan, i, &ray);
-    for (int c = 0; c < 3; c++)
-        indirect->weight[c][i] = ray.weight[c];
+    glint_rays_put(&indirect->first, plan, i, &ray);
     indirect->paths[i] = paths;
-    find_block(indirect, to, frame->plan, &ray, i);
+    find_block(indirect, to, plan, &ray, i, block);
     return paths;
 }
 
@@ -177,14 +185,16 @@ static uint32_t find_points(struct glint_indirect *indirect, const glint_tile *t
 {
     uint32_t most = 0;
     double room[3];
+    pixel_block block = { .known = false };
     indirect->fewest = UINT32_MAX;
     glint_rays_clear(&indirect->first, seen->group_count);
     for (uint32_t g = 0; g < seen->group_count; g++) {
         for (unsigned left = seen->at.hits[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            if (largest(first_weight(seen, frame->plan, i, room)) == 0)
+            const double *found = first_weight(seen, frame->plan, i, room);
+            if (largest(found) == 0)
                 continue;
-            const uint32_t paths = begin_point(indirect, to, frame, seen, from, i);
+            const uint32_t paths = begin_point(indirect, to, frame, seen, from, i, found, &block);
             most = paths > most ? paths : most;
             indirect->fewest = paths < indirect->fewest ? paths : indirect->fewest;
         }
@@ -256,12 +266,20 @@ static void draw_first(struct glint_indirect *indirect, const glint_plan *plan, 
     const bool lasting = (uint64_t)plan->indirect.samples * (uint64_t)plan->desc.samples <= UINT32_MAX / GLINT_GROUP;
     if (path > 0 && lasting)
         return;
+    glint_sequence_seed seed;
+    uint64_t last = 0; ///< what that is made of
+    bool known = false;
     for (uint32_t g = 0; g < indirect->first.group_count; g++)
         for (unsigned left = indirect->first.active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             const uint64_t k = number_in_block(indirect, i, number);
-            if (path == 0 || (uint32_t)k == 0)
-                note_draw(indirect, i, k, 0, path, &indirect->first_draws, i);
+            if (path != 0 && (uint32_t)k != 0)
+                continue;
+            if (!known || k >> 32 != 0 || indirect->block[i] != last)
+                seed = glint_sequence_seed_of(seed_of(indirect, i, k, 0));
+            known = k >> 32 == 0;
+            last = indirect->block[i];
+            note_draw(&indirect->first_draws, i, k, &seed, path);
         }
 }
 
@@ -334,10 +352,13 @@ static turn choose(struct glint_indirect *indirect, const glint_tile_frame *fram
         return TURN_NONE;
     const int chosen = choose_way(indirect, number, rays, ray, share, all);
     const double chance = share[chosen] / all;
-    *next = chosen ? split[chosen - 1] : glint_batch_start_ray(batch, &batch->tile, frame, i);
+    if (chosen)
+        *next = split[chosen - 1];
+    else
+        glint_batch_start_ray(batch, &batch->tile, frame, i, next);
     for (int c = 0; c < 3; c++) {
         next->weight[c] = glint_weight(next->weight[c] / chance);
-        least = fmax(least, next->weight[c] * (chosen ? 1 : diffuse[c]));
+        least = larger(least, next->weight[c] * (chosen ? 1 : diffuse[c]));
     }
     if (least <= rays->least[ray])
         return TURN_NONE;
@@ -379,8 +400,10 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
             if (chosen == TURN_NONE)
                 continue;
             if (chosen == TURN_SCATTERED) {
-                note_draw(indirect, next.point, number_in_block(indirect, next.point, number),
-                          2 * (next.scatters + next.depth), 0, &indirect->next_draws, i);
+                const uint64_t k = number_in_block(indirect, next.point, number);
+                const glint_sequence_seed seed =
+                    glint_sequence_seed_of(seed_of(indirect, next.point, k, 2 * (next.scatters + next.depth)));
+                note_draw(&indirect->next_draws, i, k, &seed, 0);
                 indirect->scattered[g] |= (uint16_t)(left & -left);
                 next.inward = glint_has_lane(tile->hit.back, i);
             }
