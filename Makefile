@@ -138,10 +138,15 @@ $(BUILD)/engine/stages/simd/isa_generic.o: ISA := $(KERNEL_CFLAGS)
 $(BUILD)/engine/stages/simd/isa_sse2.o:   ISA := $(KERNEL_CFLAGS)
 $(BUILD)/engine/stages/simd/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) $(X86_BITS) -mavx2 -mfma
 $(BUILD)/engine/stages/simd/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw $(X86_BITS) -mavx2 -mfma
-$(BUILD)/engine/stages/simd/select.o: ISA := $(KERNELS:%=-DGLINT_KERNEL_%)
-$(addprefix $(BUILD)/engine/,compare/flip.o frame/refine.o tile/derivative.o tile/derivative_light.o tile/environment.o tile/indirect.o tile/pattern_inputs.o tile/shader.o plan/tints.o): ISA := $(KERNEL_CFLAGS)
+# An engine's object has the flags of its own in the archive and in the shared library.
+objects_of = $(foreach source,$(1),$(source:%.c=$(BUILD)/%.o) $(source:%.c=$(BUILD)/shared/%.o))
+UNROLLED := $(addprefix engine/,compare/flip.c frame/refine.c plan/tints.c $(addprefix tile/,derivative/derivative.c derivative/light.c \
+              environment.c indirect.c pattern/inputs.c pattern/shader.c))
+$(if $(filter-out $(ENGINE_SRC),$(UNROLLED)),$(error no such source: $(filter-out $(ENGINE_SRC),$(UNROLLED))))
+$(call objects_of,$(UNROLLED)): OWN := $(KERNEL_CFLAGS)
+$(call objects_of,engine/stages/simd/select.c): OWN := $(KERNELS:%=-DGLINT_KERNEL_%)
+$(call objects_of,engine/text/letters.c): OWN := $(FONT_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
-$(BUILD)/engine/text/letters.o $(BUILD)/shared/engine/text/letters.o: OWN := $(FONT_CFLAGS)
 $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)
 
 # Files that the command carries with it, as C: bindings/watch/page.html.h has the bytes of bindings/watch/page.html.

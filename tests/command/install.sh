@@ -80,6 +80,28 @@ check "the C example of patterns compiles" eval '(compile c_pattern)'
 check "and runs" env -C "$work" LD_LIBRARY_PATH="$prefix/lib" ./c_pattern
 check "the library is named by its ABI" eval 'readelf -d "$work/c_example" | grep -qE "NEEDED.*libglint\.so\.[0-9]+(\.[0-9]+)?\]"'
 check "and nothing of what it needs" eval '! readelf -d "$work/c_example" | grep -qE "NEEDED.*(png|deflate|isal|xxhash)"'
+cat >"$work/kernels.c" <<'END'
+#include <glint.h>
+#include <stdio.h>
+int main(void)
+{
+    static const char *const names[] = { "ref", "generic", "sse2", "avx2", "avx512", NULL };
+    printf("kernels:");
+    for (int i = 0; i < 6; i++) {
+        glint_renderer_desc desc = glint_renderer_desc_default();
+        glint_renderer *renderer;
+        desc.isa = names[i];
+        if (glint_renderer_create(&desc, &renderer, NULL) != GLINT_OK)
+            continue;
+        printf(names[i] ? " %s" : "; in use: %s\n", glint_renderer_isa(renderer));
+        glint_renderer_destroy(renderer);
+    }
+    return 0;
+}
+END
+check "a program that tells its kernels" eval '(compile kernels)'
+check "the shared library has the command's" eval \
+    'test "$(LD_LIBRARY_PATH=$prefix/lib "$work/kernels")" = "$("$prefix/bin/glint" --version --verbose | sed -n "/^kernels/s/, .*//p")"'
 link_static() {
     cd "$work" && rm -f c_example && ${CC:-cc} -std=c11 c_example.c $(pkg-config --cflags glint) "$prefix/lib/libglint.a" \
         $(pkg-config --static --libs glint | sed 's/-lglint//') -o c_example && ./c_example
