@@ -66,7 +66,12 @@ static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool las
 // Level 1 files the third position of its input in the bucket of its hash table that its own stream's address gives, instead of
 // the bucket of the bytes there (ISA-L 2.30 on x86, icf body without history): the bytes written would depend on where the
 // stream lies. So it lies where the address gives the right bucket.
-#if defined __x86_64__ && defined MAP_FIXED_NOREPLACE
+#ifdef __x86_64__
+#ifdef MAP_FIXED_NOREPLACE
+#define MAP_THERE (MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE)
+#else
+#define MAP_THERE (MAP_PRIVATE | MAP_ANONYMOUS) // an address is a wish, which systems grant where nothing is
+#endif
 #define BUCKET_BITS 13
 #define PLACE_SHIFT 16 // of an address, to what is hashed
 #define FIRST_PLACE UINT32_C(0x20000000) // shifted; from here on, 2^29 places lie where programs have nothing
@@ -127,7 +132,7 @@ static void *map_stream(uint32_t bytes)
     uint32_t place = FIRST_PLACE ^ place_for(&p, &bucket);
     for (int i = 1; bucket == 0 && i <= PLACES_TRIED; i++) {
         void *want = (void *)((uintptr_t)place << PLACE_SHIFT);
-        void *got = mmap(want, STREAM_BYTES, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE, -1, 0);
+        void *got = mmap(want, STREAM_BYTES, PROT_READ | PROT_WRITE, MAP_THERE, -1, 0);
         if (got == want)
             return got;
         if (got != MAP_FAILED)

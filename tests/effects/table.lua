@@ -2,7 +2,7 @@
 ---   table.lua check BUILD    its counters show 0 and none of its functions is called; with the effect, both show some
 ---   table.lua bench BUILD    that as a table, and instructions beside BUILD/without/PART/glint, which lacks the effect
 ---   table.lua parts          the parts that there are such builds of
---- Instructions and calls are valgrind's, of all that happens within tiles, on AVX2, which valgrind knows.
+--- Instructions and calls are valgrind's, of all that happens within tiles, on AVX2, which valgrind knows, or generic kernels.
 local here = arg[0]:gsub("[^/]*$", "")
 local rows = dofile(here .. "rows.lua")
 local LIMIT = 0.01 -- of the instructions
@@ -13,6 +13,9 @@ local function output(command)
   local text = pipe:read "a"
   return text, pipe:close()
 end
+
+local libraries = build and output(("%s/glint --version --verbose"):format(build)) or ""
+local isa = libraries:find "kernels:[^;]* avx2" and "avx2" or "generic"
 
 --- file: where the picture goes, or nil.
 local function arguments(row, more, file)
@@ -33,8 +36,8 @@ end
 local function traced(folder, row, ending)
   local file, bare = os.tmpname(), os.tmpname()
   local picture = ending and ("%s.%s"):format(file, ending)
-  local log, ok = output(("strip --strip-debug -o %s %s/glint && GLINT_ISA=avx2 valgrind --tool=callgrind "
-    .. "--callgrind-out-file=%s --compress-strings=no %s %s %s"):format(bare, folder, file,
+  local log, ok = output(("strip --strip-debug -o %s %s/glint && GLINT_ISA=%s valgrind --tool=callgrind "
+    .. "--callgrind-out-file=%s --compress-strings=no %s %s %s"):format(bare, folder, isa, file,
     ending and "" or "--toggle-collect=glint_tile_render", bare, arguments(row, "--quiet", picture)))
   os.remove(bare)
   if picture then output(("rm -f %s*.%s"):format(file, ending)) end
@@ -83,7 +86,6 @@ end
 
 local functions, total = traced(build, nil)
 local written = traced(build, nil, "png")
-local libraries = output(("%s/glint --version --verbose"):format(build))
 local without = {}
 for _, part in ipairs(mode == "bench" and parts() or {}) do
   local _, less = traced(build .. "/without/" .. part, nil)

@@ -31,8 +31,12 @@ static uint8_t *make_band(void)
 static void *stream_at(uint64_t number)
 {
     void *want = (void *)(uintptr_t)(UINT64_C(0x100000000000) + ((number * 0x9e3779b1 & 0x1fffffff) << 16));
-    void *got = mmap(want, STREAM_BYTES, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE, -1, 0);
-    return got == MAP_FAILED ? NULL : got;
+    void *got = mmap(want, STREAM_BYTES, PROT_READ | PROT_WRITE, MAP_THERE, -1, 0);
+    if (got == want)
+        return got;
+    if (got != MAP_FAILED)
+        munmap(got, STREAM_BYTES);
+    return NULL;
 }
 
 /// The bytes that a band gives with its stream here.
