@@ -12,25 +12,30 @@
 #define WIDEST 0.25 ///< bound of a sphere's radius, of its distance; least cosine to the light's axis
 #define CELLS_A_RADIUS 3.0 ///< a cell's side, in mean radii
 #define COVERED_MAX 4.0 ///< a sphere's radius in cells; larger ones are tested one by one
-#define ENTRIES_MAX 6 ///< of each sphere, in the mean
+#define ENTRIES_MAX 4 ///< of each sphere, in the mean
 #define ENTRIES_LEAST 2 ///< cells so wide that there are fewer have too many spheres
-#define ENTRY_BYTES (4 * sizeof(float) + 2 * sizeof(uint32_t)) ///< of an entry and of a cell, of which there are no more
+#define ENTRY_BYTES (4 * sizeof(uint32_t)) ///< of an entry and of a cell, of which there are no more
 #define COUNT_MAX 32767 ///< columns, rows
 #define SORTED_FROM 24 ///< entries of a cell, in the mean, from which their order pays
 #define SLICES 1024 ///< of depth, by which they are sorted
 #define PLACE_SLACK 0x1p-21 ///< what float rounding may move a place by, of 1 and the place
+#define STEP_SLACK 1.5 ///< steps that rounding may move an entry's place and a point's by, along both axes together
+#define CELL_SLACK 0x1p-21 ///< of the grid's width, what it may move them by besides
+#define FARTHEST 0x1p100 ///< of a sphere, in the index's units: differences of two are numbers, too
+#define NEAR_MOST ((1u << (32 - GLINT_GRID_RADIUS_BITS)) - 1) ///< of an entry
 
 /// A small sphere as the light sees it.
 typedef struct seen_sphere {
     float place[2], reach; ///< its middle, and how far from there a segment that meets it may be
-    float r2, near; ///< see glint_light_entries
+    float radius; ///< of its circle, by the light's place: see glint_light_grid
+    float near; ///< w of its nearest point
     uint32_t id;
 } seen_sphere;
 
 typedef struct grid_maker {
     const glint_geometry_table *table;
     glint_light_grid *grid;
-    seen_sphere *seen;
+    seen_sphere *seen; ///< scratch, of as many as the table has primitives
     uint32_t count; ///< of these
     float least[2], most[2]; ///< places that they reach
     float near, far; ///< least and largest `near`
@@ -110,10 +115,10 @@ static bool see(const grid_maker *maker, const glint_prim *prim, uint32_t id, co
     out->place[0] = (float)u;
     out->place[1] = (float)v;
     out->reach = (float)((reach + PLACE_SLACK * (1 + size)) * (1 + 1e-6));
-    out->r2 = (float)(r * r * (1 + 1e-6));
+    out->radius = (float)(r * (1 + 1e-6));
     out->near = (float)((w - radius) - 1e-6 * (distance + radius));
     out->id = id;
-    return r < 0.5 && isfinite(out->reach) && isfinite(out->near);
+    return r < 0.5 && distance < FARTHEST && isfinite(out->reach);
 }
 
 /// Notes a primitive that is in no cell; false: there are too many.
@@ -186,14 +191,17 @@ static void bound_places(grid_maker *maker)
     }
 }
 
-/// First and last cell of a sphere along an axis, by the float arithmetic of the stage, which never falls.
-static void cells_of(const glint_light_grid *grid, const seen_sphere *s, int axis, uint32_t *first, uint32_t *last)
+/// x is finite. No fminf and fmaxf, which are calls.
+static inline uint32_t clamp(float x, float most) { return (uint32_t)(int32_t)(x < 0 ? 0 : x < most ? x : most); }
+
+/// First and last cell of a sphere along both axes, by the float arithmetic of the stage, which never falls.
+static inline void cells_of(const glint_light_grid *grid, const seen_sphere *s, uint32_t first[2], uint32_t last[2])
 {
-    const float from = ((s->place[axis] - s->reach) - grid->first[axis]) * grid->cells;
-    const float to = ((s->place[axis] + s->reach) - grid->first[axis]) * grid->cells;
-    const float most = (float)(grid->count[axis] - 1);
-    *first = (uint32_t)fminf(fmaxf(from, 0), most);
-    *last = (uint32_t)fminf(fmaxf(to, 0), most);
+    for (int j = 0; j < 2; j++) {
+        const float most = (float)(grid->count[j] - 1);
+        first[j] = clamp(((s->place[j] - s->reach) - grid->first[j]) * grid->cells, most);
+        last[j] = clamp(((s->place[j] + s->reach) - grid->first[j]) * grid->cells, most);
+    }
 }
 
 /// How many entries cells of this side would have; above `limit`: at least so many.
@@ -213,8 +221,7 @@ static uint64_t count_entries(grid_maker *maker, float side, uint64_t limit)
         return limit + 1;
     for (uint32_t i = 0; i < maker->count && entries <= limit; i++) {
         uint32_t first[2], last[2];
-        for (int j = 0; j < 2; j++)
-            cells_of(grid, &maker->seen[i], j, &first[j], &last[j]);
+        cells_of(grid, &maker->seen[i], first, last);
         entries += (uint64_t)(last[0] - first[0] + 1) * (last[1] - first[1] + 1);
     }
     return entries;
@@ -242,10 +249,12 @@ static uint64_t choose_cells(grid_maker *maker)
 
 // ---- The entries ----
 
+static size_t seen_bytes(const grid_maker *maker) { return maker->table->prim_count * sizeof *maker->seen; }
+
 /// Sorts the spheres by slices of depth, whose front becomes their `near`.
 static bool sort_by_depth(grid_maker *maker)
 {
-    seen_sphere *sorted = glint_alloc_large(maker->count, sizeof *sorted);
+    seen_sphere *sorted = glint_scratch_resize(NULL, 0, seen_bytes(maker));
     uint32_t next[SLICES + 1] = { 0 };
     const float depth = maker->far - maker->near, slices = depth > 0 ? (SLICES - 1) / depth : 0;
     if (!sorted)
@@ -267,16 +276,47 @@ static bool sort_by_depth(grid_maker *maker)
         *to = maker->seen[i];
         to->near = front[slice];
     }
-    free(maker->seen);
+    glint_scratch_free(maker->seen, seen_bytes(maker));
     maker->seen = sorted;
     return true;
 }
 
 /// What is written of a grid's entries.
 typedef struct grid_entries {
-    float *u, *v, *r2, *near;
-    uint32_t *id;
+    uint32_t *place, *size, *id;
 } grid_entries;
+
+/// What a sphere's entries in all cells have in common.
+static uint32_t size_of(const glint_light_grid *grid, const seen_sphere *s)
+{
+    const double steps = GLINT_GRID_STEPS * (double)grid->cells;
+    const double most = grid->count[0] > grid->count[1] ? grid->count[0] : grid->count[1];
+    const double radius = (double)s->radius * steps + STEP_SLACK + CELL_SLACK * GLINT_GRID_STEPS * most;
+    const uint32_t near = clamp((s->near - grid->nearest) * grid->slices, NEAR_MOST); // as the stage has it of a point
+    return near << GLINT_GRID_RADIUS_BITS | (uint32_t)(int32_t)(radius / GLINT_GRID_RADIUS + 1);
+}
+
+/// A sphere's place along an axis as seen from a cell.
+static uint32_t step_of(const glint_light_grid *grid, const seen_sphere *s, int axis, uint32_t cell)
+{
+    const double place = ((double)s->place[axis] - (double)grid->first[axis]) * (double)grid->cells - cell;
+    return (uint32_t)(int32_t)((place + GLINT_GRID_ASIDE) * GLINT_GRID_STEPS + 0.5);
+}
+
+/// Puts a sphere where the `next` of each of its cells says.
+static void enter(const glint_light_grid *grid, const seen_sphere *s, const uint32_t first[2], const uint32_t last[2], uint32_t *next,
+                  const grid_entries *entries)
+{
+    const uint32_t size = size_of(grid, s), across = step_of(grid, s, 0, first[0]);
+    uint32_t down = step_of(grid, s, 1, first[1]);
+    for (uint32_t row = first[1]; row <= last[1]; row++, down -= GLINT_GRID_STEPS)
+        for (uint32_t column = first[0]; column <= last[0]; column++) {
+            const uint32_t at = next[(size_t)row * grid->count[0] + column]++;
+            entries->place[at] = down << 16 | (across - (column - first[0]) * GLINT_GRID_STEPS);
+            entries->size[at] = size;
+            entries->id[at] = s->id;
+        }
+}
 
 /// Counts each cell's spheres in `next`, or with `entries` puts each of them where its cell's `next` says.
 static void spread(const grid_maker *maker, uint32_t *next, const grid_entries *entries)
@@ -285,37 +325,27 @@ static void spread(const grid_maker *maker, uint32_t *next, const grid_entries *
     for (uint32_t i = 0; i < maker->count; i++) {
         const seen_sphere *s = &maker->seen[i];
         uint32_t first[2], last[2];
-        for (int j = 0; j < 2; j++)
-            cells_of(grid, s, j, &first[j], &last[j]);
-        for (uint32_t row = first[1]; row <= last[1]; row++)
-            for (uint32_t column = first[0]; column <= last[0]; column++) {
-                const uint32_t at = next[(size_t)row * grid->count[0] + column]++;
-                if (!entries)
-                    continue;
-                entries->u[at] = s->place[0];
-                entries->v[at] = s->place[1];
-                entries->r2[at] = s->r2;
-                entries->near[at] = s->near;
-                entries->id[at] = s->id;
-            }
+        cells_of(grid, s, first, last);
+        if (entries)
+            enter(grid, s, first, last, next, entries);
+        for (uint32_t row = first[1]; !entries && row <= last[1]; row++)
+            for (uint32_t column = first[0]; column <= last[0]; column++)
+                next[(size_t)row * grid->count[0] + column]++;
     }
 }
 
-/// Memory for the entries and what the stage loads behind the last, in one piece, which begins at `u`.
+/// Memory for the entries and what the stage loads behind the last, in one piece, which begins at `place`.
 static bool make_entries(glint_light_grid *grid, uint64_t count, grid_entries *out)
 {
     const size_t length = (size_t)count + GLINT_GROUP;
-    float *memory = glint_alloc_large(length, 4 * sizeof *memory + sizeof(uint32_t));
+    uint32_t *memory = glint_alloc_large(length, 3 * sizeof *memory);
     if (!memory)
         return false;
-    *out = (grid_entries) { memory, memory + length, memory + 2 * length, memory + 3 * length,
-                            (uint32_t *)(void *)(memory + 4 * length) };
-    for (size_t k = 1; k <= 4; k++)
+    *out = (grid_entries) { memory, memory + length, memory + 2 * length };
+    for (size_t k = 1; k <= 3; k++)
         memset(memory + k * length - GLINT_GROUP, 0, GLINT_GROUP * sizeof *memory);
-    grid->u = out->u;
-    grid->v = out->v;
-    grid->r2 = out->r2;
-    grid->near = out->near;
+    grid->place = out->place;
+    grid->size = out->size;
     grid->id = out->id;
     return true;
 }
@@ -331,12 +361,14 @@ static bool fill(grid_maker *maker, uint64_t count)
     grid->begin = begin;
     if (!begin || !make_entries(grid, count, &entries) || (grid->sorted && !sort_by_depth(maker)))
         return false;
+    const float depth = maker->far - maker->near;
+    grid->nearest = maker->near;
+    grid->slices = depth > 0 && isfinite(NEAR_MOST / depth) ? NEAR_MOST / depth : 0;
     uint32_t *next = begin + 1; // begin[cell + 1] runs from a cell's begin to its end
     spread(maker, next + 1, NULL);
     for (size_t cell = 0; cell < cells; cell++)
         next[cell + 1] += next[cell];
     spread(maker, next, &entries);
-    grid->nearest = maker->near;
     return true;
 }
 
@@ -349,7 +381,7 @@ glint_status glint_light_grid_create(const glint_geometry_table *table, bool dir
     if (!table->nodes || table->prim_count < SMALLEST_COUNT)
         return GLINT_OK;
     maker.grid = glint_alloc(1, sizeof *maker.grid);
-    maker.seen = glint_alloc_large(table->prim_count, sizeof *maker.seen);
+    maker.seen = glint_scratch_resize(NULL, 0, seen_bytes(&maker));
     if (maker.grid && maker.seen) {
         *maker.grid = (glint_light_grid) { .directional = directional };
         vec_copy(maker.grid->position, position);
@@ -361,7 +393,7 @@ glint_status glint_light_grid_create(const glint_geometry_table *table, bool dir
     } else {
         enough = false;
     }
-    free(maker.seen);
+    glint_scratch_free(maker.seen, seen_bytes(&maker));
     if (!*out)
         glint_light_grid_destroy(maker.grid);
     return enough ? GLINT_OK : glint_fail_nomem(error);
@@ -372,6 +404,6 @@ void glint_light_grid_destroy(glint_light_grid *grid)
     if (!grid)
         return;
     free((void *)(uintptr_t)grid->begin);
-    free((void *)(uintptr_t)grid->u); // with what follows
+    free((void *)(uintptr_t)grid->place); // with what follows
     free(grid);
 }

@@ -70,7 +70,8 @@ script 20000 'local lamp = glint.point_light { position = { 0, 8, 4 } }' \
     '  lamp.position = { 9 * glint.cos(6 * t), t - 0.5, 4 }' '  measure(n)' 'end }'
 grows "20,000 frames" 1000000 -o none
 
-# Spheres given as data, four doubles each, take at most six times that at the peak of a run, beside what a run of one takes.
+# Spheres given as data, four doubles each, take at most six times that at the peak of a run, beside what a run of one takes: as they
+# are indexed, and with the grid that the light of a large picture has of them.
 cat >write.lua <<'LUA'
 local glint = require "glint"
 local file, state = io.open("spheres", "wb"), 1
@@ -86,7 +87,7 @@ glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }:re
 LUA
 cat >read.lua <<'LUA'
 local glint = require "glint"
-local P = glint.params { count = { 1, min = 1, max = 300000, doc = "spheres" } }
+local P = glint.params { count = { 1, min = 1, max = 300000, doc = "spheres" }, width = { 64, min = 64, max = 1600, doc = "pixels" } }
 local scene = glint.scene { camera = glint.camera { eye = { -30, 80, 130 }, at = { 33, 22, 33 } }, ambient = 0.1,
   glint.point_light { position = { 13, 134, 80 } }, glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 } } }
 do
@@ -95,18 +96,21 @@ do
   file:close()
 end
 collectgarbage() collectgarbage()
-scene:render { width = 64, height = 36 }
+scene:render { width = P.width, height = P.width * 9 // 16 }
 LUA
-# peak COUNT: the most memory of a run of so many spheres, in bytes
-peak() { "$glint" read.lua --set count="$1" -t 1 --json -o none 2>err </dev/null | grep -o '"peak_bytes":[0-9]*' | cut -d: -f2; }
+# peak COUNT WIDTH: the most memory of a run of so many spheres, in bytes
+peak() { "$glint" read.lua --set count="$1" --set width="$2" -t 1 --json -o none 2>err </dev/null | grep -o '"peak_bytes":[0-9]*' | cut -d: -f2; }
 "$glint" write.lua -t 1 -q -o none
-one=$(peak 1)
-all=$(peak 300000)
-if [ -n "$one" ] && [ -n "$all" ] && [ $((all - one)) -le $((6 * 32 * 300000)) ]; then
-    echo "ok - 300,000 spheres take $((all - one)) bytes at the peak"
-else
-    echo "not ok - 300,000 spheres: at most $((6 * 32 * 300000)) bytes at the peak expected, got '$one' for one and '$all' for all"
-    cat err
-    bad=1
-fi
+for width in 64 1600; do
+    one=$(peak 1 "$width")
+    all=$(peak 300000 "$width")
+    if [ -n "$one" ] && [ -n "$all" ] && [ $((all - one)) -le $((6 * 32 * 300000)) ]; then
+        echo "ok - 300,000 spheres take $((all - one)) bytes at the peak of a picture of width $width"
+    else
+        echo "not ok - 300,000 spheres, width $width: at most $((6 * 32 * 300000)) bytes at the peak expected," \
+            "got '$one' for one and '$all' for all"
+        cat err
+        bad=1
+    fi
+done
 exit $bad

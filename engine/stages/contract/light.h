@@ -116,6 +116,11 @@ typedef struct glint_facet_args {
 
 // ---- occlude: which points a light reaches ----
 
+#define GLINT_GRID_STEPS 6144 ///< of place, in a cell of a light's grid
+#define GLINT_GRID_ASIDE 4.5 ///< cells: an entry's place is above this much before its cell, and below 1 and this much behind
+#define GLINT_GRID_RADIUS 8 ///< steps in a unit of an entry's radius
+#define GLINT_GRID_RADIUS_BITS 12 ///< of an entry's size, the lower ones
+
 /// What stands before a light without samples: small spheres, which it is outside of, in square cells of its view. What is at
 /// (a, b, w) along the axes from the origin has its place at u = a / w and v = b / w, or directional at a and b.
 typedef struct glint_light_grid {
@@ -125,13 +130,14 @@ typedef struct glint_light_grid {
     double axis[3][3]; ///< across, down and away from the light, as long as the index's unit
     float first[2], cells; ///< place of the first cell, cells in a unit of place
     uint32_t count[2]; ///< columns and rows
-    float nearest; ///< least `near`, above 0 where the light has a place
+    float nearest, slices; ///< least `near`, above 0 where the light has a place; into how many a unit of w is cut from there on
     bool sorted; ///< in each cell `near` never falls
     const uint32_t *begin; ///< where each cell's entries begin, row by row, and where the last one's end
     // of each entry, a sphere in a cell, and of GLINT_GROUP more, which mean nothing:
-    const float *u, *v; ///< place of its middle
-    const float *r2; ///< a segment that meets it has du^2 + dv^2 <= r2 (1 + u^2 + v^2), by its own place; directional: <= r2
-    const float *near; ///< no point that it blocks has a smaller w
+    const uint32_t *place; ///< of its middle, in steps from GLINT_GRID_ASIDE before its cell: across, and 2^16 times down
+    const uint32_t *size; ///< its radius, and above that `near`. A segment that meets it has
+        ///< du^2 + dv^2 <= radius^2 (1 + u^2 + v^2), by its own place; directional: <= radius^2. No point that it blocks
+        ///< has a smaller (w - nearest) slices than `near`
     const uint32_t *id;
     uint32_t others[GLINT_GRID_OTHERS], other_count; ///< the bounded primitives that are in no cell
 } glint_light_grid;

@@ -5,13 +5,15 @@
 #if GLINT_REAL == 64
 
 #define GRID_FAR 0x1p20 // of directional light, in the index's units: from farther away a place is not known well enough
+#define GRID_REACH (GLINT_GRID_RADIUS * GLINT_GRID_RADIUS * (1 + 0x1p-20f)) // steps^2 in the square of a unit of radius, with what rounding takes
+#define GRID_BIAS 0x1p23f // whole numbers below this are the lower bits of floats from this on
 
 /// Points that may be blocked, and how far each has come.
 typedef struct grid_points {
     uint32_t count, live_count;
     uint16_t live[GLINT_TILE_SAMPLES]; ///< those that are not decided yet
-    float u[GLINT_TILE_SAMPLES], v[GLINT_TILE_SAMPLES], w[GLINT_TILE_SAMPLES];
-    float reach[GLINT_TILE_SAMPLES]; ///< what r2 is multiplied by
+    float place[2][GLINT_TILE_SAMPLES], near[GLINT_TILE_SAMPLES]; ///< as an entry has them, and GRID_BIAS
+    float reach[GLINT_TILE_SAMPLES]; ///< what the square of an entry's radius is multiplied by
     uint32_t next[GLINT_TILE_SAMPLES], end[GLINT_TILE_SAMPLES]; ///< entries of its cell to be looked at
     uint16_t at[GLINT_TILE_SAMPLES]; ///< number of the sample
 } grid_points;
@@ -57,18 +59,26 @@ static void grid_place_lanes(const glint_occlude_args *args, size_t at, int i, g
     out->known |= dm_bits(d_lt(size, d_set(grid->directional ? GRID_FAR : 0x1p100))) << i;
 }
 
-/// Returns the lanes that are in a cell, and behind the nearest of all.
+/// Whole numbers below GRID_BIAS, and that.
+static inline vf grid_biased(vi x) { return f_from_bits(i_or(x, i_set(0x4b000000))); }
+
+/// Finds the cells of a group, and its places as entries of these have them. Returns the lanes that are in one, and behind the nearest
+/// of all entries.
 static unsigned grid_cells(const glint_light_grid *grid, grid_places *places)
 {
+    const vf bias = f_set(GRID_BIAS), aside = f_set((float)(GLINT_GRID_ASIDE * GLINT_GRID_STEPS) + GRID_BIAS);
     unsigned inside = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const vf w = f_load(places->w + i);
         vi cell[2];
-        fm in = f_le(f_set(grid->nearest), f_load(places->w + i));
+        fm in = f_le(f_set(grid->nearest), w);
         for (int j = 0; j < 2; j++) {
             const vf x = (f_load(places->place[j] + i) - f_set(grid->first[j])) * f_set(grid->cells);
             in = fm_and(in, fm_and(f_le(f_set(0), x), f_lt(x, f_set((float)grid->count[j]))));
             cell[j] = i_from_f(f_select(in, x, f_set(0)));
+            f_store(places->place[j] + i, (x - (grid_biased(cell[j]) - bias)) * f_set(GLINT_GRID_STEPS) + aside);
         }
+        f_store(places->w + i, (w - f_set(grid->nearest)) * f_set(grid->slices) + bias);
         i_store(places->cell + i, i_or(i_shl(cell[1], 16), cell[0])); // a row and a column
         inside |= fm_bits(in) << i;
     }
@@ -92,10 +102,8 @@ static unsigned grid_own(const glint_occlude_args *args, size_t at, unsigned bac
 
 static inline void grid_prefetch(const glint_light_grid *grid, uint32_t entry)
 {
-    __builtin_prefetch(grid->u + entry);
-    __builtin_prefetch(grid->v + entry);
-    __builtin_prefetch(grid->r2 + entry);
-    __builtin_prefetch(grid->near + entry);
+    __builtin_prefetch(grid->place + entry);
+    __builtin_prefetch(grid->size + entry);
 }
 
 /// Adds the open points of a group that may be blocked. False: some place is not known.
@@ -118,10 +126,10 @@ static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_poin
         if (points->next[k] == points->end[k])
             continue;
         grid_prefetch(grid, points->next[k]);
-        points->u[k] = places.place[0][lane];
-        points->v[k] = places.place[1][lane];
-        points->w[k] = places.w[lane];
-        points->reach[k] = places.reach[lane];
+        points->place[0][k] = places.place[0][lane];
+        points->place[1][k] = places.place[1][lane];
+        points->near[k] = places.w[lane];
+        points->reach[k] = places.reach[lane] * GRID_REACH;
         points->at[k] = (uint16_t)(at + lane);
         points->live[k] = (uint16_t)k;
         points->count++;
@@ -131,16 +139,21 @@ static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_poin
 
 // ---- The filter ----
 
+static inline vi grid_load(const uint32_t *p) { return f_bits(f_load_any((const float *)p)); }
+
 /// The next entry that may block point k, whose own primitive is `own`; GLINT_MISS: none.
 static uint32_t grid_next(const glint_light_grid *grid, const grid_points *points, uint32_t k, uint32_t own)
 {
     const uint32_t end = points->end[k];
-    const vf u = f_set(points->u[k]), v = f_set(points->v[k]), w = f_set(points->w[k]), reach = f_set(points->reach[k]);
+    const vf u = f_set(points->place[0][k]), v = f_set(points->place[1][k]), reach = f_set(points->reach[k]);
+    const vf w = f_set(points->near[k]), bias = f_set(GRID_BIAS);
     for (uint32_t from = points->next[k]; from < end; from += VF) {
         const unsigned there = end - from < VF ? (1u << (end - from)) - 1 : (1u << VF) - 1;
-        const vf du = f_load_any(grid->u + from) - u, dv = f_load_any(grid->v + from) - v;
-        const unsigned before = fm_bits(f_le(f_load_any(grid->near + from), w)) & there;
-        unsigned near = before & fm_bits(f_le(du * du + dv * dv, f_load_any(grid->r2 + from) * reach));
+        const vi place = grid_load(grid->place + from), size = grid_load(grid->size + from);
+        const vf du = grid_biased(i_and(place, i_set(0xffff))) - u, dv = grid_biased(i_shr(place, 16)) - v;
+        const vf radius = grid_biased(i_and(size, i_set((1u << GLINT_GRID_RADIUS_BITS) - 1))) - bias;
+        const unsigned before = fm_bits(f_le(grid_biased(i_shr(size, GLINT_GRID_RADIUS_BITS)), w)) & there;
+        unsigned near = before & fm_bits(f_le(du * du + dv * dv, radius * radius * reach));
         for (; near; near &= near - 1)
             if (grid->id[from + (unsigned)__builtin_ctz(near)] != own)
                 return from + (unsigned)__builtin_ctz(near);
