@@ -8,6 +8,7 @@
 ---              without it is a .png; nil: nothing is written, and functions within tiles count
 ---   library    without which the effect is left out; as `glint --version --verbose` has it
 ---   call       makes the scene call for it: gets glint, the scene's parts, and the scene
+---   frame      what the script does at a time; gets the parts and the time
 return {
   { name = "shadows", part = "SHADOW", stage = "occlude", rays = "shadow", functions = { "^occlude" },
     call = function(_, parts) parts.lamp.shadows = true end },
@@ -87,6 +88,12 @@ return {
   { name = "opacity", functions = { "glint_tile_see_through" }, call = function(_, parts) parts.ball.opacity = 0 end },
   { name = "lens", part = "LENS", functions = { "camera_lens", "through_lens" },
     call = function(_, _, scene) scene.camera.aperture = 0.5 end },
+  { name = "shutter", file = "png", functions = { "^glint_plan_create_exposed$", "^glint_shutter_desc$" },
+    call = function(_, _, scene) scene.camera.shutter, scene.camera.shutter_times = 0.5, 2 end,
+    frame = function(parts, t) parts.lamp.position = { 20 * t, 20, 0 } end },
+  { name = "derivative", stage = "derivative", functions = { "glint_tile_derive", "glint_derive_light" },
+    options = "--passes d:strength",
+    call = function(glint, parts) parts.lamp.intensity = glint.variable("strength", 1) end },
   { name = "samples", part = "SAMPLES", stage = "resolve", functions = { "^resolve" }, options = "--samples 4" },
   { name = "label", file = "png", functions = { "^glint_overlays_draw$", "^glint_stamps_row$", "^glint_letters_open$" },
     call = function(glint, _, scene) scene:add(glint.label { text = "t = 0" }) end },

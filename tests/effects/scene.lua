@@ -16,7 +16,11 @@ local scene = glint.scene {
   glint.sphere { center = { -5, 1, 0 }, radius = 3, material = ball },
   glint.sphere { center = { 5, 0, 2 }, radius = 2, material = ball },
 }
+local parts, frame = { ball = ball, lamp = lamp }, nil
 for _, row in ipairs(rows) do
-  if row.name == P.effect and row.call then row.call(glint, { ball = ball, lamp = lamp }, scene) end
+  if row.name == P.effect and row.call then row.call(glint, parts, scene) end
+  if row.name == P.effect then frame = row.frame end
 end
-return glint.animation { scene = scene, frames = 1, frame = function() end }
+return glint.animation { scene = scene, frames = 1, frame = function(t)
+  if frame then frame(parts, t) end
+end }
