@@ -988,13 +988,13 @@ typedef struct glint_slope {
 ///             of those that programs give, of built-in models
 ///   light     color, intensity, ambient, diffuse, specular, attenuation, position, direction, inner_rad, outer_rad,
 ///             exponent, radiance
-///   scene     ambient, background
+///   scene     ambient, background, depth_cue_color, depth_cue_near, depth_cue_far
 ///   shape     spheres: center, radius; planes: point, normal
-///   camera    eye, at, direction, up, fov_y_rad, of perspective cameras without a lens
+///   camera    eye, at, direction, up, fov_y_rad, height; of a lens aperture, focus, focus_point
 typedef struct glint_derivative {
     const char *name; ///< 1 .. 31 bytes; "lamp_x"
     const glint_slope *slopes; ///< those of one field add up
-    size_t slope_count; ///< 0: nothing depends on it, which a plan refuses
+    size_t slope_count; ///< 0: nothing depends on it, which a plan refuses; slopes of 0 are of what depends on it, and is level here
 } glint_derivative;
 
 /// One frame: its size, samples and what is kept of it.

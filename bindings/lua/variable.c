@@ -69,7 +69,10 @@ bool glintL_dual_function(lua_State *L, const char *name)
         if (strcmp(f->name, name) != 0)
             continue;
         const double y = f->value(x->value);
-        push_result(L, glintL_dual_apply(x, f->slope(x->value, y), NULL, 0, y));
+        if (f->slope == slope_level)
+            lua_pushnumber(L, y);
+        else
+            push_result(L, glintL_dual_apply(x, f->slope(x->value, y), NULL, 0, y));
         return true;
     }
     return false;

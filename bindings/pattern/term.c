@@ -122,7 +122,10 @@ static glintL_term dual_term(lua_State *L, const glintL_trace *trace, const glin
 {
     glint_error error;
     glintL_term term = { .is_symbol = true };
-    if (!trace->builder)
+    bool level = true;
+    for (int i = 0; i < GLINTL_VARIABLES_MAX; i++)
+        level = level && d->slope[i] == 0;
+    if (!trace->builder || level)
         return glintL_number_term(d->value);
     glintL_check_status(L, "", &error,
                         glint_builder_parameter(trace->builder, d->value, d->slope, GLINTL_VARIABLES_MAX, &term.value, &error));

@@ -58,7 +58,9 @@ void glintL_push_variable(lua_State *L, const char *name, double value)
 {
     glintL_dual d = { .value = value };
     const int known = glintL_find_variable(L, name);
-    d.slope[known >= 0 ? known : add_variable(L, name)] = 1;
+    const int number = known >= 0 ? known : add_variable(L, name);
+    d.slope[number] = 1;
+    d.depends = UINT32_C(1) << number;
     glintL_push_dual(L, &d);
 }
 
@@ -66,11 +68,8 @@ void glintL_push_variable(lua_State *L, const char *name, double value)
 
 void glintL_push_dual(lua_State *L, const glintL_dual *d)
 {
-    bool level = true;
-    for (int i = 0; i < GLINTL_VARIABLES_MAX; i++)
-        level = level && d->slope[i] == 0;
     luaL_checkstack(L, 2, "number");
-    if (level) {
+    if (!d->depends) {
         lua_pushnumber(L, d->value);
         return;
     }
@@ -95,7 +94,7 @@ bool glintL_read_dual(lua_State *L, int index, glintL_dual *out)
 
 glintL_dual glintL_dual_apply(const glintL_dual *a, double by_a, const glintL_dual *b, double by_b, double value)
 {
-    glintL_dual out = { .value = value };
+    glintL_dual out = { .value = value, .depends = a->depends | (b ? b->depends : 0) };
     for (int i = 0; i < GLINTL_VARIABLES_MAX; i++) { // a slope of 0 has nothing to pass on, however steep the function is
         out.slope[i] = a->slope[i] != 0 ? by_a * a->slope[i] : 0;
         if (b && b->slope[i] != 0)
@@ -438,7 +437,7 @@ bool glintL_get_slope(lua_State *L, int index, const glintL_field *field, int va
     const slopes *s = lua_touserdata(L, -1);
     for (int c = 0; c < 3; c++) {
         out[c] = s->of[c].slope[variable];
-        any = any || out[c] != 0;
+        any = any || (s->of[c].depends >> variable & 1);
     }
     lua_pop(L, 1);
     return any;

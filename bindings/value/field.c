@@ -124,18 +124,22 @@ static void read_transform(lua_State *L, int index, const char *path, glint_tran
 
 static void read_distance(lua_State *L, int index, const char *path, glintL_distance *out)
 {
+    glintL_dual number;
     *out = (glintL_distance) { .number = 0 };
     if (lua_isnil(L, index))
         return;
-    if (lua_type(L, index) == LUA_TNUMBER)
-        out->number = lua_tonumber(L, index);
+    const bool is_number = glintL_read_dual(L, index, &number);
+    if (is_number)
+        out->number = number.value;
     else if (lua_istable(L, index) || glintL_to_vector(L, index))
         glintL_read_vector(L, index, path, out->point);
     else
         glintL_refuse(L, index, path, "number > 0 or {x, y, z}");
-    out->has_point = lua_type(L, index) != LUA_TNUMBER;
-    if (!out->has_point && !(out->number > 0 && isfinite(out->number)))
-        glintL_refuse(L, index, path, "number > 0 or {x, y, z}");
+    out->has_point = !is_number;
+    if (out->has_point || (out->number > 0 && isfinite(out->number)))
+        return;
+    lua_pushnumber(L, out->number);
+    glintL_refuse(L, -1, path, "number > 0 or {x, y, z}");
 }
 
 // What push_nested gave is read from the table behind it.

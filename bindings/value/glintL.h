@@ -115,6 +115,7 @@ int glintL_unpack(lua_State *L); ///< the method
 typedef struct glintL_dual {
     double value;
     double slope[GLINTL_VARIABLES_MAX]; ///< by each variable
+    uint32_t depends; ///< a bit a variable: on those that it was made of, be the slope 0 where they are
 } glintL_dual;
 
 /// Pushes the variable of this name at a value; the first call of a name makes it. Raises when there are too many.
@@ -145,7 +146,7 @@ void glintL_keep_part_slopes(lua_State *L, int index, const glintL_field *field,
 void glintL_keep_table_slopes(lua_State *L, int index, int table, const glintL_field *fields);
 /// Pushes a field's value where it has slopes; false: it has none.
 bool glintL_push_sloped(lua_State *L, int index, const glintL_field *field);
-/// The slopes of a field by a variable; false: all are 0.
+/// The slopes of a field by a variable; false: it does not depend on that.
 bool glintL_get_slope(lua_State *L, int index, const glintL_field *field, int variable, double out[3]);
 /// Counts the userdata at `index` among those with slopes.
 void glintL_note_sloped(lua_State *L, int index);

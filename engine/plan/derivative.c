@@ -203,7 +203,7 @@ static void fill_light(glint_derivative_light *out, const glint_plan_light *rows
                   out->inverse.slope != 0 || out->exponent.slope != 0;
 }
 
-// ---- Surfaces and the eye -----------------------------------------------------------------------------------------
+// ---- Surfaces -----------------------------------------------------------------------------------------------------
 
 /// The slope of a plane's unit normal in the world.
 static void turn_normal(const glint_transform *map, const double normal[3], const double slope[3], double out[3])
@@ -246,40 +246,6 @@ static void fill_part(glint_derivative_part *out, const glint_part *part, const 
     out->moves = glint_any_slope(out->place) || out->growth != 0 || glint_any_slope(out->normal);
 }
 
-static void dual_cross(glint_dual out[3], const glint_dual a[3], const glint_dual b[3])
-{
-    for (int c = 0; c < 3; c++) {
-        const int i = (c + 1) % 3, k = (c + 2) % 3;
-        out[c] = dual_sub(dual_mul(a[i], b[k]), dual_mul(a[k], b[i]));
-    }
-}
-
-/// See plan/camera.c.
-static void fill_view(glint_derivative_view *out, const glint_plan *plan, const glint_camera_desc *desc,
-                      const glint_camera_desc *slope)
-{
-    const double half = desc->fov_y_rad / 2, tangent = glint_tan(half);
-    const glint_dual size = dual_scale(dual(tangent, (1 + tangent * tangent) * (slope->fov_y_rad / 2)), 1 / plan->desc.height);
-    glint_dual eye[3], forward[3], up[3], right[3];
-    duals(eye, desc->eye, slope->eye);
-    duals(forward, desc->has_direction ? desc->direction : desc->at, desc->has_direction ? slope->direction : slope->at);
-    for (int c = 0; c < 3 && !desc->has_direction; c++)
-        forward[c] = dual_sub(forward[c], eye[c]);
-    dual_normalize(forward);
-    duals(up, desc->up, slope->up);
-    dual_normalize(up);
-    dual_cross(right, forward, up);
-    dual_normalize(right);
-    dual_cross(up, right, forward);
-    for (int c = 0; c < 3; c++) {
-        out->eye[c] = eye[c].slope;
-        out->forward[c] = forward[c].slope;
-        out->right[c] = dual_mul(right[c], size).slope;
-        out->up[c] = dual_mul(up[c], size).slope;
-    }
-    out->moves = glint_any_slope(out->eye) || glint_any_slope(out->forward) || glint_any_slope(out->right) || glint_any_slope(out->up);
-}
-
 /// What changes with programs that do.
 static void take_programs(const glint_derivative_programs *programs, size_t material, glint_plan_derivative *out)
 {
@@ -307,6 +273,18 @@ static void total_ambient(const glint_scene *scene, const glint_scene_slopes *sl
             out[c] = dual_add(out[c], dual_mul(dual(desc->ambient[c], slope->ambient[c]),
                                                dual(desc->intensity, slope->intensity)));
     }
+}
+
+/// Of a depth cue, whose colour may be the background's.
+static void fill_fade(const glint_plan *plan, const glint_scene_desc *desc, const glint_scene_desc *slope,
+                      glint_plan_derivative *out)
+{
+    if (plan->depth_cue.on) {
+        vec_copy(out->fade.color, desc->has_depth_cue_color ? slope->depth_cue_color : slope->background);
+        out->fade.near = slope->depth_cue_near;
+        out->fade.far = slope->depth_cue_far;
+    }
+    out->fades = glint_any_slope(out->fade.color) || out->fade.near != 0 || out->fade.far != 0;
 }
 
 static void fill(const glint_plan *plan, const glint_scene *scene, const glint_scene_slopes *slopes,
@@ -341,9 +319,10 @@ static void fill(const glint_plan *plan, const glint_scene *scene, const glint_s
         fill_part(&out->parts[i], &plan->geometry->parts[i], &slopes->shapes[i]);
         out->bends = out->bends || out->parts[i].moves;
     }
-    fill_view(&out->view, plan, glint_camera_get(scene->desc.camera), &slopes->camera);
+    glint_derivative_fill_view(&out->view, plan, glint_camera_get(scene->desc.camera), &slopes->camera);
     out->bends = out->bends || out->view.moves;
     out->moves = out->moves || out->bends;
+    fill_fade(plan, &scene->desc, &slopes->scene, out);
     for (int c = 0; c < 3; c++) {
         out->background[c] = scene->desc.background_program ? 0 : slopes->scene.background[c];
         out->everywhere = out->everywhere || out->background[c] != 0;
@@ -398,6 +377,26 @@ static glint_status check_names(const glint_render_desc *desc, glint_error *erro
     return GLINT_OK;
 }
 
+/// What a derivative's slopes are of, in the scene as it is: with 1 for each that is 0 here. The lists are NULL where none is 0.
+static glint_status make_level(const glint_plan *plan, const glint_scene *scene, const glint_derivative *d,
+                               glint_scene_slopes *slopes, glint_plan_derivative *out, glint_error *error)
+{
+    glint_slope *steep = malloc((d->slope_count + 1) * sizeof *steep);
+    glint_derivative all = { d->name, steep, 0 };
+    glint_status status = steep ? GLINT_OK : glint_fail_nomem(error);
+    for (size_t i = 0; steep && i < d->slope_count; i++)
+        if (!d->slopes[i].program && !glint_any_slope(d->slopes[i].slope)) {
+            steep[all.slope_count] = d->slopes[i];
+            for (int c = 0; c < 3; c++)
+                steep[all.slope_count].slope[c] = 1;
+            all.slope_count++;
+        }
+    if (!status && all.slope_count)
+        status = make_one(plan, scene, &all, slopes, out, error);
+    free(steep);
+    return status;
+}
+
 static glint_status make_all(glint_plan *plan, const glint_scene *scene, const glint_render_desc *desc,
                              glint_error *error)
 {
@@ -411,9 +410,12 @@ static glint_status make_all(glint_plan *plan, const glint_scene *scene, const g
     for (size_t i = 0; i < desc->derivative_count && !status; i++) {
         glint_plan_derivative *d = &all->of[all->count++];
         status = make_one(plan, scene, &desc->derivatives[i], &slopes, d, error);
+        if (!status)
+            status = make_level(plan, scene, &desc->derivatives[i], &slopes, &all->level[i], error);
         all->moves = all->moves || d->moves;
         all->bends = all->bends || d->bends;
         all->weighs = all->weighs || d->weighs;
+        all->fades = all->fades || d->fades;
         all->everywhere = all->everywhere || d->everywhere;
         all->repaints = all->repaints || d->repaints;
     }
@@ -433,16 +435,22 @@ glint_status glint_plan_find_derivatives(glint_plan *plan, const glint_scene *sc
     return plan->derivatives ? make_all(plan, scene, desc, error) : glint_fail_nomem(error);
 }
 
+static void free_one(glint_plan_derivative *d, size_t materials)
+{
+    for (size_t i = 0; i < materials * GLINT_FIELD_PLANES && d->programs; i++)
+        glint_program_release((glint_program *)(uintptr_t)d->programs[i / GLINT_FIELD_PLANES].of[i % GLINT_FIELD_PLANES]);
+    free(d->programs);
+    free(d->materials);
+    free(d->bounces);
+    free(d->lights);
+    free(d->parts);
+}
+
 void glint_plan_derivatives_free(glint_plan_derivatives *derivatives)
 {
     for (size_t i = 0; derivatives && i < GLINT_DERIVATIVES_MAX; i++) {
-        free(derivatives->of[i].materials);
-        free(derivatives->of[i].bounces);
-        for (size_t k = 0; k < derivatives->material_count * GLINT_FIELD_PLANES && derivatives->of[i].programs; k++)
-            glint_program_release((glint_program *)(uintptr_t)derivatives->of[i].programs[k / GLINT_FIELD_PLANES].of[k % GLINT_FIELD_PLANES]);
-        free(derivatives->of[i].programs);
-        free(derivatives->of[i].lights);
-        free(derivatives->of[i].parts);
+        free_one(&derivatives->of[i], derivatives->material_count);
+        free_one(&derivatives->level[i], derivatives->material_count);
     }
     free(derivatives);
 }
@@ -464,5 +472,6 @@ glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key k
     key = glint_key_add(key, d->lights, plan->derivatives->light_count * sizeof *d->lights);
     key = glint_key_add(key, d->parts, plan->geometry->part_count * sizeof *d->parts);
     key = glint_key_add(key, &d->view, sizeof d->view);
+    key = glint_key_add(key, &d->fade, sizeof d->fade);
     return glint_key_add(key, d->background, sizeof d->background);
 }

@@ -42,11 +42,14 @@ typedef struct glint_derivative_part {
     double pivot[3]; ///< around which a plane turns: no slope
 } glint_derivative_part;
 
-/// The eye of a perspective camera; slopes.
+/// The eye and its lens; slopes.
 typedef struct glint_derivative_view {
     uint32_t moves;
     uint32_t unused; ///< 0: no padding
     double eye[3], forward[3], right[3], up[3]; ///< as in glint_plan_camera
+    double lens[2][3]; ///< of the unit axes of the lens, to the right and up; without a lens 0, and so the next
+    double wider; ///< of the aperture, in shares of it
+    double nearer; ///< of one over the distance of its focus
 } glint_derivative_view;
 
 /// How fast programs of a material change; owned references.
@@ -62,18 +65,23 @@ typedef struct glint_plan_derivative {
     glint_derivative_light *lights; ///< in the scene's order
     glint_derivative_part *parts; ///< beside the geometry's
     glint_derivative_view view;
+    struct {
+        double color[3], near, far; ///< as in glint_plan
+    } fade; ///< slopes of a depth cue
     double background[3]; ///< slopes
     bool moves; ///< some shadow does
     bool bends; ///< some surface moves, or the eye, or an index of refraction turns rays
     bool weighs; ///< some material sends on another share
+    bool fades; ///< the depth cue changes, or what absorbs around the eye
     bool everywhere; ///< something has a slope that no light brings
     bool repaints; ///< some program changes
 } glint_plan_derivative;
 
 typedef struct glint_plan_derivatives {
     size_t count, light_count, material_count;
-    bool moves, bends, weighs, everywhere, repaints;
+    bool moves, bends, weighs, fades, everywhere, repaints;
     glint_plan_derivative of[GLINT_DERIVATIVES_MAX];
+    glint_plan_derivative level[GLINT_DERIVATIVES_MAX]; ///< of each, as if slopes that are 0 were not: tells what depends on it
 } glint_plan_derivatives;
 
 void glint_plan_derivatives_free(glint_plan_derivatives *derivatives); ///< NULL: nothing

@@ -11,9 +11,12 @@ static bool moves(const glint_plan *plan, const glint_plan_derivative *d)
     return any;
 }
 
+/// Whether something changes by a derivative that is described; an empty one: nothing.
 static bool varies(const glint_plan *plan, const glint_plan_derivatives *all, const glint_plan_derivative *d)
 {
-    bool any = moves(plan, d) || glint_any_slope(d->background) || (d->weighs && plan->runs[GLINT_STAGE_BOUNCE]);
+    if (!d->materials)
+        return false;
+    bool any = moves(plan, d) || d->fades || glint_any_slope(d->background) || (d->weighs && plan->runs[GLINT_STAGE_BOUNCE]);
     for (size_t i = 0; i < plan->geometry->materials.count; i++)
         any = any || d->materials[i].varies || (plan->tints && glint_any_slope(d->bounces[i].transmission));
     for (size_t i = 0; i < all->light_count; i++)
@@ -30,20 +33,6 @@ static const char *find_obstacle(const glint_plan *plan)
         return "shading: flat and gouraud meshes have no derivative; \"faceted\" and \"phong\" ones have";
     if (plan->runs[GLINT_STAGE_SHADER])
         return "material.model: a shader has no derivative; the built-in models have";
-    if (plan->runs[GLINT_STAGE_DEPTH_CUE])
-        return "scene.depth_cue: light that fades has no derivative; leave `depth_cue` and glass around the eye out";
-    return NULL;
-}
-
-/// What of it no moving eye's derivative goes through, or NULL.
-static const char *find_view_obstacle(const glint_plan *plan)
-{
-    if (plan->camera.orthographic)
-        return "camera: an orthographic one has no derivative; a perspective one has";
-    if (plan->lens)
-        return "camera: one with a lens has no derivative; aperture = 0 has";
-    if (plan->environment)
-        return "background: before one that a program gives a camera has no derivative; before a colour it has";
     return NULL;
 }
 
@@ -74,6 +63,10 @@ static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan
     if (plan->dims && (absorbs || d->moves))
         return "absorption: light through what absorbs has no derivative by it, nor by what moves; lights with shadows = false "
                "have";
+    const bool thins = plan->veil.on && glint_any_slope(d->bounces[plan->veil.material].absorption);
+    if (plan->runs[GLINT_STAGE_DEPTH_CUE] && plan->visible_light_count && (d->bends || d->fades || thins))
+        return "scene.depth_cue, absorption: what moves or fades otherwise has no derivative where visible lights may be seen; visible "
+               "= false has";
     if (plan->absorbs && plan->visible_light_count && d->bends)
         return "absorption: what moves has no derivative where visible lights may be seen through what absorbs; visible = "
                "false has";
@@ -114,11 +107,12 @@ glint_status glint_plan_check_derivatives(const glint_plan *plan, const glint_sc
         return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", all->of[0].name, why);
     for (size_t i = 0; all && i < all->count; i++) {
         const glint_plan_derivative *d = &all->of[i];
-        if (d->view.moves && (why = find_view_obstacle(plan)))
-            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", d->name, why);
+        if (d->view.moves && plan->environment)
+            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': background: before one that a program gives a camera has no "
+                              "derivative; before a colour it has", d->name);
         if ((why = find_bounce_obstacle(plan, d)))
             return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", d->name, why);
-        if (!varies(plan, all, d))
+        if (!varies(plan, all, d) && !varies(plan, all, &all->level[i])) // else it is 0 here, and elsewhere may not be
             return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': nothing in the scene depends on it", d->name);
         for (size_t k = 0; k < all->light_count && !status; k++)
             status = d->lights[k].varies || d->bends ? check_light(plan, d, scene, k, error) : GLINT_OK;

@@ -15,7 +15,7 @@ typedef struct slope_field {
 
 #define MATERIAL(name, count) { #name, offsetof(glint_material_desc, name), count, 0 }
 #define LIGHT(name, count, kinds) { #name, offsetof(glint_light_desc, name), count, kinds }
-#define SCENE(name) { #name, offsetof(glint_scene_desc, name), 3, 0 }
+#define SCENE(name, count) { #name, offsetof(glint_scene_desc, name), count, 0 }
 #define KIND(name) (1u << GLINT_LIGHT_##name)
 #define AREA (KIND(DISK) | KIND(POLYGON) | KIND(SPHERE))
 #define ALL (KIND(POINT) | KIND(DIRECTIONAL) | KIND(SPOT) | AREA)
@@ -47,9 +47,13 @@ static const slope_field shape_fields[] = {
     { NULL, 0, 0, 0 },
 };
 static const slope_field camera_fields[] = {
-    CAMERA(eye, 3), CAMERA(at, 3), CAMERA(direction, 3), CAMERA(up, 3), CAMERA(fov_y_rad, 1), { NULL, 0, 0, 0 },
+    CAMERA(eye, 3), CAMERA(at, 3), CAMERA(direction, 3), CAMERA(up, 3), CAMERA(fov_y_rad, 1),
+    CAMERA(height, 1), CAMERA(aperture, 1), CAMERA(focus, 1), CAMERA(focus_point, 3), { NULL, 0, 0, 0 },
 };
-static const slope_field scene_fields[] = { SCENE(ambient), SCENE(background), { NULL, 0, 0, 0 } };
+static const slope_field scene_fields[] = {
+    SCENE(ambient, 3),        SCENE(background, 3),    SCENE(depth_cue_color, 3),
+    SCENE(depth_cue_near, 1), SCENE(depth_cue_far, 1), { NULL, 0, 0, 0 },
+};
 
 /// kinds: of what has the field, a bit each; 0: all are alike.
 static const slope_field *find_field(const slope_field *fields, const char *name, unsigned kinds)

@@ -18,6 +18,10 @@ typedef struct glint_scene_slopes {
 glint_status glint_derivative_add(const glint_plan *plan, const glint_scene *scene, const glint_derivative *d,
                                   const glint_slope *s, glint_scene_slopes *out, glint_error *error);
 
+/// plan/derivative_view.c: of the eye, by slopes of its camera; `out` is 0 before.
+void glint_derivative_fill_view(glint_derivative_view *out, const glint_plan *plan, const glint_camera_desc *desc,
+                                const glint_camera_desc *slope);
+
 static inline bool glint_any_slope(const double v[3]) { return v[0] != 0 || v[1] != 0 || v[2] != 0; }
 
 static inline bool glint_has_slope(const glint_dual *list, size_t count)

@@ -166,7 +166,8 @@ struct glint_plan {
     } depth_cue;
     struct {
         bool on;
-        double absorption[3]; ///< of the innermost medium
+        uint32_t material; ///< the innermost medium's
+        double absorption[3];
     } veil; ///< the eye is inside what absorbs
     glint_plan_visible_light *visible_lights; ///< NULL: no light is seen
     glint_plan_edge *visible_light_edges; ///< of all of them

@@ -19,8 +19,7 @@ struct glint_depth_cue {
 struct glint_depth_cue *glint_depth_cue_create(void) { return glint_alloc(1, sizeof(struct glint_depth_cue)); }
 void glint_depth_cue_destroy(struct glint_depth_cue *depth_cue) { free(depth_cue); }
 
-/// The distance to what pixel i sees; infinite: to nothing.
-static double way_of(const glint_tile *tile, const glint_plan *plan, uint32_t i)
+double glint_tile_way_of(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
     double d[3];
     if (!(tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) &&
@@ -42,7 +41,7 @@ void glint_tile_find_depth_cue(glint_tile *tile, const glint_plan *plan, bool an
 {
     struct glint_depth_cue *depth_cue = tile->depth_cue;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        const double way = any ? way_of(tile, plan, i) : HUGE_VAL;
+        const double way = any ? glint_tile_way_of(tile, plan, i) : HUGE_VAL;
         depth_cue->share[i] = share_of(plan, way);
         for (int c = 0; c < 3; c++)
             depth_cue->left[c][i] = (1 - depth_cue->share[i]) * glint_plan_left(plan->veil.absorption[c], way);

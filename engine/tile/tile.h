@@ -323,6 +323,8 @@ void glint_depth_cue_destroy(struct glint_depth_cue *depth_cue);
 void glint_tile_find_depth_cue(glint_tile *tile, const glint_plan *plan, bool any);
 /// Adds the sums of the current sample, faded, to the totals of the tile, and begins them anew.
 void glint_tile_depth_cue(glint_tile *tile, const glint_tile_frame *frame);
+/// The distance to what pixel i sees; infinite: to nothing.
+double glint_tile_way_of(const glint_tile *tile, const glint_plan *plan, uint32_t i);
 /// Puts the totals where resolve reads.
 void glint_tile_take_faded(glint_tile *tile, const glint_plan *plan);
 
@@ -501,6 +503,8 @@ void glint_tile_put_tint(const glint_tile *tile, const glint_plan *plan, uint32_
                          const double (*color)[GLINT_TILE_SAMPLES]);
 void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
                               const uint16_t *reached);
+/// tile/derivative/fade.c: after a sample of what the eye sees, where light fades.
+void glint_derive_fade(glint_tile *tile, const glint_tile_frame *frame);
 /// After the last sample: into the image.
 void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *frame);
 

@@ -362,6 +362,8 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
         find_indirect(tile, frame, &w);
     if (any && frame->plan->runs[GLINT_STAGE_BOUNCE])
         find_bounces(tile, frame, &w);
+    if (frame->plan->runs[GLINT_STAGE_DEPTH_CUE] && frame->plan->derivatives)
+        glint_derive_fade(tile, frame);
     if (frame->plan->runs[GLINT_STAGE_DEPTH_CUE])
         glint_tile_depth_cue(tile, frame);
 }

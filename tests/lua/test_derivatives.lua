@@ -99,6 +99,26 @@ function tests.passes_add_up()
   check(glint.value(lamp.x) == 2 and tostring(lamp.position[1]) == "2.0", "fields read back as they were written")
 end
 
+-- Where nothing changes at a frame's own instant the derivative is 0; where nothing depends on the name it is an error.
+function tests.level_here_is_no_error()
+  local x, y = glint.variable("x", 2), glint.variable("y", 0)
+  local image = render(scene_of(glint.point_light { position = { 2, 4, 3 + y ^ 2 }, intensity = (x - 2) ^ 2 + 1 }), "d:x,d:y")
+  local most = 0
+  each(image, "d:x", image, "d:y", function(p, q) most = math.max(most, math.abs(p), math.abs(q)) end)
+  check(most == 0, "slopes of 0 give %g", most)
+  local function refused(what, scene, options)
+    local ok, message = pcall(render, scene, "d:x", options)
+    check(not ok and message:find("derivative 'x': nothing in the scene depends on it", 1, true), "%s: got %s", what, message)
+  end
+  local level, lamp = (x - 2) ^ 2, glint.point_light { position = { 2, 4, 3 } }
+  glint.point_light { position = { level, 0, 0 } } -- of no scene
+  refused("a lamp that is in no scene", scene_of(lamp))
+  refused("what nothing reads", scene_of(lamp, { material = glint.material { mirror = 0.5, ior = 1.5 + level } }))
+  refused("a mirror that sends nothing on", scene_of(lamp, { material = glint.material { mirror = 0.5 + level } }), { max_depth = 0 })
+  image = render(scene_of(lamp, { material = glint.material { mirror = 0.5 + level } }), "d:x")
+  check(image:pixel(24, 18, "d:x") == 0, "a mirror that is level")
+end
+
 -- Against differences of pictures, whose float32 leaves five digits of them: area lights, whose samples move with them.
 function tests.area_lights_against_differences()
   local function compare(name, make, at, h)
@@ -349,6 +369,27 @@ function tests.what_moves_against_differences()
     scene.camera.aperture = 0.05
     return scene
   end, 0.2, { samples = 4 })
+  for name, change in pairs {
+    aperture = function(camera, x) camera.aperture = 0.2 * x end,
+    ["a focus"] = function(camera, x) camera.aperture, camera.focus = 0.05, 5 + x end,
+    ["an eye with a lens"] = function(camera, x) camera.aperture, camera.eye = 0.05, { x, 2, 8 } end,
+    ["an orthographic height"] = function(camera, x) camera.projection, camera.height = "orthographic", 4 + x end,
+    ["an orthographic eye"] = function(camera, x) camera.projection, camera.height, camera.eye = "orthographic", 4, { x, 2, 8 } end,
+  } do
+    compare(name .. " before mirrors, glass and a depth cue", function(x)
+      local scene = with(0.1, glint.sphere { center = { 0.2, 0.5, 3 }, radius = 0.5, material = glass })
+      scene.depth_cue = { near = 5, far = 12, color = { 0.1, 0.3, 0.2 } }
+      change(scene.camera, x)
+      return scene
+    end, 0.2, { samples = 4 })
+  end
+  compare("within what absorbs, by how much and where the eye is", function(x)
+    local scene = scene_of(glint.point_light { position = { 2, 4, 3 }, shadows = false }, { material = mirror(0.5) })
+    scene:add(glint.sphere { center = { 0, 0, 0 }, radius = 50,
+      material = glint.material { diffuse = 0.1, transmission = 1, absorption = { 0.1 * x, 0, 0.1 } } })
+    scene.camera.eye = { x, 2, 8 }
+    return scene
+  end, 0.4)
   compare("an area light in mirrors", function(x)
     local scene = with(0.1, glint.sphere { center = { x, 0.5, 3 }, radius = 0.5, material = mirror(0.8) })
     scene:add(glint.sphere_light { position = { -2, 4, 3 }, radius = 0.4, samples = 4, shadows = false, intensity = 0.3 })
@@ -370,7 +411,8 @@ function tests.duals_are_numbers()
   check(x + 1 == x + 1 and x < 4 and x <= 3.5 and 2 < x and -x < 0, "comparisons")
   check(tostring(x * 2) == "6.0" and "x = " .. x == "x = 3.0", "as text: %s", tostring(x))
   check(x // 2 == 1 and glint.value(x % 2) == 1 and math.type(math.floor(x)) == "integer", "whole parts")
-  check(type(x - x) == "number" and type(x * 0) == "number", "what does not change is a plain number")
+  check(type(glint.floor(x)) == "number" and type(x // 2) == "number", "what is level wherever it has a slope is a plain number")
+  check(glint.value(x - x) == 0 and tostring(x * 0) == "0.0", "what is level here still depends on it")
   check(glint.value(math.max(x, 2, 9)) == 9 and glint.value(math.min(x, 5)) == 3, "math.max, math.min")
   check(math.sin(0.5) == math.sin(0.5) and math.max(1, 2.5) == 2.5 and math.floor(2.7) == 2, "math of plain numbers")
   near(glint.value(math.atan(x, 2)), math.atan(3, 2), 0, "math.atan")
@@ -393,7 +435,9 @@ function tests.errors_are_told()
   raises("'d:': a name of 1 .. 31 bytes", render, scene_of(lamp), "d:")
   raises("'d:x' was not kept", function() render(scene_of(lamp), "beauty"):pixel(0, 0, "d:x") end)
   raises("box.min: no derivative goes through here", glint.box, { min = { x, 0, 0 }, max = { 9, 9, 9 } })
-  raises("camera.height: no derivative goes through here", glint.camera, { eye = { 3, 0, 0 }, at = { 0, 0, 0 }, height = x })
+  raises("camera.shutter: no derivative goes through here", glint.camera, { eye = { 3, 0, 0 }, at = { 0, 0, 0 }, shutter = x })
+  raises("camera.focus: no derivative goes through here", glint.camera, { eye = { 3, 0, 0 }, at = { 0, 0, 0 }, focus = { x, 0, 0 } })
+  raises("camera.focus: number > 0 or {x, y, z} expected, got -3.0", glint.camera, { eye = { 3, 0, 0 }, at = { 0, 0, 0 }, focus = -x })
   local moved = scene_of(glint.point_light { position = { 2, 4, 3 } })
   local ball = glint.sphere { center = { x, 0, 0 }, radius = 0.2 }
   moved:add(ball)
@@ -406,6 +450,7 @@ function tests.errors_are_told()
   moved = scene_of(glint.sphere_light { position = { 2, 4, 3 }, radius = 1, radiance = 1 })
   moved.camera.fov = 10 * x
   raises("sphere_light #1: position", render, moved, "d:x")
+  raises("scene.depth_cue.far: no derivative goes through here", function() moved.depth_cue = { far = x } end)
   raises("material.opacity: no derivative goes through here", glint.material, { opacity = x })
   raises("a + b: number or vector expected, got a number made of glint.variable; glint.value(x) is the number alone",
     function() return x + glint.vector(1, 2, 3) end)

@@ -2,7 +2,7 @@
 #include "engine/base/vec.h"
 #include "engine/tile/derivative/work.h"
 
-/// What of a way from the eye changes as the view turns: as far along it as the hit is.
+/// What of a way from the eye of a pinhole changes as the view turns: as far along it as the hit is.
 static void turn_way(const glint_plan *plan, const glint_derivative_view *view, const double way[3], double out[3])
 {
     const glint_plan_camera *c = &plan->camera;
@@ -151,17 +151,64 @@ static void hold(const bent_hit *hit, const glint_geometry_table *table, const g
         curve_triangle(&table->corner_normals[prim->item], prim, gradient, hit, out->point, out->normal);
 }
 
-/// Seen by the eye.
-static void bend_view(const glint_plan *plan, const glint_derivative_view *view, const double eye[3], bent_hit *hit,
-                      glint_bend *out)
+/// Where a sample is in its picture, in pixels' halves from the middle: to the right and up. See the stage camera.
+static void find_place(const glint_tile *tile, uint32_t i, double out[2])
 {
-    double turned[3];
-    for (int c = 0; c < 3; c++)
-        hit->way[c] = view->moves ? hit->point[c] - plan->camera.eye[c] : -eye[c];
-    turn_way(plan, view, hit->way, turned);
+    const glint_camera_args *c = &tile->camera;
+    const uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
+    out[0] = 2 * (c->x0 + 4 * (group % c->groups_across) + lane % 4 + c->offset[0]) - c->width;
+    out[1] = c->height - 2 * (c->y0 + 4 * (group / c->groups_across) + lane / 4 + c->offset[1]);
+}
+
+/// Of a ray's place on the lens: where it is, and how that changes.
+static void find_lens(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t lane,
+                      double at[3], double slope[3])
+{
+    for (int c = 0; c < 3 && plan->lens; c++) {
+        const glint_lens_points *points = &plan->lens[tile->sample];
+        at[c] = tile->lens.shift[c][lane];
+        slope[c] = view->wider * at[c] + (points->at[0][lane] * view->lens[0][c] + points->at[1][lane] * view->lens[1][c]);
+    }
+}
+
+/// The ray of a sample of an orthographic camera, or of one with a lens: from `from` along `way`; with the slopes of both.
+static void aim(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t i, double from[3],
+                double way[3], double moved[3], double turned[3])
+{
+    const glint_plan_camera *camera = &plan->camera;
+    const double near = plan->lens ? 1 / camera->focus : 0;
+    double place[2], at[3] = { 0 }, slope[3] = { 0 };
+    find_place(tile, i, place);
+    find_lens(tile, plan, view, i % GLINT_GROUP, at, slope);
+    for (int c = 0; c < 3; c++) {
+        const double across = place[0] * camera->right[c] + place[1] * camera->up[c];
+        const double changed = place[0] * view->right[c] + place[1] * view->up[c];
+        from[c] = camera->eye[c] + ((camera->orthographic ? across : 0) + at[c]);
+        moved[c] = view->eye[c] + ((camera->orthographic ? changed : 0) + slope[c]);
+        way[c] = camera->forward[c] + ((camera->orthographic ? 0 : across) - at[c] * near);
+        turned[c] = view->forward[c] + ((camera->orthographic ? 0 : changed) - (slope[c] * near + at[c] * view->nearer));
+    }
+}
+
+/// Seen by the eye.
+static void bend_view(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t i,
+                      const double eye[3], bent_hit *hit, glint_bend *out)
+{
+    double from[3], turned[3], far = 1;
+    if (view->moves && (plan->lens || plan->camera.orthographic)) {
+        double seen[3];
+        aim(tile, plan, view, i, from, hit->way, out->from, turned);
+        vec_sub(seen, hit->point, from);
+        far = vec_dot(seen, hit->way) / vec_dot(hit->way, hit->way);
+    } else {
+        for (int c = 0; c < 3; c++)
+            hit->way[c] = view->moves ? hit->point[c] - plan->camera.eye[c] : -eye[c];
+        turn_way(plan, view, hit->way, turned);
+        vec_copy(out->from, view->eye);
+    }
     const double length = sqrt(vec_dot(hit->way, hit->way)), away = vec_dot(turned, eye);
     for (int c = 0; c < 3; c++) {
-        hit->carried[c] = view->eye[c] + turned[c];
+        hit->carried[c] = out->from[c] + far * turned[c];
         out->eye[c] = (away * eye[c] - turned[c]) / length;
     }
 }
@@ -180,6 +227,7 @@ static bool bend_ray(const glint_batch *batch, const glint_plan *plan, size_t in
     }
     for (int c = 0; c < 3; c++) {
         hit->way[c] = -eye[c];
+        out->from[c] = slope->origin[c];
         hit->carried[c] = slope->origin[c] + far * slope->direction[c];
         out->eye[c] = -slope->direction[c];
     }
@@ -203,7 +251,7 @@ bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, si
         eye[c] = points->eye[c][i % GLINT_GROUP];
     }
     if (!tile->batch)
-        bend_view(plan, &d->view, eye, &hit, out);
+        bend_view(tile, plan, &d->view, i, eye, &hit, out);
     else if (!bend_ray(tile->batch, plan, index, i, eye, &hit, out) && !part->moves)
         return false;
     hold(&hit, &frame->geometry, prim, part, out);

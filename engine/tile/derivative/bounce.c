@@ -181,6 +181,8 @@ void glint_derive_collect(const glint_batch *batch, const glint_plan *plan, glin
             for (int c = 0; c < 3; c++) {
                 const double weight = rays->weight[c][ray];
                 const double light = own ? work->light[c][i] : glint_batch_light_of(batch, plan, c, ray);
+                if (glint_derivatives_read_light(to, plan))
+                    to->derivative->light[c][pixel] += weight * light;
                 for (size_t k = 0; k < all->count; k++) {
                     const double slope = sampled ? work->sum[k][c][i] : all->of[k].background[c];
                     to->derivative->sum[k][c][pixel] += rays->slopes[ray * all->count + k].weight[c] * light + weight * slope;

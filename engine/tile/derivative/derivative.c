@@ -13,8 +13,10 @@ struct glint_derivative_work *glint_derivative_create(void) { return glint_alloc
 
 void glint_derivative_destroy(struct glint_derivative_work *work)
 {
-    if (work)
+    if (work) {
         free(work->painted);
+        free(work->faded);
+    }
     free(work);
 }
 
@@ -205,7 +207,7 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
     const glint_derivative_points points = glint_derivative_points_of(tile, frame, g);
     const size_t at = (size_t)g * GLINT_GROUP;
-    const bool weighs = tile->batch && glint_derivatives_weigh(all);
+    const bool weighs = glint_derivatives_read_light(tile, frame->plan);
     glint_derivative_points bent_points = points;
     for (int i = 0; i < 9; i++)
         bent_points.slope[i / 3][i % 3] = work->bend[i / 3][i % 3];
@@ -337,7 +339,7 @@ static void begin_group(glint_tile *tile, const glint_tile_frame *frame, uint32_
         }
 }
 
-/// What hits of a batch give without lights.
+/// What hits give without lights, where that is read.
 static void begin_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
     for (uint32_t i = g * GLINT_GROUP; i < (g + 1) * GLINT_GROUP; i++)
@@ -383,7 +385,7 @@ static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
             begin_group(tile, frame, g);
         if (tile->at.hits[g])
             gather_points(tile, frame, g);
-        if (tile->batch && glint_derivatives_weigh(frame->plan->derivatives))
+        if (glint_derivatives_read_light(tile, frame->plan))
             begin_light(tile, frame, g);
         for (unsigned rest = frame->plan->derivatives->bends ? tile->at.hits[g] : 0; rest; rest &= rest - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(rest);
@@ -419,10 +421,11 @@ void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *fram
     glint_derivative_work *work = tile->derivative;
     const glint_plan *plan = frame->plan;
     const double share = 1 / plan->desc.samples;
+    double (*sum)[3][GLINT_TILE_SAMPLES] = plan->runs[GLINT_STAGE_DEPTH_CUE] ? work->faded : work->sum;
     for (size_t k = 0; k < plan->derivatives->count; k++) {
         for (int c = 0; c < 3; c++) {
             for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
-                work->plane[c][i] = (float)(work->sum[k][c][i] * share);
+                work->plane[c][i] = (float)(sum[k][c][i] * share);
             if (frame->base)
                 glint_tile_take_plane(tile, frame, frame->base->plane[GLINT_PASS_DERIVATIVE + k][c], work->plane[c]);
         }

@@ -11,6 +11,8 @@
 
 bool glint_derivative_fits(struct glint_derivative_work *work, const glint_plan *plan)
 {
+    if (!glint_derive_fade_fits(work, plan))
+        return false;
     if (!plan->derivatives->repaints)
         return true;
     const size_t wanted = plan->derivatives->count * plan->patterns->plane_count * GLINT_TILE_SAMPLES;

@@ -14,7 +14,7 @@ typedef struct glint_ray_slope {
 
 typedef struct glint_derivative_work {
     _Alignas(64) double sum[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
-    _Alignas(64) double light[3][GLINT_TILE_SAMPLES]; ///< of a batch that has slopes of weights: what hits themselves give, in double
+    _Alignas(64) double light[3][GLINT_TILE_SAMPLES]; ///< where rays have slopes of weights or light fades: what hits give, in double
     _Alignas(64) double eye[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES], normal[3][GLINT_TILE_SAMPLES]; ///< where the tile's are of float
     _Alignas(64) double position[3][GLINT_GROUP], weight[GLINT_GROUP]; ///< of the current light
@@ -23,6 +23,7 @@ typedef struct glint_derivative_work {
     _Alignas(64) double tint_slope[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
     _Alignas(64) double ray_tint[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
     _Alignas(64) double planes[GLINT_DERIVED_COUNT][GLINT_GROUP]; ///< what programs give of the current material
+    double (*faded)[3][GLINT_TILE_SAMPLES]; ///< where light fades, the slopes of the samples that are done; NULL: not yet
     double *painted; ///< slopes of what programs give: as many planes as the tile has, for each derivative; NULL: none changes
     size_t painted_count; ///< numbers that it has room for
     float plane[3][GLINT_TILE_SAMPLES];
@@ -32,15 +33,21 @@ typedef struct glint_derivative_work {
     uint16_t mixed[GLINT_TILE_GROUPS]; ///< lanes that a light reaches in part
 } glint_derivative_work;
 
-/// The slopes of where a sample is: of its point, of its normal, of the unit vector to where it is seen from.
+/// The slopes of where a sample is: of its point, of its normal, of the unit vector to where it is seen from, and of that place.
 typedef struct glint_bend {
-    double point[3], normal[3], eye[3];
+    double point[3], normal[3], eye[3], from[3];
 } glint_bend;
 
-/// Whether rays that left surfaces have slopes of their weights.
+/// Whether what is left of light on its way has a slope.
 static inline bool glint_derivatives_weigh(const glint_plan_derivatives *all)
 {
-    return all->bends || all->weighs;
+    return all->bends || all->weighs || all->fades;
+}
+
+/// Whether the slopes of a tile read how much light there is: where rays left surfaces, and where what the eye sees fades.
+static inline bool glint_derivatives_read_light(const glint_tile *tile, const glint_plan *plan)
+{
+    return (tile->batch || plan->runs[GLINT_STAGE_DEPTH_CUE]) && glint_derivatives_weigh(plan->derivatives);
 }
 
 /// tile/derivative.c: the group that sample i is in, after glint_tile_derive.
@@ -58,6 +65,9 @@ void glint_derive_split(const glint_batch *batch, const glint_tile *tile, const 
 void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *frame);
 /// Adds the slopes of what the rays found to those of their pixels.
 void glint_derive_collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to);
+
+/// fade.c: makes room; false: no memory.
+bool glint_derive_fade_fits(glint_derivative_work *work, const glint_plan *plan);
 
 /// bend.c: by derivative number `index`. False: nothing moves it.
 bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
