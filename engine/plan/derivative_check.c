@@ -29,8 +29,6 @@ static const char *find_obstacle(const glint_plan *plan)
 {
     if (plan->runs[GLINT_STAGE_INDIRECT])
         return "scene.indirect: indirect light and ambient occlusion have no derivative; leave them out";
-    if (plan->runs[GLINT_STAGE_VERTEX])
-        return "shading: flat and gouraud meshes have no derivative; \"faceted\" and \"phong\" ones have";
     if (plan->runs[GLINT_STAGE_SHADER])
         return "material.model: a shader has no derivative; the built-in models have";
     return NULL;

@@ -285,7 +285,7 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
 static glint_key vertex_key(const glint_plan *plan)
 {
     const glint_plan_camera *c = &plan->camera;
-    const bool seen = plan->highlights || glint_patterns_see(plan->patterns);
+    const bool seen = plan->highlights || glint_patterns_see(plan->patterns) || plan->derivatives;
     const double frame[] = { plan->desc.precision, seen ? 1 + c->orthographic : 0 };
     glint_key key = { 0 };
     ADD(key, frame);
@@ -294,7 +294,7 @@ static glint_key vertex_key(const glint_plan *plan)
                               : glint_key_add(glint_key_add(key, c->eye, sizeof c->eye), c->forward, sizeof c->forward);
     return add_inputs(plan,
                       READS(PLACES) | READS(LOOKS) | READS(CUT_OUTS) | READS(HIGHLIGHTS) | READS(LIGHT_PLACES) |
-                          READS(SHADOWS) | READS(LIGHT_COLORS) | READS(MATERIALS) | READS(TINTS),
+                          READS(SHADOWS) | READS(LIGHT_COLORS) | READS(MATERIALS) | READS(TINTS) | READS(DERIVATIVES),
                       key);
 }
 

@@ -32,6 +32,8 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->derivative = glint_derivative_create()) && good;
     if (plan->derivatives && tile->derivative)
         good = glint_derivative_fits(tile->derivative, plan) && good;
+    if (plan->derivatives && plan->runs[GLINT_STAGE_VERTEX] && tile->vertex)
+        good = glint_vertex_derives(tile->vertex, plan) && good;
     if (plan->derivatives && tile->bounce)
         good = glint_bounce_derives(tile->bounce, plan) && good;
     glint_pattern_destroy(tile->pattern); // its size is the plan's

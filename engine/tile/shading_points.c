@@ -9,23 +9,28 @@ void glint_shading_points_clear(glint_shading_points_cached *shading_points, gli
     if (shading_points->reserved)
         glint_reuse_unreserve(reuse, shading_points->reserved);
     free(shading_points->light);
+    free(shading_points->slopes);
     free(shading_points->state);
     *shading_points = (glint_shading_points_cached) { 0 };
 }
 
-static glint_status make_room(glint_shading_points_cached *shading_points, uint32_t blocks, glint_reuse *reuse,
+static glint_status make_room(glint_shading_points_cached *shading_points, uint32_t blocks, size_t derivatives, glint_reuse *reuse,
                               glint_error *error)
 {
-    const size_t count = 2 * (size_t)blocks,
-                 bytes = count * (GLINT_SHADING_POINT_BLOCK * sizeof *shading_points->light + 1);
+    const size_t count = 2 * (size_t)blocks, slopes = derivatives ? 3 * (derivatives + 1) : 0,
+                 each = sizeof *shading_points->light + slopes * sizeof *shading_points->slopes,
+                 bytes = count * (GLINT_SHADING_POINT_BLOCK * each + 1);
     glint_shading_points_clear(shading_points, reuse);
     shading_points->light = glint_alloc(count * GLINT_SHADING_POINT_BLOCK, sizeof *shading_points->light);
     shading_points->state = glint_alloc(count, sizeof *shading_points->state);
-    if (!shading_points->light || !shading_points->state) {
+    if (derivatives)
+        shading_points->slopes = glint_alloc(count * GLINT_SHADING_POINT_BLOCK * slopes, sizeof *shading_points->slopes);
+    if (!shading_points->light || !shading_points->state || (derivatives && !shading_points->slopes)) {
         glint_shading_points_clear(shading_points, reuse);
         return glint_fail_nomem(error);
     }
     shading_points->blocks = blocks;
+    shading_points->slope_count = derivatives;
     shading_points->reserved = glint_reuse_reserve(reuse, bytes) ? bytes : 0;
     return GLINT_OK;
 }
@@ -39,8 +44,9 @@ glint_status glint_shading_points_begin(glint_shading_points_cached *shading_poi
         glint_shading_points_clear(shading_points, reuse);
         return GLINT_OK;
     }
-    if (shading_points->blocks != blocks) {
-        glint_status status = make_room(shading_points, blocks, reuse, error);
+    const size_t derivatives = plan->derivatives ? plan->derivatives->count : 0;
+    if (shading_points->blocks != blocks || shading_points->slope_count != derivatives) {
+        glint_status status = make_room(shading_points, blocks, derivatives, reuse, error);
         if (status)
             return status;
     }

@@ -161,7 +161,7 @@ typedef struct glint_tile {
     uint32_t x0, y0, width, height; ///< of the part of the tile inside the image
     uint32_t group_count, groups_across;
     uint16_t own_light[GLINT_TILE_GROUPS]; ///< what at.sampled points to in frames with the stage vertex
-    const uint32_t *owner; ///< for occlude: the primitives that points are on; NULL: those that were hit
+    const uint32_t *owner; ///< for occlude: the primitives that points are on, of faces and vertices; NULL: those that were hit
     const void *viewed[3]; ///< for occlude: the rays that found the points; NULL: the tile's
     struct glint_bounce
         *bounce; ///< memory of tile/bounce.c and of tile/transparent_shadow.c; NULL until a frame needs it
@@ -472,6 +472,8 @@ void glint_tile_sign_facets(glint_tile *tile, const glint_tile_frame *frame);
 /// tile/vertex.c: flat and Gouraud shading.
 struct glint_vertex *glint_vertex_create(void);
 void glint_vertex_destroy(struct glint_vertex *vertex);
+/// Makes room for derivatives; false: no memory.
+bool glint_vertex_derives(struct glint_vertex *vertex, const glint_plan *plan);
 /// Points at.sampled to the hits whose light is worked out for themselves. Returns whether there are any.
 bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether there are others, of triangles with sites.
@@ -503,6 +505,10 @@ void glint_tile_put_tint(const glint_tile *tile, const glint_plan *plan, uint32_
                          const double (*color)[GLINT_TILE_SAMPLES]);
 void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
                               const uint16_t *reached);
+/// tile/derivative/vertex.c: keeps the slopes of a block of faces and vertices; gives samples what lies between those of their
+/// triangles, after their light.
+void glint_derive_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
+void glint_derive_vertex(const glint_tile *tile, const glint_tile_frame *frame, const uint16_t *wanted);
 /// tile/derivative/fade.c: after a sample of what the eye sees, where light fades.
 void glint_derive_fade(glint_tile *tile, const glint_tile_frame *frame);
 /// After the last sample: into the image.

@@ -28,7 +28,20 @@ struct glint_vertex *glint_vertex_create(void)
     return vertex;
 }
 
-void glint_vertex_destroy(struct glint_vertex *vertex) { free(vertex); }
+void glint_vertex_destroy(struct glint_vertex *vertex)
+{
+    if (vertex)
+        glint_derivative_destroy(vertex->batch.tile.derivative);
+    free(vertex);
+}
+
+bool glint_vertex_derives(struct glint_vertex *vertex, const glint_plan *plan)
+{
+    glint_tile *tile = &vertex->batch.tile;
+    if (!tile->derivative)
+        tile->derivative = glint_derivative_create();
+    return tile->derivative && glint_derivative_fits(tile->derivative, plan);
+}
 
 // ---- Where a site is ----
 
@@ -244,6 +257,8 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
     glint_batch_shine(&vertex->batch, frame, true);
     glint_batch_end(&vertex->batch, to);
     keep_block(vertex, frame, block);
+    if (frame->plan->derivatives)
+        glint_derive_keep_block(tile, frame, block);
     for (uint32_t g = 0; frame->count_work && g < tile->group_count; g++)
         to->counts.work.sites += (uint64_t)__builtin_popcount(tile->hit.mask[g]);
     to->counts.runs[GLINT_STAGE_VERTEX]++;
@@ -354,6 +369,8 @@ void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame)
     each_block(tile, frame, ask_for);
     each_block(tile, frame, wait_for);
     spread(tile, frame);
+    if (frame->plan->derivatives)
+        glint_derive_vertex(tile, frame, tile->vertex->wanted);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_VERTEX, false);
     tile->counts.runs[GLINT_STAGE_VERTEX]--; // blocks are counted, not calls
 }

@@ -190,6 +190,15 @@ function tests.beside_patterns_against_differences()
     return with(x, { model = "cook_torrance", f0 = x / 4, specular = wave, roughness = wave })
   end)
   compare("mirrors", function(x) return with(x, { mirror = wave }, { diffuse = color, mirror = x / 4 }) end)
+  compare("flat and smooth corners", function(x)
+    local scene = with(x, { specular = wave, shininess = exponent })
+    for i, shading in ipairs { "flat", "gouraud" } do
+      scene:add(glint.sphere_mesh { center = { 3 - 2 * i, 0, 2 }, radius = 0.6, segments = 9, shading = shading,
+        material = glint.material { diffuse = color, ambient = wave, specular = wave, shininess = 2 * x } })
+    end
+    scene:add(glint.box { min = { -2, 2, 1 }, max = { 2, 2.1, 3 }, material = glint.material { diffuse = 0.2, transmission = { x / 4, 0.5, 0.2 } } })
+    return scene
+  end)
   compare("bumps", function(x) return with(x, { mirror = x / 5, fresnel = true, bump = wave }) end)
   compare("holes", function(x) return with(x, { mirror = x / 5, opacity = wave }) end)
 end
@@ -203,11 +212,15 @@ function tests.patterns_against_differences()
       for key, value in pairs(fields(x)) do
         list[key] = type(value) == "function" and glint.pattern(value) or value
       end
-      list.floor = nil
+      list.floor, list.mesh = nil, nil
       local floor = glint.pattern(function(p) return 0.4 + 0.3 * glint.sin(x * p.x) end)
       local scene = scene_of(glint.point_light { position = { 2, 4, 3 }, shadows = false },
         { material = glint.material(list), ambient = 0.1, background = 0.2 })
       scene:add(glint.plane { point = { 0, 0, -3 }, normal = { 0, 0, 1 }, material = glint.material { diffuse = fields(x).floor and floor or 0.4 } })
+      if fields(x).mesh then
+        scene:add(glint.sphere_mesh { center = { 1, 0, 2 }, radius = 0.6, segments = 9, shading = "gouraud", material = glint.material(list) })
+        scene:add(glint.sphere_mesh { center = { -1, 0, 2 }, radius = 0.6, segments = 9, shading = "flat", material = glint.material(list) })
+      end
       return scene
     end
     local image = render(make(glint.variable("p", at)), "d:p")
@@ -238,6 +251,9 @@ function tests.patterns_against_differences()
   end)
   compare("whole parts", function(x)
     return { diffuse = function(p) return 0.1 * x + 0.01 * (x // (2 + p.x)) + 0.01 * ((p.y + 2) // x) end }
+  end)
+  compare("corners", function(x)
+    return { mesh = true, diffuse = function(p) return 0.4 + 0.3 * glint.sin(x * p.y) end, shininess = function(p) return 9 + x * p.x end }
   end)
   compare("specular", function(x) return { specular = function(p) return 0.4 + 0.3 * glint.sin(x * p.y) end } end)
   compare("shininess", function(x) return { shininess = function(p) return 20 + 10 * glint.sin(x * p.y) end } end)
@@ -390,6 +406,21 @@ function tests.what_moves_against_differences()
     scene.camera.eye = { x, 2, 8 }
     return scene
   end, 0.4)
+  local function sheet(shading, material)
+    return glint.mesh { vertices = { { -3, -1, 1 }, { 3, -1, 1.5 }, { 2, 3, 0.5 }, { -2, 3, 1 } }, faces = { { 1, 2, 3 }, { 1, 3, 4 } },
+      normals = shading == "gouraud" and { { -0.5, 0.1, 1 }, { 0.6, 0, 1 }, { 0, 0.7, 1 }, { -0.2, 0, 1 } } or nil, shading = shading,
+      material = material }
+  end
+  for _, shading in ipairs { "flat", "gouraud" } do
+    compare(shading .. " faces that mirror, seen in glass, with a depth cue", function(x)
+      local scene = with(x, sheet(shading, mirror(0.4)), glint.sphere { center = { 0, 0.5, 4 }, radius = 0.5, material = glass })
+      scene.depth_cue = { near = 3, far = 14, color = 0.3 }
+      return scene
+    end, 0.3)
+    compare(shading .. " faces in a mirror that moves", function(x)
+      return with(0, sheet(shading, mirror(0)), glint.sphere { center = { x, 0.5, 3 }, radius = 0.6, material = mirror(0.7) })
+    end, 0.3)
+  end
   compare("an area light in mirrors", function(x)
     local scene = with(0.1, glint.sphere { center = { x, 0.5, 3 }, radius = 0.5, material = mirror(0.8) })
     scene:add(glint.sphere_light { position = { -2, 4, 3 }, radius = 0.4, samples = 4, shadows = false, intensity = 0.3 })
@@ -551,7 +582,7 @@ function tests.bits()
   local file = assert(io.open(script, "w"))
   file:write [[
 local glint = require "glint"
-local P = glint.params { x = 2.5, s = 20 }
+local P = glint.params { x = 2.5, s = 20, meshes = true }
 local lamp = glint.point_light { position = { P.x, 4, 3 } }
 local soft = glint.disk_light { position = { -3, 5, 2 }, normal = { 3, -5, -2 }, radius = 0.5, intensity = 0.3 }
 local shiny = glint.material { diffuse = { 0.7, 0.2, 0.1 }, specular = 0.5, shininess = P.s }
@@ -559,6 +590,11 @@ local scene = glint.scene { camera = glint.camera { eye = { 0, 2, 8 }, at = { 0,
   glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0.5, mirror = 0.1 } },
   glint.sphere { center = { 0, 0, 0 }, radius = 1, material = shiny },
   glint.sphere { center = { 2, P.s / 100, 0 }, radius = 0.5, material = glint.material { diffuse = 0, transmission = 0.9, fresnel = true } } }
+if P.meshes then
+  scene:add(glint.mesh { vertices = { { -3, -0.5, 0 }, { -1.6, -0.5, 1 }, { -1.6, 0.5, 1 }, { -3, 0.5, 0 } }, faces = { { 1, 2, 3, 4 } },
+    normals = { { -1, 0, 1 }, { 0, 0, 1 }, { 0, 1, 1 }, { -1, 1, 1 } }, shading = "gouraud", material = shiny })
+  scene:add(glint.mesh { vertices = { { 1.6, 0.5, 0 }, { 2.6, 0.5, 1 }, { 2.6, 1.2, 1 } }, faces = { { 1, 2, 3 } }, shading = "flat", material = shiny })
+end
 return glint.animation { scene = scene, frames = 9, width = 100, height = 60, frame = function(_, n)
   lamp.position = { P.x + (n > 5 and 1 or 0), 4, 3 }
   shiny.shininess = P.s * (n > 7 and 2 or 1)
@@ -594,7 +630,7 @@ end }
       same(isa, "d_x")
     end
   end
-  local pipe = io.popen(("%s/glint %s -f 1 --passes d:x,d:s -o %s/e_%%d.png --json"):format(BUILD, script, folder))
+  local pipe = io.popen(("%s/glint %s -f 1 -D meshes=false --passes d:x,d:s -o %s/e_%%d.png --json"):format(BUILD, script, folder))
   local event = pipe:read "a"
   pipe:close()
   local share = tonumber(event:match '"shifted":([%d.e-]+)')

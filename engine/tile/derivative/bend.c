@@ -76,17 +76,35 @@ static void curve_solid(const glint_solid *solid, const glint_prim *prim, const 
 }
 
 /// The slopes of the shares of a triangle's corners, and the shares, where they are wanted.
-static void find_shares(const glint_prim *prim, const double gradient[3], const double at[3], double out[3])
+static void find_shares_of(const double f[3], const double g[3], const double gradient[3], const double at[3], double out[3])
 {
     const double size = vec_dot(gradient, gradient);
-    double f[3], g[3], x[3];
-    vec_sub(f, prim->corner[1], prim->corner[0]);
-    vec_sub(g, prim->corner[2], prim->corner[0]);
+    double x[3];
     vec_cross(x, at, g);
     out[1] = vec_dot(x, gradient) / size;
     vec_cross(x, f, at);
     out[2] = vec_dot(x, gradient) / size;
     out[0] = -(out[1] + out[2]);
+}
+
+static void find_shares(const glint_prim *prim, const double gradient[3], const double at[3], double out[3])
+{
+    double f[3], g[3];
+    vec_sub(f, prim->corner[1], prim->corner[0]);
+    vec_sub(g, prim->corner[2], prim->corner[0]);
+    find_shares_of(f, g, gradient, at, out);
+}
+
+void glint_bend_shares(double scale, const glint_prim *prim, const double at[3], double out[3])
+{
+    double f[3], g[3], gradient[3], scaled[3];
+    vec_sub(f, prim->corner[1], prim->corner[0]);
+    vec_sub(g, prim->corner[2], prim->corner[0]);
+    vec_scale(f, f, scale);
+    vec_scale(g, g, scale);
+    vec_scale(scaled, at, scale);
+    vec_cross(gradient, f, g);
+    find_shares_of(f, g, gradient, scaled, out);
 }
 
 /// Of a triangle whose normals are those between its corners.
@@ -234,6 +252,19 @@ static bool bend_ray(const glint_batch *batch, const glint_plan *plan, size_t in
     return moves;
 }
 
+/// A face or vertex, which stays where it is: it is seen from another eye.
+static bool bend_site(const glint_plan *plan, const glint_derivative_view *view, const double point[3], const double eye[3],
+                      glint_bend *out)
+{
+    double way[3];
+    vec_sub(way, plan->camera.eye, point);
+    const double length = sqrt(vec_dot(way, way)), along = vec_dot(view->eye, eye);
+    *out = (glint_bend) { .point = { 0 } };
+    for (int c = 0; c < 3; c++) // see view_of in tile/vertex.c
+        out->eye[c] = plan->camera.orthographic || !(length > 0) ? -view->forward[c] : (view->eye[c] - along * eye[c]) / length;
+    return view->moves;
+}
+
 bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
                        const glint_derivative_points *points, glint_bend *out)
 {
@@ -250,6 +281,8 @@ bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, si
         hit.normal[c] = points->normal[c][i % GLINT_GROUP];
         eye[c] = points->eye[c][i % GLINT_GROUP];
     }
+    if (glint_derives_sites(tile))
+        return bend_site(plan, &d->view, hit.point, eye, out);
     if (!tile->batch)
         bend_view(tile, plan, &d->view, i, eye, &hit, out);
     else if (!bend_ray(tile->batch, plan, index, i, eye, &hit, out) && !part->moves)

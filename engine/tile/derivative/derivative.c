@@ -269,12 +269,13 @@ static void note_shadows(glint_tile *tile, const glint_plan_light *light, uint32
 static void derive_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t row, uint32_t slot)
 {
     const glint_plan_light *light = &frame->plan->lights[row];
+    const uint16_t *sampled = frame->plan->runs[GLINT_STAGE_VERTEX] ? tile->at.sampled : tile->at.hits;
     const uint16_t *lit = tile->at.light[slot].lit;
     const uint16_t *open = light->shadows ? tile->at.light[slot].open : lit;
     const bool shift = light->shadows && moves(frame->plan->derivatives, light->source);
     const glint_derivative_source source = source_of(tile, light);
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        const unsigned hits = tile->at.hits[g] & tile->active[g], above = hits ? lit[g] & hits : 0;
+        const unsigned hits = sampled[g] & tile->active[g], above = hits ? lit[g] & hits : 0;
         const unsigned reached = above ? open[g] & above : 0;
         const unsigned dimmed = reached && light->shadows && frame->plan->dims ? glint_tile_dim_lanes(tile, g) : 0;
         if (shift)
@@ -345,7 +346,7 @@ static void begin_light(glint_tile *tile, const glint_tile_frame *frame, uint32_
     for (uint32_t i = g * GLINT_GROUP; i < (g + 1) * GLINT_GROUP; i++)
         for (int c = 0; c < 3; c++)
             tile->derivative->light[c][i] =
-                glint_has_lane(tile->at.hits, i)
+                glint_has_lane(tile->at.hits, i) && !glint_derives_sites(tile)
                     ? frame->plan->derivatives->of[0].materials[tile->surface.material[i]].ambient[c].value *
                           ambient_plane(tile, frame->plan, i, c)
                     : 0;
@@ -381,7 +382,7 @@ static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
     if (frame->plan->derivatives->repaints)
         glint_derivative_repaint(tile, frame);
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        if (frame->plan->derivatives->everywhere)
+        if (frame->plan->derivatives->everywhere && !glint_derives_sites(tile))
             begin_group(tile, frame, g);
         if (tile->at.hits[g])
             gather_points(tile, frame, g);

@@ -44,6 +44,9 @@ static inline bool glint_derivatives_weigh(const glint_plan_derivatives *all)
     return all->bends || all->weighs || all->fades;
 }
 
+/// Whether a tile's samples are faces and vertices.
+static inline bool glint_derives_sites(const glint_tile *tile) { return tile->owner; }
+
 /// Whether the slopes of a tile read how much light there is: where rays left surfaces, and where what the eye sees fades.
 static inline bool glint_derivatives_read_light(const glint_tile *tile, const glint_plan *plan)
 {
@@ -72,5 +75,8 @@ bool glint_derive_fade_fits(glint_derivative_work *work, const glint_plan *plan)
 /// bend.c: by derivative number `index`. False: nothing moves it.
 bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
                        const glint_derivative_points *points, glint_bend *out);
+
+/// The shares that a triangle's corners have of a way from the first of them, but for the one that is the first's at its own place.
+void glint_bend_shares(double scale, const glint_prim *prim, const double at[3], double out[3]);
 
 #endif
