@@ -5,7 +5,10 @@ CC       ?= cc
 AR       ?= ar
 CFLAGS   ?= -O2 -g
 KERNEL_CFLAGS ?= -O3
-LUA      ?= lua5.4
+# As Debian, FreeBSD and OpenBSD name it.
+LUA_NAMES := lua5.4 lua-5.4 lua54
+LUA      ?= $(shell for name in $(LUA_NAMES); do command -v $$name >/dev/null && echo $$name && break; done)
+LUA_PACKAGE := $(shell for name in $(LUA_NAMES); do pkg-config --exists $$name 2>/dev/null && echo $$name && break; done)
 comma    := ,
 
 PREFIX   ?= /usr/local
@@ -33,11 +36,17 @@ TARGET := $(shell $(CC) -dumpmachine)
 FEATURES := $(if $(and $(PORTABLE),$(findstring linux,$(TARGET))),-D_XOPEN_SOURCE=700 -DMAP_ANONYMOUS=0x20,-D_GNU_SOURCE)
 STRICT := -std=c11 $(FEATURES) $(WARN) -fPIC -fvisibility=hidden -ffp-contract=off -fno-math-errno
 
-# What linkers call by other names: ELF's here, Apple's there (these were never tried).
+# What linkers and other tools call by other names: ELF's here, Apple's there; tests/machines/systems.sh forges TARGET.
+LINUX  := $(findstring linux,$(TARGET))
 MACOS  := $(findstring darwin,$(TARGET))
 LINK_NEEDED  := $(if $(MACOS),-Wl$(comma)-dead_strip_dylibs,-Wl$(comma)--as-needed)
 LINK_COMMAND := $(if $(MACOS),,-Wl$(comma)-E)
 LINK_MODULE  := $(if $(MACOS),-bundle -undefined dynamic_lookup,-shared)
+LINK_SHARED   = $(if $(MACOS),-dynamiclib -Wl$(comma)-install_name$(comma)$(libdir)/$(SONAME) -Wl$(comma)-exported_symbols_list,-shared \
+                  -Wl$(comma)-soname$(comma)$(SONAME) $(if $(LINUX),-Wl$(comma)-z$(comma)defs) -Wl$(comma)--version-script)
+LIB_DL       := $(if $(LINUX),-ldl)
+STRIP_DEBUG  := $(if $(MACOS),-S,--strip-debug)
+STRIP_LOCAL  := $(if $(MACOS),-S -x,--strip-unneeded)
 
 have = $(shell pkg-config --exists $(1) 2>/dev/null && echo yes)
 PACKAGES := libpng zlib libxxhash
@@ -70,9 +79,10 @@ ifeq ($(if $(PORTABLE),,$(call have,libseccomp)),yes)
   DEFINES += -DGLINT_HAVE_SECCOMP
 endif
 
-# Checks at run time, for all but the kernels, which read and write where they are told and are timed to the instruction. A
-# sanitizer has its own.
+# Checks at run time, for all but the kernels, which read and write where they are told and are timed to the instruction: they are
+# plain also where the compiler or a package's flags harden by default. A sanitizer has its own.
 OPTIMIZED := $(filter -O1 -O2 -O3 -Os -Og,$(CFLAGS))
+PLAIN := -fno-stack-protector -U_FORTIFY_SOURCE
 ifndef SANITIZE
   HARDEN      := -fstack-protector-strong $(if $(OPTIMIZED),-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
   HARDEN_LINK := $(if $(MACOS),,-Wl,-z,relro -Wl,-z,now)
@@ -95,8 +105,8 @@ HERE := -ffile-prefix-map="$(CURDIR)"=.
 
 COMPILE := $(HERE) -I. -I$(BUILD) $(DEFINES) $(shell pkg-config --cflags $(PACKAGES) 2>/dev/null) $(CPPFLAGS) \
            $(filter-out $(UNWANTED),$(CFLAGS)) $(STRICT) $(SAN_FLAGS) -pthread
-LUA_CFLAGS := $(shell pkg-config --cflags lua5.4 2>/dev/null)
-LUA_LIBS   := $(shell pkg-config --libs lua5.4 2>/dev/null)
+LUA_CFLAGS := $(shell pkg-config --cflags $(LUA_PACKAGE) 2>/dev/null)
+LUA_LIBS   := $(shell pkg-config --libs $(LUA_PACKAGE) 2>/dev/null)
 LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(FONT_LIBS) $(SIXEL_LIBS) $(EXR_LIBS) -lm -pthread
 TEST_LIBS  := $(shell pkg-config --libs cmocka 2>/dev/null) $(if $(call have,mpfr),$(shell pkg-config --libs mpfr))
 LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(LINK_NEEDED)
@@ -106,7 +116,7 @@ LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(LINK_NEEDED)
 ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/stages/*/*.c engine/tile/*/*.c))
 BINDINGS_SRC := $(sort $(wildcard bindings/*/*.c))
 # The instruction sets of this machine; KERNELS=avx2 compiles that alone, in a quarter of the time, for work on a kernel.
-KERNELS := generic $(if $(PORTABLE),,$(if $(findstring x86_64,$(TARGET)),sse2 avx2 avx512))
+KERNELS := generic $(if $(PORTABLE),,$(if $(filter x86_64-% amd64-%,$(TARGET)),sse2 avx2 avx512))
 ENGINE_SRC   := $(filter-out engine/stages/simd/isa_%,$(ENGINE_SRC)) $(KERNELS:%=engine/stages/simd/isa_%.c)
 ENGINE_OBJ   := $(ENGINE_SRC:%.c=$(BUILD)/%.o)
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
@@ -159,11 +169,11 @@ $(BINDINGS_OBJ): | $(CARRIED)
 $(BUILD)/%.o: %.c $(BUILD)/flags | need
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(COMPILE) $(if $(filter $(KERNEL_OBJ),$@),,$(HARDEN)) $(ISA) $(OWN) -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(COMPILE) $(if $(filter $(KERNEL_OBJ),$@),$(PLAIN),$(HARDEN)) $(ISA) $(OWN) -MMD -MP -c $< -o $@
 
 $(BUILD)/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
-	$(Q)$(CC) $(LINK) $(LINK_COMMAND) $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) $(COMMAND_LIBS) -ldl -o $@
+	$(Q)$(CC) $(LINK) $(LINK_COMMAND) $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) $(COMMAND_LIBS) $(LIB_DL) -o $@
 
 $(BUILD)/glint.so: $(MODULE_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
@@ -176,8 +186,10 @@ $(BUILD)/libglint.a: $(ENGINE_OBJ)
 
 # The shared library: its version of the ABI is in its name (what that promises: engine/README.md), its symbols are those of
 # glint.h. The kernels' objects are the static library's; they have nothing that is seen.
-SHARED     := libglint.so.$(VERSION)
-SONAME     := libglint.so.$(if $(filter 0.%,$(VERSION)),$(basename $(VERSION)),$(firstword $(subst ., ,$(VERSION))))
+ABI        := $(if $(filter 0.%,$(VERSION)),$(basename $(VERSION)),$(firstword $(subst ., ,$(VERSION))))
+shared_name = $(if $(MACOS),libglint$(1:%=.%).dylib,libglint.so$(1:%=.%))
+SHARED     := $(call shared_name,$(VERSION))
+SONAME     := $(call shared_name,$(ABI))
 SHARED_OBJ := $(KERNEL_OBJ) $(patsubst $(BUILD)/%,$(BUILD)/shared/%,$(filter-out $(KERNEL_OBJ),$(ENGINE_OBJ)))
 
 $(BUILD)/shared/%.o: %.c $(BUILD)/flags | need
@@ -185,18 +197,18 @@ $(BUILD)/shared/%.o: %.c $(BUILD)/flags | need
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(HARDEN) $(OWN) -fvisibility=default -fno-semantic-interposition -MMD -MP -c $< -o $@
 
+# A version script; of Apple's linker a list of names.
 $(BUILD)/libglint.map: engine/glint.h
 	@mkdir -p $(@D)
-	@{ echo '$(SONAME:libglint.so.%=GLINT_%) {'; echo '  global:'; \
-	    sed -nE '/^(typedef|static|#|\/\/)/d; s/^[a-z].*[ *](glint_[a-z0-9_]+)\(.*/    \1;/p' $< | sort -u; \
-	    echo '  local: *;'; echo '};'; } > $@
+	@sed -nE '/^(typedef|static|#|\/\/)/d; s/^[a-z].*[ *](glint_[a-z0-9_]+)\(.*/\1/p' $< | sort -u | $(if $(MACOS),sed 's/^/_/', \
+	    { echo 'GLINT_$(ABI) {'; echo '  global:'; sed 's/.*/    &;/'; echo '  local: *;'; echo '};'; }) > $@
 
 $(BUILD)/$(SHARED): $(SHARED_OBJ) $(BUILD)/libglint.map
 	$(call say,LINK)
-	$(Q)$(CC) $(LINK) -shared -Wl,-soname,$(SONAME) -Wl,--version-script=$(BUILD)/libglint.map -Wl,-z,defs $(SHARED_OBJ) $(LIBS) -o $@
+	$(Q)$(CC) $(LINK) $(LINK_SHARED),$(BUILD)/libglint.map $(SHARED_OBJ) $(LIBS) -o $@
 
 .PHONY: shared
-shared: $(BUILD)/$(SHARED) ## the shared library build/libglint.so.$(VERSION)
+shared: $(BUILD)/$(SHARED) ## the shared library, build/libglint.so.VERSION
 
 # Other flags or libraries than last time: everything is compiled again.
 $(BUILD)/flags: FORCE
@@ -231,7 +243,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
 SCRIPTED := $(wildcard tests/lua/test_*.lua tests/hard/*.lua tests/lua/check_*.lua \
-              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects faults films gallery golden inputs install kills memory parts povray python readme untrusted warnings watch)))
+              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects faults films gallery golden inputs install kills memory parts povray python readme untrusted warnings watch)) tests/machines/systems.sh)
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -374,14 +386,14 @@ $(addprefix $(BUILD)/tests/fuzz/fuzz_,data scene pattern): $(BUILD)/tests/fuzz/f
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(LUA_CFLAGS) -DDRIVER='"tests/fuzz/$*.lua"' $< -fsanitize=fuzzer $(LINK) $(MODULE_OBJ) $(BUILD)/libglint.a \
-	    $(LUA_LIBS) $(LIBS) -ldl -o $@
+	    $(LUA_LIBS) $(LIBS) $(LIB_DL) -o $@
 
 $(BUILD)/tests/fuzz/fuzz_command: $(filter-out $(BUILD)/bindings/command/main.o,$(BINDINGS_OBJ))
 $(BUILD)/tests/fuzz/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/file.c tests/fuzz/fuzz.h $(BUILD)/libglint.a
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(LUA_CFLAGS) $(filter %.c,$^) -fsanitize=fuzzer $(LINK) $(filter %.o,$^) $(BUILD)/libglint.a \
-	    $(if $(filter %.o,$^),$(LUA_LIBS) $(COMMAND_LIBS) -ldl) $(LIBS) -o $@
+	    $(if $(filter %.o,$^),$(LUA_LIBS) $(COMMAND_LIBS) $(LIB_DL)) $(LIBS) -o $@
 
 .PHONY: san-run
 san-run: tests
@@ -485,7 +497,7 @@ bench-effects-run: all
 $(BUILD)/without/%/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	@$(MAKE) --no-print-directory -s BUILD=$(@D) WITHOUT=$* $(@D)/libglint.a
 	$(call say,LINK)
-	$(Q)$(CC) $(LINK) $(LINK_COMMAND) $(BINDINGS_OBJ) $(@D)/libglint.a $(LUA_LIBS) $(LIBS) $(COMMAND_LIBS) -ldl -o $@
+	$(Q)$(CC) $(LINK) $(LINK_COMMAND) $(BINDINGS_OBJ) $(@D)/libglint.a $(LUA_LIBS) $(LIBS) $(COMMAND_LIBS) $(LIB_DL) -o $@
 
 # ---- Use ----
 
@@ -505,7 +517,8 @@ demo-run: all
 # The modules in Lua: gr.lua is `require "gr"`, glint/xyz.lua is `require "glint.xyz"`.
 LUA_LIBRARY := $(patsubst scripts/lib/%,%,$(sort $(wildcard scripts/lib/*.lua scripts/lib/*/*.lua)))
 
-# The pages by topic, and the examples with what they read. Links from page to page follow the names they have there.
+# The pages by topic, and the examples with what they read. Links from page to page follow the names they have there; those to
+# pages of the sources alone are words.
 docdir   := $(datadir)/doc/glint
 examples := $(datadir)/glint/examples
 PAGES    := README.md:README.md lua-and-command.md:bindings/README.md engine.md:engine/README.md examples.md:scripts/README.md \
@@ -522,8 +535,9 @@ pages: $(BUILD)/doc/data.md ## the installed manual by topic, in build/doc/
 	@for page in $(PAGES); do \
 	    sed -e 's|](\(\.\./\)*bindings/README\.md|](lua-and-command.md|g' -e 's|](engine/README\.md|](engine.md|g' \
 	        -e 's|](scripts/README\.md|](examples.md|g' -e 's|](farm/README\.md|](farms.md|g' \
-	        -e 's|](\.github/CHANGELOG\.md|](CHANGELOG.md|g' -e 's,](\([a-z_]*\.\(lua\|c\)\)),](../../glint/examples/\1),g' \
-	        -e 's|!\[[^]]*\]([^)]*)||g' "$${page#*:}" > "$(BUILD)/doc/$${page%%:*}" || exit 1; done
+	        -e 's|](\.github/CHANGELOG\.md|](CHANGELOG.md|g' -e 's,](\([a-z_]*\.lua\)),](../../glint/examples/\1),g' \
+	        -e 's,](\([a-z_]*\.c\)),](../../glint/examples/\1),g' \
+	        -e 's|!\[[^]]*\]([^)]*)||g' -e 's|\[\([^]]*\)\]([a-z./]*/[A-Z]*\.md)|\1|g' "$${page#*:}" > "$(BUILD)/doc/$${page%%:*}" || exit 1; done
 
 # What is installed: mode, from, to.
 define INSTALLED
@@ -555,14 +569,17 @@ $(BUILD)/completion/%: $(BUILD)/glint
 	@mkdir -p $(@D)
 	@$(BUILD)/glint completion $* > $@
 
-# What debuggers need is four fifths of the command and the archive; STRIP=: leaves it there.
+# What debuggers need is nine tenths of the command and the archive; STRIP=: leaves it there.
 STRIP ?= strip
+# put MODE FROM TO; of install(1) what all systems have.
+PUT   := put() { echo "  INSTALL	$$3"; mkdir -p "$$(dirname "$$3")" && install -m "$$1" "$$2" "$$3"; }
+LINKS  = $(SONAME) $(call shared_name,)
 install: all shared pages $(BUILD)/glint.pc $(addprefix $(BUILD)/completion/,bash zsh fish) ## PREFIX=/usr/local, DESTDIR=
-	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
-	    [ -z "$$mode" ] || { echo "  INSTALL	$(DESTDIR)$$to"; install -D -m "$$mode" "$$from" "$(DESTDIR)$$to" || exit 1; \
-	    case $$to in *.a) $(STRIP) --strip-debug "$(DESTDIR)$$to" ;; \
-	    */bin/glint | *.so | *.so.*) $(STRIP) --strip-unneeded "$(DESTDIR)$$to" ;; esac || exit 1; }; done
-	@for link in $(SONAME) libglint.so; do ln -sf $(SHARED) "$(DESTDIR)$(libdir)/$$link" || exit 1; done
+	@$(PUT); printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
+	    [ -n "$$mode" ] || continue; put "$$mode" "$$from" "$(DESTDIR)$$to" || exit 1; \
+	    case $$to in *.a) $(STRIP) $(STRIP_DEBUG) "$(DESTDIR)$$to" ;; \
+	    */bin/glint | *.so | *.so.* | *.dylib) $(STRIP) $(STRIP_LOCAL) "$(DESTDIR)$$to" ;; esac || exit 1; done
+	@for link in $(LINKS); do ln -sf $(SHARED) "$(DESTDIR)$(libdir)/$$link" || exit 1; done
 
 # What a release publishes, of what git has committed: the archive of the sources, whose bytes depend on the commit alone, and the
 # rock that holds it.
@@ -579,14 +596,13 @@ dist: ## build/dist: the archive of the sources, and with zip the rock that hold
 
 # The rockspec's: LuaRocks copies what it finds in its folders.
 install-rock: all
-	install -D -m 755 $(BUILD)/glint $(bindir)/glint
-	install -D -m 755 $(BUILD)/glint.so $(luadir)/glint.so
-	@for module in $(LUA_LIBRARY); do install -D -m 644 scripts/lib/$$module $(luasharedir)/$$module || exit 1; done
+	@$(PUT); put 755 $(BUILD)/glint $(bindir)/glint && put 755 $(BUILD)/glint.so $(luadir)/glint.so && \
+	    for module in $(LUA_LIBRARY); do put 644 scripts/lib/$$module $(luasharedir)/$$module || exit 1; done
 
 uninstall: ## removes what install has put there, with the same PREFIX and DESTDIR
 	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
 	    [ -z "$$mode" ] || { echo "  REMOVE	$(DESTDIR)$$to"; rm -f "$(DESTDIR)$$to" || exit 1; }; done
-	@rm -f $(addprefix "$(DESTDIR)$(libdir)"/,$(SONAME) libglint.so)
+	@rm -f $(addprefix "$(DESTDIR)$(libdir)"/,$(LINKS))
 	@for folder in $(examples)/data $(examples)/farm $(examples) $(datadir)/glint $(docdir) $(luasharedir)/glint $(luasharedir)/gr; do \
 	    if [ -d "$(DESTDIR)$$folder" ]; then rmdir "$(DESTDIR)$$folder" || exit 1; fi; done
 

@@ -9,7 +9,7 @@ set -eu
 # package  how to tell that it is there
 build_required='
 pkg-config      command:pkg-config
-liblua5.4-dev   module:lua5.4
+liblua5.4-dev   module:lua5.4|lua-5.4|lua54
 libpng-dev      module:libpng
 zlib1g-dev      module:zlib
 libxxhash-dev   module:libxxhash
@@ -26,7 +26,7 @@ libseccomp-dev  module:libseccomp
 test_required='
 libcmocka-dev   module:cmocka
 libmpfr-dev     module:mpfr
-lua5.4          command:lua5.4
+lua5.4          command:lua5.4|lua-5.4|lua54
 '
 test_optional='
 python3-numpy   file:/usr/lib/python3/dist-packages/numpy
@@ -44,7 +44,7 @@ zip             command:zip
 '
 
 bench_required='
-lua5.4          command:lua5.4
+lua5.4          command:lua5.4|lua-5.4|lua54
 '
 bench_optional='
 libembree-dev   header:embree3/rtcore.h
@@ -71,12 +71,22 @@ fuzz_required='
 clang           command:clang
 '
 
+# any NAME|NAME... COMMAND...    Whether the command knows one of the names.
+any() {
+    names=$1
+    shift
+    for name in $(echo "$names" | tr '|' ' '); do
+        "$@" "$name" >/dev/null 2>&1 && return 0
+    done
+    return 1
+}
+
 present() {
     case $1 in
     file:*) [ -e "${1#file:}" ] ;;
-    command:*) command -v "${1#command:}" >/dev/null 2>&1 ;;
+    command:*) any "${1#command:}" command -v ;;
     header:*) echo "#include <${1#header:}>" | "${CC:-cc}" -E - >/dev/null 2>&1 ;;
-    module:*) pkg-config --exists "${1#module:}" 2>/dev/null ;;
+    module:*) any "${1#module:}" pkg-config --exists ;;
     esac
 }
 

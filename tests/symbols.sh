@@ -1,5 +1,6 @@
 #!/bin/sh
-# symbols.sh MODULE OBJECT...: each kernel object defines one global, its table; the module exports one function.
+# symbols.sh MODULE OBJECT...: each kernel object defines one global, its table, and has no hardening; the module exports one
+# function.
 # A shared inline function compiled for AVX and picked by the linker would run on a processor without it.
 set -u
 module=$1
@@ -14,6 +15,12 @@ for object in "$@"; do
     fi
     if nm "$object" | grep -qE ' [wWuvV] [^_]'; then
         echo "$object: weak symbols:" "$(nm "$object" | grep -E ' [wWuvV] ')"
+        bad=1
+    fi
+done
+for object in "$@"; do # timed to the instruction: no checks at run time, whatever the flags of a package add
+    if nm -u "$object" | grep -q '_chk'; then
+        echo "$object: hardened:" $(nm -u "$object" | grep '_chk')
         bad=1
     fi
 done

@@ -55,7 +55,7 @@ for module in scripts/lib/glint/*.lua; do
     done
 done
 check "links of the pages lead somewhere" eval '(cd "$prefix/share/doc/glint" &&
-    for link in $(grep -ohE "\]\([a-zA-Z_/.-]+\.(md|lua|c)" lua-and-command.md examples.md farms.md python.md particles.md | cut -c 3-); do
+    for link in $(grep -ohE "\]\([a-zA-Z_/.-]+\.(md|lua|c)" *.md | cut -c 3-); do
         [ -e "$link" ] || { echo "$link"; exit 1; }; done)'
 echo 'gr.render(gr.node "root", "empty", 8, 6, { 0, 0, 9 }, { 0, 0, -1 }, { 0, 1, 0 }, 50, { 0, 0, 0 }, {})' >"$work/gr.lua"
 check "the dialect" env -C "$work" "$prefix/bin/glint" --dialect gr gr.lua
@@ -116,6 +116,15 @@ for file in bin/glint lib/libglint.so lib/lua/5.4/glint.so; do
     check "$file is stripped and hardened" eval \
         '! readelf -SW "$prefix/$file" | grep -q debug_info && readelf -dW "$prefix/$file" | grep -qE "BIND_NOW|NOW" &&
          readelf -lW "$prefix/$file" | grep -q GNU_RELRO && nm -D "$prefix/$file" | grep -q __stack_chk_fail'
+done
+# Optimized, calls of the C library that are told how large their memory is are checked against it.
+fortified() { nm -D "$1" | grep -qE ' U __(mem|str|v?s?n?f?printf|f?read|f?gets)[a-z]*_chk'; }
+for file in bin/glint lib/libglint.so lib/lua/5.4/glint.so; do
+    if grep -q -- '-O[1-3s]' "$build/flags"; then
+        check "$file is fortified" fortified "$prefix/$file"
+    else
+        skip "$file is not fortified: that takes an optimized build"
+    fi
 done
 cat >"$work/same.lua" <<'END'
 local glint = require "glint"
