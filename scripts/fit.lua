@@ -49,10 +49,12 @@ local function read(image, pass)
   return list
 end
 
+local HEAD = 100 -- bytes of a .pfm before its pixels, at most
+
 -- The same of a .pfm in colour, whose rows begin at the bottom.
 local function read_pfm(path, size)
   local file = assert(io.open(path, "rb"))
-  local text = file:read "a"
+  local text = file:read(HEAD + 12 * size.width * size.height) or "" -- of what is longer no more
   file:close()
   local width, height, scale, first = text:match "^PF%s+(%d+)%s+(%d+)%s+([-+.%deE]+)%s()"
   width, height = tonumber(width), tonumber(height)

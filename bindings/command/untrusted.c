@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #define FILES_LIMIT 4 // what is written in all, in times of what one file may have
+#define BLOCK 4096 // what a few bytes take on a disk
 #define TICK_MS 50.0 // between two looks at what was written, where much is left
 #define SHORTEST_TICK_MS 1.0
 #define FASTEST 8e6 // bytes that are written in a millisecond: of memory to memory, by several threads
@@ -62,18 +63,20 @@ typedef struct watched {
     double tick_ms; // to the next look at them
 } watched;
 
-// The bytes that the child has passed to write(), 0 where the kernel does not count them.
+// What the child has passed to write() may take on a disk, where each call may end in a block of its own. 0 where the kernel
+// does not count.
 static uint64_t bytes_written(pid_t child)
 {
     char path[40], line[80];
-    unsigned long long bytes = 0;
+    unsigned long long bytes = 0, calls = 0;
     snprintf(path, sizeof path, "/proc/%ld/io", (long)child);
     FILE *file = fopen(path, "re");
-    while (file && fgets(line, sizeof line, file) && sscanf(line, "wchar: %llu", &bytes) != 1)
-        continue;
+    while (file && fgets(line, sizeof line, file))
+        if (sscanf(line, "wchar: %llu", &bytes) != 1)
+            (void)sscanf(line, "syscw: %llu", &calls);
     if (file)
         fclose(file);
-    return bytes;
+    return bytes + BLOCK * calls;
 }
 
 static uint64_t most_bytes(void)
@@ -131,7 +134,7 @@ static int judge(int status, const watched *child, const cli_options *options, c
     if (child->ended_by == LATE || number == SIGXCPU)
         snprintf(message, sizeof message, "--untrusted: the script took longer than %g s", options->untrusted_s);
     else if (child->ended_by == TOO_MUCH)
-        snprintf(message, sizeof message, "--untrusted: the script wrote more than %llu bytes",
+        snprintf(message, sizeof message, "--untrusted: the script wrote more than %llu bytes, where each write counts 4096 more",
                  (unsigned long long)child->most);
     else if (child->ended_by == BY_SIGNAL && number)
         *signal_number = child->number; // whether it heard the signal or was killed for not hearing it

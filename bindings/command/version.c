@@ -7,32 +7,33 @@
 
 static const char *const KERNELS[] = { "ref", "generic", "sse2", "avx2", "avx512" };
 
-// Whether the build has a kernel and the machine runs it.
-static bool has_kernel(const char *name)
+// The kernels that the build has and the machine runs. False: out of memory, which would pass for a kernel that is not there.
+static bool print_kernels(FILE *out)
 {
-    glint_renderer_desc desc = glint_renderer_desc_default();
-    glint_renderer *renderer = NULL;
-    desc.isa = name;
-    desc.threads = 1;
-    const bool has = glint_renderer_create(&desc, &renderer, NULL) == GLINT_OK;
-    glint_renderer_destroy(renderer);
-    return has;
-}
-
-static void print_kernels(FILE *out)
-{
-    glint_renderer_desc desc = glint_renderer_desc_default();
     glint_renderer *renderer = NULL;
     glint_error error = { .message = "none" };
     fputs("kernels:", out);
-    for (size_t i = 0; i < sizeof KERNELS / sizeof *KERNELS; i++)
-        if (has_kernel(KERNELS[i]))
-            fprintf(out, " %s", KERNELS[i]);
-    if (glint_renderer_create(&desc, &renderer, &error) == GLINT_OK)
+    for (size_t i = 0; i < sizeof KERNELS / sizeof *KERNELS; i++) {
+        glint_renderer_desc desc = glint_renderer_desc_default();
+        desc.isa = KERNELS[i];
+        desc.threads = 1;
+        const glint_status status = glint_renderer_create(&desc, &renderer, NULL);
+        if (status == GLINT_ERR_NOMEM)
+            return false;
+        if (status != GLINT_OK)
+            continue;
+        fprintf(out, " %s", KERNELS[i]);
+        glint_renderer_destroy(renderer);
+    }
+    glint_renderer_desc desc = glint_renderer_desc_default();
+    const glint_status status = glint_renderer_create(&desc, &renderer, &error);
+    if (status == GLINT_OK) {
         fprintf(out, "; in use: %s, %d threads\n", glint_renderer_isa(renderer), glint_renderer_threads(renderer));
-    else
+        glint_renderer_destroy(renderer);
+    } else {
         fprintf(out, "; %s\n", error.message);
-    glint_renderer_destroy(renderer);
+    }
+    return status != GLINT_ERR_NOMEM;
 }
 
 int cli_version(const cli_options *options, cli_output *output)
@@ -51,7 +52,10 @@ int cli_version(const cli_options *options, cli_output *output)
 #else
     fputs("--untrusted: no, this build has no libseccomp\n", out);
 #endif
-    print_kernels(out);
+    if (!print_kernels(out)) {
+        cli_report_error(output, 0, GLINTL_EXIT_FAILED, "out of memory");
+        return GLINTL_EXIT_FAILED;
+    }
     fprintf(
         out,
         "limits: %d pixels a side, 2147483647 a frame, 65536 samples a pixel, %d frames a job, 2^30 spheres a shape\n",

@@ -205,7 +205,9 @@ glint_status glint_exr_encode(const glint_image *image, bool half, const glint_t
         result = result ? result : last;
     }
     const bool appended = !result && glint_bytes_append(out, file->bytes.data, file->bytes.size);
-    const bool no_memory = file->no_memory || result == EXR_ERR_OUT_OF_MEMORY || (!result && !appended);
+    const bool no_memory = file->no_memory || result == EXR_ERR_OUT_OF_MEMORY ||
+                           result == EXR_ERR_CORRUPT_CHUNK || // zlib's, when it gets no memory to compress in
+                           (!result && !appended);
     free(file->bytes.data);
     free(file);
     if (appended)

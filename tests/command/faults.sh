@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every allocation of fifteen commands fails in its turn, and every write: a run succeeds with the same bytes, or says why
+# Every allocation of some twenty commands fails in its turn, and every write: a run succeeds with the same bytes, or says why
 # it did not and leaves nothing half done (tests/faults/every.c). Each seventh here, STEP=1 takes all (make soak). Prints TAP.
 set -u
 root=$PWD
@@ -71,6 +71,22 @@ local P = glint.params { glow = 1.5 }
 S.lamp.intensity, S.lamp.position = P.glow, { P.glow, 8, 4 }
 return S.scene
 LUA
+cat >mesh.lua <<'LUA'
+local glint, S = require "glint", require "helper"
+S.scene:add(glint.mesh { file = "m.obj", material = glint.material { diffuse = glint.texture { file = "f_1.png" } } })
+return glint.animation { scene = S.scene, frames = 1, width = 16, height = 12, frame = function() end }
+LUA
+printf 'v 0 0 3\nv 1 0 3\nv 0 1 3\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n' >m.obj
+cat >room.lua <<'LUA'
+local ball = gr.nh_sphere("ball", { 0, 0, -4 }, 1)
+ball:set_material(gr.material({ 0.7, 1, 0.7 }, { 0.5, 0.7, 0.5 }, 25))
+local root = gr.node "root"
+root:add_child(ball)
+gr.render(root, "out/room.png", 8, 6, { 0, 0, 5 }, { 0, 0, -1 }, { 0, 1, 0 }, 50, { 0.3, 0.3, 0.3 },
+  { gr.light({ 3, 4, 5 }, { 1, 1, 1 }, { 1, 0, 0 }) })
+LUA
+for part in 1 2; do "$glint" film.lua -f 1 -o part.png --region $((8 * part - 8)),0,8,12 -t 1 -q && mv part_0001.png part_$part.png; done
+"$glint" open.lua -o o.png -t 1 -q
 "$glint" film.lua -o 'f_%d.png' -t 1 -q && "$glint" film.lua -o 'g_%d.png' -D tall=9 -t 1 -q || exit 1
 
 # each KIND NAME ARGUMENT...
@@ -97,6 +113,18 @@ for kind in alloc write; do
     each $kind "a page" sheet f_1.png f_2.png f_3.png -o out/sheet.html -q
     each $kind "assemble" assemble f_1.png f_2.png f_3.png -o out/film.apng -q
 done
+for kind in alloc write; do
+    each $kind "a sheet's colour bar" sheet f_1.png f_2.png -o out/sheet.png -q --colorbar magma,0,1,T
+    each $kind "parts joined" join part_1.png part_2.png -o out/joined.png -q
+    each $kind "a mesh, a texture" mesh.lua -o out/m.png -t 1 -q
+    each $kind "the dialect" --dialect gr room.lua -t 1 -q
+    each $kind "an array" film.lua -f 1 -o out/n.npy -t 1 -q
+    if "$glint" --version --verbose | grep -q '\.exr'; then
+        each $kind "channels" film.lua -f 1 -o out/c.exr --passes depth -t 1 -q
+    fi
+done
+each alloc "kernels" --version --verbose
+each alloc "a shutter again" reproduce o.png open.lua
 each write "reproduce" reproduce f_2.png film.lua
 each alloc "a loop, and pictures that it saves" loop.lua -t 1 -q
 each alloc "reproduce" reproduce f_2.png film.lua

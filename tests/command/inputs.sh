@@ -107,6 +107,9 @@ for bad in pipe folder /dev/zero huge.xyz; do
 done
 refused "a picture for a script" "good.png: a script expected, got a PNG .glint reproduce good.png renders it again" good.png
 refused "reproduce with a pipe for a script" "pipe: a script expected, got a pipe" reproduce good.png pipe
+for bad in device.pfm folder huge.pfm good.pfm; do
+    refused "fit.lua to $bad" "$bad: a colour .pfm of 160 x 120 expected" "$root/scripts/fit.lua" -D file="$bad" -o none
+done
 limited timeout $seconds "$glint" - --size 8x8 -o piped.png -q <scene.lua >out 2>err && "$glint" compare piped.png good.png >out
 result $? "a script from standard input"
 refused "which is there once" "standard input is for render and explain" - --sweep a=1:2:2 -o none

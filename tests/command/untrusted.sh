@@ -259,6 +259,10 @@ LUA
 (ulimit -f 200 && exec "$glint" --untrusted=20 scene.lua -o much/%06d.pfm -q) >out 2>err </dev/null
 [ $? -eq 2 ] && grep -q "the script wrote more than 819200 bytes" err && [ "$(find much | wc -l)" -lt 50000 ]
 result $? "bytes in all: four times what one file may have"
+rm -r much && mkdir much # pictures of some 70 bytes, each of which takes a block of the disk
+(ulimit -f 200 && exec "$glint" --untrusted=20 scene.lua -o much/%06d.png --size 4x4 -q) >out 2>err </dev/null
+[ $? -eq 2 ] && grep -q "the script wrote more than 819200 bytes" err && [ "$(find much -type f | wc -l)" -lt 1000 ]
+result $? "many small files: $(find much -type f | wc -l), $(cat err)"
 rm -r much && mkdir much # pictures of 1.2 MB, as fast as they come
 (ulimit -f 20000 && exec "$glint" --untrusted=60 scene.lua -o much/%06d.pfm --size 320x320 -q) >out 2>err </dev/null
 [ $? -eq 2 ] && grep -q "the script wrote more than 81920000 bytes" err
