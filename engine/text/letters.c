@@ -241,14 +241,15 @@ void glint_letters_draw(glint_letters *letters, double em, const char *text, siz
 
 static char library_name[48];
 
+// The library's own version; without memory to start it in, the one that this was compiled with.
 static void name_library(void)
 {
     FT_Library library;
-    FT_Int version[3];
-    if (FT_Init_FreeType(&library))
-        return;
-    FT_Library_Version(library, &version[0], &version[1], &version[2]);
-    FT_Done_FreeType(library);
+    FT_Int version[3] = { FREETYPE_MAJOR, FREETYPE_MINOR, FREETYPE_PATCH };
+    if (FT_Init_FreeType(&library) == 0) {
+        FT_Library_Version(library, &version[0], &version[1], &version[2]);
+        FT_Done_FreeType(library);
+    }
     snprintf(library_name, sizeof library_name, "FreeType %d.%d.%d", version[0], version[1], version[2]);
 }
 
@@ -256,7 +257,7 @@ const char *glint_letters_library(void)
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, name_library);
-    return *library_name ? library_name : NULL;
+    return library_name;
 }
 
 #else
