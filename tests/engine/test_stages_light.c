@@ -66,7 +66,8 @@ static void make_camera(glint_camera_args *camera, int precision, bool odd)
 static void place_light(glint_light_args *args, double distance)
 {
     args->directional = one_in(3);
-    args->scale = args->directional ? 1 : ldexp(1, -ilogb(distance));
+    const bool near = fabs(log2(distance)) < 16 && one_in(2); // 1 is near enough
+    args->scale = args->directional || near ? 1 : ldexp(1, -ilogb(distance));
     args->attenuated = one_in(2);
     args->highlights = !one_in(4);
     random_unit(args->position);

@@ -93,9 +93,11 @@ static inline void resolve_mixed(const samples_frame *frame, uint32_t g)
                                               [GLINT_TERM_SPECULAR] = { sum[3][0], sum[3][1], sum[3][2] } };
     const group_sums sums = { to, 0 };
     group_terms terms;
+    light_colors colors;
+    colors.of = NULL;
     memset(sum, 0, sizeof sum);
     for (uint32_t k = 0; k < frame->count; k++)
-        shade_sums(&frame->sample[k], g, &sums);
+        shade_sums(&frame->sample[k], g, &colors, &sums);
     for (int term = 0; term < GLINT_TERM_LOCAL; term++)
         for (int c = 0; c < 3; c++)
             for (int i = 0; i < GLINT_GROUP; i += VD)

@@ -87,9 +87,9 @@ INNER vf R(lit_log2)(const R(lit_whole) * whole, int i)
     return f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR));
 }
 
-/// The float part, of light or sample s.
-INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * whole, uint32_t s, size_t at,
-                           vf *brightest)
+/// The float part, of light or sample s. `shiny`, a constant: `some` may have lanes.
+INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * whole, const bool shiny, uint32_t s,
+                           size_t at, vf *brightest)
 {
 #pragma GCC unroll 4
     for (int i = 0; i < GLINT_GROUP; i += VF) {
@@ -106,7 +106,7 @@ INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * w
             f_store(light->attenuation[s] + at + i, f_select(lit, w, f_set(0)));
         }
         if (light->highlights) {
-            const vf log2 = R(lit_log2)(whole, i);
+            const vf log2 = shiny ? R(lit_log2)(whole, i) : f_set(GLINT_NO_SPECULAR);
             f_store(light->log2_specular[s] + at + i, log2);
             *brightest = f_max(*brightest, log2);
         }
@@ -149,7 +149,7 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     light->lit[0][place.g] = (uint16_t)whole.lit;
     call->walk.turned = call->walk.turned || whole.back;
     if (whole.lit)
-        R(finish_whole)(light, &whole, 0, at, brightest);
+        R(finish_whole)(light, &whole, true, 0, at, brightest);
     return true;
 }
 

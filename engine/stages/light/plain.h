@@ -33,27 +33,53 @@ INNER void R(plain_highlight)(const R(lit_point) * surface, const R(plain_part) 
     whole->some |= rm_bits(some) << i;
 }
 
-/// One light's real part of VR points, of which those in `open` may be lit.
-INNER void R(plain_lanes)(const glint_light_args *args, const R(lit_point) * surface, const R(plain_part) * part,
-                          const double *position, int j, unsigned open, R(lit_whole) * whole)
+/// Where lights are, as it is found in light_plain; each has code of its own.
+enum { R(PLAIN_AFAR), R(PLAIN_NEAR), R(PLAIN_SCALED) };
+
+/// One light's real part of a group, of which the lanes in `open` may be lit. `kind` and `shiny`, whether the group has highlights, are
+/// constants.
+INNER void R(plain_parts)(const glint_light_args *args, const int kind, const bool shiny, const R(lit_point) * surface,
+                          const R(plain_part) * parts, const double *position, unsigned open, R(lit_whole) * whole)
 {
-    vr l[3];
-    for (int k = 0; k < 3; k++) {
-        l[k] = r_set(position[k]);
-        if (!args->directional)
-            l[k] = (l[k] - part->point[k]) * r_set(args->scale);
+    unsigned lit = 0;
+    whole->some = 0;
+#pragma GCC unroll 8
+    for (int j = 0; j < LIT_PARTS; j++) {
+        const R(plain_part) *part = &parts[j];
+        vr l[3];
+        for (int k = 0; k < 3; k++) {
+            l[k] = r_set(position[k]);
+            if (kind != R(PLAIN_AFAR))
+                l[k] = l[k] - part->point[k];
+            if (kind == R(PLAIN_SCALED))
+                l[k] = l[k] * r_set(args->scale);
+        }
+        const vr nl = whole->nl[j] = DOT(part->normal, l);
+        const unsigned ahead = rm_bits(r_lt(r_set(0), nl));
+        whole->l2[j] = DOT(l, l);
+        lit |= ahead << j * VR;
+        if (!shiny)
+            continue;
+        whole->num[j] = whole->den[j] = r_set(0);
+        R(plain_highlight)(surface, part, l, j, ahead & open >> j * VR, whole);
     }
-    whole->nl[j] = DOT(part->normal, l);
-    whole->l2[j] = DOT(l, l);
-    whole->num[j] = whole->den[j] = r_set(0);
-    const unsigned lit = rm_bits(r_lt(r_set(0), whole->nl[j])) & open >> j * VR & ((1u << VR) - 1);
-    whole->lit |= lit << j * VR;
-    R(plain_highlight)(surface, part, l, j, lit, whole);
+    whole->lit = lit & open;
 }
 
-/// All lights on one group, whose lanes in `open` may be lit.
-static void R(plain_group)(const glint_light_args *args, R(group_place) place, unsigned open, R(lit_point) * surface,
-                           vf brightest[])
+/// Light s on one group.
+INNER void R(plain_light)(const glint_light_args *args, const int kind, const bool shiny, R(group_place) place,
+                          const R(lit_point) * surface, const R(plain_part) * parts, unsigned open, uint32_t s, vf *brightest)
+{
+    R(lit_whole) whole;
+    R(plain_parts)(args, kind, shiny, surface, parts, args->place[0] ? args->place[s] : args->position, open, &whole);
+    args->lit[s][place.g] = (uint16_t)whole.lit;
+    if (whole.lit)
+        R(finish_whole)(args, &whole, shiny, s, (size_t)place.g * GLINT_GROUP, brightest);
+}
+
+/// All lights on one group, whose lanes in `open` may be lit. `kind` is a constant.
+INNER void R(plain_group)(const glint_light_args *args, const int kind, R(group_place) place, unsigned open,
+                          R(lit_point) * surface, vf brightest[])
 {
     const size_t at = (size_t)place.g * GLINT_GROUP;
     const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
@@ -69,18 +95,15 @@ static void R(plain_group)(const glint_light_args *args, R(group_place) place, u
         part[j].nv = -DOT(part[j].normal, part[j].direction);
     }
     for (uint32_t s = 0; s < args->sample_count; s++) {
-        R(lit_whole) whole;
-        whole.lit = whole.some = 0;
-#pragma GCC unroll 8
-        for (int j = 0; j < LIT_PARTS; j++)
-            R(plain_lanes)(args, surface, &part[j], args->place[0] ? args->place[s] : args->position, j, open, &whole);
-        args->lit[s][place.g] = (uint16_t)whole.lit;
-        if (whole.lit)
-            R(finish_whole)(args, &whole, s, at, &brightest[s]);
+        if (surface->phong | surface->blinn)
+            R(plain_light)(args, kind, true, place, surface, part, open, s, &brightest[s]);
+        else
+            R(plain_light)(args, kind, false, place, surface, part, open, s, &brightest[s]);
     }
 }
 
-static void R(light_plain)(const glint_light_args *args)
+/// All groups. `kind` is a constant.
+INNER void R(plain_groups)(const glint_light_args *args, const int kind)
 {
     R(lit_point) surface = { 0 };
     vf brightest[GLINT_LIGHT_CHUNK];
@@ -91,10 +114,20 @@ static void R(light_plain)(const glint_light_args *args)
         for (uint32_t s = 0; s < args->sample_count && !open; s++)
             args->lit[s][place.g] = 0;
         if (open)
-            R(plain_group)(args, place, open, &surface, brightest);
+            R(plain_group)(args, kind, place, open, &surface, brightest);
     }
     for (uint32_t s = 0; s < args->sample_count; s++)
         R(say_brightest)(args, s, brightest[s]);
+}
+
+static void R(light_plain)(const glint_light_args *args)
+{
+    if (args->directional)
+        R(plain_groups)(args, R(PLAIN_AFAR));
+    else if ((real)args->scale == 1)
+        R(plain_groups)(args, R(PLAIN_NEAR));
+    else
+        R(plain_groups)(args, R(PLAIN_SCALED));
 }
 
 // ---- Any light ----

@@ -8,6 +8,7 @@ typedef struct light_factors {
     _Alignas(64) float diffuse[GLINT_LIGHT_CHUNK][GLINT_GROUP], specular[GLINT_LIGHT_CHUNK][GLINT_GROUP];
     _Alignas(64) float grazing[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< of microfacets: specular times Fresnel's rise
     const glint_shade_light *light[GLINT_LIGHT_CHUNK];
+    uint8_t number[GLINT_LIGHT_CHUNK]; ///< of the light
     uint32_t count;
     uint32_t shiny; ///< a bit for each whose specular factors are not all 0
 } light_factors;

@@ -46,6 +46,7 @@ INNER void add_factors(const glint_shade_args *args, const glint_shade_material 
         }
         factors->shiny |= (uint32_t)shiny << slot;
         factors->light[slot] = light;
+        factors->number[slot] = (uint8_t)k;
         begun = true;
     }
 }
@@ -105,55 +106,107 @@ static inline uint32_t sharing_lights(const light_factors *factors, int term)
     return term ? factors->shiny : (1u << factors->count) - 1;
 }
 
-/// Adds one light's shares to a group's sums in double.
-static inline void add_share(const light_share *share, vd total[GLINT_GROUP / VD])
+/// kd Id, ks Is and what microfacets add to these, of a material and all lights of a call: groups after each other often show one.
+typedef struct light_colors {
+    const glint_shade_args *of; ///< NULL: none yet
+    const glint_shade_material *material;
+    float color[2][GLINT_LIGHT_CHUNK][3], rise[GLINT_LIGHT_CHUNK][3]; ///< color: by term
+} light_colors;
+
+/// specular: its highlights are wanted.
+static inline void color_lights(const glint_shade_args *args, const glint_shade_material *material, bool specular,
+                                light_colors *colors)
 {
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vd next[VF / VD];
-        f_split(share_lanes(share, i), next);
-        for (int h = 0; h < VF / VD; h++)
-            total[i / VD + h] = total[i / VD + h] + next[h];
+    if (colors->of == args && colors->material == material)
+        return;
+    colors->of = args;
+    colors->material = material;
+    for (uint32_t k = 0; k < args->light_count; k++) {
+        const glint_shade_light *light = &args->lights[k];
+        for (int c = 0; c < 3; c++)
+            colors->color[0][k][c] = share_color(material->diffuse[c], light->diffuse[c]);
+        for (int c = 0; specular && c < 3; c++)
+            colors->color[1][k][c] = share_color(material->specular[c], light->specular[c]);
+        for (int c = 0; has_facets(material) && c < 3; c++)
+            colors->rise[k][c] = share_color(material->grazing[c], light->specular[c]);
     }
 }
 
-/// The sum of all lights' shares, in double, rounded. Of one light it is the share itself.
-static inline void add_shares(const light_factors *factors, const glint_shade_material *material, int term, int c,
-                              float sum[GLINT_GROUP])
+/// One vector of the share of the light in `slot`, in each channel. `facets` is a constant.
+INNER void share_channels(const light_factors *factors, const light_colors *colors, const bool facets, int term, uint32_t slot,
+                          int i, vf share[3])
 {
-    vd total[GLINT_GROUP / VD];
-    uint32_t lights = sharing_lights(factors, term);
-    light_share share = share_of(factors, material, lights ? (uint32_t)__builtin_ctz(lights) : 0, term, c);
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const vf first = share_lanes(&share, i);
-        f_store(sum + i, first);
-        f_split(first, &total[i / VD]);
-    }
-    lights &= lights - 1;
-    if (!lights)
-        return;
+    const uint32_t number = factors->number[slot];
+    const vf factor = f_load((term ? factors->specular : factors->diffuse)[slot] + i);
+    for (int c = 0; c < 3; c++)
+        share[c] = factor * f_set(colors->color[term][number][c]);
+    for (int c = 0; facets && term && c < 3; c++)
+        share[c] = share[c] + f_load(factors->grazing[slot] + i) * f_set(colors->rise[number][c]);
+}
+
+/// Adds the shares of `lights`, a bit a slot, in their order and in double. `facets` is a constant.
+INNER void add_lights(const light_factors *factors, const light_colors *colors, const bool facets, int term, uint32_t lights,
+                      int i, vd total[3][VF / VD])
+{
     for (; lights; lights &= lights - 1) {
-        share = share_of(factors, material, (uint32_t)__builtin_ctz(lights), term, c);
-        add_share(&share, total);
+        vf share[3];
+        share_channels(factors, colors, facets, term, (uint32_t)__builtin_ctz(lights), i, share);
+        for (int c = 0; c < 3; c++) {
+            vd next[VF / VD];
+            f_split(share[c], next);
+            for (int h = 0; h < VF / VD; h++)
+                total[c][h] = total[c][h] + next[h];
+        }
     }
-    for (int i = 0; i < GLINT_GROUP; i += VD)
-        d_store_f(sum + i, total[i / VD]);
+}
+
+/// One vector of the sum of all lights' shares, rounded. Of one light it is the share itself. `facets` is a constant.
+INNER void sum_lights(const light_factors *factors, const light_colors *colors, const bool facets, int term, int i, vf sum[3])
+{
+    const uint32_t lights = sharing_lights(factors, term), more = lights & (lights - 1);
+    vd total[3][VF / VD];
+    share_channels(factors, colors, facets, term, lights ? (uint32_t)__builtin_ctz(lights) : 0, i, sum);
+    if (!more)
+        return;
+    for (int c = 0; c < 3; c++)
+        f_split(sum[c], total[c]);
+    add_lights(factors, colors, facets, term, more, i, total);
+    for (int c = 0; c < 3; c++)
+        sum[c] = f_join(total[c][0], total[c][1]);
+}
+
+/// The same of a material, as bare powers or microfacets have it.
+static inline void light_material(const glint_shade_material *material, const light_factors *factors, const light_colors *colors,
+                                  int term, int i, vf sum[3])
+{
+    if (has_facets(material))
+        sum_lights(factors, colors, true, term, i, sum);
+    else
+        sum_lights(factors, colors, false, term, i, sum);
+}
+
+/// How many of the terms of a material lights make: none, diffuse, and specular as well.
+static inline int lit_kinds(const light_factors *factors, bool specular)
+{
+    return factors->count == 0 ? 0 : specular ? 2 : 1;
 }
 
 /// One material's lanes of a group whose terms are final: no sums in memory.
-static inline void shade_direct(const glint_shade_material *material, bool specular, const light_factors *factors,
-                                unsigned lanes, group_terms *terms)
+static __attribute__((noinline)) void shade_direct(const glint_shade_args *args, const glint_shade_material *material,
+                                                   bool specular, const light_factors *factors, light_colors *colors,
+                                                   unsigned lanes, group_terms *terms)
 {
-    _Alignas(64) float light[2][3][GLINT_GROUP];
-    const int kinds = factors->count == 0 ? 0 : specular ? 2 : 1;
-    for (int k = 0; k < kinds; k++)
-        for (int c = 0; c < 3; c++)
-            add_shares(factors, material, k, c, light[k][c]);
+    const int kinds = lit_kinds(factors, specular);
+    color_lights(args, material, specular, colors);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const fm mask = fm_from_bits(lanes >> i & ((1u << VF) - 1));
-        for (int c = 0; c < 3; c++) {
+        for (int c = 0; c < 3; c++)
             put_float(terms->term[GLINT_TERM_AMBIENT][c] + i, mask, f_set((float)material->ambient[c]));
-            for (int k = 0; k < kinds; k++)
-                put_float(terms->term[GLINT_TERM_DIFFUSE + k][c] + i, mask, f_load(light[k][c] + i));
+        for (int k = 0; k < kinds; k++) {
+            vf light[3];
+            light_material(material, factors, colors, k, i, light);
+            for (int c = 0; c < 3; c++)
+                put_float(terms->term[GLINT_TERM_DIFFUSE + k][c] + i, mask, light[c]);
         }
     }
 }
@@ -178,27 +231,35 @@ typedef struct group_sums {
     size_t at;
 } group_sums;
 
+/// One vector of a material's lanes, added to the sums of a term. `whole`, a constant: all lanes.
+static inline void add_term(const glint_shade_material *material, const light_factors *factors, const light_colors *colors,
+                            const group_sums *to, bool whole, unsigned lanes, int term, int i)
+{
+    const uint32_t lights = sharing_lights(factors, term);
+    vd total[3][VF / VD];
+    for (int c = 0; c < 3; c++)
+        for (int h = 0; h < VF / VD; h++)
+            total[c][h] = d_load(to->sum[GLINT_TERM_DIFFUSE + term][c] + to->at + i + h * VD);
+    if (has_facets(material))
+        add_lights(factors, colors, true, term, lights, i, total);
+    else
+        add_lights(factors, colors, false, term, lights, i, total);
+    for (int c = 0; c < 3; c++)
+        for (int h = 0; h < VF / VD; h++)
+            put_where(to->sum[GLINT_TERM_DIFFUSE + term][c] + to->at, i + h * VD, whole, lanes, total[c][h]);
+}
+
 /// One material's lanes of a group, added to sums. `whole`, a constant: all lanes.
 static inline void add_material(const glint_shade_args *args, const glint_shade_material *material, bool specular,
-                                const light_factors *factors, const group_sums *to, bool whole, unsigned lanes)
+                                const light_factors *factors, light_colors *colors, const group_sums *to, bool whole, unsigned lanes)
 {
-    for (int c = 0; c < 3; c++) {
-        for (int i = 0; args->first && i < GLINT_GROUP; i += VD)
+    for (int c = 0; args->first && c < 3; c++)
+        for (int i = 0; i < GLINT_GROUP; i += VD)
             add_where(to->sum[GLINT_TERM_AMBIENT][c] + to->at, i, whole, lanes, d_set(material->ambient[c]));
-        for (int kind = 0; kind < (specular && factors->shiny ? 2 : 1); kind++) {
-            double *sum = to->sum[GLINT_TERM_DIFFUSE + kind][c] + to->at;
-            uint32_t lights = sharing_lights(factors, kind);
-            vd total[GLINT_GROUP / VD];
-            for (int i = 0; lights && i < GLINT_GROUP; i += VD)
-                total[i / VD] = d_load(sum + i);
-            for (uint32_t left = lights; left; left &= left - 1) {
-                const light_share share = share_of(factors, material, (uint32_t)__builtin_ctz(left), kind, c);
-                add_share(&share, total);
-            }
-            for (int i = 0; lights && i < GLINT_GROUP; i += VD)
-                put_where(sum, i, whole, lanes, total[i / VD]);
-        }
-    }
+    color_lights(args, material, specular, colors);
+    for (int term = 0; factors->count && term < (specular && factors->shiny ? 2 : 1); term++)
+        for (int i = 0; i < GLINT_GROUP; i += VF)
+            add_term(material, factors, colors, to, whole, lanes, term, i);
 }
 
 /// The material of the first of some lanes of a group, and which of them have it.
@@ -213,7 +274,8 @@ static inline const glint_shade_material *material_of(const glint_shade_args *ar
 #include "engine/stages/shade/planes.h"
 
 /// A group of one sample, added to sums.
-static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, uint32_t g, const group_sums *to)
+static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, uint32_t g, light_colors *colors,
+                                                 const group_sums *to)
 {
     const unsigned hits = args->hits[g], empty = args->active[g] & ~hits;
     light_factors factors;
@@ -230,9 +292,9 @@ static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, u
         }
         find_factors(args, material, specular, g, &factors);
         if (lanes == 0xffff)
-            add_material(args, material, specular, &factors, to, true, lanes);
+            add_material(args, material, specular, &factors, colors, to, true, lanes);
         else
-            add_material(args, material, specular, &factors, to, false, lanes);
+            add_material(args, material, specular, &factors, colors, to, false, lanes);
     }
 }
 
@@ -285,6 +347,21 @@ INNER void shade_whole(const glint_shade_args *args, const glint_shade_material 
         }
 }
 
+/// The same of any material and any lights.
+static __attribute__((noinline)) void shade_lit(const glint_shade_args *args, const glint_shade_material *material,
+                                                bool specular, const light_factors *factors, light_colors *colors, size_t at)
+{
+    const int kinds = lit_kinds(factors, specular);
+    color_lights(args, material, specular, colors);
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vf light[2][3] = { { f_set(0), f_set(0), f_set(0) }, { f_set(0), f_set(0), f_set(0) } };
+        for (int k = 0; k < kinds; k++)
+            light_material(material, factors, colors, k, i, light[k]);
+        for (int c = 0; c < 3; c++) // as finish_terms adds them
+            f_store(args->beauty[c] + at + i, (f_set(0 + (float)material->ambient[c]) + light[0][c]) + light[1][c]);
+    }
+}
+
 /// A group without any surface.
 static inline void store_background(const glint_shade_args *args, const float background[3], size_t at)
 {
@@ -302,7 +379,7 @@ static inline bool wants_terms(const glint_shade_args *args)
 }
 
 /// A group whose terms are final; `simple` is a constant.
-INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t g, plane_numbers *numbers)
+INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t g, plane_numbers *numbers, light_colors *colors)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
     unsigned left = args->hits[g];
@@ -336,6 +413,10 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
                 shade_whole(args, material, specular, &factors, at);
             return;
         }
+        if (!planes && simple && lanes == 0xffff) {
+            shade_lit(args, material, specular, &factors, colors, at);
+            return;
+        }
         if (!begun)
             start_direct(args, g, &terms);
         begun = true;
@@ -344,7 +425,7 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
         else if (planes)
             shade_planes(args, material, specular, &factors, at, lanes, &terms);
         else
-            shade_direct(material, specular, &factors, lanes, &terms);
+            shade_direct(args, material, specular, &factors, colors, lanes, &terms);
     }
     if (!begun)
         start_direct(args, g, &terms);
@@ -355,16 +436,18 @@ static void shade(const glint_shade_args *args)
 {
     const bool simple = !wants_terms(args);
     plane_numbers numbers = { 0 };
+    light_colors colors;
+    colors.of = NULL;
     if (GLINT_WITH_SAMPLES && args->sum[0][0]) {
         for (uint32_t g = 0; g < args->group_count; g++) {
             const group_sums sums = { args->sum, (size_t)g * GLINT_GROUP };
-            shade_sums(args, g, &sums);
+            shade_sums(args, g, &colors, &sums);
         }
     } else if (simple) {
         for (uint32_t g = 0; g < args->group_count; g++)
-            shade_group(args, true, g, &numbers);
+            shade_group(args, true, g, &numbers, &colors);
     } else {
         for (uint32_t g = 0; g < args->group_count; g++)
-            shade_group(args, false, g, &numbers);
+            shade_group(args, false, g, &numbers, &colors);
     }
 }
