@@ -279,13 +279,6 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
     } while (from < lights);
 }
 
-double glint_batch_light_of(const glint_batch *batch, const glint_plan *plan, int c, uint32_t ray)
-{
-    if (glint_batch_has_sample(batch, ray))
-        return glint_batch_found(batch, c, batch->sample[ray]);
-    return plan->environment ? batch->shown[c][ray] : plan->background[c];
-}
-
 // ---- From a surface on ----
 
 static double index_of(const glint_plan *plan, uint32_t medium)
@@ -306,11 +299,11 @@ void glint_batch_sides(const glint_batch *batch, const glint_tile *tile, const g
     const glint_media *media = media_of(batch, tile, frame, i);
     const uint32_t material = tile->surface.material[i], medium = medium_of(tile, frame, i);
     const bool back = glint_has_lane(tile->hit.back, i);
-    glint_media beyond = *media;
     sides[0] = glint_media_top(media);
     sides[1] = material;
     if (!frame->plan->bouncing[material].transmits)
         return;
+    glint_media beyond = *media;
     glint_media_cross(&beyond, medium, back);
     sides[0] = glint_media_before(media, medium, back);
     sides[1] = glint_media_top(&beyond);
@@ -388,11 +381,10 @@ void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, con
 }
 
 /// What is totally reflected has not crossed the surface: all of it goes on, of which a mirror sends its part already.
-/// What lets nothing through is a mirror alone.
 static void total_share(const glint_bounce_material *m, double share[3])
 {
     for (int c = 0; c < 3; c++)
-        share[c] = m->transmits ? fmax(1 - m->mirror[c], 0) : 0;
+        share[c] = m->mirror[c] < 1 ? 1 - m->mirror[c] : 0;
 }
 
 /// Points a ray along `way`, and weighs it.
@@ -413,13 +405,18 @@ void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const g
     const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &room);
     const bool back = glint_has_lane(tile->hit.back, i), total = glint_has_lane(batch->total, i);
     const double mirrored = m->fresnel ? glint_real_at(batch->reflectance, precision, i) : 1;
-    double rest[3];
-    total_share(m, rest);
     glint_batch_start_ray(batch, tile, frame, i, mirror);
     mirror->depth++;
-    *through = *mirror;
+    if (m->transmits)
+        *through = *mirror;
     send(mirror, batch->reflected, precision, i, m->mirror, mirrored);
     mirror->inward = back;
+    if (!m->transmits) { // a mirror alone
+        through->weight[0] = through->weight[1] = through->weight[2] = 0;
+        return;
+    }
+    double rest[3];
+    total_share(m, rest);
     send(through, total ? batch->reflected : batch->refracted, precision, i, total ? rest : m->transmission,
          m->fresnel ? 1 - mirrored : 1);
     through->inward = total ? back : !back;

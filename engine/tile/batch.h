@@ -62,7 +62,12 @@ static inline double glint_batch_found(const glint_batch *batch, int c, uint32_t
     return light;
 }
 /// The light along ray `ray`.
-double glint_batch_light_of(const glint_batch *batch, const glint_plan *plan, int c, uint32_t ray);
+static inline double glint_batch_light_of(const glint_batch *batch, const glint_plan *plan, int c, uint32_t ray)
+{
+    if (glint_batch_has_sample(batch, ray))
+        return glint_batch_found(batch, c, batch->sample[ray]);
+    return plan->environment ? batch->shown[c][ray] : plan->background[c];
+}
 /// Where light goes on from the samples of `tile` in batch->wanted: mirrored and refracted. `tile` is the batch's own, or
 /// one that the eye sees.
 void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame);
@@ -71,7 +76,7 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
 void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                            glint_ray *ray);
 /// The mirrored and the refracted ray of sample `i`, weighed, after glint_batch_find_ways. Where batch->total is set both
-/// go the same way.
+/// go the same way. What lets nothing through: of `through` the weight alone is written, which is 0.
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        glint_ray *mirror, glint_ray *through);
 /// The medium that a ray of the batch, which is cast, went through since its last surface.

@@ -63,10 +63,14 @@ bool glint_bounce_derives(struct glint_bounce *bounce, const glint_plan *plan)
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_bounce_material *materials = frame->plan->bouncing;
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
-        if (glint_has_lane(tile->at.hits, i) &&
-            (materials[tile->surface.material[i]].mirrors || materials[tile->surface.material[i]].transmits))
-            return true;
+    uint32_t last = GLINT_MISS; // most lanes show what the lane before shows
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+            const uint32_t material = tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)];
+            if (material != last && (materials[material].mirrors || materials[material].transmits))
+                return true;
+            last = material;
+        }
     return false;
 }
 
@@ -96,7 +100,9 @@ static double total_weight(const glint_ray *ray) { return (ray->weight[0] + ray-
 /// Whether a ray must be followed; if not, what it might have brought is off the budget.
 static bool matters(struct glint_bounce *bounce, const glint_plan *plan, const glint_ray *ray)
 {
-    const double weight = fmax(ray->weight[0], fmax(ray->weight[1], ray->weight[2]));
+    double weight = ray->weight[0]; // none is NaN
+    for (int c = 1; c < 3; c++)
+        weight = ray->weight[c] > weight ? ray->weight[c] : weight;
     double *budget = &bounce->budget[ray->pixel];
     if (weight == 0)
         return false;
@@ -233,8 +239,10 @@ static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile
     for (uint32_t g = 0; g < rays->group_count; g++)
         for (unsigned left = rays->active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]];
+            const uint32_t pixel = rays->pixel[i];
             for (int c = 0; c < 3; c++)
-                to->film.sum[rays->term[i]][c][rays->pixel[i]] += rays->weight[c][i] * glint_batch_light_of(batch, plan, c, i);
+                sum[c][pixel] += rays->weight[c][i] * glint_batch_light_of(batch, plan, c, i);
         }
 }
 
