@@ -83,6 +83,7 @@ static void make_rows(const glint_tile *tile, const tile_values *values, struct 
         const float *from = values->of[v];
         for (uint32_t y = 0; from && y < tile->group_count / tile->groups_across; y++)
             for (uint32_t x = 0; x < tile->groups_across; x++, from += GLINT_GROUP)
+#pragma GCC unroll 4
                 for (uint32_t r = 0; r < 4; r++)
                     memcpy(&work->row[v][4 * y + r][4 * x], from + 4 * r, 4 * sizeof(float));
     }
@@ -94,10 +95,15 @@ static void copy_borders(const glint_tile *tile, const float *from, float *const
     for (int last = 0; last < 2; last++) {
         const uint32_t row = last ? tile->height - 1 : 0, column = last ? tile->width - 1 : 0;
         const float *across = from + glint_tile_place(tile, 0, row), *down = from + glint_tile_place(tile, column, 0);
-        for (uint32_t x = 0; x < tile->width; x += 4, across += GLINT_GROUP)
-            memcpy(edge[last] + x, across, (tile->width - x < 4 ? tile->width - x : 4) * sizeof *across);
-        for (uint32_t y = 0; y < tile->height; y++)
-            side[last][y] = down[y / 4 * tile->groups_across * GLINT_GROUP + y % 4 * 4];
+        const size_t group_row = (size_t)tile->groups_across * GLINT_GROUP;
+        const uint32_t whole = tile->width & ~3u;
+        for (uint32_t x = 0; x < whole; x += 4, across += GLINT_GROUP)
+            memcpy(edge[last] + x, across, 4 * sizeof *across);
+        if (whole < tile->width)
+            memcpy(edge[last] + whole, across, (tile->width - whole) * sizeof *across);
+        for (uint32_t y = 0; y < tile->height; y += 4, down += group_row)
+            for (uint32_t r = 0; r < 4; r++) // up to three below the image: there is room, and they are not read
+                side[last][y + r] = down[4 * r];
     }
 }
 

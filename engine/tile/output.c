@@ -4,21 +4,33 @@
 
 #include <string.h>
 
+/// A group of which the image has every pixel.
+static void store_group(const uint32_t *from, uint32_t *to, size_t stride)
+{
+    memcpy(to, from, 4 * sizeof *to);
+    memcpy(to + stride, from + 4, 4 * sizeof *to);
+    memcpy(to + 2 * stride, from + 8, 4 * sizeof *to);
+    memcpy(to + 3 * stride, from + 12, 4 * sizeof *to);
+}
+
 void glint_tile_store_plane(const glint_tile *tile, const void *groups, void *plane, int stride)
 {
     _Static_assert(sizeof(float) == sizeof(uint32_t), "numbers of planes");
+    uint32_t *const first = (uint32_t *)plane + (size_t)tile->y0 * (size_t)stride + tile->x0;
+    if (tile->width % 4 == 0 && tile->height % 4 == 0) {
+        const uint32_t *from = groups;
+        for (uint32_t y = 0; y < tile->height; y += 4)
+            for (uint32_t x = 0; x < tile->width; x += 4, from += GLINT_GROUP)
+                store_group(from, first + (size_t)y * (size_t)stride + x, (size_t)stride);
+        return;
+    }
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const uint32_t x = 4 * (g % tile->groups_across), y = 4 * (g / tile->groups_across);
         const uint32_t columns = tile->width - x < 4 ? tile->width - x : 4;
         const uint32_t rows = tile->height - y < 4 ? tile->height - y : 4;
-        uint32_t *to = (uint32_t *)plane + (size_t)(tile->y0 + y) * (size_t)stride + tile->x0 + x;
-        for (uint32_t r = 0; r < rows; r++, to += stride) {
-            const uint32_t *from = (const uint32_t *)groups + g * GLINT_GROUP + 4 * r;
-            if (columns == 4)
-                memcpy(to, from, 4 * sizeof *to);
-            else
-                memcpy(to, from, columns * sizeof *to);
-        }
+        for (uint32_t r = 0; r < rows; r++)
+            memcpy(first + (size_t)(y + r) * (size_t)stride + x, (const uint32_t *)groups + g * GLINT_GROUP + 4 * r,
+                   columns * sizeof *first);
     }
 }
 
@@ -121,23 +133,34 @@ static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_store_pass(tile, frame, GLINT_PASS_NORMAL, normal[0]);
 }
 
+/// The numbers of a group some of whose rays hit nothing, or that shows several primitives. last: that of `object`, now and before.
+static void part_ids(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, uint32_t *last, float *object, float *id)
+{
+    const uint32_t *prim = tile->at.prim + (size_t)g * GLINT_GROUP;
+    for (uint32_t lane = 0; lane < GLINT_GROUP; lane++) {
+        const bool hit = tile->at.hits[g] >> lane & 1;
+        if (hit && prim[lane] != *last) {
+            *last = prim[lane];
+            *object = (float)(glint_geometry_object(frame->plan->geometry, frame->geometry.prims[*last].id) + 1);
+        }
+        id[lane] = hit ? *object : 0;
+    }
+}
+
 static void store_object_id(const glint_tile *tile, const glint_tile_frame *frame)
 {
     float own[GLINT_TILE_SAMPLES], *id = geometry_of(tile, frame, GLINT_DIFFER_ID, own), object = 0;
     uint32_t last = GLINT_MISS;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const uint32_t *prim = tile->at.prim + (size_t)g * GLINT_GROUP;
-        const bool known = !tile->at.hits[g] || (tile->at.hits[g] == 0xffff && last != GLINT_MISS && glint_all_are(prim, last));
-        for (uint32_t lane = 0; known && lane < GLINT_GROUP; lane++)
-            id[g * GLINT_GROUP + lane] = tile->at.hits[g] ? object : 0;
-        for (uint32_t lane = 0; !known && lane < GLINT_GROUP; lane++) {
-            const bool hit = tile->at.hits[g] >> lane & 1;
-            if (hit && prim[lane] != last) {
-                last = prim[lane];
-                object = (float)(glint_geometry_object(frame->plan->geometry, frame->geometry.prims[last].id) + 1);
-            }
-            id[g * GLINT_GROUP + lane] = hit ? object : 0;
-        }
+        float *const out = id + (size_t)g * GLINT_GROUP;
+        const bool same = last != GLINT_MISS && tile->at.hits[g] == 0xffff && glint_all_are(prim, last);
+        const float shown = same ? object : 0;
+        if (same || !tile->at.hits[g])
+            for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
+                out[lane] = shown;
+        else
+            part_ids(tile, frame, g, &last, &object, out);
     }
     glint_tile_store_pass(tile, frame, GLINT_PASS_OBJECT_ID, id);
 }
