@@ -293,10 +293,11 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     tile->counts.runs[GLINT_STAGE_LIGHT] += count - 1;
 }
 
-void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light)
+void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light, bool normals)
 {
     const uint32_t slot = 0;
-    const glint_surface_args surface = surface_args(tile, frame);
+    glint_surface_args surface = surface_args(tile, frame);
+    surface.all_normals = normals;
     const glint_light_args args = glint_tile_light_args(tile, frame, light, &slot, 1);
     frame->stages->geometry[frame->plan->desc.precision].lit_surface(&surface, &args);
     bound_brightest(tile, frame, &args, &slot);

@@ -258,8 +258,8 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
 /// The points alone, of some of the lanes that are hit; all of these are balls and planes.
 void glint_tile_find_points(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *hits);
-/// The same and light number `light` of the plan, a plain one, in slot 0; without normals.
-void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light);
+/// The same and light number `light` of the plan, a plain one, in slot 0; maybe without normals, unless these are wanted.
+void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light, bool normals);
 /// One light, samples of one, or lights that are alike: light `first + slot[i]` of the plan, for each of `count` slots of the
 /// chunk. Shadows are those of one light, or of its samples.
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,

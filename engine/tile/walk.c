@@ -47,7 +47,8 @@ typedef struct walk {
     uint32_t sample;
     bool rays, points; ///< made already
     bool patterns; ///< known, or nothing in sight has any
-    bool lit; ///< points and the only light's work are made, and no normals
+    bool lit; ///< points and the only light's work are made, maybe without normals
+    bool shows; ///< its geometry is the picture's, and is stored when normals are known
 } walk;
 
 static void need_rays(glint_tile *tile, const glint_tile_frame *frame, walk *w)
@@ -104,6 +105,29 @@ static bool shows_geometry(const glint_tile *tile, const glint_tile_frame *frame
     return plan->lens && !plan->is_base ? !tile->camera.lens : !frame->base;
 }
 
+/// Whether the points and what the light does there can be found in one: of spheres, planes and one plain lamp, where
+/// normals are not needed. Where stages are timed, each runs by itself.
+static bool is_plain(const glint_tile_frame *frame, const walk *w)
+{
+    const glint_plan *plan = frame->plan;
+    return !w->points && !frame->time_stages && !plan->derivatives && !glint_pattern_needs_normals(plan) && plan->light_count == 1 &&
+           !plan->lights[0].light_samples && !plan->lights[0].is_spot && !frame->geometry.triangles &&
+           !frame->geometry.solids;
+}
+
+/// Stores the picture's geometry where this walk has it to store.
+static void store_geometry(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any)
+{
+    if (!w->shows)
+        return;
+    if (any)
+        need_points(tile, frame, w);
+    if (any && frame->plan->desc.passes >> GLINT_PASS_ALBEDO & 1)
+        find_patterns(tile, frame, w);
+    glint_tile_store_geometry(tile, frame);
+    w->shows = false;
+}
+
 /// Returns whether anything is hit.
 static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
@@ -137,13 +161,9 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     tile->at.only = tile->cached && tile->cached->only != GLINT_MISS ? &tile->cached->only : NULL;
     if (glint_tile_wants_coverage(plan))
         glint_tile_count_hits(tile, plan, w->sample);
-    if (shows_geometry(tile, frame, w)) {
-        if (any)
-            need_points(tile, frame, w);
-        if (any && plan->desc.passes >> GLINT_PASS_ALBEDO & 1)
-            find_patterns(tile, frame, w);
-        glint_tile_store_geometry(tile, frame);
-    }
+    w->shows = shows_geometry(tile, frame, w);
+    if (w->shows && !(any && is_plain(frame, w)))
+        store_geometry(tile, frame, w, any);
     return any;
 }
 
@@ -173,16 +193,6 @@ static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     }
     need_points(tile, frame, w);
     glint_tile_view(tile, frame);
-}
-
-/// Whether the points and what the light does there can be found in one: of spheres, planes and one plain lamp, where
-/// normals are not needed. Where stages are timed, each runs by itself.
-static bool is_plain(const glint_tile_frame *frame, const walk *w)
-{
-    const glint_plan *plan = frame->plan;
-    return !w->points && !frame->time_stages && !plan->derivatives && !glint_pattern_needs_normals(plan) && plan->light_count == 1 &&
-           !plan->lights[0].light_samples && !plan->lights[0].is_spot && !frame->geometry.triangles &&
-           !frame->geometry.solids;
 }
 
 /// Which lights a light's samples, or several that are alike, leave to be found: `shine` and `occlude` get their slots.
@@ -226,9 +236,11 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
     const glint_plan_light *lights = &frame->plan->lights[first];
     light_work work = find_light_work(tile, frame, w, first, slot, count);
     if (work.shining && is_plain(frame, w)) {
+        const bool normals = w->shows || frame->plan->runs[GLINT_STAGE_INDIRECT] || frame->plan->runs[GLINT_STAGE_BOUNCE];
         need_rays(tile, frame, w);
-        glint_tile_find_lit_surfaces(tile, frame, first);
+        glint_tile_find_lit_surfaces(tile, frame, first, normals);
         w->lit = true;
+        w->points = normals;
     } else {
         if (work.shining || work.occluding)
             need_points(tile, frame, w);
@@ -336,6 +348,7 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     do {
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
         find_lights(tile, frame, &w, from, count);
+        store_geometry(tile, frame, &w, any);
         if (from == 0 && any && !w.points && !w.lit) {
             glint_tile_count_stage(tile, frame, GLINT_STAGE_SURFACE, true);
             glint_tile_name_materials(tile, frame);
@@ -379,7 +392,7 @@ static void find_geometry(glint_tile *tile, const glint_tile_frame *frame)
         glint_plan_sample_offset(frame->plan->base, 0, tile->camera.offset);
     tile->camera.lens = NULL;
     glint_pattern_point(tile->pattern, tile, GLINT_WALK_EYE);
-    find_hits(tile, frame, &w);
+    store_geometry(tile, frame, &w, find_hits(tile, frame, &w));
     tile->cached = cached;
 }
 

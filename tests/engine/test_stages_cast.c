@@ -641,14 +641,17 @@ static void lit_surface_case(int precision, bool odd)
     glint_point_box box;
     const uint32_t n = make_surface_case(&c, &args, precision, odd);
     args.box = &box;
+    args.all_normals = one_in(2);
     make_lamp(&c, &light);
     for (int k = 0; k < 3; k++) {
         args.normal[k] = normal[k];
-        light.normal[k] = normal[k];
         light.direction[k] = c.direction[k];
     }
     FOR_EACH_TESTED
     {
+        if (args.all_normals)
+            output3(args.normal, "normal", real_kind(precision), n);
+        memcpy(light.normal, args.normal, sizeof args.normal);
         output3(args.point, "point", real_kind(precision), n);
         memcpy(light.point, args.point, sizeof args.point);
         ask_surface(&args, n);

@@ -1,5 +1,5 @@
-// lit_surface: surface and the light of one plain lamp, a group at a time, so that a point and its normal need not go
-// through memory. The arithmetic is theirs. Contract: stages.h.
+// lit_surface: surface and the light of one plain lamp, a group at a time, so that a point and its normal need not come
+// from memory. The arithmetic is theirs. Contract: stages.h.
 
 #define LIT_PARTS (GLINT_GROUP / VR)
 
@@ -38,6 +38,8 @@ INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args
         R(enclose)(box, p, true, rm_from_bits(0));
     const vr away = DOT(n, d), l2 = DOT(l, l);
     const rm back = r_lt(r_set(0), away);
+    for (int k = 0; surface->all_normals && k < 3; k++)
+        r_store((real *)surface->normal[k] + at + i, r_select(back, -n[k], n[k]));
     vr nl = DOT(n, l);
     nl = r_select(back, -nl, nl); // as of the normal that is turned to the viewer
     const rm ahead = r_lt(r_set(0), nl);
