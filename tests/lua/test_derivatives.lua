@@ -536,19 +536,29 @@ end
 -- A pixel that is refined has the derivative of all samples, any other that of its one.
 function tests.adaptive()
   local x = glint.variable("x", 2)
-  local scene = scene_of(glint.point_light { position = { x, 4, 3 } }, { material = glint.material { mirror = 0.5, specular = 0.5 } })
-  local mixed = render(scene, "d:x,refined", { samples = 4, adaptive = 0.1 })
-  local all, one = render(scene, "d:x", { samples = 4 }), render(scene, "d:x")
-  local count, wrong = { [0] = 0, 0 }, 0
-  for y = 0, H - 1 do
-    for column = 0, W - 1 do
-      local refined = mixed:pixel(column, y, "refined")
-      count[refined] = count[refined] + 1
-      local got, want = { mixed:pixel(column, y, "d:x") }, { (refined == 1 and all or one):pixel(column, y, "d:x") }
-      for c = 1, 3 do wrong = wrong + (got[c] ~= want[c] and 1 or 0) end
+  local function compare(what, change)
+    local scene = scene_of(glint.point_light { position = { x, 4, 3 } }, { material = glint.material { mirror = 0.5, specular = 0.5 } })
+    change(scene)
+    local mixed = render(scene, "d:x,refined", { samples = 4, adaptive = 0.1 })
+    local all, one = render(scene, "d:x", { samples = 4 }), render(scene, "d:x")
+    local count, wrong = { [0] = 0, 0 }, 0
+    for y = 0, H - 1 do
+      for column = 0, W - 1 do
+        local refined = mixed:pixel(column, y, "refined")
+        count[refined] = count[refined] + 1
+        local got, want = { mixed:pixel(column, y, "d:x") }, { (refined == 1 and all or one):pixel(column, y, "d:x") }
+        for c = 1, 3 do wrong = wrong + (got[c] ~= want[c] and 1 or 0) end
+      end
     end
+    check(count[0] > 100 and count[1] > 100 and wrong == 0, "%s: %d refined, %d not, %d numbers wrong", what, count[1], count[0], wrong)
   end
-  check(count[0] > 100 and count[1] > 100 and wrong == 0, "%d refined, %d not, %d numbers wrong", count[1], count[0], wrong)
+  compare("mirrors", function() end)
+  compare("what fades, and faces that are lit once", function(scene)
+    scene.depth_cue = { near = 4, far = 15, color = 0.3 }
+    scene.camera.eye = { x, 2, 8 }
+    scene:add(glint.sphere_mesh { center = { 1.5, 0, 2 }, radius = 0.5, segments = 8, shading = "flat" })
+    scene:add(glint.sphere_mesh { center = { -1.5, 0, 2 }, radius = 0.5, segments = 8, shading = "gouraud" })
+  end)
 end
 
 -- What else is kept of a frame is the same with derivatives and without.
