@@ -76,7 +76,7 @@ glint_status glint_geometry_check_sizes(glint_geometry *geometry, glint_error *e
             return glint_fail(error, GLINT_ERR_INVALID, "%s: radius >= %g in the world expected, got %.15g", name,
                               SIZE_LEAST, e.least);
         return glint_fail(error, GLINT_ERR_INVALID, "%s: half widths %g .. %g in the world expected, got %.15g", name,
-                          allowed, SIZE_MOST, e.least >= allowed ? e.most : e.least);
+                          e.most > SIZE_MOST ? SIZE_LEAST : allowed, SIZE_MOST, e.most > SIZE_MOST ? e.most : e.least);
     }
     return GLINT_OK;
 }

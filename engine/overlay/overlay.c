@@ -91,6 +91,14 @@ static glint_status check_unplaced(const glint_overlay_desc *desc, glint_error *
     return GLINT_OK;
 }
 
+static glint_status check_span(const char *field, const double from[3], const double to[3], int i, glint_error *error)
+{
+    if (isfinite(to[i] - from[i]))
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: ends at a finite distance expected, got %.15g to %.15g along %c", field, from[i],
+                      to[i], 'x' + i);
+}
+
 static glint_status check_box(const glint_overlay_desc *desc, glint_error *error)
 {
     const double *low = desc->box[0], *high = desc->box[1];
@@ -103,12 +111,14 @@ static glint_status check_box(const glint_overlay_desc *desc, glint_error *error
     for (int i = 0; i < 3 && !status; i++) {
         const bool is_side = high[i] > low[i];
         has_side = has_side || is_side;
-        if (high[i] < low[i] || !isfinite(high[i] - low[i]))
+        status = check_span("box", low, high, i, error);
+        if (!status && desc->has_values)
+            status = check_span("values", desc->values[0], desc->values[1], i, error);
+        if (status)
+            break;
+        if (high[i] < low[i])
             status = glint_fail(error, GLINT_ERR_INVALID, "box: its lowest and its highest corner expected, got %.15g to %.15g along %c",
                                 low[i], high[i], 'x' + i);
-        else if (desc->has_values && !isfinite(desc->values[1][i] - desc->values[0][i]))
-            status = glint_fail(error, GLINT_ERR_INVALID, "values: finite numbers expected, got %.15g to %.15g along %c",
-                                desc->values[0][i], desc->values[1][i], 'x' + i);
         else if (desc->has_values && is_side && desc->values[0][i] == desc->values[1][i])
             status = glint_fail(error, GLINT_ERR_INVALID, "values: two numbers for the ends of %c expected, got %.15g twice", 'x' + i,
                                 desc->values[0][i]);

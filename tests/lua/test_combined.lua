@@ -289,6 +289,8 @@ function tests.errors()
   hit_is(down(glint.scene { many }, 64, 0), 8, { 0, 1, 0 }, "64 parts")
   many:add(ball(65, 0, 0, 1))
   refused("union 'many': at most 64 parts expected", down, glint.scene { many }, 0, 0)
+  local vast = glint.union { glint.sphere { center = { 0, 0, 0 }, radius = 1 }, glint.sphere { center = { 0, 0, 0 }, radius = 1e300 } }
+  refused("half widths 1e-150 .. 1e+150 in the world expected, got 1e+300", down, glint.scene { vast }, 0, 0)
 end
 
 -- Random parts: a set with itself or with an empty one is that set, however many of its parts a ray is in. By shadows, mirrors and
