@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#define SORTED_PRIMS 32 ///< in scenes of no more, packed hits are sorted by what is hit
+
 // ---- Before and after ----
 
 /// Whether some light has a sample a lane.
@@ -70,8 +72,8 @@ static void cast(glint_batch *batch, const glint_tile_frame *frame)
                              .stop = frame->cancelled,
                              .leaving = rays->leaving,
                              .inward = rays->inward,
-                             .t = tile->at.t,
-                             .prim = tile->at.prim,
+                             .t = batch->whole ? tile->at.t : batch->t,
+                             .prim = batch->whole ? tile->at.prim : batch->prim,
                              .hits = tile->at.hits,
                              .tests = glint_tile_tests_of(tile, frame) };
     for (int c = 0; c < 3; c++) {
@@ -101,7 +103,7 @@ static void take_all(glint_batch *batch, const glint_tile_frame *frame)
         glint_tile_see_lights(tile, frame, tile->active);
 }
 
-/// Moves what ray i has met to sample `to`, which is not above it.
+/// Moves what ray i has met to sample `to`.
 static void move_hit(glint_batch *batch, glint_precision precision, uint32_t i, uint32_t to)
 {
     glint_tile *tile = &batch->tile;
@@ -110,8 +112,8 @@ static void move_hit(glint_batch *batch, glint_precision precision, uint32_t i, 
         glint_real_put(tile->rays.origin[c], precision, to, glint_real_at(rays->origin[c], precision, i));
         glint_real_put(tile->rays.direction[c], precision, to, glint_real_at(rays->direction[c], precision, i));
     }
-    glint_real_put(tile->at.t, precision, to, glint_real_at(tile->at.t, precision, i));
-    tile->at.prim[to] = tile->at.prim[i];
+    glint_real_put(tile->at.t, precision, to, glint_real_at(batch->t, precision, i));
+    tile->at.prim[to] = batch->prim[i];
     batch->sample[i] = (uint16_t)to;
     batch->ray_of[to] = (uint16_t)i;
 }
@@ -136,22 +138,51 @@ static void mark_hits(glint_tile *tile, const uint32_t next[GLINT_GROUP])
     tile->group_count = most;
 }
 
-/// Rays that meet something get the first samples, of their own lane where area lights choose their points by it.
-static void take_hits(glint_batch *batch, const glint_tile_frame *frame)
+/// Rays that meet something get the first samples of their lane, by which area lights choose their points.
+static void pack_lanes(glint_batch *batch, glint_precision precision)
 {
-    const glint_precision precision = frame->plan->desc.precision;
-    uint32_t next[GLINT_GROUP], count = 0;
+    uint32_t next[GLINT_GROUP];
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
         next[lane] = lane;
-    for (uint32_t g = 0; g < batch->rays->group_count; g++) {
-        batch->met[g] = batch->tile.at.hits[g];
+    for (uint32_t g = 0; g < batch->rays->group_count; g++)
         for (unsigned left = batch->met[g]; left; left &= left - 1) {
-            const uint32_t lane = (uint32_t)__builtin_ctz(left), own = batch->by_lane ? lane : count++ % GLINT_GROUP;
-            move_hit(batch, precision, g * GLINT_GROUP + lane, next[own]);
-            next[own] += GLINT_GROUP;
+            const uint32_t lane = (uint32_t)__builtin_ctz(left);
+            move_hit(batch, precision, g * GLINT_GROUP + lane, next[lane]);
+            next[lane] += GLINT_GROUP;
         }
-    }
     mark_hits(&batch->tile, next);
+}
+
+/// Rays that meet something get the first samples without a gap. In scenes with few primitives these follow one another, so that most
+/// groups show one.
+static void pack(glint_batch *batch, const glint_tile_frame *frame)
+{
+    const uint32_t kinds = frame->geometry.prim_count <= SORTED_PRIMS ? SORTED_PRIMS : 1;
+    uint32_t first[SORTED_PRIMS + 1] = { 0 }, next[GLINT_GROUP], count = 0;
+    uint16_t from[GLINT_TILE_SAMPLES];
+    for (uint32_t g = 0; g < batch->rays->group_count; g++)
+        for (unsigned left = batch->met[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            from[count++] = (uint16_t)i;
+            first[batch->prim[i] % kinds + 1]++;
+        }
+    for (uint32_t k = 1; k < kinds; k++)
+        first[k] += first[k - 1];
+    for (uint32_t n = 0; n < count; n++)
+        move_hit(batch, frame->plan->desc.precision, from[n], first[batch->prim[from[n]] % kinds]++);
+    for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
+        next[lane] = lane + (count + GLINT_GROUP - 1 - lane) / GLINT_GROUP * GLINT_GROUP;
+    mark_hits(&batch->tile, next);
+}
+
+/// Makes samples of what rays have met.
+static void take_hits(glint_batch *batch, const glint_tile_frame *frame)
+{
+    memcpy(batch->met, batch->tile.at.hits, batch->rays->group_count * sizeof *batch->met);
+    if (batch->by_lane)
+        pack_lanes(batch, frame->plan->desc.precision);
+    else
+        pack(batch, frame);
 }
 
 /// What is inside the surface of sample i.

@@ -20,6 +20,8 @@ typedef struct glint_batch {
     bool distances; ///< of what is met the distance is read alone: surfaces are not found
     bool by_lane; ///< packed samples keep the lane of their ray
     bool whole; ///< it has: what meets nothing has a sample as well
+    _Alignas(64) double t[GLINT_TILE_SAMPLES]; ///< real, as `prim` of each ray before samples are packed
+    _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
     uint16_t met[GLINT_TILE_GROUPS]; ///< else: the rays that have one
     uint16_t sample[GLINT_TILE_SAMPLES]; ///< of each ray that has one
     uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< the other way
