@@ -439,6 +439,11 @@ static inline bool glint_all_are(const uint32_t of[GLINT_GROUP], uint32_t number
         other |= of[i] ^ number;
     return !other;
 }
+/// How many lanes there are.
+static inline uint32_t glint_count_lanes(uint16_t lanes)
+{
+    return lanes == 0xffff ? GLINT_GROUP : (uint32_t)__builtin_popcount(lanes);
+}
 /// Those of group g.
 static inline void glint_reals_of(const void *array, glint_precision precision, uint32_t g, double out[GLINT_GROUP])
 {

@@ -106,11 +106,11 @@ static bool shows_geometry(const glint_tile *tile, const glint_tile_frame *frame
 }
 
 /// Whether the points and what the light does there can be found in one: of spheres, planes and one plain lamp, where
-/// normals are not needed. Where stages are timed, each runs by itself.
+/// bumps do not turn normals. Where stages are timed, each runs by itself.
 static bool is_plain(const glint_tile_frame *frame, const walk *w)
 {
     const glint_plan *plan = frame->plan;
-    return !w->points && !frame->time_stages && !plan->derivatives && !glint_pattern_needs_normals(plan) && plan->light_count == 1 &&
+    return !w->points && !frame->time_stages && !plan->derivatives && !glint_plan_bumps(plan) && plan->light_count == 1 &&
            !plan->lights[0].light_samples && !plan->lights[0].is_spot && !frame->geometry.triangles &&
            !frame->geometry.solids;
 }
@@ -195,6 +195,13 @@ static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     glint_tile_view(tile, frame);
 }
 
+/// Whether a stage after the light is likely to read normals.
+static bool wants_normals(const glint_plan *plan, const walk *w)
+{
+    return w->shows || glint_pattern_needs_normals(plan) || plan->runs[GLINT_STAGE_INDIRECT] ||
+           plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || plan->dims;
+}
+
 /// Which lights a light's samples, or several that are alike, leave to be found: `shine` and `occlude` get their slots.
 typedef struct light_work {
     uint32_t shine[GLINT_LIGHT_CHUNK], occlude[GLINT_LIGHT_CHUNK], shining, occluding;
@@ -236,7 +243,7 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
     const glint_plan_light *lights = &frame->plan->lights[first];
     light_work work = find_light_work(tile, frame, w, first, slot, count);
     if (work.shining && is_plain(frame, w)) {
-        const bool normals = w->shows || frame->plan->runs[GLINT_STAGE_INDIRECT] || frame->plan->runs[GLINT_STAGE_BOUNCE];
+        const bool normals = wants_normals(frame->plan, w);
         need_rays(tile, frame, w);
         glint_tile_find_lit_surfaces(tile, frame, first, normals);
         w->lit = true;
@@ -355,7 +362,7 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
         }
         if (any)
             find_patterns(tile, frame, &w);
-        if (lit && glint_tile_shows_shader(tile, frame->plan))
+        if (lit && !w.points && glint_tile_shows_shader(tile, frame->plan))
             need_points(tile, frame, &w);
         if (lit && frame->plan->dims) // which points are inside what absorbs
             need_points(tile, frame, &w);

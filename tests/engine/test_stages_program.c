@@ -194,7 +194,7 @@ static void unit_case(int precision, bool odd)
 {
     (void)precision;
     const uint32_t groups = 1 + below(GLINT_PROGRAM_GROUPS), n = groups * GLINT_GROUP;
-    const bool same = one_in(2), from = one_in(2), in_place = !same && one_in(2), back = one_in(3);
+    const bool one_place = one_in(2), from = one_in(2), in_place = one_in(2), back = one_in(3);
     const glint_camera_args camera = any_camera(odd);
     uint32_t *places = input(KIND_U32, groups);
     for (uint32_t g = 0; g < groups; g++)
@@ -208,15 +208,14 @@ static void unit_case(int precision, bool odd)
             to[c][i] = maybe_odd(odd, one_in(6) ? (double)below(5) - 2 : between(-scale, scale));
             start[c][i] = maybe_odd(odd, one_in(6) ? to[c][i] : between(-scale, scale));
         }
-        for (uint32_t i = 0; same && i < GLINT_NUMBER_LANES; i++)
-            to[c][i] = to[c][0];
     }
+    const double place[3] = { to[0][0], to[1][0], to[2][0] };
     FOR_EACH_TESTED
     {
         glint_unit_args args = { .group_count = groups,
                                  .camera = back ? &camera : NULL,
                                  .groups = places,
-                                 .same = same,
+                                 .place = one_place ? place : NULL,
                                  .length = output("length", KIND_DOUBLE, n) };
         for (int c = 0; c < 3; c++) {
             args.unit[c] = output("unit", KIND_DOUBLE, n);

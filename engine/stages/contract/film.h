@@ -103,7 +103,8 @@ typedef struct glint_shade_planes {
     const float *diffuse[3], *ambient[3], *specular[3];
     const float *shininess, *alpha;
     double ambient_light[3]; ///< what a plane of ambient reflectances is multiplied by
-    const float *shaded[2][3]; ///< diffuse and specular terms of materials of GLINT_PLANE_SHADED; NULL: 0. Not read with sums
+    const float *shaded[2][3]; ///< diffuse and specular terms of materials of GLINT_PLANE_SHADED, read in lanes that a light
+    ///< reaches, 0 elsewhere; NULL: 0. Not read with sums
 } glint_shade_planes;
 
 typedef struct glint_shade_args {

@@ -70,7 +70,7 @@ typedef struct glint_unit_args {
     const glint_camera_args *camera; ///< perspective, of doubles: d = -(across + down) of `groups`; NULL: of to and from
     const uint32_t *groups; ///< those of the camera's
     const double *to[3]; ///< 16 numbers a group
-    bool same; ///< `to` is one place, which stands there GLINT_NUMBER_LANES times
+    const double *place; ///< x, y, z that are `to` of every lane; NULL: not one place
     const double *from[3]; ///< 16 numbers a group; NULL: d = to
     double *unit[3]; ///< out; may be in the place of `to` or `from`
     double *length; ///< out

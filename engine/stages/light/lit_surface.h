@@ -17,10 +17,10 @@ typedef struct R(lit_call) {
     bool scaled;
 } R(lit_call);
 
-/// VR lanes of it, of a sphere near the eye or of a plane; `sphere` is a constant.
+/// VR lanes of it, of a sphere near the eye or of a plane; `sphere` and `normals` are constants.
 INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args *light, const R(lit_call) * call,
-                       const bool sphere, const glint_shade_material *material, R(group_directions) directions,
-                       size_t at, int j, R(point_box) * box, R(lit_whole) * whole)
+                       const bool sphere, const bool normals, const glint_shade_material *material,
+                       R(group_directions) directions, size_t at, int j, R(point_box) * box, R(lit_whole) * whole)
 {
     const R(seen_prim) *seen = &call->walk.seen;
     const int i = j * VR;
@@ -38,7 +38,7 @@ INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args
         R(enclose)(box, p, true, rm_from_bits(0));
     const vr away = DOT(n, d), l2 = DOT(l, l);
     const rm back = r_lt(r_set(0), away);
-    for (int k = 0; surface->all_normals && k < 3; k++)
+    for (int k = 0; normals && k < 3; k++)
         r_store((real *)surface->normal[k] + at + i, r_select(back, -n[k], n[k]));
     vr nl = DOT(n, l);
     nl = r_select(back, -nl, nl); // as of the normal that is turned to the viewer
@@ -116,9 +116,9 @@ INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * w
 }
 
 /// A group that shows one primitive in every lane, and that from where it is not dark: the common case. Returns whether
-/// it is one.
+/// it is one. normals: surface->all_normals, a constant.
 INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
-                          R(group_place) place, R(point_box) * box, vf *brightest)
+                          const bool normals, R(group_place) place, R(point_box) * box, vf *brightest)
 {
     const size_t at = (size_t)place.g * GLINT_GROUP;
     if (!surface->camera || (surface->hits[place.g] & light->hits[place.g]) != 0xffff)
@@ -141,9 +141,9 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
 #pragma GCC unroll 8
     for (int j = 0; j < LIT_PARTS; j++) {
         if (sphere)
-            R(lit_part)(surface, light, call, true, material, directions, at, j, box, &whole);
+            R(lit_part)(surface, light, call, true, normals, material, directions, at, j, box, &whole);
         else
-            R(lit_part)(surface, light, call, false, material, directions, at, j, box, &whole);
+            R(lit_part)(surface, light, call, false, normals, material, directions, at, j, box, &whole);
     }
     lanes_put(surface->material + at, 0xffff, prim->material);
     surface->back[place.g] = (uint16_t)whole.back;
@@ -155,7 +155,7 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     return true;
 }
 
-static void R(lit_surface)(const glint_surface_args *surface, const glint_light_args *light)
+INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_args *light, const bool normals)
 {
     R(lit_call) call;
     R(point_box) box;
@@ -174,7 +174,7 @@ static void R(lit_surface)(const glint_surface_args *surface, const glint_light_
         if (!surface->hits[g]) {
             surface->back[g] = surface->dark[g] = 0;
             light->lit[0][g] = 0;
-        } else if (!R(light_whole)(surface, light, &call, place, &box, &group.brightest)) {
+        } else if (!R(light_whole)(surface, light, &call, normals, place, &box, &group.brightest)) {
             R(surface_group)(surface, &call.walk, &box, place, R(BALLS_AND_PLANES));
             R(light_group)(light, LIGHT_PLAIN, 1, NULL, place, &point, &group);
             light->lit[0][g] = (uint16_t)group.lit;
@@ -184,4 +184,12 @@ static void R(lit_surface)(const glint_surface_args *surface, const glint_light_
     }
     R(end_walk)(surface, &call.walk, &box);
     R(say_brightest)(light, 0, group.brightest);
+}
+
+static void R(lit_surface)(const glint_surface_args *surface, const glint_light_args *light)
+{
+    if (surface->all_normals)
+        R(lit_surfaces)(surface, light, true);
+    else
+        R(lit_surfaces)(surface, light, false);
 }

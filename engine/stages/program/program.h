@@ -57,112 +57,156 @@ static void (*const op_kernels[GLINT_OP_COUNT])(const op_call *call) = {
     [GLINT_OP_TEXEL_SLOPE] = op_texel_slope,
 };
 
-/// Where an operand is read.
-static inline void find_operand(const glint_program_args *args, uint32_t row, const double **from, size_t *step)
+/// Where an operand is read: `step` as op_call has it.
+static inline const double *find_operand(const glint_program_args *args, uint32_t row, size_t *step)
 {
     *step = ~(size_t)0;
-    if (row < GLINT_ROW_INPUT) {
-        *from = args->rows + row * GLINT_PROGRAM_LANES;
-    } else if (row < GLINT_ROW_NUMBER) {
-        *from = args->input[row - GLINT_ROW_INPUT];
+    if (row < GLINT_ROW_INPUT)
+        return args->rows + row * GLINT_PROGRAM_LANES;
+    if (row < GLINT_ROW_NUMBER) {
         *step = args->same >> (row - GLINT_ROW_INPUT) & 1 ? 0 : *step;
-    } else {
-        *from = args->code->numbers[row - GLINT_ROW_NUMBER];
-        *step = 0;
+        return args->input[row - GLINT_ROW_INPUT];
     }
+    *step = 0;
+    return args->code->numbers[row - GLINT_ROW_NUMBER];
 }
 
-/// A number as a reflectance; NaN gives 0.
-static inline vd reflectance(vd v) { return d_min(d_max(v, d_set(0)), d_set(GLINT_REFLECTANCE_MAX)); }
+/// VF numbers as reflectances; NaN gives 0. They are rounded before they are bounded, as the bounds are floats.
+INNER vf reflectances(const double *from)
+{
+    return f_min(f_max(f_join(d_load(from), d_load(from + VD)), f_set(0)), f_set((float)GLINT_REFLECTANCE_MAX));
+}
 
-/// A group of one output as reflectances, where wanted. Returns the lanes that are none, where `odd`, a constant, says so.
-INNER unsigned store_plane(const double *from, unsigned wanted, float *plane, bool odd)
+/// The lanes of a group that are none.
+INNER unsigned find_odd(const double *from)
 {
     unsigned even = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vd half[VF / VD];
-        for (int k = 0; k < VF / VD; k++) {
-            const vd x = d_load(from + i + k * VD);
-            half[k] = reflectance(x);
-            if (odd)
-                even |= dm_bits(d_eq(half[k], x)) << (i + k * VD);
-        }
-        const vf v = f_join(half[0], half[1]);
-        if (wanted == 0xffff)
-            f_store(plane + i, v);
-        else
-            f_store(plane + i, f_select(fm_from_bits(wanted >> i & ((1u << VF) - 1)), v, f_load(plane + i)));
+    for (int i = 0; i < GLINT_GROUP; i += VD) {
+        const vd x = d_load(from + i);
+        even |= dm_bits(dm_and(d_le(d_set(0), x), d_le(x, d_set(GLINT_REFLECTANCE_MAX)))) << i;
     }
-    return ~even & wanted;
+    return ~even;
 }
 
-/// Adds a group of one output, as store_plane rounds it, times `share`.
-INNER void add_total(const double *from, unsigned wanted, const float *share, double *total)
-{
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vd v[VF / VD], weight[VF / VD];
-        f_split(f_join(reflectance(d_load(from + i)), reflectance(d_load(from + i + VD))), v);
-        if (share)
-            f_split(f_load(share + i), weight);
-        for (int k = 0; k < VF / VD; k++) {
-            double *to = total + i + k * VD;
-            if (share)
-                v[k] = weight[k] * v[k];
-            const vd sum = d_load(to) + v[k];
-            d_store(to, wanted == 0xffff ? sum
-                                         : d_select(dm_from_bits(wanted >> (i + k * VD) & D_ALL), sum, d_load(to)));
-        }
-    }
-}
-
-static void store_result(const double *from, unsigned wanted, double *result)
-{
-    for (int i = 0; i < GLINT_GROUP; i += VD)
-        d_store(result + i, d_select(dm_from_bits(wanted >> i & D_ALL), d_load(from + i), d_load(result + i)));
-}
-
-static void store_output(const glint_program_args *args, uint32_t k)
-{
+/// Where an output stands, and where its groups go.
+typedef struct output {
+    const glint_program_args *args;
     const double *row;
     size_t step;
-    find_operand(args, args->code->outputs[k], &row, &step);
-    for (uint32_t g = 0; g < args->group_count; g++) {
-        const size_t to = (size_t)(args->groups ? args->groups[g] : g) * GLINT_GROUP;
-        const double *from = row + ((size_t)g * GLINT_GROUP & step);
-        const unsigned wanted = args->wanted[g];
-        if (args->result[k])
-            store_result(from, wanted, args->result[k] + to);
-        if (args->plane[k] && args->odd)
-            args->odd[g] |= (uint16_t)store_plane(from, wanted, args->plane[k] + to, true);
-        else if (args->plane[k] && wanted == 0xffff)
-            store_plane(from, 0xffff, args->plane[k] + to, false);
-        else if (args->plane[k])
-            store_plane(from, wanted, args->plane[k] + to, false);
-        if (args->total[k] && args->share)
-            add_total(from, wanted, args->share + (size_t)g * GLINT_GROUP, args->total[k] + to);
-        else if (args->total[k] && wanted == 0xffff)
-            add_total(from, 0xffff, NULL, args->total[k] + to);
-        else if (args->total[k] && wanted)
-            add_total(from, wanted, NULL, args->total[k] + to);
+    bool whole; ///< all lanes are wanted, and the groups follow each other: see is_whole
+} output;
+
+INNER const double *output_of(const output *out, uint32_t g) { return out->row + ((size_t)g * GLINT_GROUP & out->step); }
+
+INNER size_t place_of(const output *out, uint32_t g)
+{
+    return (size_t)(out->args->groups ? out->args->groups[g] : g) * GLINT_GROUP;
+}
+
+static bool is_whole(const glint_program_args *args)
+{
+    for (uint32_t g = 0; g < args->group_count; g++)
+        if (args->wanted[g] != 0xffff || (args->groups && args->groups[g] != args->groups[0] + g))
+            return false;
+    return true;
+}
+
+/// Notes the lanes that are no reflectances.
+static void note_odd(const output *out)
+{
+    for (uint32_t g = 0; g < out->args->group_count; g++)
+        out->args->odd[g] |= (uint16_t)(find_odd(output_of(out, g)) & out->args->wanted[g]);
+}
+
+static void store_whole_plane(const output *out, float *plane)
+{
+    const size_t step = out->step, count = (size_t)out->args->group_count * GLINT_GROUP;
+    const double *row = out->row;
+    float *to = plane + place_of(out, 0);
+    for (size_t i = 0; i < count; i += GLINT_GROUP)
+        for (size_t k = 0; k < GLINT_GROUP; k += VF)
+            f_store(to + i + k, reflectances(row + (i & step) + k));
+}
+
+static void store_plane(const output *out, float *plane)
+{
+    for (uint32_t g = 0; g < out->args->group_count; g++) {
+        const double *from = output_of(out, g);
+        float *to = plane + place_of(out, g);
+        const unsigned wanted = out->args->wanted[g];
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            const fm here = fm_from_bits(wanted >> i & ((1u << VF) - 1));
+            f_store(to + i, f_select(here, reflectances(from + i), f_load(to + i)));
+        }
     }
+}
+
+/// Adds outputs, as store_plane rounds them, times `share`.
+static void add_total(const output *out, double *total)
+{
+    for (uint32_t g = 0; g < out->args->group_count; g++) {
+        const double *from = output_of(out, g);
+        const float *share = out->args->share ? out->args->share + (size_t)g * GLINT_GROUP : NULL;
+        double *to = total + place_of(out, g);
+        const unsigned wanted = out->args->wanted[g];
+        for (int i = 0; wanted && i < GLINT_GROUP; i += VF) {
+            vd v[VF / VD], weight[VF / VD];
+            f_split(reflectances(from + i), v);
+            f_split(share ? f_load(share + i) : f_set(1), weight);
+            for (int k = 0; k < VF / VD; k++) {
+                const vd old = d_load(to + i + k * VD), sum = old + weight[k] * v[k];
+                d_store(to + i + k * VD, d_select(dm_from_bits(wanted >> (i + k * VD) & D_ALL), sum, old));
+            }
+        }
+    }
+}
+
+static void store_result(const output *out, double *result)
+{
+    for (uint32_t g = 0; g < out->args->group_count; g++) {
+        const double *from = output_of(out, g);
+        double *to = result + place_of(out, g);
+        for (int i = 0; i < GLINT_GROUP; i += VD)
+            d_store(to + i, d_select(dm_from_bits(out->args->wanted[g] >> i & D_ALL), d_load(from + i), d_load(to + i)));
+    }
+}
+
+static void store_output(const output *out, double *result, float *plane, double *total)
+{
+    if (result)
+        store_result(out, result);
+    if (plane && out->whole)
+        store_whole_plane(out, plane);
+    else if (plane)
+        store_plane(out, plane);
+    if (plane && out->args->odd)
+        note_odd(out);
+    if (total)
+        add_total(out, total);
 }
 
 static void program(const glint_program_args *args)
 {
     const glint_program_code *code = args->code;
+    const glint_instruction *end = code->instructions + code->length;
+    double *rows = args->rows;
     op_call call = { .lanes = (size_t)args->group_count * GLINT_GROUP };
-    for (const glint_instruction *at = code->instructions; at < code->instructions + code->length; at++) {
+    for (const glint_instruction *at = code->instructions; at < end; at++) {
         for (uint32_t k = 0; k < at->operands; k++)
-            find_operand(args, at->in[k], &call.in[k], &call.step[k]);
-        for (uint32_t k = 0; k < at->results; k++)
-            call.out[k] = args->rows + (size_t)at->out[k] * GLINT_PROGRAM_LANES;
+            call.in[k] = find_operand(args, at->in[k], &call.step[k]);
+        call.out[0] = rows + (size_t)at->out[0] * GLINT_PROGRAM_LANES;
+        for (uint32_t k = 1; k < at->results; k++)
+            call.out[k] = rows + (size_t)at->out[k] * GLINT_PROGRAM_LANES;
         if (at->op >= GLINT_OP_TEXEL)
             call.texture = code->textures[at->texture];
         op_kernels[at->op](&call);
     }
     for (uint32_t g = 0; args->odd && g < args->group_count; g++)
         args->odd[g] = 0;
-    for (uint32_t k = 0; k < code->output_count; k++)
-        if (args->result[k] || args->plane[k] || args->total[k])
-            store_output(args, k);
+    const bool whole = is_whole(args);
+    for (uint32_t k = 0; k < code->output_count; k++) {
+        output out = { .args = args, .whole = whole };
+        out.row = find_operand(args, code->outputs[k], &out.step);
+        store_output(&out, args->result[k], args->plane[k], args->total[k]);
+    }
 }

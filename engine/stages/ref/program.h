@@ -297,7 +297,7 @@ static void unit(const glint_unit_args *args)
         double d[3];
         for (int c = 0; c < 3; c++)
             d[c] = args->camera ? way_back(args->camera, args->groups[lane / GLINT_GROUP], c, lane % GLINT_GROUP)
-                                : args->to[c][args->same ? 0 : lane];
+                                : (args->place ? args->place[c] : args->to[c][lane]);
         for (int c = 0; c < 3 && !args->camera && args->from[0]; c++)
             d[c] -= args->from[c][lane];
         const double length = sqrt((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);

@@ -186,7 +186,10 @@ static void add_sample(const glint_shade_args *args, uint32_t i, terms *sum)
     }
     const glint_shade_material *material = hit ? &args->materials[args->material[i]] : NULL;
     const bool shaded = material && material->planes & GLINT_PLANE_SHADED;
-    for (int k = 0; k < 2 && shaded && !args->sum[0][0]; k++)
+    bool lit = false;
+    for (uint32_t k = 0; k < args->light_count; k++)
+        lit = lit || args->lights[k].lit[group] >> lane & 1;
+    for (int k = 0; k < 2 && shaded && lit && !args->sum[0][0]; k++)
         for (int c = 0; c < 3 && args->planes->shaded[k][c]; c++)
             sum->value[GLINT_TERM_DIFFUSE + k][c] = (double)args->planes->shaded[k][c][i];
     for (uint32_t k = 0; !shaded && k < args->light_count;)

@@ -225,31 +225,78 @@ static __attribute__((noinline)) void shade_planes(const glint_shade_args *args,
     }
 }
 
+/// The lanes of a group that any light reaches.
+static inline unsigned lanes_reached(const glint_shade_args *args, uint32_t g)
+{
+    unsigned lit = 0;
+    for (uint32_t k = 0; k < args->light_count; k++)
+        lit |= args->lights[k].lit[g];
+    return lit;
+}
+
+/// Where any light reaches, of a group.
+typedef struct reached_lanes {
+    fm part[GLINT_GROUP / VF];
+} reached_lanes;
+
+static inline reached_lanes find_reached(unsigned lit)
+{
+    reached_lanes reached;
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        reached.part[i / VF] = fm_from_bits(lit >> i & ((1u << VF) - 1));
+    return reached;
+}
+
+/// One channel of whole_shaded. `whole`, a constant: light reaches every lane.
+INNER void channel_shaded(const glint_shade_args *args, const glint_shade_material *material, int c, size_t at,
+                          const bool whole, const reached_lanes *reached)
+{
+    const bool painted = material->planes & (GLINT_PLANE_AMBIENT | GLINT_PLANE_AMBIENT_IS_DIFFUSE);
+    const float *diffuse = args->planes->shaded[0][c] + at, *specular = args->planes->shaded[1][c] + at;
+    float *beauty = args->beauty[c] + at;
+    vf ambient = f_set((float)material->ambient[c]);
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const size_t k = at + (size_t)i;
+        vf kd = f_load(diffuse + i), ks = f_load(specular + i);
+        if (painted)
+            ambient = f_join(plane_ambient(args, material, c, k), plane_ambient(args, material, c, k + VD));
+        if (!whole) {
+            kd = f_select(reached->part[i / VF], kd, f_set(0));
+            ks = f_select(reached->part[i / VF], ks, f_set(0));
+        }
+        f_store(beauty + i, (ambient + kd) + ks);
+    }
+}
+
 /// As shade_whole, of a material whose light is in planes.
 static __attribute__((noinline)) void whole_shaded(const glint_shade_args *args, const glint_shade_material *material,
-                                                   size_t at)
+                                                   uint32_t g)
 {
-    for (int c = 0; c < 3; c++) {
-        const float *diffuse = args->planes->shaded[0][c], *specular = args->planes->shaded[1][c];
-        for (size_t k = at; k < at + GLINT_GROUP; k += VF) {
-            const vf ambient = f_join(plane_ambient(args, material, c, k), plane_ambient(args, material, c, k + VD));
-            f_store(args->beauty[c] + k, (ambient + f_load(diffuse + k)) + f_load(specular + k));
-        }
+    const size_t at = (size_t)g * GLINT_GROUP;
+    const unsigned lit = lanes_reached(args, g);
+    if (lit == 0xffff) {
+        for (int c = 0; c < 3; c++)
+            channel_shaded(args, material, c, at, true, NULL);
+        return;
     }
+    const reached_lanes reached = find_reached(lit);
+    for (int c = 0; c < 3; c++)
+        channel_shaded(args, material, c, at, false, &reached);
 }
 
 /// As shade_direct.
 static __attribute__((noinline)) void shade_shaded(const glint_shade_args *args, const glint_shade_material *material,
-                                                   size_t at, unsigned lanes, group_terms *terms)
+                                                   uint32_t g, unsigned lanes, group_terms *terms)
 {
+    const reached_lanes reached = find_reached(lanes_reached(args, g));
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < GLINT_GROUP; i += VF) {
-            const size_t k = at + (size_t)i;
+            const size_t k = (size_t)g * GLINT_GROUP + (size_t)i;
             const fm mask = fm_from_bits(lanes >> i & ((1u << VF) - 1));
             put_float(terms->term[GLINT_TERM_AMBIENT][c] + i, mask,
                       f_join(plane_ambient(args, material, c, k), plane_ambient(args, material, c, k + VD)));
             for (int term = 0; term < 2; term++)
                 put_float(terms->term[GLINT_TERM_DIFFUSE + term][c] + i, mask,
-                          f_load(args->planes->shaded[term][c] + k));
+                          f_select(reached.part[i / VF], f_load(args->planes->shaded[term][c] + k), f_set(0)));
         }
 }

@@ -399,7 +399,7 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
         const bool planes = GLINT_WITH_PROGRAM && material->planes;
         const bool shaded = planes && material->planes & GLINT_PLANE_SHADED && args->planes->shaded[0][0];
         if (shaded && simple && lanes == 0xffff) {
-            whole_shaded(args, material, at);
+            whole_shaded(args, material, g);
             return;
         }
         if (planes)
@@ -421,7 +421,7 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
             start_direct(args, g, &terms);
         begun = true;
         if (shaded)
-            shade_shaded(args, material, at, lanes, &terms);
+            shade_shaded(args, material, g, lanes, &terms);
         else if (planes)
             shade_planes(args, material, specular, &factors, at, lanes, &terms);
         else

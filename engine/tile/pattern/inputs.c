@@ -256,10 +256,14 @@ double *glint_pattern_row(glint_pattern_inputs *inputs, glint_input input)
 
 void glint_pattern_put_number(glint_pattern_inputs *inputs, glint_input input, double number)
 {
-    double *to = glint_pattern_row(inputs, input);
+    double *to = inputs->row[input];
+    const uint32_t bit = 1u << input;
+    if (inputs->used & inputs->same & bit && inputs->from[input] == to && memcmp(to, &number, sizeof number) == 0)
+        return;
+    glint_pattern_row(inputs, input);
     for (int i = 0; i < GLINT_GROUP; i++)
         to[i] = number;
-    inputs->same |= 1u << input;
+    inputs->same |= bit;
 }
 
 /// Whether the entries' groups lie one after the other in arrays of doubles, so that these are read as they are.
@@ -343,7 +347,7 @@ void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *
                           const glint_pattern_points *points, uint32_t reads, const glint_pattern_lanes *entries,
                           uint32_t count)
 {
-    inputs->used = 0;
+    inputs->used &= inputs->same; // numbers stay
     for (uint32_t rest = reads; rest; rest &= rest - 1)
         glint_pattern_row(inputs, (glint_input)__builtin_ctz(rest));
     uint32_t left = read_in_place(inputs, frame, points, reads, entries, count);

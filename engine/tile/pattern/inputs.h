@@ -25,7 +25,7 @@ void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *
                           uint32_t count);
 /// Points an input at its own row.
 double *glint_pattern_row(glint_pattern_inputs *inputs, glint_input input);
-/// Gives every lane of an input one number.
+/// Gives every lane of an input one number, which stays until the input is gathered.
 void glint_pattern_put_number(glint_pattern_inputs *inputs, glint_input input, double number);
 
 #endif

@@ -250,7 +250,7 @@ static void run_material(struct glint_pattern *pattern, const glint_tile_frame *
     for (uint32_t k = 0; k < count; k++) {
         groups[k] = entries[k].group;
         wanted[k] = entries[k].lanes;
-        counts->work.patterns += entries[k].lanes == 0xffff ? GLINT_GROUP : (uint64_t)__builtin_popcount(entries[k].lanes);
+        counts->work.patterns += glint_count_lanes(entries[k].lanes);
     }
     glint_pattern_gather(&pattern->inputs, frame, points, own->reads, entries, count);
     glint_program_args args = { .group_count = count, .wanted = wanted, .groups = groups, .odd = odd };

@@ -8,6 +8,9 @@
 #include <math.h>
 #include <string.h>
 
+/// What is one number of a material and a light, unless programs give it.
+#define NUMBERS (7u << GLINT_INPUT_KD_R | 7u << GLINT_INPUT_KS_R | 1u << GLINT_INPUT_SHININESS | 7u << GLINT_INPUT_LIGHT_R)
+
 /// Some groups that show one material.
 typedef struct batch {
     const glint_plan_pattern *own;
@@ -92,15 +95,12 @@ static void gather_way(glint_tile *tile, const glint_tile_frame *frame, const ba
     glint_pattern_inputs *inputs = &tile->pattern->inputs;
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
     const size_t at = (size_t)lit->first * GLINT_GROUP;
-    _Alignas(64) double place[3][GLINT_GROUP];
     glint_unit_args args = { .group_count = lit->count,
-                             .same = !sample,
+                             .place = sample ? NULL : light->position,
                              .length = glint_pattern_row(inputs, GLINT_INPUT_DISTANCE) + at };
     for (int c = 0; c < 3; c++) {
         double *way = inputs->row[GLINT_INPUT_L_X + c] + at;
-        for (int i = 0; i < GLINT_GROUP; i++)
-            place[c][i] = light->position[c];
-        args.to[c] = sample ? way : place[c];
+        args.to[c] = way;
         args.from[c] = light->directional ? NULL : inputs->from[GLINT_INPUT_WORLD_X + c] + at;
         args.unit[c] = way;
     }
@@ -164,7 +164,7 @@ static void add_light(glint_tile *tile, const glint_tile_frame *frame, const bat
     }
     glint_pattern_call(pattern, frame, &b->program->code, lit->first, &args);
     for (uint32_t k = 0; k < lit->count; k++)
-        tile->counts.work.patterns += (uint64_t)__builtin_popcount(lit->lanes[k]);
+        tile->counts.work.patterns += glint_count_lanes(lit->lanes[k]);
 }
 
 /// Rounds the totals of a batch into planes.
@@ -182,27 +182,20 @@ static void round_totals(struct glint_pattern *pattern, const batch *b)
         }
 }
 
-/// Makes the planes 0 where the only light does not reach, and those that the program has no output for.
-static void clear_unlit(struct glint_pattern *pattern, const batch *b, const uint16_t *lit)
+/// Makes the planes 0 that the program has no output for.
+static void clear_missing(struct glint_pattern *pattern, const batch *b)
 {
-    const uint32_t made = b->program->code.output_count;
-    for (uint32_t k = 0; k < b->count; k++) {
-        const size_t at = b->groups[k] * GLINT_GROUP;
-        const unsigned lanes = b->entries[k].lanes, unlit = lanes & ~(unsigned)lit[b->groups[k]];
-        for (uint32_t term = unlit ? 0 : made; term < GLINT_SHADER_TERMS; term++)
-            if ((term < made ? unlit : lanes) == 0xffff)
-                memset(&pattern->shaded[term][at], 0, GLINT_GROUP * sizeof(float));
-            else
-                for (unsigned left = term < made ? unlit : lanes; left; left &= left - 1)
-                    pattern->shaded[term][at + (unsigned)__builtin_ctz(left)] = 0;
-    }
+    for (uint32_t term = b->program->code.output_count; term < GLINT_SHADER_TERMS; term++)
+        for (uint32_t k = 0; k < b->count; k++)
+            for (unsigned left = b->entries[k].lanes; left; left &= left - 1)
+                pattern->shaded[term][b->groups[k] * GLINT_GROUP + (unsigned)__builtin_ctz(left)] = 0;
 }
 
 /// One material's shader, for some groups that show it and all lights.
 static void shade_batch(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
                         const batch *b, const glint_shader_light *lights, uint32_t light_count)
 {
-    const uint32_t reads = b->program->inputs | 7u << GLINT_INPUT_WORLD_X;
+    const uint32_t reads = (b->program->inputs & ~NUMBERS) | 7u << GLINT_INPUT_WORLD_X;
     const result to = frame->plan->accumulate ? TO_SUMS : light_count > 1 || lights->visible ? TO_TOTALS : TO_PLANES;
     bool gathered = false;
     if (to == TO_TOTALS)
@@ -221,7 +214,7 @@ static void shade_batch(glint_tile *tile, const glint_tile_frame *frame, const g
     if (to == TO_TOTALS)
         round_totals(tile->pattern, b);
     if (to == TO_PLANES)
-        clear_unlit(tile->pattern, b, lights->lit);
+        clear_missing(tile->pattern, b);
 }
 
 static bool has_shader(const glint_plan_pattern *own, uint32_t fields)
