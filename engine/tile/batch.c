@@ -296,7 +296,7 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
     if (any && plan->runs[GLINT_STAGE_VIEW])
         glint_tile_view(tile, frame);
     if (plan->runs[GLINT_STAGE_PATTERN] && glint_tile_fields_shown(tile, plan) & GLINT_FIELDS_PLANES)
-        glint_tile_pattern(tile, frame);
+        glint_tile_find_patterns(tile, frame);
     do {
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
         for (uint32_t i = 0; i < count;)

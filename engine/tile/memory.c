@@ -36,9 +36,11 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = glint_vertex_derives(tile->vertex, plan) && good;
     if (plan->derivatives && tile->bounce)
         good = glint_bounce_derives(tile->bounce, plan) && good;
-    glint_pattern_destroy(tile->pattern); // its size is the plan's
-    tile->pattern = NULL;
-    if (plan->patterns)
+    if (!glint_pattern_fits(tile->pattern, plan)) {
+        glint_pattern_destroy(tile->pattern);
+        tile->pattern = NULL;
+    }
+    if (plan->patterns && !tile->pattern)
         good = (tile->pattern = glint_pattern_create(plan)) && good;
     glint_environment_destroy(tile->environment); // likewise
     tile->environment = NULL;

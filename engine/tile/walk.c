@@ -67,24 +67,19 @@ static void need_points(glint_tile *tile, const glint_tile_frame *frame, walk *w
     w->points = true;
 }
 
-/// Where a pattern is seen and hits are known, finds what it reads: where that is points alone, of no other lanes. Returns whether one is.
-static bool need_painted(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+/// Finds what the programs of what is listed read: where that is points alone, of no other lanes.
+static void need_painted(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
     uint16_t painted[GLINT_TILE_GROUPS];
-    if (!glint_tile_find_painted(tile, frame->plan, painted))
-        return false;
-    if (glint_pattern_needs_normals(frame->plan) || frame->geometry.triangles || frame->geometry.solids) {
-        need_points(tile, frame, w);
-        return true;
-    }
     need_rays(tile, frame, w);
+    glint_tile_painted_lanes(tile, painted);
     glint_tile_find_points(tile, frame, painted);
-    return true;
 }
 
 /// What programs give of the materials in sight, which are named.
 static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
+    const bool normals = glint_pattern_needs_normals(frame->plan) || frame->geometry.triangles || frame->geometry.solids;
     if (w->patterns || !frame->plan->runs[GLINT_STAGE_PATTERN])
         return;
     w->patterns = true;
@@ -92,8 +87,14 @@ static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, walk 
         glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, true);
         return;
     }
-    if (w->lit || w->points || need_painted(tile, frame, w))
-        glint_tile_pattern(tile, frame);
+    if (!glint_tile_find_painted(tile, frame))
+        return;
+    if (!w->lit && !w->points && normals) {
+        need_points(tile, frame, w);
+        glint_tile_find_painted(tile, frame); // bumps make lists of their own
+    } else if (!w->lit && !w->points)
+        need_painted(tile, frame, w);
+    glint_tile_pattern(tile, frame);
 }
 
 /// Whether the picture's geometry is that of this walk: of sample 0; where the camera has a lens, of the ray through its middle.

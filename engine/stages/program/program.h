@@ -111,9 +111,23 @@ static bool is_whole(const glint_program_args *args)
     return true;
 }
 
+/// Whether all are reflectances, of a whole call.
+static bool is_even(const output *out)
+{
+    dm even = d_eq(d_set(0), d_set(0));
+    for (uint32_t g = 0; g < out->args->group_count; g++)
+        for (int i = 0; i < GLINT_GROUP; i += VD) {
+            const vd x = d_load(output_of(out, g) + i);
+            even = dm_and(even, dm_and(d_le(d_set(0), x), d_le(x, d_set(GLINT_REFLECTANCE_MAX))));
+        }
+    return dm_bits(even) == D_ALL;
+}
+
 /// Notes the lanes that are no reflectances.
 static void note_odd(const output *out)
 {
+    if (out->whole && is_even(out))
+        return;
     for (uint32_t g = 0; g < out->args->group_count; g++)
         out->args->odd[g] |= (uint16_t)(find_odd(output_of(out, g)) & out->args->wanted[g]);
 }

@@ -60,7 +60,9 @@ static inline void find_plane_factors(const glint_shade_args *args, const glint_
     factors->shiny = 0;
     if (material->planes & GLINT_PLANE_SHADED)
         return;
-    if (material->planes & GLINT_PLANE_SHININESS)
+    if (has_only_factors(args, specular))
+        put_only_factors(args->lights, material, g, factors);
+    else if (material->planes & GLINT_PLANE_SHININESS)
         add_factors(args, material, args->planes->shininess + (size_t)g * GLINT_GROUP, specular, g, factors);
     else
         add_factors(args, material, NULL, specular, g, factors);
@@ -181,8 +183,46 @@ INNER void whole_channel(const glint_shade_args *args, const channel_numbers *by
 typedef struct plane_numbers {
     const glint_shade_material *material; ///< NULL: none yet
     const glint_shade_light *light; ///< NULL: none reaches it
+    bool grey; ///< its diffuse reflectance and the light's colour are the same in all channels, which share a plane
     channel_numbers channel[3];
 } plane_numbers;
+
+static void read_numbers(const glint_shade_args *args, const glint_shade_material *material,
+                         const glint_shade_light *light, plane_numbers *numbers)
+{
+    const float *const *diffuse = args->planes->diffuse;
+    numbers->material = material;
+    numbers->light = light;
+    for (int c = 0; c < 3; c++)
+        numbers->channel[c] = numbers_of(args, material, light, c);
+    numbers->grey = true;
+    for (int c = 1; c < 3; c++)
+        numbers->grey = numbers->grey && diffuse[c] == diffuse[0] &&
+                        numbers->channel[c].diffuse == numbers->channel[0].diffuse;
+}
+
+/// All channels of a group whose diffuse light is grey; the ambient reflectance is the diffuse one.
+INNER void whole_grey(const glint_shade_args *args, const plane_numbers *numbers, bool shines,
+                      const light_factors *factors, size_t at)
+{
+    const float *diffuse = args->planes->diffuse[0] + at;
+    float *const beauty[3] = { args->beauty[0] + at, args->beauty[1] + at, args->beauty[2] + at };
+    const bool lit = factors->count;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const wide_lanes kd = wide_of(diffuse + i);
+        vf light = f_set(0);
+        if (lit)
+            light = f_load(factors->diffuse[0] + i) * f_min(narrow(&kd, numbers->channel[0].diffuse), f_set(FLT_MAX));
+        for (int c = 0; c < 3; c++) {
+            vf sum = narrow(&kd, numbers->channel[c].ambient);
+            if (lit)
+                sum = sum + light;
+            if (lit && shines)
+                sum = sum + f_load(factors->specular[0] + i) * f_set(numbers->channel[c].specular_color);
+            f_store(beauty[c] + i, sum);
+        }
+    }
+}
 
 /// As shade_whole. Diffuse reflectances that are the ambient ones, too, are the common case.
 static __attribute__((noinline)) void whole_planes(const glint_shade_args *args, const glint_shade_material *material,
@@ -191,12 +231,15 @@ static __attribute__((noinline)) void whole_planes(const glint_shade_args *args,
 {
     const unsigned painted = GLINT_PLANE_DIFFUSE | GLINT_PLANE_AMBIENT_IS_DIFFUSE, has = material->planes;
     const glint_shade_light *light = factors->count ? factors->light[0] : NULL;
-    for (int c = 0; c < 3 && (numbers->material != material || numbers->light != light); c++)
-        numbers->channel[c] = numbers_of(args, material, light, c);
-    numbers->material = material;
-    numbers->light = light;
+    const bool usual = (has & ~(unsigned)GLINT_PLANE_SHININESS) == painted;
+    if (numbers->material != material || numbers->light != light)
+        read_numbers(args, material, light, numbers);
+    if (usual && numbers->grey) {
+        whole_grey(args, numbers, shines, factors, at);
+        return;
+    }
     for (int c = 0; c < 3; c++) {
-        if ((has & ~(unsigned)GLINT_PLANE_SHININESS) == painted)
+        if (usual)
             whole_channel(args, &numbers->channel[c], painted, shines, factors, c, at);
         else
             whole_channel(args, &numbers->channel[c], has, shines, factors, c, at);

@@ -18,6 +18,23 @@ static inline void put_sums(const glint_shade_light *light, bool specular, size_
     }
 }
 
+/// Those of the only light, of a material without highlights.
+INNER void put_only_factors(const glint_shade_light *light, const glint_shade_material *material, uint32_t g,
+                            light_factors *factors)
+{
+    factors->count = light->lit[g] ? 1 : 0;
+    factors->shiny = 0;
+    factors->light[0] = light;
+    factors->number[0] = 0;
+    if (factors->count)
+        put_factors(light, material, NULL, false, (size_t)g * GLINT_GROUP, false, factors->diffuse[0], NULL);
+}
+
+static inline bool has_only_factors(const glint_shade_args *args, bool specular)
+{
+    return !specular && args->light_count == 1 && !args->lights->summed;
+}
+
 /// Those of the lights that reach a group, after what is there. `exponent`: see put_factors.
 INNER void add_factors(const glint_shade_args *args, const glint_shade_material *material, const float *exponent,
                        bool specular, uint32_t g, light_factors *factors)
@@ -56,7 +73,10 @@ INNER void find_factors(const glint_shade_args *args, const glint_shade_material
 {
     factors->count = 0;
     factors->shiny = 0;
-    add_factors(args, material, NULL, specular, g, factors);
+    if (has_only_factors(args, specular))
+        put_only_factors(args->lights, material, g, factors);
+    else
+        add_factors(args, material, NULL, specular, g, factors);
 }
 
 /// What a material makes of a light's colour; finite, so that nothing of it is nothing.

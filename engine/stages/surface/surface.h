@@ -376,19 +376,48 @@ INNER void R(find_whole)(const glint_surface_args *args, const R(seen_prim) * se
         R(onto_plane_of)(seen->prim, n, p);
 }
 
+/// The points alone of a group of one plane that is square to `level`, a constant.
+INNER void R(place_level)(const glint_surface_args *args, const R(seen_prim) * seen, R(group_directions) directions,
+                          size_t at, const int level)
+{
+    for (int k = 0; k < 3; k++) {
+        real *to = (real *)args->point[k] + at;
+        const real *across = directions.across + k * GLINT_GROUP, *down = directions.down + k * GLINT_GROUP;
+        for (int i = 0; i < GLINT_GROUP; i += VR) {
+            vr p = r_set(seen->from[k]);
+            if (k != level)
+                p = p + r_load((const real *)args->t + at + i) * (r_load(across + i) + r_load(down + i));
+            r_store(to + i, p);
+        }
+    }
+}
+
+/// The points alone of such a group of another plane or of a sphere; `sphere` is a constant.
+INNER void R(place_lanes)(const glint_surface_args *args, const R(seen_prim) * seen, const bool sphere,
+                          R(group_directions) directions, size_t at)
+{
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        vr d[3], n[3], p[3];
+        R(find_whole)(args, seen, sphere, directions, at, i, d, n, p);
+        for (int k = 0; k < 3; k++)
+            r_store((real *)args->point[k] + at + i, p[k]);
+    }
+}
+
 /// The points alone of such a group.
 INNER void R(place_whole)(const glint_surface_args *args, const R(seen_prim) * seen, R(group_directions) directions,
                           size_t at)
 {
-    for (int i = 0; i < GLINT_GROUP; i += VR) {
-        vr d[3], n[3], p[3];
-        if (seen->prim->kind == GLINT_PRIM_SPHERE)
-            R(find_whole)(args, seen, true, directions, at, i, d, n, p);
-        else
-            R(find_whole)(args, seen, false, directions, at, i, d, n, p);
-        for (int k = 0; k < 3; k++)
-            r_store((real *)args->point[k] + at + i, p[k]);
-    }
+    if (seen->prim->kind == GLINT_PRIM_SPHERE)
+        R(place_lanes)(args, seen, true, directions, at);
+    else if (seen->level == 0)
+        R(place_level)(args, seen, directions, at, 0);
+    else if (seen->level == 1)
+        R(place_level)(args, seen, directions, at, 1);
+    else if (seen->level == 2)
+        R(place_level)(args, seen, directions, at, 2);
+    else
+        R(place_lanes)(args, seen, false, directions, at);
 }
 
 /// One group that is hit: its triangles together, where there are several, and the rest primitive by primitive.

@@ -170,8 +170,8 @@ void glint_derivative_repaint(const glint_tile *tile, const glint_tile_frame *fr
     const glint_pattern_points points = glint_pattern_points_of(tile);
     for (size_t k = 0; k < planes; k++)
         memset(tile->derivative->painted + k * GLINT_TILE_SAMPLES, 0, tile->group_count * GLINT_GROUP * sizeof(double));
-    const uint32_t count = glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, repaints);
-    glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
-    for (uint32_t first = 0, taken; (taken = glint_pattern_take(tile->pattern, &first, count, entries));)
+    glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, repaints);
+    const glint_pattern_lanes *entries;
+    for (uint32_t taken; (taken = glint_pattern_take(tile->pattern, &entries));)
         run_material(tile, frame, &points, entries, taken);
 }

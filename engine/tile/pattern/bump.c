@@ -95,9 +95,9 @@ void glint_tile_bump(glint_tile *tile, const glint_tile_frame *frame)
     const glint_pattern_points points = glint_pattern_points_of(tile);
     for (int c = 0; c < 3; c++)
         memcpy(tile->unbumped[c], tile->surface.normal[c], bytes);
-    const uint32_t count = glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, is_bumped);
-    glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
-    for (uint32_t first = 0, taken; (taken = glint_pattern_take(tile->pattern, &first, count, entries));)
+    glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, is_bumped);
+    const glint_pattern_lanes *entries;
+    for (uint32_t taken; (taken = glint_pattern_take(tile->pattern, &entries));)
         bump_material(tile, frame, &points, &frame->plan->patterns->of[entries[0].material], entries, taken);
 }
 

@@ -72,9 +72,9 @@ void glint_tile_find_holes(glint_tile *tile, const glint_tile_frame *frame, cons
                            uint16_t *holes)
 {
     memset(holes, 0, points->group_count * sizeof *holes);
-    const uint32_t count = glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, points, is_cut);
-    glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
-    for (uint32_t first = 0, taken; (taken = glint_pattern_take(tile->pattern, &first, count, entries));)
+    glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, points, is_cut);
+    const glint_pattern_lanes *entries;
+    for (uint32_t taken; (taken = glint_pattern_take(tile->pattern, &entries));)
         find_material_holes(tile, frame, points, entries, taken, holes);
 }
 

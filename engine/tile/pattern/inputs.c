@@ -300,8 +300,10 @@ static bool read_points(glint_pattern_inputs *inputs, const glint_tile_frame *fr
     const glint_pattern_place *place = plain_place(frame, points, &entries[0]);
     if (!place)
         return false;
+    const uint32_t prim = points->prim[entries[0].group * GLINT_GROUP + (uint32_t)__builtin_ctz(entries[0].lanes)];
     for (uint32_t k = 1; k < count && !points->only; k++)
-        if (plain_place(frame, points, &entries[k]) != place)
+        if (!glint_all_are(points->prim + (size_t)entries[k].group * GLINT_GROUP, prim) &&
+            plain_place(frame, points, &entries[k]) != place)
             return false;
     for (int c = 0; c < 3; c++)
         read_array(inputs, GLINT_INPUT_P_X + c, points->point[c], entries[0].group);

@@ -9,26 +9,46 @@
 #include <stdlib.h>
 #include <string.h>
 
+/// What a plan needs room for.
+static glint_pattern_room room_for(const glint_plan *plan)
+{
+    const glint_plan_patterns *patterns = plan->patterns;
+    return (glint_pattern_room) { .planes = (size_t)patterns->plane_count * GLINT_TILE_SAMPLES,
+                                  .samples = plan->together ? (size_t)plan->desc.samples : 1,
+                                  .rows = patterns->row_count,
+                                  .bumps = patterns->bumps,
+                                  .cut_outs = patterns->cut_outs };
+}
+
 struct glint_pattern *glint_pattern_create(const glint_plan *plan)
 {
     struct glint_pattern *pattern = glint_alloc(1, sizeof *pattern);
     if (!pattern)
         return NULL;
-    const glint_plan_patterns *patterns = plan->patterns;
-    pattern->planes_each = (size_t)patterns->plane_count * GLINT_TILE_SAMPLES;
-    pattern->rows = glint_alloc((size_t)patterns->row_count * GLINT_PROGRAM_LANES, sizeof *pattern->rows);
-    pattern->cut_out = patterns->cut_outs ? glint_cut_out_create() : NULL;
-    bool good = pattern->rows && (pattern->cut_out || !patterns->cut_outs);
+    const glint_pattern_room room = room_for(plan);
+    pattern->room = room;
+    pattern->rows = glint_alloc(room.rows * GLINT_PROGRAM_LANES, sizeof *pattern->rows);
+    pattern->cut_out = room.cut_outs ? glint_cut_out_create() : NULL;
+    bool good = pattern->rows && (pattern->cut_out || !room.cut_outs);
     for (int walk = 0; walk < GLINT_WALK_COUNT; walk++) {
-        const size_t samples = walk == GLINT_WALK_EYE && plan->together ? (size_t)plan->desc.samples : 1;
-        pattern->planes[walk] = glint_alloc(samples * pattern->planes_each, sizeof *pattern->planes[walk]);
-        pattern->normals[walk] = patterns->bumps ? glint_alloc(3 * GLINT_TILE_SAMPLES, sizeof(double)) : NULL;
-        good = good && pattern->planes[walk] && (pattern->normals[walk] || !patterns->bumps);
+        const size_t samples = walk == GLINT_WALK_EYE ? room.samples : 1;
+        pattern->planes[walk] = glint_alloc(samples * room.planes, sizeof *pattern->planes[walk]);
+        pattern->normals[walk] = room.bumps ? glint_alloc(3 * GLINT_TILE_SAMPLES, sizeof(double)) : NULL;
+        good = good && pattern->planes[walk] && (pattern->normals[walk] || !room.bumps);
     }
     if (good)
         return pattern;
     glint_pattern_destroy(pattern);
     return NULL;
+}
+
+bool glint_pattern_fits(const struct glint_pattern *pattern, const glint_plan *plan)
+{
+    if (!pattern || !plan->patterns)
+        return !pattern && !plan->patterns;
+    const glint_pattern_room room = room_for(plan), has = pattern->room;
+    return room.planes == has.planes && room.samples == has.samples && room.rows == has.rows &&
+           room.bumps == has.bumps && room.cut_outs == has.cut_outs;
 }
 
 void glint_pattern_destroy(struct glint_pattern *pattern)
@@ -53,7 +73,7 @@ void glint_pattern_point(struct glint_pattern *pattern, glint_tile *tile, glint_
     if (!pattern)
         return;
     const size_t sample = walk == GLINT_WALK_EYE ? tile->own_planes : 0;
-    tile->at.planes = pattern->planes[walk] + sample * pattern->planes_each;
+    tile->at.planes = pattern->planes[walk] + sample * pattern->room.planes;
     for (int c = 0; c < 3 && pattern->normals[walk]; c++)
         tile->unbumped[c] = pattern->normals[walk] + (size_t)c * GLINT_TILE_SAMPLES;
 }
@@ -62,52 +82,68 @@ float *glint_pattern_planes(struct glint_pattern *pattern, glint_walk walk) { re
 
 // ---- Which lanes ----
 
-/// The lanes of a group with the material of the first of `lanes`.
-static unsigned alike(const uint32_t *material, unsigned lanes)
+/// Those of `lanes` of a group that have material `m`.
+static unsigned lanes_of(const uint32_t *material, uint32_t m, unsigned lanes)
 {
-    const uint32_t first = material[__builtin_ctz(lanes)];
-    if (glint_all_are(material, first))
-        return lanes;
     unsigned same = 0;
     for (unsigned i = 0; i < GLINT_GROUP; i++)
-        same |= (unsigned)(material[i] == first) << i;
+        same |= (unsigned)(material[i] == m) << i;
     return same & lanes;
 }
 
-uint32_t glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
-                                  const glint_pattern_points *points,
-                                  bool (*wants)(const glint_plan_pattern *own, uint32_t fields))
+void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
+                              const glint_pattern_points *points,
+                              bool (*wants)(const glint_plan_pattern *own, uint32_t fields))
 {
+    const uint16_t *hits = points->hits;
+    const uint32_t *material = points->material, group_count = points->group_count;
+    const bool only = points->only;
+    glint_pattern_lanes *entries = pattern->lanes;
     uint32_t count = 0, last = GLINT_MISS;
-    bool wanted = false; // whether material `last` is
-    for (uint32_t g = 0; g < points->group_count; g++) {
-        const uint32_t *material = points->material + (size_t)g * GLINT_GROUP;
-        for (unsigned left = points->hits[g], lanes; left; left &= ~lanes) {
-            lanes = points->only ? left : alike(material, left);
+    bool wanted = false, several = false; // whether material `last` is; whether others were
+    for (uint32_t g = 0; g < group_count; g++, material += GLINT_GROUP)
+        for (unsigned left = hits[g], lanes; left; left &= ~lanes) {
             const uint32_t m = material[__builtin_ctz(left)];
-            if (m != last)
+            lanes = only || glint_all_are(material, m) ? left : lanes_of(material, m, left);
+            if (m != last) {
                 wanted = wants(&patterns->of[m], points->fields);
+                several = several || (wanted && count > 0 && entries[0].material != m);
+            }
             last = m;
             if (wanted)
-                pattern->lanes[count++] = (glint_pattern_lanes) { m, (uint16_t)g, (uint16_t)lanes };
+                entries[count++] = (glint_pattern_lanes) { m, (uint16_t)g, (uint16_t)lanes };
         }
-    }
-    return count;
+    pattern->first = 0;
+    pattern->count = count;
+    pattern->several = several;
 }
 
-uint32_t glint_pattern_take(struct glint_pattern *pattern, uint32_t *first, uint32_t count,
-                            glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS])
+/// Of a list of several materials: moves entries of one to `taken`.
+static uint32_t pick(struct glint_pattern *pattern)
 {
     glint_pattern_lanes *lanes = pattern->lanes;
     uint32_t taken = 0;
-    while (*first < count && !lanes[*first].lanes)
-        ++*first;
-    for (uint32_t k = *first; k < count && taken < GLINT_PROGRAM_GROUPS; k++) {
-        if (!lanes[k].lanes || (taken && lanes[k].material != entries[0].material))
+    while (pattern->first < pattern->count && !lanes[pattern->first].lanes)
+        pattern->first++;
+    for (uint32_t k = pattern->first; k < pattern->count && taken < GLINT_PROGRAM_GROUPS; k++) {
+        if (!lanes[k].lanes || (taken && lanes[k].material != pattern->taken[0].material))
             continue;
-        entries[taken++] = lanes[k];
+        pattern->taken[taken++] = lanes[k];
         lanes[k].lanes = 0;
     }
+    return taken;
+}
+
+uint32_t glint_pattern_take(struct glint_pattern *pattern, const glint_pattern_lanes **entries)
+{
+    const uint32_t left = pattern->count - pattern->first;
+    if (pattern->several) {
+        *entries = pattern->taken;
+        return pick(pattern);
+    }
+    *entries = &pattern->lanes[pattern->first];
+    const uint32_t taken = left < GLINT_PROGRAM_GROUPS ? left : GLINT_PROGRAM_GROUPS;
+    pattern->first += taken;
     return taken;
 }
 
@@ -240,29 +276,34 @@ static void note_odd(glint_tile_counts *counts, const glint_tile_frame *frame, c
         }
 }
 
-/// The programs of one material, for some groups that show it.
-static void run_material(struct glint_pattern *pattern, const glint_tile_frame *frame,
-                         const glint_pattern_points *points, const glint_plan_pattern *own,
-                         const glint_pattern_lanes *entries, uint32_t count, glint_tile_counts *counts)
-{
+/// Which lanes a call of a program is about.
+typedef struct called {
     uint32_t groups[GLINT_PROGRAM_GROUPS];
     uint16_t wanted[GLINT_PROGRAM_GROUPS], odd[GLINT_PROGRAM_GROUPS];
+} called;
+
+/// The programs of one material, for some groups that show it. args: of `call`.
+static void run_material(struct glint_pattern *pattern, const glint_tile_frame *frame,
+                         const glint_pattern_points *points, const glint_pattern_lanes *entries, uint32_t count,
+                         called *call, glint_program_args *args, glint_tile_counts *counts)
+{
+    const glint_plan_pattern *own = &frame->plan->patterns->of[entries[0].material];
+    args->group_count = count;
     for (uint32_t k = 0; k < count; k++) {
-        groups[k] = entries[k].group;
-        wanted[k] = entries[k].lanes;
+        call->groups[k] = entries[k].group;
+        call->wanted[k] = entries[k].lanes;
         counts->work.patterns += glint_count_lanes(entries[k].lanes);
     }
     glint_pattern_gather(&pattern->inputs, frame, points, own->reads, entries, count);
-    glint_program_args args = { .group_count = count, .wanted = wanted, .groups = groups, .odd = odd };
     for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
         if (!(own->made & points->fields & 1u << field))
             continue;
         const int planes = frame->plan->patterns->planes[field];
         for (int c = 0; c < planes && own->program[field]; c++)
-            args.plane[c] = plane_at(points, frame->plan, field, c);
+            args->plane[c] = plane_at(points, frame->plan, field, c);
         if (own->program[field]) {
-            run_program(pattern, frame, own->program[field], &args, planes);
-            note_odd(counts, frame, points, entries, count, odd, field);
+            run_program(pattern, frame, own->program[field], args, planes);
+            note_odd(counts, frame, points, entries, count, call->odd, field);
         }
         finish(own, points, frame->plan, entries, count, field);
     }
@@ -270,14 +311,24 @@ static void run_material(struct glint_pattern *pattern, const glint_tile_frame *
 
 static bool has_planes(const glint_plan_pattern *own, uint32_t fields) { return own->made & fields; }
 
+/// The programs of all that is listed.
+static void run_list(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
+                     glint_tile_counts *counts)
+{
+    const glint_pattern_lanes *entries;
+    called call;
+    glint_program_args args = { .wanted = call.wanted, .groups = call.groups, .odd = call.odd };
+    for (uint32_t taken; (taken = glint_pattern_take(pattern, &entries));)
+        run_material(pattern, frame, points, entries, taken, &call, &args, counts);
+}
+
 bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_tile_counts *counts)
 {
-    const uint32_t count = glint_pattern_find_lanes(pattern, frame->plan->patterns, points, has_planes);
-    glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
-    for (uint32_t first = 0, taken; (taken = glint_pattern_take(pattern, &first, count, entries));)
-        run_material(pattern, frame, points, &frame->plan->patterns->of[entries[0].material], entries, taken, counts);
-    return count > 0;
+    glint_pattern_find_lanes(pattern, frame->plan->patterns, points, has_planes);
+    const bool any = pattern->count > 0;
+    run_list(pattern, frame, points, counts);
+    return any;
 }
 
 glint_pattern_points glint_pattern_points_of(const glint_tile *tile)
@@ -326,20 +377,18 @@ uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan)
     return fields;
 }
 
-bool glint_tile_find_painted(const glint_tile *tile, const glint_plan *plan, uint16_t painted[GLINT_TILE_GROUPS])
+bool glint_tile_find_painted(glint_tile *tile, const glint_tile_frame *frame)
 {
-    unsigned any = 0;
-    for (uint32_t g = 0; g < tile->group_count; g++) {
-        const uint32_t *material = tile->surface.material + (size_t)g * GLINT_GROUP;
-        painted[g] = 0;
-        for (unsigned left = tile->at.hits[g], lanes; left; left &= ~lanes) {
-            lanes = tile->at.only ? left : alike(material, left);
-            if (plan->patterns->of[material[__builtin_ctz(left)]].made & GLINT_FIELDS_PLANES)
-                painted[g] |= (uint16_t)lanes;
-        }
-        any |= painted[g];
-    }
-    return any;
+    const glint_pattern_points points = glint_pattern_points_of(tile);
+    glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, has_planes);
+    return tile->pattern->count > 0;
+}
+
+void glint_tile_painted_lanes(const glint_tile *tile, uint16_t painted[GLINT_TILE_GROUPS])
+{
+    memset(painted, 0, GLINT_TILE_GROUPS * sizeof *painted);
+    for (uint32_t k = 0; k < tile->pattern->count; k++)
+        painted[tile->pattern->lanes[k].group] |= tile->pattern->lanes[k].lanes;
 }
 
 bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
@@ -361,8 +410,14 @@ void glint_tile_sign_pattern(glint_tile *tile, const glint_tile_frame *frame)
 void glint_tile_pattern(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_pattern_points points = glint_pattern_points_of(tile);
-    if (glint_pattern_run(tile->pattern, frame, &points, &tile->counts))
-        glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, false);
+    run_list(tile->pattern, frame, &points, &tile->counts);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, false);
+}
+
+void glint_tile_find_patterns(glint_tile *tile, const glint_tile_frame *frame)
+{
+    if (glint_tile_find_painted(tile, frame))
+        glint_tile_pattern(tile, frame);
 }
 
 const glint_shade_planes *glint_tile_shade_planes(const glint_tile *tile, const glint_plan *plan,

@@ -29,6 +29,8 @@ typedef struct glint_pattern_points {
     bool shading; ///< `normal` is the one to give, whatever it is
 } glint_pattern_points;
 
+/// Whether there is the room that the plan's programs need, which may be none.
+bool glint_pattern_fits(const struct glint_pattern *pattern, const glint_plan *plan);
 /// Makes room for the plan's programs. NULL: no memory.
 struct glint_pattern *glint_pattern_create(const glint_plan *plan);
 void glint_pattern_destroy(struct glint_pattern *pattern); ///< NULL: nothing
@@ -40,16 +42,20 @@ float *glint_pattern_planes(struct glint_pattern *pattern, glint_walk walk);
 bool glint_pattern_needs_normals(const glint_plan *plan);
 /// The fields that programs give of the materials in sight, which are named; a bit each.
 uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan);
-/// The lanes that show materials, which are named, of which programs fill planes. Returns whether there are any.
-bool glint_tile_find_painted(const glint_tile *tile, const glint_plan *plan, uint16_t painted[GLINT_TILE_GROUPS]);
+/// Lists the lanes that show materials, which are named, of which programs fill planes. Returns whether there are any.
+bool glint_tile_find_painted(glint_tile *tile, const glint_tile_frame *frame);
+/// Those that are listed.
+void glint_tile_painted_lanes(const glint_tile *tile, uint16_t painted[GLINT_TILE_GROUPS]);
 /// Points the planes of sample k to where they are kept, or go. Returns whether they are there already.
 bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 /// Writes down what the kept planes hold now.
 void glint_tile_sign_pattern(glint_tile *tile, const glint_tile_frame *frame);
 
-/// Runs the programs of the materials that are hit, into the tile's planes, and counts the stage, where there are any. The points
-/// are found, and where programs read them, the normals.
+/// Runs the programs of what glint_tile_find_painted has listed, into the tile's planes, and counts the stage. The points are
+/// found, and where programs read them, the normals.
 void glint_tile_pattern(glint_tile *tile, const glint_tile_frame *frame);
+/// Both: of all that is hit, where any of it has programs.
+void glint_tile_find_patterns(glint_tile *tile, const glint_tile_frame *frame);
 /// The same for other points. Returns whether any material has programs.
 bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_tile_counts *counts);

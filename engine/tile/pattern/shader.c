@@ -229,9 +229,9 @@ void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const gl
     points.shading = true;
     for (int c = 0; c < 3; c++)
         points.normal[c] = tile->surface.normal[c];
-    const uint32_t count = glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, has_shader);
-    glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
-    for (uint32_t first = 0, taken; (taken = glint_pattern_take(tile->pattern, &first, count, entries));) {
+    glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, has_shader);
+    const glint_pattern_lanes *entries;
+    for (uint32_t taken; (taken = glint_pattern_take(tile->pattern, &entries));) {
         batch b = { .entries = entries, .count = taken, .own = &frame->plan->patterns->of[entries[0].material] };
         b.program = b.own->program[GLINT_FIELD_SHADER];
         for (uint32_t k = 0; k < b.count; k++)

@@ -8,6 +8,14 @@
 
 #define GLINT_SHADER_TERMS 6 ///< diffuse, specular
 
+/// How large what depends on the plan is.
+typedef struct glint_pattern_room {
+    size_t planes; ///< floats of a sample's planes
+    size_t samples; ///< that are shaded together
+    size_t rows;
+    bool bumps, cut_outs; ///< whether any surface has them
+} glint_pattern_room;
+
 struct glint_pattern {
     glint_pattern_inputs inputs;
     _Alignas(64) double slopes[GLINT_BUMP_SLOPES][GLINT_PROGRAM_LANES];
@@ -18,20 +26,22 @@ struct glint_pattern {
     float *planes[GLINT_WALK_COUNT]; ///< those of the first walk for each sample that is shaded together with others
     double *normals[GLINT_WALK_COUNT]; ///< of bumped surfaces, before; NULL: there are none
     struct glint_cut_out *cut_out; ///< memory of tile/cut_out.c; NULL: no surface has holes
-    size_t planes_each; ///< floats of a sample's planes
-    glint_pattern_lanes lanes[GLINT_TILE_SAMPLES];
+    glint_pattern_room room;
+    glint_pattern_lanes lanes[GLINT_TILE_SAMPLES]; ///< the list of glint_pattern_find_lanes
+    uint32_t first, count; ///< the entries of it that are left are among lanes[first .. count)
+    bool several; ///< they are of several materials, and those that were taken have no lanes
+    glint_pattern_lanes taken[GLINT_PROGRAM_GROUPS];
 };
 
 /// The points that a tile has found.
 glint_pattern_points glint_pattern_points_of(const glint_tile *tile);
-/// Lists the lanes of the materials that are wanted. Returns how many entries there are.
-uint32_t glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
-                                  const glint_pattern_points *points,
-                                  bool (*wants)(const glint_plan_pattern *own, uint32_t fields));
-/// Takes the first entry that is left and those after it of the same material, as many as a call has room for, off the list;
-/// *first, 0 to begin with: none is left before it. Returns how many: 0, where the list is empty.
-uint32_t glint_pattern_take(struct glint_pattern *pattern, uint32_t *first, uint32_t count,
-                            glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS]);
+/// Lists the lanes of the materials that are wanted.
+void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
+                              const glint_pattern_points *points,
+                              bool (*wants)(const glint_plan_pattern *own, uint32_t fields));
+/// Takes the first entry that is left and those after it of the same material, as many as a call has room for, off the list.
+/// Returns how many: 0, where the list is empty.
+uint32_t glint_pattern_take(struct glint_pattern *pattern, const glint_pattern_lanes **entries);
 /// Runs a program on the inputs that are gathered, from entry `first` on.
 void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_program_code *code,
                         uint32_t first, glint_program_args *args);
