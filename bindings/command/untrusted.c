@@ -63,8 +63,8 @@ typedef struct watched {
     double tick_ms; // to the next look at them
 } watched;
 
-// What the child has passed to write() may take on a disk, where each call may end in a block of its own. 0 where the kernel
-// does not count.
+// The bytes that the child has passed to write(), as a disk may have to take them: each call may end in a block of its own. 0 where
+// the kernel does not count.
 static uint64_t bytes_written(pid_t child)
 {
     char path[40], line[80];

@@ -115,7 +115,7 @@ int glintL_unpack(lua_State *L); ///< the method
 typedef struct glintL_dual {
     double value;
     double slope[GLINTL_VARIABLES_MAX]; ///< by each variable
-    uint32_t depends; ///< a bit a variable: on those that it was made of, be the slope 0 where they are
+    uint32_t depends; ///< a bit for each variable that it is made of, also where the slope is 0
 } glintL_dual;
 
 /// Pushes the variable of this name at a value; the first call of a name makes it. Raises when there are too many.

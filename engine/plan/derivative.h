@@ -71,8 +71,8 @@ typedef struct glint_plan_derivative {
     double background[3]; ///< slopes
     bool moves; ///< some shadow does
     bool bends; ///< some surface moves, or the eye, or an index of refraction turns rays
-    bool weighs; ///< some material sends on another share
-    bool fades; ///< the depth cue changes, or what absorbs around the eye
+    bool weighs; ///< some material sends on or absorbs another share
+    bool fades; ///< the depth cue changes
     bool everywhere; ///< something has a slope that no light brings
     bool repaints; ///< some program changes
 } glint_plan_derivative;

@@ -19,10 +19,10 @@ typedef struct glint_batch {
     bool ordered; ///< every ray is to have the sample of its own number
     bool distances; ///< of what is met the distance is read alone: surfaces are not found
     bool by_lane; ///< packed samples keep the lane of their ray
-    bool whole; ///< it has: what meets nothing has a sample as well
-    _Alignas(64) double t[GLINT_TILE_SAMPLES]; ///< real, as `prim` of each ray before samples are packed
+    bool whole; ///< every ray has the sample of its own number, also where it meets nothing
+    _Alignas(64) double t[GLINT_TILE_SAMPLES]; ///< of each ray as it is cast, before samples are packed; real. And so `prim`
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
-    uint16_t met[GLINT_TILE_GROUPS]; ///< else: the rays that have one
+    uint16_t met[GLINT_TILE_GROUPS]; ///< not whole: the rays that have a sample
     uint16_t sample[GLINT_TILE_SAMPLES]; ///< of each ray that has one
     uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< the other way
     double shown[3][GLINT_TILE_SAMPLES]; ///< where a program gives the background, what rays without a sample see of it

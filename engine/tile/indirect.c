@@ -3,8 +3,9 @@
 ///
 /// Paths do not branch. Where one meets a surface it takes the light that the lights send there, and goes on in one of the
 /// directions the surface sends light on to: scattered, mirrored or refracted, chosen with probability as the shares, and
-/// weighed by one over it. So the memory is a batch and three sets of rays, however long paths are. They stay in the lane of
-/// their point: what a path finds depends on its pixel, on the numbers of its sample and of its turns, and on the seed.
+/// weighed by one over it. So the memory is a batch and three sets of rays, however long paths are. What a path finds depends on
+/// its pixel, on the numbers of its sample and of its turns, and on the seed: where a lane chooses the point of an area light,
+/// paths stay in that of their point.
 ///
 /// Of an area light each path takes one sample at each point, another from path to path. Light that is computed at each point
 /// and found by chance as well would count twice: paths do not see lights, whether rays of the eye do or not.
@@ -267,7 +268,7 @@ static void draw_first(struct glint_indirect *indirect, const glint_plan *plan, 
     if (path > 0 && lasting)
         return;
     glint_sequence_seed seed;
-    uint64_t last = 0; ///< what that is made of
+    uint64_t last = 0; // the block that it is made of
     bool known = false;
     for (uint32_t g = 0; g < indirect->first.group_count; g++)
         for (unsigned left = indirect->first.active[g]; left; left &= left - 1) {

@@ -21,7 +21,7 @@ typedef struct glint_shading_points_cached {
     uint32_t blocks; ///< of one side; those of the backs follow those of the fronts
     uint32_t ready; ///< blocks that were there before this frame
     glint_shading_point_light *light; ///< of the fronts, then of the backs
-    double *slopes; ///< of each three numbers of its light, and of each derivative's slopes; NULL: the frame has no derivatives
+    double *slopes; ///< of each its light, three numbers, and as many slopes by each derivative; NULL: the frame has none
     size_t slope_count; ///< derivatives
     atomic_uchar *state; ///< of each block: a glint_block_state
     size_t reserved; ///< bytes of the budget

@@ -181,7 +181,7 @@ typedef struct glint_tile {
     glint_tile_counts counts;
     glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
     struct glint_pattern *pattern; ///< memory of tile/pattern/pattern.c; NULL in frames without programs
-    struct glint_derivative_work *derivative; ///< of tile/derivative.c; NULL until a frame has derivatives
+    struct glint_derivative_work *derivative; ///< of tile/derivative/; NULL until a frame has derivatives
     double *unbumped[3]; ///< real: the normals that bumps have turned, as they were; NULL: there are no bumps
     uint32_t own_planes; ///< of the planes that samples have which are shaded together, the current sample's
 } glint_tile;
@@ -258,7 +258,7 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
 /// The points alone, of some of the lanes that are hit; all of these are balls and planes.
 void glint_tile_find_points(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *hits);
-/// The same and light number `light` of the plan, a plain one, in slot 0; maybe without normals, unless these are wanted.
+/// The same and light number `light` of the plan, a plain one, in slot 0. Some normals are left out unless all are wanted.
 void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light, bool normals);
 /// One light, samples of one, or lights that are alike: light `first + slot[i]` of the plan, for each of `count` slots of the
 /// chunk. Shadows are those of one light, or of its samples.
@@ -493,7 +493,7 @@ bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *
 /// `args`: as for a cast of everything.
 void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args);
 
-/// tile/derivative.c: how fast the light of the current sample changes with parameters.
+/// tile/derivative/derivative.c: how fast the light of the current sample changes with parameters.
 struct glint_derivative_work *glint_derivative_create(void);
 void glint_derivative_destroy(struct glint_derivative_work *work); ///< NULL: nothing
 /// Makes room for what the plan's derivatives need beside; false: no memory.

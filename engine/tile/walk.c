@@ -67,7 +67,7 @@ static void need_points(glint_tile *tile, const glint_tile_frame *frame, walk *w
     w->points = true;
 }
 
-/// Finds what the programs of what is listed read: where that is points alone, of no other lanes.
+/// Finds the points of the lanes that are listed, and no more: their programs read nothing else.
 static void need_painted(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
     uint16_t painted[GLINT_TILE_GROUPS];

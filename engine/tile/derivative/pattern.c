@@ -37,7 +37,7 @@ static double *painted_at(const glint_tile *tile, const glint_plan *plan, size_t
     return (double *)(uintptr_t)glint_derivative_painted(tile, plan, index, field, channel);
 }
 
-// ---- What follows from what programs give; see `finish` in tile/pattern/pattern.c -----------------------------------------
+// ---- What follows from what programs give; see `finish` in tile/pattern/pattern.c ---------------------------------
 
 /// What makes Phong's and Blinn-Phong's highlights even.
 static glint_dual even_factor(const glint_material_desc *desc, glint_dual s)

@@ -35,7 +35,7 @@ static void find_share(const glint_tile_frame *frame, const glint_prim *prim, co
     out[0] += 1;
 }
 
-/// Adds what lies between three corners; NULL: the sample does not move.
+/// Adds what lies between three corners. change: the slopes of their shares; NULL: the sample does not move.
 static void spread(const glint_tile *tile, double *const at[3], const double share[3],
                    const double *change, size_t index, uint32_t i)
 {

@@ -1,4 +1,4 @@
-/// What the parts of tile/derivative*.c share. Internal to engine/tile.
+/// What the parts of this room share. Internal to engine/tile.
 #ifndef GLINT_DERIVATIVE_WORK_H
 #define GLINT_DERIVATIVE_WORK_H
 
@@ -53,7 +53,7 @@ static inline bool glint_derivatives_read_light(const glint_tile *tile, const gl
     return (tile->batch || plan->runs[GLINT_STAGE_DEPTH_CUE]) && glint_derivatives_weigh(plan->derivatives);
 }
 
-/// tile/derivative.c: the group that sample i is in, after glint_tile_derive.
+/// derivative.c: the group that sample i is in, after glint_tile_derive.
 glint_derivative_points glint_derivative_points_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g);
 
 /// pattern.c: finds the slopes of what programs give the current sample.
@@ -76,7 +76,8 @@ bool glint_derive_fade_fits(glint_derivative_work *work, const glint_plan *plan)
 bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
                        const glint_derivative_points *points, glint_bend *out);
 
-/// The shares that a triangle's corners have of a way from the first of them, but for the one that is the first's at its own place.
+/// The shares of a triangle's corners at the end of a way `at` from the first of them, less the 1 that the first has at its own
+/// place: of the slope of a point, the slopes of its shares. scale: of the table.
 void glint_bend_shares(double scale, const glint_prim *prim, const double at[3], double out[3]);
 
 #endif

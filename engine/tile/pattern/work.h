@@ -25,7 +25,7 @@ struct glint_pattern {
     double *rows; ///< scratch of the kernel
     float *planes[GLINT_WALK_COUNT]; ///< those of the first walk for each sample that is shaded together with others
     double *normals[GLINT_WALK_COUNT]; ///< of bumped surfaces, before; NULL: there are none
-    struct glint_cut_out *cut_out; ///< memory of tile/cut_out.c; NULL: no surface has holes
+    struct glint_cut_out *cut_out; ///< memory of cut_out.c; NULL: no surface has holes
     glint_pattern_room room;
     glint_pattern_lanes lanes[GLINT_TILE_SAMPLES]; ///< the list of glint_pattern_find_lanes
     uint32_t first, count; ///< the entries of it that are left are among lanes[first .. count)
