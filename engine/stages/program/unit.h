@@ -1,5 +1,34 @@
 // The stage `unit`: ways to lights and to the eye, as shaders read them. Contract: contract/program.h.
 
+/// d / by, where `by` is d's length.
+static inline void divide_each(const vd d[3], vd by, vd q[3])
+{
+    for (int c = 0; c < 3; c++)
+        q[c] = d[c] / by;
+}
+
+#ifdef GLINT_D_FUSED
+/// The same bits by one division: where y is 1 / by rounded to nearest and q is off d / by by at most one unit in the last place,
+/// q + (d - q by) y, with both steps fused, is d / by rounded to nearest (P. Markstein, IBM J. Res. Dev. 34(1), 1990). The first step
+/// brings q there. Within the bounds nothing over- or underflows.
+static inline void divide_by_length(const vd d[3], vd by, vd q[3])
+{
+    const vd least = d_min(d_min(d_abs(d[0]), d_abs(d[1])), d_abs(d[2]));
+    if (dm_bits(dm_and(d_le(d_set(0x1p-400), least), d_le(by, d_set(0x1p400)))) != D_ALL) {
+        divide_each(d, by, q);
+        return;
+    }
+    const vd y = d_set(1) / by;
+    for (int c = 0; c < 3; c++) {
+        q[c] = d[c] * y;
+        for (int step = 0; step < 2; step++)
+            q[c] = d_fma(d_fnma(q[c], by, d[c]), y, q[c]);
+    }
+}
+#else
+static inline void divide_by_length(const vd d[3], vd by, vd q[3]) { divide_each(d, by, q); }
+#endif
+
 /// Which ways a call finds: each is compiled by itself.
 typedef enum unit_way { TO_EYE, TO_PLACE, TO_EACH } unit_way;
 
@@ -7,7 +36,7 @@ typedef enum unit_way { TO_EYE, TO_PLACE, TO_EACH } unit_way;
 INNER void unit_lanes(const glint_unit_args *args, const unit_way way, const double *across, const double *down,
                       size_t at)
 {
-    vd d[3];
+    vd d[3], q[3];
     for (int c = 0; c < 3; c++) {
         if (way == TO_EYE)
             d[c] = -(d_load(across + c * GLINT_GROUP) + d_load(down + c * GLINT_GROUP));
@@ -17,8 +46,9 @@ INNER void unit_lanes(const glint_unit_args *args, const unit_way way, const dou
             d[c] = d[c] - d_load(args->from[c] + at);
     }
     const vd length = d_sqrt((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
+    divide_by_length(d, length, q);
     for (int c = 0; c < 3; c++)
-        d_store(args->unit[c] + at, d[c] / length);
+        d_store(args->unit[c] + at, q[c]);
     d_store(args->length + at, length);
 }
 

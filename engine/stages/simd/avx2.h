@@ -190,6 +190,11 @@ static inline dm q_test(vq x, uint32_t bit)
     return _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(x, want), want));
 }
 
+#define GLINT_D_FUSED 1 ///< there are the two that follow
+/// a * b + c and c - a * b, rounded once.
+static inline vd d_fma(vd a, vd b, vd c) { return _mm256_fmadd_pd(a, b, c); }
+static inline vd d_fnma(vd a, vd b, vd c) { return _mm256_fnmadd_pd(a, b, c); }
+
 static inline vd d_two_prod(vd a, vd b, vd *error)
 {
     vd p = a * b;

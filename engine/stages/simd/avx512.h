@@ -181,6 +181,11 @@ static inline vq q_mul(vq a, vq b) { return _mm512_mul_epu32(a, b); }
 /// Lanes where the bit, one of the lower 32, is set.
 static inline dm q_test(vq x, uint32_t bit) { return _mm512_test_epi64_mask(x, q_set(bit)); }
 
+#define GLINT_D_FUSED 1 ///< there are the two that follow
+/// a * b + c and c - a * b, rounded once.
+static inline vd d_fma(vd a, vd b, vd c) { return _mm512_fmadd_pd(a, b, c); }
+static inline vd d_fnma(vd a, vd b, vd c) { return _mm512_fnmadd_pd(a, b, c); }
+
 static inline vd d_two_prod(vd a, vd b, vd *error)
 {
     vd p = a * b;
