@@ -103,9 +103,9 @@ static bool matters(struct glint_bounce *bounce, const glint_plan *plan, const g
     double weight = ray->weight[0]; // none is NaN
     for (int c = 1; c < 3; c++)
         weight = ray->weight[c] > weight ? ray->weight[c] : weight;
-    double *budget = &bounce->budget[ray->pixel];
-    if (weight == 0)
+    if (weight == 0) // of a ray that is none, nothing else may be set
         return false;
+    double *budget = &bounce->budget[ray->pixel];
     const double lost = weight * plan->brightest;
     if (!(4 * lost <= *budget))
         return true;
@@ -158,7 +158,7 @@ static void take_weight(const glint_plan *plan, glint_ray *one, glint_ray *other
 static void stand_for_both(const glint_plan *plan, glint_ray *a, glint_ray *b, glint_ray_slope *a_slopes,
                            glint_ray_slope *b_slopes)
 {
-    if (lot_of(a) * (total_weight(a) + total_weight(b)) < total_weight(a))
+    if (!(total_weight(b) > 0) || lot_of(a) * (total_weight(a) + total_weight(b)) < total_weight(a))
         take_weight(plan, a, b, a_slopes, b_slopes);
     else
         take_weight(plan, b, a, b_slopes, a_slopes);
