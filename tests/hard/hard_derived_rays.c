@@ -53,15 +53,6 @@ enum { NOTHING, BALL, OTHER, FLOOR };
 
 // ---- The formulas, from their definitions -------------------------------------------------------------------------
 
-static quad dot(const quad a[3], const quad b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-static void unit(quad v[3])
-{
-    const quad length = sqrtf128(dot(v, v));
-    for (int c = 0; c < 3; c++)
-        v[c] /= length;
-}
-
 /// Where a line meets a ball: its two distances; false: nowhere.
 static bool meet_ball(const quad center[3], quad radius, const quad o[3], const quad d[3], quad t[2])
 {
@@ -197,12 +188,6 @@ typedef struct made {
     glint_light *light;
     glint_shape *shapes[3];
 } made;
-
-static void put(double *out, const quad in[3], int count)
-{
-    for (int c = 0; c < count; c++)
-        out[c] = (double)in[c];
-}
 
 static glint_material *make_material(const glint_material_desc *desc)
 {

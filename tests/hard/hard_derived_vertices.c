@@ -43,21 +43,6 @@ static const number numbers[] = {
 
 // ---- The formulas, from their definitions -------------------------------------------------------------------------
 
-static quad dot(const quad a[3], const quad b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-static void unit(quad v[3])
-{
-    const quad length = sqrtf128(dot(v, v));
-    for (int c = 0; c < 3; c++)
-        v[c] /= length;
-}
-
-static void cross(const quad a[3], const quad b[3], quad out[3])
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
-}
-
 static void look_of(const world *w, quad forward[3])
 {
     for (int c = 0; c < 3; c++)
@@ -155,12 +140,6 @@ static void color_of(const world *w, int x, int y, quad out[3])
 }
 
 // ---- The engine ---------------------------------------------------------------------------------------------------
-
-static void put(double *out, const quad in[3], int count)
-{
-    for (int c = 0; c < count; c++)
-        out[c] = (double)in[c];
-}
 
 static void add_mesh(const world *w, glint_scene *scene, glint_material *material)
 {

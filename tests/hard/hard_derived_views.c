@@ -56,21 +56,6 @@ static const number numbers[] = {
 
 // ---- The formulas, from their definitions -------------------------------------------------------------------------
 
-static quad dot(const quad a[3], const quad b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-static void unit(quad v[3])
-{
-    const quad length = sqrtf128(dot(v, v));
-    for (int c = 0; c < 3; c++)
-        v[c] /= length;
-}
-
-static void cross(const quad a[3], const quad b[3], quad out[3])
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
-}
-
 /// Where a pixel's ray goes through a round lens of radius 1: see plan/lens.c.
 static void lens_point(int x, int y, quad out[2])
 {
@@ -169,12 +154,6 @@ typedef struct made {
     glint_light *light;
     glint_shape *ball, *floor;
 } made;
-
-static void put(double *out, const quad in[3], int count)
-{
-    for (int c = 0; c < count; c++)
-        out[c] = (double)in[c];
-}
 
 static void set_camera(const world *w, glint_scene *scene)
 {

@@ -1,4 +1,4 @@
-/// What the tests of derivatives have in common: a picture with one, and how far it is from the truth.
+/// What the tests of derivatives have in common: vectors in 113 bits, a picture with one, and how far it is from the truth.
 #ifndef GLINT_HARD_SLOPES_H
 #define GLINT_HARD_SLOPES_H
 
@@ -11,6 +11,27 @@ static inline void fill(quad out[3], double low, double high)
 {
     for (int c = 0; c < 3; c++)
         out[c] = uniform(low, high);
+}
+
+static inline quad dot(const quad a[3], const quad b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static inline void unit(quad v[3])
+{
+    const quad length = sqrtf128(dot(v, v));
+    for (int c = 0; c < 3; c++)
+        v[c] /= length;
+}
+
+static inline void cross(const quad a[3], const quad b[3], quad out[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+}
+
+static inline void put(double *out, const quad in[3], int count)
+{
+    for (int c = 0; c < count; c++)
+        out[c] = (double)in[c];
 }
 
 /// `desc`: the size, and what else differs from the defaults. The caller releases the image.
