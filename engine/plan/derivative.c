@@ -15,12 +15,6 @@
 
 // ---- Materials ----------------------------------------------------------------------------------------------------
 
-static void duals(glint_dual out[3], const double value[3], const double slope[3])
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = dual(value[c], slope[c]);
-}
-
 /// Phong and Blinn-Phong; see power_init in plan/shading.c. `even`: what makes them so is in no plane.
 static void power_material(glint_derivative_material *out, const glint_material_desc *desc, bool even)
 {

@@ -22,6 +22,12 @@ glint_status glint_derivative_add(const glint_plan *plan, const glint_scene *sce
 void glint_derivative_fill_view(glint_derivative_view *out, const glint_plan *plan, const glint_camera_desc *desc,
                                 const glint_camera_desc *slope);
 
+static inline void duals(glint_dual out[3], const double value[3], const double slope[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = dual(value[c], slope[c]);
+}
+
 static inline bool glint_any_slope(const double v[3]) { return v[0] != 0 || v[1] != 0 || v[2] != 0; }
 
 static inline bool glint_has_slope(const glint_dual *list, size_t count)

@@ -4,12 +4,6 @@
 
 #include <string.h>
 
-static void duals(glint_dual out[3], const double value[3], const double slope[3])
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = dual(value[c], slope[c]);
-}
-
 static void dual_cross(glint_dual out[3], const glint_dual a[3], const glint_dual b[3])
 {
     for (int c = 0; c < 3; c++) {
