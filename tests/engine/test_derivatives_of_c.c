@@ -254,6 +254,10 @@ static void test_same_bits(void **state)
         assert_true(count > WIDTH * HEIGHT * 12);
         assert_int_equal(bytes_of(path, c, sizeof c), count);
         assert_memory_equal(c, lua, count);
+        size_t zeros = 0; // at most half of a picture is level
+        for (size_t k = count - WIDTH * HEIGHT * 12; k < count; k++)
+            zeros += c[k] == 0;
+        assert_true(zeros < WIDTH * HEIGHT * 12 / 2);
     }
 }
 
