@@ -1,6 +1,6 @@
 /// A batch of rays that start on surfaces: at most a tile's samples, walked through the stages together. Internal.
 ///
-/// tile/bounce.c and tile/indirect.c decide which rays there are and what becomes of the light they find.
+/// tile/bounce.c and tile/indirect/ decide which rays there are and what becomes of the light they find.
 #ifndef GLINT_BATCH_H
 #define GLINT_BATCH_H
 

@@ -4,6 +4,16 @@
 
 #include <stdlib.h>
 
+/// The memory of programs, whose size is the plan's. Returns whether there is enough.
+static bool fit_pattern(glint_tile *tile, const glint_plan *plan)
+{
+    if (glint_pattern_fits(tile->pattern, plan))
+        return true;
+    glint_pattern_destroy(tile->pattern);
+    tile->pattern = plan->patterns ? glint_pattern_create(plan) : NULL;
+    return tile->pattern || !plan->patterns;
+}
+
 bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
 {
     bool good = true;
@@ -36,13 +46,8 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = glint_vertex_derives(tile->vertex, plan) && good;
     if (plan->derivatives && tile->bounce)
         good = glint_bounce_derives(tile->bounce, plan) && good;
-    if (!glint_pattern_fits(tile->pattern, plan)) {
-        glint_pattern_destroy(tile->pattern);
-        tile->pattern = NULL;
-    }
-    if (plan->patterns && !tile->pattern)
-        good = (tile->pattern = glint_pattern_create(plan)) && good;
-    glint_environment_destroy(tile->environment); // likewise
+    good = fit_pattern(tile, plan) && good;
+    glint_environment_destroy(tile->environment); // its size is the plan's
     tile->environment = NULL;
     if (plan->environment)
         good = (tile->environment = glint_environment_create(plan)) && good;

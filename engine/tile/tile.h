@@ -175,7 +175,7 @@ typedef struct glint_tile {
     struct glint_visible_light
         *visible_light; ///< of tile/visible_lights.c; NULL unless the frame has lights that are seen
     struct glint_differ_work *differ; ///< of tile/differ.c; NULL until a frame is a base
-    struct glint_indirect *indirect; ///< memory of tile/indirect.c; likewise
+    struct glint_indirect *indirect; ///< memory of tile/indirect/; likewise
     struct glint_environment *environment; ///< of tile/environment.c; NULL unless a program gives the background
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
@@ -370,7 +370,7 @@ void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame
 /// The other pixels' light, and all pixels' geometry, are those of the base; all are active again.
 void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
 
-/// tile/indirect.c: follows paths of light from the points that `seen` hits, and adds what they find to the sums of `tile`.
+/// tile/indirect/: follows paths of light from the points that `seen` hits, and adds what they find to the sums of `tile`.
 /// `from`: the batch that `seen` belongs to; NULL: it is what the eye sees, `tile` itself.
 struct glint_batch;
 struct glint_indirect *glint_indirect_create(const glint_plan *plan);

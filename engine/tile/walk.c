@@ -333,6 +333,36 @@ static void derive(glint_tile *tile, const glint_tile_frame *frame, walk *w, boo
         glint_tile_count_stage(tile, frame, GLINT_STAGE_DERIVATIVE, false);
 }
 
+/// Names the materials and finds the points that shading a chunk of lights needs and that these have not found.
+static void need_shading(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any, bool lit, uint32_t from)
+{
+    if (from == 0 && any && !w->points && !w->lit) {
+        glint_tile_count_stage(tile, frame, GLINT_STAGE_SURFACE, true);
+        glint_tile_name_materials(tile, frame);
+    }
+    if (any)
+        find_patterns(tile, frame, w);
+    const bool inside = frame->plan->dims; // which points are inside what absorbs
+    if (lit && !w->points && (inside || glint_tile_shows_shader(tile, frame->plan)))
+        need_points(tile, frame, w);
+}
+
+/// What is added when all lights have been shaded.
+static void find_rest(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any, bool shading_points)
+{
+    const bool *runs = frame->plan->runs;
+    if (shading_points)
+        find_shading_points(tile, frame, w);
+    if (any && runs[GLINT_STAGE_INDIRECT])
+        find_indirect(tile, frame, w);
+    if (any && runs[GLINT_STAGE_BOUNCE])
+        find_bounces(tile, frame, w);
+    if (runs[GLINT_STAGE_DEPTH_CUE] && frame->plan->derivatives)
+        glint_derive_fade(tile, frame);
+    if (runs[GLINT_STAGE_DEPTH_CUE])
+        glint_tile_depth_cue(tile, frame);
+}
+
 /// One sample of every pixel: hits, then the lights, a chunk at a time.
 static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
@@ -357,16 +387,7 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
         find_lights(tile, frame, &w, from, count);
         store_geometry(tile, frame, &w, any);
-        if (from == 0 && any && !w.points && !w.lit) {
-            glint_tile_count_stage(tile, frame, GLINT_STAGE_SURFACE, true);
-            glint_tile_name_materials(tile, frame);
-        }
-        if (any)
-            find_patterns(tile, frame, &w);
-        if (lit && !w.points && glint_tile_shows_shader(tile, frame->plan))
-            need_points(tile, frame, &w);
-        if (lit && frame->plan->dims) // which points are inside what absorbs
-            need_points(tile, frame, &w);
+        need_shading(tile, frame, &w, any, lit, from);
         if (frame->plan->together)
             glint_tile_remember_sample(tile, frame, count);
         else
@@ -377,16 +398,7 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
             find_transparent_shadows(tile, frame, &w, from, count);
         from += count;
     } while (from < lights && !glint_tile_cancelled(frame));
-    if (shading_points)
-        find_shading_points(tile, frame, &w);
-    if (any && frame->plan->runs[GLINT_STAGE_INDIRECT])
-        find_indirect(tile, frame, &w);
-    if (any && frame->plan->runs[GLINT_STAGE_BOUNCE])
-        find_bounces(tile, frame, &w);
-    if (frame->plan->runs[GLINT_STAGE_DEPTH_CUE] && frame->plan->derivatives)
-        glint_derive_fade(tile, frame);
-    if (frame->plan->runs[GLINT_STAGE_DEPTH_CUE])
-        glint_tile_depth_cue(tile, frame);
+    find_rest(tile, frame, &w, any, shading_points);
 }
 
 /// The geometry that a pinhole in the middle of the lens sees; of it nothing is kept.

@@ -17,6 +17,32 @@ static inline float mean_of_equal(const samples_frame *frame, double term)
     return (float)(frame->inverse > 0 ? sum * frame->inverse : sum / (double)frame->count);
 }
 
+/// What one light's share of a term is in a channel: factor times kd Id or ks Is, and what microfacets add to that.
+typedef struct light_share {
+    const float *factor, *grazing; ///< grazing NULL: nothing
+    float color, rise;
+} light_share;
+
+static inline light_share share_of(const light_factors *factors, const glint_shade_material *material, uint32_t k,
+                                   int term, int c)
+{
+    const glint_shade_light *light = factors->light[k];
+    if (!term)
+        return (light_share) { factors->diffuse[k], NULL, share_color(material->diffuse[c], light->diffuse[c]), 0 };
+    return (light_share) { factors->specular[k], has_facets(material) ? factors->grazing[k] : NULL,
+                           share_color(material->specular[c], light->specular[c]),
+                           has_facets(material) ? share_color(material->grazing[c], light->specular[c]) : 0 };
+}
+
+/// One vector of it.
+static inline vf share_lanes(const light_share *share, int i)
+{
+    vf x = f_load(share->factor + i) * f_set(share->color);
+    if (share->grazing)
+        x = x + f_load(share->grazing + i) * f_set(share->rise);
+    return x;
+}
+
 /// One vector of a term that lights make, in each channel: the mean of all shares.
 static inline void mean_shares(const samples_frame *frame, const light_factors *factors,
                                const glint_shade_material *material, int term, int i, vf mean[3])

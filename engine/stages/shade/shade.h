@@ -86,32 +86,6 @@ static inline float share_color(double reflectance, double light)
     return color < FLT_MAX ? (float)color : FLT_MAX;
 }
 
-/// What one light's share of a term is in a channel: factor times kd Id or ks Is, and what microfacets add to that.
-typedef struct light_share {
-    const float *factor, *grazing; ///< grazing NULL: nothing
-    float color, rise;
-} light_share;
-
-static inline light_share share_of(const light_factors *factors, const glint_shade_material *material, uint32_t k,
-                                   int term, int c)
-{
-    const glint_shade_light *light = factors->light[k];
-    if (!term)
-        return (light_share) { factors->diffuse[k], NULL, share_color(material->diffuse[c], light->diffuse[c]), 0 };
-    return (light_share) { factors->specular[k], has_facets(material) ? factors->grazing[k] : NULL,
-                           share_color(material->specular[c], light->specular[c]),
-                           has_facets(material) ? share_color(material->grazing[c], light->specular[c]) : 0 };
-}
-
-/// One vector of it.
-static inline vf share_lanes(const light_share *share, int i)
-{
-    vf x = f_load(share->factor + i) * f_set(share->color);
-    if (share->grazing)
-        x = x + f_load(share->grazing + i) * f_set(share->rise);
-    return x;
-}
-
 /// A group's terms in float, before they are added up.
 typedef struct group_terms {
     _Alignas(64) float term[GLINT_TERM_LOCAL][3][GLINT_GROUP];

@@ -1,7 +1,7 @@
 /// Ambient occlusion: from each point some rays over directions as dense as their cosine, and the mean of what is open of the
 /// sky, 1 where a ray leaves the scene, times the ambient light. What closes it is any surface within the distance that the
 /// scene says, but for what transmits: there rays go on refracted, weaker by what the surface takes.
-#include "engine/tile/indirect.h"
+#include "engine/tile/indirect/paths.h"
 
 #include <math.h>
 
@@ -14,9 +14,9 @@ static void open_far(glint_batch *batch, const glint_plan *plan)
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), ray = batch->ray_of[i];
             if (glint_real_at(tile->at.t, plan->desc.precision, i) <= plan->indirect.distance) // directions are unit
                 continue;
-            tile->at.hits[g] &= (uint16_t)~(left & -left);
+            tile->at.hits[g] &= (uint16_t) ~(left & -left);
             if (!batch->whole)
-                batch->met[ray / GLINT_GROUP] &= (uint16_t)~(1u << ray % GLINT_GROUP);
+                batch->met[ray / GLINT_GROUP] &= (uint16_t) ~(1u << ray % GLINT_GROUP);
         }
 }
 

@@ -14,7 +14,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
-#include "engine/tile/indirect.h"
+#include "engine/tile/indirect/paths.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -47,70 +47,13 @@ void glint_indirect_destroy(struct glint_indirect *indirect)
 
 static double mean(const double c[3]) { return ((c[0] + c[1]) + c[2]) / 3; }
 
-/// As fmax: of a NaN and a number the number.
-static double larger(double a, double b) { return a > b || b != b ? a : b; }
+// ---- What is drawn on the way ----
 
-static double largest(const double c[3]) { return larger(c[0], larger(c[1], c[2])); }
-
-// ---- Numbers that are as good as random ----
-
-/// 4 x 4 pixels at a place among mirrors, which have a number.
-typedef struct pixel_block {
-    bool known;
-    uint64_t at, place, number;
-} pixel_block;
-
-/// Pixels of 2 x 2 belong together first, so that these have an even set as well.
-static uint32_t lane_order(uint32_t lane)
-{
-    const uint32_t x = lane & 3, y = lane >> 2;
-    return (x & 1) | (y & 1) << 1 | (x >> 1) << 2 | (y >> 1) << 3;
-}
-
-/// Notes which block of pixels point i of `seen` belongs to; `block`: the last one found.
-static void find_block(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan,
-                       const glint_ray *ray, uint32_t i, pixel_block *block)
-{
-    const uint32_t group = ray->pixel / GLINT_GROUP;
-    const uint32_t x = to->x0 / 4 + group % to->groups_across, y = to->y0 / 4 + group / to->groups_across;
-    const uint64_t at = x | (uint64_t)y << 32, place = ray->term == GLINT_TERM_INDIRECT
-                                                           ? 0
-                                                           : 1 + 2 * (uint64_t)ray->depth + (ray->term == GLINT_TERM_MIRROR);
-    if (!block->known || block->at != at || block->place != place) {
-        const uint64_t number = glint_sequence_mix(glint_sequence_mix(at, (uint64_t)plan->desc.seed), place);
-        *block = (pixel_block) { .known = true, .at = at, .place = place, .number = number };
-    }
-    indirect->block[i] = block->number;
-    indirect->lane[i] = lane_order(ray->pixel % GLINT_GROUP);
-}
-
-/// Which point of its sequence path `number` of a pixel's point i takes.
-static uint64_t number_in_block(const struct glint_indirect *indirect, uint32_t i, uint64_t number)
-{
-    const uint64_t each = (uint64_t)indirect->plan.indirect.samples * (uint64_t)indirect->plan.desc.samples;
-    return indirect->lane[i] * each + number;
-}
-
-/// The seed of that sequence, two for each turn: `which` says what for. k: the point.
-static uint64_t seed_of(const struct glint_indirect *indirect, uint32_t i, uint64_t k, uint32_t which)
-{
-    return glint_sequence_mix(indirect->block[i], which | (k >> 32) << 32);
-}
-
-/// The point itself.
+/// The point that path `number` of point i takes.
 static void draw(const struct glint_indirect *indirect, uint32_t i, uint64_t number, uint32_t which, double out[2])
 {
-    const uint64_t k = number_in_block(indirect, i, number);
-    glint_sequence_scrambled((uint32_t)k, seed_of(indirect, i, k, which), out);
-}
-
-/// Notes point k of a sequence in place `at` for the stage scatter, which takes the point `further` than what is noted.
-static void note_draw(draws *to, uint32_t at, uint64_t k, const glint_sequence_seed *seed, uint32_t further)
-{
-    to->number[at] = (uint32_t)k - further;
-    to->order[at] = seed->order;
-    to->digits[0][at] = seed->digits[0];
-    to->digits[1][at] = seed->digits[1];
+    const uint64_t k = glint_indirect_point_of(indirect, i, number);
+    glint_sequence_scrambled((uint32_t)k, glint_indirect_seed_of(indirect, i, k, which), out);
 }
 
 /// One sample of each light, as strong as all of them: another for each path and turn.
@@ -128,173 +71,6 @@ static void take_lights(struct glint_indirect *indirect, const glint_plan *plan,
             light->specular[c] = fmin(light->specular[c] * count, STRENGTH_MAX);
         }
     }
-}
-
-// ---- Where paths begin ----
-
-/// What the light that paths find is multiplied by at sample i of a tile: the diffuse reflectance; where they look for open
-/// sky, the ambient light that all of it would bring.
-static const double *first_weight(const glint_tile *seen, const glint_plan *plan, uint32_t i, double room[3])
-{
-    if (!plan->indirect.is_sky)
-        return glint_tile_diffuse(seen, plan, i, room);
-    for (int c = 0; c < 3; c++)
-        room[c] = glint_tile_ambient_rest(seen, plan, i, c);
-    return room;
-}
-
-/// How many paths a point gets, which is fewer times seen where mirrors leave little of it.
-static uint32_t paths_of(const glint_plan *plan, const glint_batch *from, uint32_t i)
-{
-    const double samples = plan->indirect.samples;
-    double weight = 0;
-    for (int c = 0; from && c < 3; c++)
-        weight = larger(weight, from->rays->weight[c][from->ray_of[i]]);
-    return from ? (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples) : (uint32_t)plan->indirect.samples;
-}
-
-/// Begins at point i, whose paths are multiplied by `found`: their first rays are alike but for the direction. Returns how many paths it
-/// gets.
-static uint32_t begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
-                            const glint_tile *seen, const glint_batch *from, uint32_t i, const double *found,
-                            pixel_block *block)
-{
-    const glint_plan *plan = frame->plan;
-    const uint32_t paths = paths_of(plan, from, i);
-    const double part = 1.0 / paths;
-    glint_ray ray;
-    glint_batch_start_ray(from ? from : &indirect->batch, seen, frame, i, &ray);
-    if (!from)
-        ray.term = GLINT_TERM_INDIRECT;
-    ray.point = i;
-    ray.least = largest(ray.weight) * part * plan->indirect.least;
-    ray.inward = glint_has_lane(seen->hit.back, i);
-    ray.scatters++;
-    for (int c = 0; c < 3; c++) {
-        ray.direction[c] = 0;
-        ray.weight[c] = indirect->weight[c][i] = glint_weight(ray.weight[c] * (found[c] * part));
-    }
-    glint_rays_put(&indirect->first, plan, i, &ray);
-    indirect->paths[i] = paths;
-    find_block(indirect, to, plan, &ray, i, block);
-    return paths;
-}
-
-/// Where paths begin, and how many at each point. Returns the most.
-static uint32_t find_points(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
-                            const glint_tile *seen, const glint_batch *from)
-{
-    uint32_t most = 0;
-    double room[3];
-    pixel_block block = { .known = false };
-    indirect->fewest = UINT32_MAX;
-    glint_rays_clear(&indirect->first, seen->group_count);
-    for (uint32_t g = 0; g < seen->group_count; g++) {
-        for (unsigned left = seen->at.hits[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const double *found = first_weight(seen, frame->plan, i, room);
-            if (largest(found) == 0)
-                continue;
-            const uint32_t paths = begin_point(indirect, to, frame, seen, from, i, found, &block);
-            most = paths > most ? paths : most;
-            indirect->fewest = paths < indirect->fewest ? paths : indirect->fewest;
-        }
-        indirect->matt[g] = indirect->first.active[g];
-    }
-    return most;
-}
-
-/// Directions around the normals of `tile` for the samples in `wanted`, by points that are `further` than those drawn.
-static void scatter(const glint_tile *tile, const glint_tile_frame *frame, const uint16_t *wanted, const draws *drawn,
-                    uint32_t further, double (*direction)[GLINT_TILE_SAMPLES])
-{
-    glint_scatter_args args = { .group_count = tile->group_count,
-                                .wanted = wanted,
-                                .number = drawn->number,
-                                .order = drawn->order,
-                                .digits = { drawn->digits[0], drawn->digits[1] },
-                                .further = further };
-    for (int c = 0; c < 3; c++) {
-        args.normal[c] = tile->surface.normal[c];
-        args.direction[c] = direction[c];
-    }
-    frame->stages->geometry[frame->plan->desc.precision].scatter(&args);
-}
-
-/// Whether light that is scattered from a sample leaves its surface, along the direction in place i.
-static bool leaves(const glint_tile *tile, const glint_plan *plan, uint32_t i,
-                   const double (*direction)[GLINT_TILE_SAMPLES])
-{
-    double d[3];
-    for (int c = 0; c < 3; c++)
-        d[c] = glint_real_at(direction[c], plan->desc.precision, i);
-    return glint_tile_leaves(tile, plan, i, d);
-}
-
-/// The first rays weigh what they did, but those that bumps do not let go.
-static void weigh_first(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen)
-{
-    glint_rays *first = &indirect->first;
-    if (frame->plan->absorbs || glint_plan_bumps(frame->plan))
-        memcpy(first->weight, indirect->weight, sizeof first->weight);
-    if (!glint_plan_bumps(frame->plan))
-        return;
-    for (uint32_t i = 0; i < first->group_count * GLINT_GROUP; i++)
-        if (glint_has_lane(first->active, i) &&
-            !leaves(seen, frame->plan, i, (const double(*)[GLINT_TILE_SAMPLES])first->direction))
-            for (int c = 0; c < 3; c++)
-                first->weight[c][i] = 0;
-}
-
-/// The points that get path `path`. Returns whether there are any.
-static bool choose_points(struct glint_indirect *indirect, uint32_t path)
-{
-    glint_rays *first = &indirect->first;
-    unsigned any = 0;
-    memcpy(first->active, indirect->matt, first->group_count * sizeof *first->active);
-    for (uint32_t g = 0; g < first->group_count; g++) {
-        for (unsigned left = path < indirect->fewest ? 0 : first->active[g]; left; left &= left - 1)
-            if (path >= indirect->paths[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)])
-                first->active[g] &= (uint16_t)~(left & -left);
-        any |= first->active[g];
-    }
-    return any;
-}
-
-/// Draws for the points that get path `path`, or those before whose seed ends here: it lasts for 2^32 points.
-static void draw_first(struct glint_indirect *indirect, const glint_plan *plan, uint32_t path, uint64_t number)
-{
-    const bool lasting = (uint64_t)plan->indirect.samples * (uint64_t)plan->desc.samples <= UINT32_MAX / GLINT_GROUP;
-    if (path > 0 && lasting)
-        return;
-    glint_sequence_seed seed;
-    uint64_t last = 0; // the block that it is made of
-    bool known = false;
-    for (uint32_t g = 0; g < indirect->first.group_count; g++)
-        for (unsigned left = indirect->first.active[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const uint64_t k = number_in_block(indirect, i, number);
-            if (path != 0 && (uint32_t)k != 0)
-                continue;
-            if (!known || k >> 32 != 0 || indirect->block[i] != last)
-                seed = glint_sequence_seed_of(seed_of(indirect, i, k, 0));
-            known = k >> 32 == 0;
-            last = indirect->block[i];
-            note_draw(&indirect->first_draws, i, k, &seed, path);
-        }
-}
-
-/// The first rays of path `path` of every point. Returns whether there are any.
-static bool begin_paths(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
-                        uint32_t path, uint64_t number)
-{
-    glint_rays *first = &indirect->first;
-    if (!choose_points(indirect, path))
-        return false;
-    draw_first(indirect, frame->plan, path, number);
-    scatter(seen, frame, first->active, &indirect->first_draws, path, first->direction);
-    weigh_first(indirect, frame, seen);
-    return true;
 }
 
 // ---- Where they go on ----
@@ -359,7 +135,7 @@ static turn choose(struct glint_indirect *indirect, const glint_tile_frame *fram
         glint_batch_start_ray(batch, &batch->tile, frame, i, next);
     for (int c = 0; c < 3; c++) {
         next->weight[c] = glint_weight(next->weight[c] / chance);
-        least = larger(least, next->weight[c] * (chosen ? 1 : diffuse[c]));
+        least = glint_larger(least, next->weight[c] * (chosen ? 1 : diffuse[c]));
     }
     if (least <= rays->least[ray])
         return TURN_NONE;
@@ -373,7 +149,7 @@ static void leave(const struct glint_indirect *indirect, const glint_tile_frame 
     const glint_precision precision = frame->plan->desc.precision;
     double room[3];
     const double *diffuse = glint_tile_diffuse(tile, frame->plan, i, room);
-    const bool free = leaves(tile, frame->plan, i, indirect->direction);
+    const bool free = glint_indirect_leaves(tile, frame->plan, i, indirect->direction);
     next->scatters[i]++;
     for (int c = 0; c < 3; c++) {
         glint_real_put(next->direction[c], precision, i, glint_real_at(indirect->direction[c], precision, i));
@@ -401,10 +177,10 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
             if (chosen == TURN_NONE)
                 continue;
             if (chosen == TURN_SCATTERED) {
-                const uint64_t k = number_in_block(indirect, next.point, number);
-                const glint_sequence_seed seed =
-                    glint_sequence_seed_of(seed_of(indirect, next.point, k, 2 * (next.scatters + next.depth)));
-                note_draw(&indirect->next_draws, i, k, &seed, 0);
+                const uint64_t k = glint_indirect_point_of(indirect, next.point, number);
+                const glint_sequence_seed seed = glint_sequence_seed_of(
+                    glint_indirect_seed_of(indirect, next.point, k, 2 * (next.scatters + next.depth)));
+                glint_indirect_note(&indirect->next_draws, i, k, &seed, 0);
                 indirect->scattered[g] |= (uint16_t)(left & -left);
                 next.inward = glint_has_lane(tile->hit.back, i);
             }
@@ -414,7 +190,7 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
     }
     if (!any)
         return false;
-    scatter(tile, frame, indirect->scattered, &indirect->next_draws, 0, indirect->direction);
+    glint_indirect_scatter(tile, frame, indirect->scattered, &indirect->next_draws, 0, indirect->direction);
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = indirect->scattered[g]; left; left &= left - 1)
             leave(indirect, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), rays);
@@ -557,14 +333,14 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
         indirect->plan.environment = NULL;
     indirect->frame = *frame;
     indirect->frame.plan = &indirect->plan;
-    const uint32_t paths = find_points(indirect, tile, frame, seen, from);
+    const uint32_t paths = glint_indirect_find_points(indirect, tile, frame, seen, from);
     glint_batch_begin(batch, tile, frame, GLINT_WALK_INDIRECT);
     batch->ordered = from != NULL; // whose rays may share pixels
     batch->distances = frame->plan->indirect.is_sky && !frame->plan->transmits;
     for (uint32_t path = 0; path < paths && !glint_tile_cancelled(frame); path++) {
         const uint64_t number = (uint64_t)tile->sample * frame->plan->indirect.samples + path;
         batch->tile.sample = (uint32_t)number;
-        if (begin_paths(indirect, frame, seen, path, number))
+        if (glint_indirect_begin_paths(indirect, frame, seen, path, number))
             follow(indirect, frame, tile, number);
     }
     glint_batch_end(batch, tile);
