@@ -117,7 +117,7 @@ typedef struct glint_facet_args {
 // ---- occlude: which points a light reaches ----
 
 #define GLINT_GRID_STEPS 6144 ///< of place, in a cell of a light's grid
-#define GLINT_GRID_ASIDE 4.5 ///< cells: an entry's place is above this much before its cell, and below 1 and this much behind
+#define GLINT_GRID_ASIDE 4.5 ///< cells: an entry's place lies from this far before its cell to this far behind it
 #define GLINT_GRID_RADIUS 8 ///< steps in a unit of an entry's radius
 #define GLINT_GRID_RADIUS_BITS 12 ///< of an entry's size, the lower ones
 

@@ -33,7 +33,7 @@ INNER void R(plain_highlight)(const R(lit_point) * surface, const R(plain_part) 
     whole->some |= rm_bits(some) << i;
 }
 
-/// Where lights are, as it is found in light_plain; each has code of its own.
+/// Where a light is, each with code of its own; light_plain chooses.
 enum { R(PLAIN_AFAR), R(PLAIN_NEAR), R(PLAIN_SCALED) };
 
 /// One light's real part of a group, of which the lanes in `open` may be lit. `kind` and `shiny`, whether the group has highlights, are
