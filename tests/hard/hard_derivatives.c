@@ -24,14 +24,6 @@ typedef struct world {
     dress dress;
 } world;
 
-typedef struct number {
-    const char *object, *field;
-    size_t offset;
-    int components;
-} number;
-
-#define NUMBER(object, field, member, components) { object, field, offsetof(world, member), components }
-
 static const number numbers[] = {
     NUMBER("material", "diffuse", diffuse, 3),
     NUMBER("material", "ambient", ambient, 3),

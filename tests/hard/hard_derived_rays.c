@@ -21,14 +21,6 @@ typedef struct world {
     bool shadows, absorbs;
 } world;
 
-typedef struct number {
-    const char *object, *field;
-    size_t offset;
-    int components;
-} number;
-
-#define NUMBER(object, field, member, components) { object, field, offsetof(world, member), components }
-
 static const number numbers[] = {
     NUMBER("ball's", "diffuse", diffuse, 3),
     NUMBER("ball's", "shininess", shininess, 1),

@@ -19,14 +19,6 @@ typedef struct world {
     bool flat, orthographic, fades;
 } world;
 
-typedef struct number {
-    const char *object, *field;
-    size_t offset;
-    int components;
-} number;
-
-#define NUMBER(object, field, member, components) { object, field, offsetof(world, member), components }
-
 static const number numbers[] = {
     NUMBER("camera", "eye", eye, 3),
     NUMBER("camera", "at", at, 3),

@@ -22,14 +22,6 @@ typedef struct world {
     int focused; ///< 0: at what the camera looks at; 1: by its distance; 2: a point
 } world;
 
-typedef struct number {
-    const char *object, *field;
-    size_t offset;
-    int components;
-} number;
-
-#define NUMBER(object, field, member, components) { object, field, offsetof(world, member), components }
-
 static const number numbers[] = {
     NUMBER("camera", "eye", eye, 3),
     NUMBER("camera", "at", at, 3),

@@ -6,7 +6,8 @@
 
 #ifdef __clang__ // whose C has the type by its older name alone, and to which glibc's headers do not show the functions
 __extension__ typedef __float128 quad;
-quad sqrtf128(quad), expf128(quad), exp2f128(quad), powf128(quad, quad), sinf128(quad), cosf128(quad), tanf128(quad);
+quad floorf128(quad), sqrtf128(quad), expf128(quad), exp2f128(quad), log2f128(quad), powf128(quad, quad), sinf128(quad),
+    cosf128(quad), tanf128(quad), acosf128(quad), atan2f128(quad, quad);
 #else
 __extension__ typedef _Float128 quad;
 #endif

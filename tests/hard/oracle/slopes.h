@@ -5,6 +5,17 @@
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/quad.h"
 
+#include <stddef.h>
+
+/// A number of a test's `world`, which a derivative is taken by.
+typedef struct number {
+    const char *object, *field;
+    size_t offset;
+    int components;
+} number;
+
+#define NUMBER(object, field, member, components) { object, field, offsetof(world, member), components }
+
 #define STEP 1e-12 ///< of central differences, which are off by its square
 
 static inline void fill(quad out[3], double low, double high)
