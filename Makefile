@@ -307,11 +307,11 @@ check-portable: ## PORTABLE=1 at -O0 without any optional library: files, folder
 check-portable-run: all $(filter $(BUILD)/%,$(PORTABLE_TESTS))
 	@T="$(T)" $(RUNNER) $(PORTABLE_TESTS)
 
-check-clang: ## clang's build without a warning: kernels, goldens, the command; installs clang through apt
+check-clang: ## clang's build without a warning, tests too: kernels, goldens, the command; installs clang through apt
 	@tests/deps.sh build test fuzz
 	+@$(CLANG_MAKE) check-clang-run
 
-check-clang-run: all $(filter $(BUILD)/%,$(CLANG_TESTS))
+check-clang-run: all $(TEST_BIN) $(HARD_BIN) # every test compiles with it, too
 	@T="$(T)" GLINT_CASE_STEP=5 $(RUNNER) $(CLANG_TESTS)
 
 .PHONY: check-package
