@@ -27,13 +27,15 @@ static const unsigned char MESH[] = {
 static const unsigned char OBJ[] = {
 #include "scripts/lib/gr/obj.lua.h"
 };
+static const unsigned char OPERATIONS[] = {
+#include "scripts/lib/gr/operations.lua.h"
+};
 static const unsigned char OPTIONS[] = {
 #include "scripts/lib/gr/options.lua.h"
 };
 static const unsigned char PICTURE[] = {
 #include "scripts/lib/gr/picture.lua.h"
 };
-
 static const unsigned char SURFACE[] = {
 #include "scripts/lib/gr/surface.lua.h"
 };
@@ -51,6 +53,7 @@ static const struct carried {
     { "gr.lua5", "@gr/lua5.lua", LUA5, sizeof LUA5 },
     { "gr.mesh", "@gr/mesh.lua", MESH, sizeof MESH },
     { "gr.obj", "@gr/obj.lua", OBJ, sizeof OBJ },
+    { "gr.operations", "@gr/operations.lua", OPERATIONS, sizeof OPERATIONS },
     { "gr.options", "@gr/options.lua", OPTIONS, sizeof OPTIONS },
     { "gr.picture", "@gr/picture.lua", PICTURE, sizeof PICTURE },
     { "gr.surface", "@gr/surface.lua", SURFACE, sizeof SURFACE },

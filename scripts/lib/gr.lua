@@ -13,8 +13,11 @@
 --   gr.plane(name)                                      the square that gr.options.plane says; lit on both sides
 --   gr.plane(name, {corner}, {u}, {v}, width, height)   gr.plane(name, {middle}, {u}, {v}, edge)
 --   gr.torus(name, tube, ring)                          around the z axis; radii; the ring's is 1 when left out
---   gr.union(name, a, b)  gr.intersection  gr.difference one solid of two or more; csg_union ...; name optional
---   gr.csg(name, a, "+"|"*"|"-", b)                    the same
+--   gr.nh_torus(name, {centre}, ring, tube)             the same
+--   gr.union(name, a, b)  gr.intersection  gr.difference  one solid of two or more; csg_union, intersect, diff ...;
+--                                                       name optional; without parts, what add_child gives it
+--   gr.csg(name, a, "+"|"*"|"-", b)  gr.csg(a, b, "diff")  gr.csg(name, "union")  gr.csg(name)  the same
+--   csg:setCSGType("u"|"i"|"d")  csg:set_csg_children(a, b, "UNION"|"INTERSECT"|"DIFFERENCE")  node:add_children(a, b)
 --   gr.material({kd}, {ks}, shininess)
 --   gr.material({kd}, {ks}, shininess, r, t, n)         and what else may follow: bindings/README.md has the forms
 --   gr.reflective_material(...)  gr.material_refl(...)  gr.material_refr(...)  gr.reflective()  gr.refractive(n)
@@ -44,6 +47,7 @@ files.install()
 local glint = require "glint"
 local lamp = require "gr.lamp"
 local mesh = require "gr.mesh"
+local operations = require "gr.operations"
 local options = require "gr.options"
 local picture = require "gr.picture"
 local surface = require "gr.surface"
@@ -92,14 +96,24 @@ function gr.cylinder(name) return new_node("cylinder", name, { kind = "cylinder"
 
 function gr.cone(name) return new_node("cone", name, { kind = "cone", axis = options.axis }) end
 
-function gr.torus(name, tube, ring)
-  local node = { kind = "torus", tube = check.number("torus", "tube", tube), ring = 1 }
-  if ring ~= nil then node.ring = check.number("torus", "ring", ring) end
-  if node.ring <= 0 then check.refuse("torus", "ring", "number above 0", ring) end
+local function radii_of(call, tube, ring)
+  local node = { kind = "torus", tube = check.number(call, "tube", tube), ring = check.above(call, "ring", ring, 0) }
   if node.tube <= 0 or node.tube >= node.ring then
-    check.refuse("torus", "tube", ("number above 0 and below the ring's radius (%g)"):format(node.ring), tube)
+    check.refuse(call, "tube", ("number above 0 and below the ring's radius (%g)"):format(node.ring), tube)
   end
+  return node
+end
+
+function gr.torus(name, tube, ring)
+  local node = radii_of("torus", tube, ring == nil and 1 or ring)
+  node.center = { 0, 0, 0 }
   return new_node("torus", name, node)
+end
+
+function gr.nh_torus(name, center, ring, tube)
+  local node = radii_of("nh_torus", tube, ring)
+  node.center = check.vector("nh_torus", "centre", center, 3)
+  return new_node("nh_torus", name, node)
 end
 
 function gr.nh_sphere(name, center, radius)
@@ -179,35 +193,61 @@ end
 
 -- ---- Combined solids ----
 
-local OPERATIONS = { ["+"] = "union", ["*"] = "intersection", ["-"] = "difference" }
-
-local function new_combined(call, operation, name, parts)
-  if #parts < 2 then check.raise("gr.%s: two nodes expected, got %d", call, #parts) end
-  local list = {}
-  for i, part in ipairs(parts) do list[i] = node_of(call, "part " .. i, part) end
-  return new_node(call, name, { kind = "combined", operation = operation, parts = list })
+local function set_parts(call, node, ...)
+  local count = select("#", ...)
+  if count < 2 then check.raise("gr.%s: two nodes expected, got %d", call, count) end
+  node.parts, node.is_open = {}, false
+  for i = 1, count do node.parts[i] = node_of(call, "part " .. i, (select(i, ...))) end
 end
 
-for _, operation in pairs(OPERATIONS) do
-  for _, call in pairs { operation, "csg_" .. operation } do
-    gr[call] = function(name, ...)
-      if nodes[name] then return new_combined(call, operation, call, { name, ... }) end
-      return new_combined(call, operation, name, { ... })
-    end
+-- Without parts it is open: those that add_child gives it are its parts.
+local function new_combined(call, operation, name, ...)
+  local object = new_node(call, name, { kind = "combined", operation = operation, parts = {}, is_open = true })
+  if select("#", ...) > 0 then set_parts(call, nodes[object], ...) end
+  return object
+end
+
+for call, operation in pairs(operations.calls) do
+  gr[call] = function(name, ...)
+    if nodes[name] then return new_combined(call, operation, call, name, ...) end
+    return new_combined(call, operation, name, ...)
   end
 end
 
 -- What may follow, the size of a ball around it, is of no use here.
 function gr.csg(name, a, sign, b)
-  local operation = OPERATIONS[sign] or check.refuse("csg", "operation", '"+", "*" or "-"', sign)
-  return new_combined("csg", operation, name, { a, b })
+  if nodes[name] then return new_combined("csg", operations.of("csg", sign), "csg", name, a) end
+  if a == nil then return new_combined("csg", nil, name) end
+  if not nodes[a] then return new_combined("csg", operations.of("csg", a), name) end
+  return new_combined("csg", operations.of("csg", sign), name, a, b)
+end
+
+local function combined_of(call, self)
+  local node = node_of(call, "self", self)
+  if node.kind ~= "combined" then check.refuse(call, "self", "combined solid", self) end
+  return node
+end
+
+function gr.setCSGType(self, word) combined_of("setCSGType", self).operation = operations.of("setCSGType", word) end
+
+function gr.set_csg_children(self, a, b, word)
+  local node = combined_of("set_csg_children", self)
+  node.operation = operations.of("set_csg_children", word)
+  set_parts("set_csg_children", node, a, b)
 end
 
 -- ---- Methods ----
 
-function gr.add_child(self, child)
-  local node = node_of("add_child", "self", self)
-  node.children[#node.children + 1] = node_of("add_child", "child", child)
+local function add_child(call, self, child)
+  local node = node_of(call, "self", self)
+  local list = node.is_open and node.parts or node.children
+  list[#list + 1] = node_of(call, "child", child)
+end
+
+function gr.add_child(self, child) add_child("add_child", self, child) end
+
+function gr.add_children(self, ...)
+  for i = 1, select("#", ...) do add_child("add_children", self, (select(i, ...))) end
 end
 
 local function shape_of(call, self)
@@ -430,8 +470,8 @@ function gr.render(root, ...) picture.render(node_of("render", "root", root), to
 
 -- How many arguments each call reads.
 local READ = {
-  node = 1, joint = 3, sphere = 1, cube = 1, cylinder = 1, cone = 1, torus = 3, nh_sphere = 3, nh_box = 3, mesh = 3,
-  light = 3, add_child = 2, set_material = 2, translate = 4, scale = 4, rotate = 3,
+  node = 1, joint = 3, sphere = 1, cube = 1, cylinder = 1, cone = 1, torus = 3, nh_torus = 4, nh_sphere = 3,
+  nh_box = 3, mesh = 3, light = 3, add_child = 2, set_material = 2, translate = 4, scale = 4, rotate = 3,
 }
 for call, count in pairs(READ) do
   local made = gr[call]

@@ -322,12 +322,21 @@ gr.render(root, 'combined.png', 64, 48, {0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 50, {0
 end
 
 local both = combined_codes "root:add_child(box) root:add_child(post)"
-for _, text in ipairs { "gr.union('u', box, post)", "gr.union(box, post)", "gr.csg_union('u', box, post)", "gr.csg('u', box, '+', post, 2)" } do
+-- Forms whose operation and parts follow.
+local function later(text) return "(function() local c = " .. text .. " return c end)()" end
+for _, text in ipairs { "gr.union('u', box, post)", "gr.union(box, post)", "gr.csg_union('u', box, post)",
+  "gr.csg('u', box, '+', post, 2)", "gr.csg(box, post, 'union')", later "gr.union('u') c:add_children(box, post)",
+  later "gr.csg('u', 'union') c:add_child(box) c:add_child(post)",
+  later "gr.csg('u') c:setCSGType('u') c:add_child(box) c:add_child(post)",
+  later "gr.csg('u') c:set_csg_children(box, post, 'UNION')",
+  later "gr.diff('u') c:add_child(post) c:set_csg_children(box, post, 'union')" } do
   check(combined_codes("root:add_child(" .. text .. ")") == both, "%s is both", text)
 end
 local alone = combined_codes "box:translate(0.5, 0, 0) root:add_child(box)"
 for _, text in ipairs { "gr.difference('d', box, far)", "gr.csg('d', box, '-', far)", "gr.csg_difference('d', box, far, gr.node('none'))",
-  "gr.difference(gr.intersection('i', box, dressed(all, blue)), far)" } do
+  "gr.difference(gr.intersection('i', box, dressed(all, blue)), far)", "gr.diff('d', gr.intersect(box, dressed(all, blue)), far)",
+  "gr.subtraction('d', gr.conjunction('c', box, dressed(all, blue)), far)", "gr.csg(gr.csg(box, dressed(all, blue), 'intersection'), far, 'diff')",
+  later "gr.csg('d') c:setCSGType('d') c:add_child(box) c:add_child(far)" } do
   check(combined_codes("a = " .. text .. " a:translate(0.5, 0, 0) root:add_child(a)") == alone, "%s is the box", text)
 end
 local crate = "crate = gr.mesh('crate', {{0,0,0}, {1,0,0}, {0,1,0}, {1,1,0}, {0,0,1}, {1,0,1}, {0,1,1}, {1,1,1}}, {{0,2,3,1}, {4,5,7,6}, " ..
@@ -336,6 +345,9 @@ local crate = "crate = gr.mesh('crate', {{0,0,0}, {1,0,0}, {0,1,0}, {1,1,0}, {0,
 local cut = combined_codes(crate .. "root:add_child(gr.difference('d', dressed(gr.nh_box('b', {0, 0, 0}, 1), red), post))")
 check(combined_codes(crate .. "root:add_child(gr.difference('d', dressed(crate, red), post))") == cut, "a mesh is a part")
 check(combined_codes(crate .. "d = gr.csg('d', crate, '-', post) d:set_material(red) root:add_child(d)") ~= "", "one without a material")
+check(combined_codes "root:add_child(dressed(gr.nh_torus('t', {0.5, 0, 0}, 1, 0.25), red))" ==
+  combined_codes "t = dressed(gr.torus('t', 0.25), red) t:translate(0.5, 0, 0) root:add_child(t)", "a torus with a place")
+check(combined_codes "c = gr.union(box, post) c:add_child(far) root:add_child(c)" == both, "a child of a whole solid is beside it")
 check(combined_codes "root:add_child(gr.difference('d', box, box))" == combined_codes "", "a box less itself is nothing")
 check(combined_codes "n = gr.node('n') n:add_child(far) n:add_child(post) root:add_child(gr.difference('d', box, n))" ~= both,
   "a node takes away what is in it")
@@ -344,6 +356,10 @@ for text, message in pairs {
   ["d = gr.union('d', box, dressed(gr.mesh('m', {{0,0,0}, {1,0,0}, {0,1,0}}, {{0,1,2}}), red))"] =
     "a closed mesh, got mesh 'm': its edge from {0, 0, 0} to {1, 0, 0} has 1 triangle",
   ["d = gr.union('d', box, post) post:add_child(d)"] = "is within itself",
+  ["d = gr.csg('d') d:add_child(d)"] = "is within itself",
+  ["d = gr.csg('d') d:add_child(box)"] = "gr.render: csg 'd' has no operation; setCSGType and set_csg_children give it one",
+  ["d = gr.csg('d', 'diff') d:add_child(box)"] = "gr.render: csg 'd' has 1 of its two parts; add_child gives it more",
+  ["d = gr.union('d')"] = "gr.render: union 'd' has 0 of its two parts; add_child gives it more",
 } do
   local output = scene("red = gr.material({1, 0, 0}, {0, 0, 0}, 1) local function dressed(s, m) s:set_material(m) return s end"
     .. " box = dressed(gr.nh_box('box', {0, 0, 0}, 1), red) post = dressed(gr.cylinder('post'), red) " .. text
@@ -364,7 +380,15 @@ refuses("gr.torus('t', 1.2, 0.5)", "gr.torus: tube: number above 0 and below the
 refuses("gr.torus('t', 1, -2)", "gr.torus: ring: number above 0 expected, got -2")
 refuses("gr.union('u', gr.sphere('s'))", "gr.union: two nodes expected, got 1")
 refuses("gr.difference('u', gr.sphere('s'), 3)", "gr.difference: part 2: node expected, got 3")
-refuses("gr.csg('c', gr.sphere('s'), '/', gr.sphere('s'))", 'gr.csg: operation: "+", "*" or "-" expected, got "/"')
+local words = '"+", "*", "-", "union", "intersection" or "difference" expected, got '
+refuses("gr.csg('c', gr.sphere('s'), '/', gr.sphere('s'))", "gr.csg: operation: " .. words .. '"/"')
+refuses("gr.csg('c', 'smooth')", "gr.csg: operation: " .. words .. '"smooth"')
+refuses("gr.csg('c'):setCSGType(1)", "gr.setCSGType: operation: " .. words .. "1")
+refuses("gr.node('c'):setCSGType('u')", "gr.setCSGType: self: combined solid expected, got node 'c'")
+refuses("gr.csg('c'):set_csg_children(gr.sphere('s'), nil, 'UNION')", "gr.set_csg_children: part 2: node expected, got nil")
+refuses("gr.csg('c'):add_children(gr.sphere('s'), 3)", "gr.add_children: child: node expected, got 3")
+refuses("gr.nh_torus('t', {0, 0, 0}, 2)", "gr.nh_torus: tube: number expected, got nil")
+refuses("gr.nh_torus('t', {0, 0}, 2, 1)", "gr.nh_torus: centre: table of 3 numbers expected, got table of 2")
 refuses("gr.csg_merge('c', gr.sphere('s'), gr.sphere('s'))", "gr.csg_merge: this function is not part of the dialect")
 refuses("gr.sphere('s'):set_normal('x.png')", "gr.set_normal: this function is not part of the dialect")
 refuses("gr.material({1,1,1}, {0,0,0}, 1):set_opacity(0, 1.5)",

@@ -114,7 +114,7 @@ local makers = {
     return glint.cone(fields)
   end,
   torus = function(fields, node)
-    fields.center, fields.axis, fields.major, fields.minor = { 0, 0, 0 }, { 0, 0, 1 }, node.ring, node.tube
+    fields.center, fields.axis, fields.major, fields.minor = node.center, { 0, 0, 1 }, node.ring, node.tube
     return glint.torus(fields)
   end,
 }
@@ -210,8 +210,18 @@ local function part_of(node, order, count, map, dressed)
   return try(makers[node.kind], fields, node)
 end
 
+local function check_parts(node)
+  if not node.operation then
+    check.raise("gr.render: csg '%s' has no operation; setCSGType and set_csg_children give it one", node.name)
+  elseif #node.parts < 2 then
+    check.raise("gr.render: %s '%s' has %d of its two parts; add_child gives it more", node.call, node.name,
+      #node.parts)
+  end
+end
+
 -- One solid of what is under each of the node's parts.
 function combine(node, order, count, map, dressed)
+  check_parts(node)
   local own = node.material or node.picture
   local fields = { two_sided = false, name = cut_name(node.name), transform = map }
   if own then fields.material = shade_of(node, map) end

@@ -1,0 +1,31 @@
+-- What the variants of the dialect call the operations of combined solids.
+local check = require "gr.check"
+check.own_source()
+local operations = {}
+
+local lower, pairs, type = string.lower, pairs, type
+
+local NAMES = {}
+for operation, words in pairs {
+  union = { "+", "u", "union" },
+  intersection = { "*", "i", "inter", "intersect", "intersection", "conjunction" },
+  difference = { "-", "d", "diff", "difference", "subtract", "subtraction" },
+} do
+  for _, word in pairs(words) do NAMES[word] = operation end
+end
+
+--- "union", "intersection" or "difference", by one of the words, in letters of either kind.
+function operations.of(call, word)
+  return type(word) == "string" and NAMES[lower(word)]
+    or check.refuse(call, "operation", '"+", "*", "-", "union", "intersection" or "difference"', word)
+end
+
+-- Names of functions, and the operations that they stand for.
+operations.calls = {}
+for word, operation in pairs(NAMES) do
+  if #word > 1 then
+    operations.calls[word], operations.calls["csg_" .. word] = operation, operation
+  end
+end
+
+return operations
