@@ -30,6 +30,16 @@ void *glint_alloc(size_t count, size_t size)
     return memory;
 }
 
+/// Advice: refused, the pages are small; what is beyond the last whole large one stays so, and is not resident for nothing.
+static void want_large_pages(void *memory, size_t bytes)
+{
+#ifdef MADV_HUGEPAGE
+    madvise(memory, bytes / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
+#else
+    (void)memory, (void)bytes;
+#endif
+}
+
 void *glint_alloc_large(size_t count, size_t size)
 {
     const size_t bytes = whole_bytes(count, size, 64);
@@ -37,11 +47,8 @@ void *glint_alloc_large(size_t count, size_t size)
         return bytes ? aligned_alloc(64, bytes) : NULL;
     const size_t whole = whole_bytes(count, size, LARGE_PAGE);
     void *memory = whole ? aligned_alloc(LARGE_PAGE, whole) : NULL;
-#ifdef MADV_HUGEPAGE
-    // advice: refused, the pages are small; what is beyond the last whole one stays so, and is not resident for nothing
     if (memory)
-        madvise(memory, bytes / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
-#endif
+        want_large_pages(memory, bytes);
     return memory;
 }
 
@@ -54,6 +61,8 @@ void *glint_scratch_resize(void *memory, size_t from, size_t to)
     void *pages = mmap(NULL, to, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (pages == MAP_FAILED)
         return NULL;
+    if (to >= 2 * LARGE_PAGE)
+        want_large_pages(pages, to);
     if (memory)
         memcpy(pages, memory, from < to ? from : to);
     glint_scratch_free(memory, from);

@@ -148,6 +148,16 @@ void glint_pool_run(glint_pool *pool, size_t count, glint_pool_item *item, void 
     pthread_mutex_unlock(&pool->turn);
 }
 
+void glint_run_items(glint_pool *pool, size_t count, glint_pool_item *item, void *context)
+{
+    if (pool && count > 1) {
+        glint_pool_run(pool, count, item, context);
+        return;
+    }
+    for (size_t i = 0; i < count; i++)
+        item(context, i, 0);
+}
+
 int glint_pool_processors(void)
 {
 #if defined(__linux__) && !defined(GLINT_PORTABLE)

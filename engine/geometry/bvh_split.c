@@ -252,16 +252,6 @@ static void swap_wrong(void *context, size_t index, int worker)
     }
 }
 
-void glint_run_items(glint_pool *pool, size_t count, glint_pool_item *item, void *context)
-{
-    if (pool && count > 1) {
-        glint_pool_run(pool, count, item, context);
-        return;
-    }
-    for (size_t i = 0; i < count; i++)
-        item(context, i, 0);
-}
-
 /// The chunks' bins together, in the first one's place, which keeps its counts.
 static bins add_bins(const chunk *chunks, size_t count)
 {

@@ -47,9 +47,6 @@ void glint_records_split(const glint_records *records, glint_record_set *set, gl
 /// Splits into halves by number: 16^k records into 16^k / 2 and no more.
 void glint_records_halve(const glint_records *records, glint_record_set *set, glint_record_set *above);
 
-/// Runs items on the pool's workers, or one after the other on the calling thread when there is no pool or one item.
-void glint_run_items(glint_pool *pool, size_t count, glint_pool_item *item, void *context);
-
 static inline const glint_record *glint_records_of(const glint_records *records, const glint_record_set *set)
 {
     return records->all + set->begin;

@@ -9,16 +9,6 @@
 
 // ---- What is equal ----
 
-static float float_up(double x)
-{
-    const float f = (float)x;
-    return (double)f < x ? nextafterf(f, HUGE_VALF) : f;
-}
-
-static float float_down(double x) { return -float_up(-x); }
-
-#define REPEATED (-1.0F) ///< in `filter_bound`: no ray meets the primitive, since one before it is bit-equal
-
 /// Finds the primitives that are bit-equal to one before them.
 static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
 {
@@ -44,7 +34,7 @@ static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
                 break;
         }
         if (slots[at])
-            geometry->prims[i].filter_bound = REPEATED;
+            geometry->prims[i].filter_bound = GLINT_REPEATED;
         else
             slots[at] = i + 1;
     }
@@ -135,69 +125,6 @@ static void choose_frame(glint_geometry *geometry)
     table->scale = largest > 0 && isfinite(largest) ? power_of_two_scale(largest) : 1;
 }
 
-/// Numbers beyond this are as good as infinite, and differences of such floats are still finite.
-#define BOX_MAX 0x1p120
-
-/// What a box has to be larger by, in the index's units: for rounding; for what a solid's inverse and the solid differ by; for
-/// what a point may be off a triangle and still count as on it. That last is 13 slacks of the scene's coordinates at most:
-/// twice what surface states of the point, of two edges and a coordinate, and one of the corners as the point sees them.
-static double box_slack(const glint_geometry_table *table, const glint_prim *prim, double center, double half)
-{
-    const double rounding = 0x1p-50 * (fabs(center) + half);
-    if (prim->kind == GLINT_PRIM_SOLID)
-        return rounding + 0x1p-30 * half;
-    if (prim->kind == GLINT_PRIM_TRIANGLE)
-        return rounding + 16 * GLINT_POINT_SLACK_DOUBLE * table->extent * table->scale;
-    return rounding;
-}
-
-/// The radius of a sphere around an ellipsoid or torus, in the world. The map stretches nothing by more than the root of the
-/// largest sum in a row of its columns' products, which is exact where it keeps angles.
-static double reach_of(const glint_solid *solid)
-{
-    const double unit = solid->form == GLINT_FORM_BALL ? 1 : solid->form == GLINT_FORM_TORUS ? 1 + solid->tube : HUGE_VAL;
-    double most = 0;
-    for (int i = 0; i < 3; i++) {
-        double sum = 0;
-        for (int j = 0; j < 3; j++)
-            sum += fabs((solid->forward[0][i] * solid->forward[0][j] + solid->forward[1][i] * solid->forward[1][j]) +
-                        solid->forward[2][i] * solid->forward[2][j]);
-        most = fmax(most, sum);
-    }
-    return unit * sqrt(most);
-}
-
-/// The box of a primitive, where there is room for one, and a sphere around it, which becomes the primitive's: its own, or that of the
-/// box, or a smaller one.
-static void place_in_frame(const glint_geometry_table *table, glint_prim *prim, glint_box *box)
-{
-    double lower[3], upper[3], center[3], half[3];
-    glint_prim_bounds(table->solids, prim, lower, upper);
-    for (int c = 0; c < 3; c++) {
-        half[c] = prim->kind == GLINT_PRIM_SPHERE ? prim->radius : 0.5 * upper[c] - 0.5 * lower[c];
-        center[c] = prim->kind == GLINT_PRIM_SPHERE ? prim->center[c] : 0.5 * upper[c] + 0.5 * lower[c];
-        center[c] = (center[c] - table->reference[c]) * table->scale;
-        half[c] *= table->scale;
-        const double loose = half[c] + box_slack(table, prim, center[c], half[c]);
-        prim->filter_center[c] = (float)center[c];
-        if (box) {
-            box->lower[c] = float_down(fmax(center[c] - loose, -BOX_MAX));
-            box->upper[c] = float_up(fmin(center[c] + loose, BOX_MAX));
-        }
-        half[c] = prim->kind == GLINT_PRIM_SPHERE ? half[c] : loose;
-    }
-    double radius = prim->kind == GLINT_PRIM_SPHERE ? half[0] : sqrt(vec_dot(half, half));
-    if (prim->kind == GLINT_PRIM_SOLID)
-        radius = fmin(radius, reach_of(&table->solids[prim->item]) * table->scale * (1 + 0x1p-20));
-    prim->filter_bound = float_up(radius * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(vec_dot(center, center)) + FLT_MIN);
-}
-
-/// Whether the index has it.
-static bool is_in_tree(const glint_prim *prim)
-{
-    return prim->filter_bound != REPEATED && glint_prim_bounded(prim);
-}
-
 static glint_status index_create(glint_geometry *geometry, glint_error *error)
 {
     const uint32_t count = geometry->table.prim_count;
@@ -212,11 +139,11 @@ static glint_status index_create(glint_geometry *geometry, glint_error *error)
     pthread_mutex_init(&index->lock, NULL);
     for (uint32_t i = 0; i < count; i++) {
         glint_prim *prim = &geometry->prims[i];
-        if (prim->filter_bound == REPEATED)
+        if (prim->filter_bound == GLINT_REPEATED)
             continue; // the first of equal ones wins every tie and casts every shadow
         prim->filter_bound = HUGE_VALF;
         if (glint_prim_bounded(prim)) {
-            place_in_frame(&geometry->table, prim, NULL);
+            glint_prim_place_sphere(&geometry->table, prim);
             index->box_count++;
         } else {
             geometry->unbounded[geometry->table.unbounded_count++] = i;
@@ -260,33 +187,17 @@ static glint_status make_order(const glint_geometry *geometry, glint_error *erro
     if (!index->order)
         return glint_fail_nomem(error);
     for (uint32_t i = 0; i < geometry->table.prim_count; i++)
-        if (is_in_tree(&geometry->prims[i]))
+        if (glint_prim_in_tree(&geometry->prims[i]))
             index->order[next++] = i;
     index->plain = true;
     return GLINT_OK;
-}
-
-/// Boxes of what is in the tree, in the order of `prims`. solids: without triangles. NULL: no memory.
-static glint_box *make_boxes(const glint_geometry *geometry, uint32_t count, bool solids)
-{
-    glint_box *boxes = glint_boxes_alloc(count);
-    uint32_t next = 0;
-    for (uint32_t i = 0; boxes && i < geometry->table.prim_count && next < count; i++) {
-        glint_prim prim = geometry->prims[i]; // other threads may read those of the geometry
-        if (!is_in_tree(&prim) || (solids && prim.kind == GLINT_PRIM_TRIANGLE))
-            continue;
-        boxes[next].item = i;
-        boxes[next].unused = 0;
-        place_in_frame(&geometry->table, &prim, &boxes[next++]);
-    }
-    return boxes;
 }
 
 /// The order becomes the tree's, unless there has been need of one before, which the primitives are in then.
 static glint_status index_build(glint_geometry *geometry, glint_pool *pool, glint_error *error)
 {
     glint_index *index = geometry->index;
-    glint_box *boxes = make_boxes(geometry, index->box_count, false);
+    glint_box *boxes = glint_geometry_boxes(geometry, index->box_count, false, pool);
     if (!boxes)
         return glint_fail_nomem(error);
     glint_status status = glint_bvh_build(boxes, index->box_count, pool, &index->bvh, error);
@@ -302,104 +213,6 @@ static glint_status index_build(glint_geometry *geometry, glint_pool *pool, glin
     return status;
 }
 
-/// Which primitive comes to each place: those of the index, then those without an end, then repeats.
-typedef struct arrangement {
-    const glint_geometry *geometry;
-    uint32_t *rest; ///< from the index's last on
-    uint64_t *done; ///< a bit a place
-} arrangement;
-
-static uint32_t comes_from(const arrangement *a, uint32_t place)
-{
-    const glint_index *index = a->geometry->index;
-    return place < index->box_count ? index->order[place] : a->rest[place - index->box_count];
-}
-
-static bool arrangement_init(arrangement *a, const glint_geometry *geometry)
-{
-    const uint32_t count = geometry->table.prim_count, bounded = geometry->index->box_count;
-    uint32_t at = geometry->table.unbounded_count;
-    *a = (arrangement) { geometry, malloc((count - bounded + 1) * sizeof *a->rest),
-                         calloc(count / 64 + 1, sizeof *a->done) };
-    if (!a->rest || !a->done)
-        return false;
-    memcpy(a->rest, geometry->unbounded, at * sizeof *a->rest);
-    for (uint32_t i = 0; i < count; i++)
-        if (geometry->prims[i].filter_bound == REPEATED)
-            a->rest[at++] = i;
-    return true;
-}
-
-/// Moves the primitives around each cycle of the arrangement: there is no room for all of them twice.
-static void move_prims(arrangement *a, glint_prim *prims, uint32_t count)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        if (a->done[i / 64] >> i % 64 & 1)
-            continue;
-        const glint_prim first = prims[i];
-        uint32_t to = i;
-        for (uint32_t from; (from = comes_from(a, to)) != i; to = from) {
-            prims[to] = prims[from];
-            a->done[to / 64] |= UINT64_C(1) << to % 64;
-        }
-        prims[to] = first;
-        a->done[to / 64] |= UINT64_C(1) << to % 64;
-    }
-}
-
-static uint32_t move_corners_of(glint_prim *prims, uint32_t count, double (*to)[3][3])
-{
-    uint32_t next = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        if (!glint_prim_has_corners(&prims[i]))
-            continue;
-        memcpy(to[next], prims[i].corner, sizeof *to);
-        prims[i].corner = to[next++];
-    }
-    return next;
-}
-
-/// Has the corners follow the primitives: neighbours in space are neighbours in memory. corners: room for them.
-static void move_corners(glint_geometry *geometry, double (*corners)[3][3])
-{
-    const uint32_t first = move_corners_of(geometry->prims, geometry->table.prim_count, corners);
-    move_corners_of(geometry->members, geometry->member_count, corners + first);
-    free(geometry->corners);
-    geometry->corners = corners;
-}
-
-/// Puts the primitives into the order of the index, those without an end last; repeats are gone.
-static glint_status arrange(glint_geometry *geometry, glint_error *error)
-{
-    const uint32_t bounded = geometry->index->box_count;
-    arrangement a;
-    double(*corners)[3][3] = NULL;
-    bool room = arrangement_init(&a, geometry);
-    if (geometry->corners)
-        room = (corners = glint_alloc_large(geometry->corner_count, sizeof *corners)) && room;
-    if (geometry->shading_points && !geometry->places)
-        room = (geometry->places = glint_alloc(geometry->id_count, sizeof *geometry->places)) && room;
-    if (room) {
-        move_prims(&a, geometry->prims, geometry->table.prim_count);
-        if (corners)
-            move_corners(geometry, corners);
-        for (uint32_t i = 0; geometry->places && i < bounded; i++)
-            geometry->places[geometry->prims[i].id] = i;
-        for (uint32_t i = 0; i < geometry->table.unbounded_count; i++)
-            geometry->unbounded[i] = bounded + i;
-        geometry->table.prim_count = bounded + geometry->table.unbounded_count;
-        if (geometry->member_count)
-            memcpy(geometry->prims + geometry->table.prim_count, geometry->members,
-                   geometry->member_count * sizeof *geometry->members);
-        geometry->arranged = true;
-    }
-    free(a.rest);
-    free(a.done);
-    if (!room)
-        free(corners);
-    return room ? GLINT_OK : glint_fail_nomem(error);
-}
-
 glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
                                   glint_error *error)
 {
@@ -407,11 +220,11 @@ glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, gl
     pthread_mutex_lock(&index->lock);
     glint_status status = GLINT_OK;
     if (index->order && !geometry->arranged)
-        status = arrange(geometry, error);
+        status = glint_geometry_move(geometry, pool, error);
     if (!status && !index->built)
         status = index_build(geometry, pool, error);
     if (!status && !geometry->arranged)
-        status = arrange(geometry, error);
+        status = glint_geometry_move(geometry, pool, error);
     *table = geometry->table;
     table->nodes = index->bvh.nodes;
     pthread_mutex_unlock(&index->lock);
@@ -426,7 +239,7 @@ glint_status glint_geometry_arrange(glint_geometry *geometry, glint_geometry_tab
     if (!index->order)
         status = make_order(geometry, error);
     if (!status && !geometry->arranged)
-        status = arrange(geometry, error);
+        status = glint_geometry_move(geometry, NULL, error);
     *table = geometry->table;
     table->nodes = index->bvh.nodes;
     pthread_mutex_unlock(&index->lock);
@@ -439,7 +252,7 @@ static glint_status build_others(glint_geometry *geometry, glint_pool *pool, gli
     uint32_t count = 0;
     for (uint32_t i = 0; i < geometry->index->box_count; i++)
         count += geometry->prims[i].kind != GLINT_PRIM_TRIANGLE;
-    glint_box *boxes = make_boxes(geometry, count, true);
+    glint_box *boxes = glint_geometry_boxes(geometry, count, true, pool);
     glint_status status = boxes ? glint_bvh_build(boxes, count, pool, &geometry->others, error) : glint_fail_nomem(error);
     geometry->has_others = !status;
     return status;
@@ -505,7 +318,7 @@ static glint_status fill(glint_geometry *geometry, const glint_scene *scene, gli
     choose_frame(geometry);
     status = index_create(geometry, error);
     if (!status)
-        status = glint_geometry_hull_trees(geometry, last, place_in_frame, error);
+        status = glint_geometry_hull_trees(geometry, last, error);
     if (!status && last && glint_key_equal(last->where, geometry->where)) {
         index_release(geometry->index);
         geometry->index = last->index;

@@ -73,6 +73,9 @@ struct glint_geometry {
 glint_status glint_geometry_of(const glint_scene *scene, glint_geometry **out, glint_error *error);
 glint_geometry *glint_geometry_retain(glint_geometry *geometry);
 
+/// In `filter_bound`: no ray meets the primitive, since one before it is bit-equal.
+#define GLINT_REPEATED (-1.0F)
+
 /// Builds the index unless it is there. Any thread; `pool` may be NULL. *table: with the index.
 glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
                                   glint_error *error);
@@ -111,10 +114,24 @@ static inline bool glint_prim_bounded(const glint_prim *prim)
     return prim->kind == GLINT_PRIM_COMBINED ? prim->corner[1][0] > -HUGE_VAL : prim->kind != GLINT_PRIM_PLANE;
 }
 
+/// Whether the index has it.
+static inline bool glint_prim_in_tree(const glint_prim *prim)
+{
+    return prim->filter_bound != GLINT_REPEATED && glint_prim_bounded(prim);
+}
+
+/// geometry/boxes.c: a sphere around a primitive becomes its filter's: its own, or that of its box, or a smaller one.
+void glint_prim_place_sphere(const glint_geometry_table *table, glint_prim *prim);
+/// Its box in the index's frame, rounded outwards.
+void glint_prim_place_box(const glint_geometry_table *table, const glint_prim *prim, uint32_t item, glint_box *box);
+/// The boxes of what is in the tree, `count` of them, in the order of `prims`, which other threads may read. solids: without
+/// triangles. NULL: no memory.
+glint_box *glint_geometry_boxes(const glint_geometry *geometry, uint32_t count, bool solids, glint_pool *pool);
+/// geometry/arrange.c: puts the primitives into the order of the index, those without an end last; repeats are gone.
+glint_status glint_geometry_move(glint_geometry *geometry, glint_pool *pool, glint_error *error);
+
 /// geometry/hulls.c: makes the trees of closed meshes that are parts, or takes those of `last` (NULL: none) that are the same.
-/// place: brings a primitive's box into the index's frame.
-glint_status glint_geometry_hull_trees(glint_geometry *geometry, const glint_geometry *last,
-                                       void (*place)(const glint_geometry_table *, glint_prim *, glint_box *), glint_error *error);
+glint_status glint_geometry_hull_trees(glint_geometry *geometry, const glint_geometry *last, glint_error *error);
 void glint_geometry_release_hulls(glint_geometry *geometry);
 /// How a ray from a place crosses a triangle: 1: it goes out, -1: in, 0: past it, or the triangle is behind. Of a closed mesh the sum of
 /// all is how often the place is inside.

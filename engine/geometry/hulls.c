@@ -60,17 +60,15 @@ static float slack_of(const glint_box *boxes, uint32_t count)
     return (float)HULL_SLACK * widest;
 }
 
-static glint_status tree_build(glint_geometry *geometry, const glint_hull *hull,
-                               void (*place)(const glint_geometry_table *, glint_prim *, glint_box *), glint_bvh *out,
-                               glint_error *error)
+static glint_status tree_build(glint_geometry *geometry, const glint_hull *hull, glint_bvh *out, glint_error *error)
 {
     glint_box *boxes = glint_boxes_alloc(hull->count);
     if (!boxes)
         return glint_fail_nomem(error);
     for (uint32_t i = 0; i < hull->count; i++) {
-        boxes[i].item = i;
-        boxes[i].unused = 0;
-        place(&geometry->table, &geometry->members[hull->first + i], &boxes[i]);
+        glint_prim *member = &geometry->members[hull->first + i];
+        glint_prim_place_sphere(&geometry->table, member);
+        glint_prim_place_box(&geometry->table, member, i, &boxes[i]);
     }
     const float slack = slack_of(boxes, hull->count);
     for (uint32_t i = 0; i < hull->count; i++)
@@ -89,8 +87,7 @@ static struct glint_hull_tree *find_tree(const glint_geometry *last, glint_key k
     return NULL;
 }
 
-glint_status glint_geometry_hull_trees(glint_geometry *geometry, const glint_geometry *last,
-                                       void (*place)(const glint_geometry_table *, glint_prim *, glint_box *), glint_error *error)
+glint_status glint_geometry_hull_trees(glint_geometry *geometry, const glint_geometry *last, glint_error *error)
 {
     if (geometry->hull_count == 0)
         return GLINT_OK;
@@ -109,7 +106,7 @@ glint_status glint_geometry_hull_trees(glint_geometry *geometry, const glint_geo
                 return glint_fail_nomem(error);
             atomic_init(&tree->references, 1);
             tree->key = key;
-            glint_status status = tree_build(geometry, hull, place, &tree->bvh, error);
+            glint_status status = tree_build(geometry, hull, &tree->bvh, error);
             if (status) {
                 tree_release(tree);
                 return status;

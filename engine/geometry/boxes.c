@@ -1,0 +1,177 @@
+/// Boxes of primitives in the index's frame, and the spheres around them by which kernels throw out what a ray is far from.
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/geometry/geometry.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CHUNK 8192 ///< primitives that a worker takes at a time
+
+/// The least float that is not below x. No branch: half of all x are rounded down.
+static inline float float_up(double x)
+{
+    float f = (float)x;
+    int32_t bits;
+    memcpy(&bits, &f, sizeof bits);
+    bits += ((double)f < x) * (bits < 0 ? -1 : 1);
+    memcpy(&f, &bits, sizeof bits);
+    return f;
+}
+
+static inline float float_down(double x) { return -float_up(-x); }
+
+/// Numbers beyond this are as good as infinite, and differences of such floats are still finite.
+#define BOX_MAX 0x1p120
+
+/// A primitive's box in the index's frame: its middle, half of what it is wide, and that with all that it has to be larger by.
+typedef struct placed_box {
+    double center[3], half[3], loose[3];
+} placed_box;
+
+static inline placed_box place_sphere(const glint_geometry_table *table, const glint_prim *prim)
+{
+    placed_box box;
+    for (int c = 0; c < 3; c++) {
+        box.center[c] = (prim->center[c] - table->reference[c]) * table->scale;
+        box.half[c] = prim->radius * table->scale;
+        box.loose[c] = box.half[c] + 0x1p-50 * (fabs(box.center[c]) + box.half[c]);
+    }
+    return box;
+}
+
+/// What a box has to be larger by, in the index's units: for rounding; for what a solid's inverse and the solid differ by; for
+/// what a point may be off a triangle and still count as on it. That last is 13 slacks of the scene's coordinates at most:
+/// twice what surface states of the point, of two edges and a coordinate, and one of the corners as the point sees them.
+static double box_slack(const glint_geometry_table *table, const glint_prim *prim, double center, double half)
+{
+    const double rounding = 0x1p-50 * (fabs(center) + half);
+    if (prim->kind == GLINT_PRIM_SOLID)
+        return rounding + 0x1p-30 * half;
+    if (prim->kind == GLINT_PRIM_TRIANGLE)
+        return rounding + 16 * GLINT_POINT_SLACK_DOUBLE * table->extent * table->scale;
+    return rounding;
+}
+
+static inline placed_box place_box(const glint_geometry_table *table, const glint_prim *prim)
+{
+    placed_box box;
+    double lower[3], upper[3];
+    if (prim->kind == GLINT_PRIM_SPHERE)
+        return place_sphere(table, prim);
+    glint_prim_bounds(table->solids, prim, lower, upper);
+    for (int c = 0; c < 3; c++) {
+        box.center[c] = (0.5 * upper[c] + 0.5 * lower[c] - table->reference[c]) * table->scale;
+        box.half[c] = (0.5 * upper[c] - 0.5 * lower[c]) * table->scale;
+        box.loose[c] = box.half[c] + box_slack(table, prim, box.center[c], box.half[c]);
+    }
+    return box;
+}
+
+static inline void write_box(const placed_box *placed, uint32_t item, glint_box *box)
+{
+    for (int c = 0; c < 3; c++) {
+        const double lower = placed->center[c] - placed->loose[c], upper = placed->center[c] + placed->loose[c];
+        box->lower[c] = float_down(lower > -BOX_MAX ? lower : -BOX_MAX);
+        box->upper[c] = float_up(upper < BOX_MAX ? upper : BOX_MAX);
+    }
+    box->item = item;
+    box->unused = 0;
+}
+
+/// The radius of a sphere around an ellipsoid or torus, in the world. The map stretches nothing by more than the root of the
+/// largest sum in a row of its columns' products, which is exact where it keeps angles.
+static double reach_of(const glint_solid *solid)
+{
+    const double unit = solid->form == GLINT_FORM_BALL ? 1 : solid->form == GLINT_FORM_TORUS ? 1 + solid->tube : HUGE_VAL;
+    double most = 0;
+    for (int i = 0; i < 3; i++) {
+        double sum = 0;
+        for (int j = 0; j < 3; j++)
+            sum += fabs((solid->forward[0][i] * solid->forward[0][j] + solid->forward[1][i] * solid->forward[1][j]) +
+                        solid->forward[2][i] * solid->forward[2][j]);
+        most = fmax(most, sum);
+    }
+    return unit * sqrt(most);
+}
+
+void glint_prim_place_sphere(const glint_geometry_table *table, glint_prim *prim)
+{
+    const placed_box box = place_box(table, prim);
+    double radius = prim->kind == GLINT_PRIM_SPHERE ? box.half[0] : sqrt(vec_dot(box.loose, box.loose));
+    if (prim->kind == GLINT_PRIM_SOLID)
+        radius = fmin(radius, reach_of(&table->solids[prim->item]) * table->scale * (1 + 0x1p-20));
+    for (int c = 0; c < 3; c++)
+        prim->filter_center[c] = (float)box.center[c];
+    prim->filter_bound = float_up(radius * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(vec_dot(box.center, box.center)) + FLT_MIN);
+}
+
+void glint_prim_place_box(const glint_geometry_table *table, const glint_prim *prim, uint32_t item, glint_box *box)
+{
+    const placed_box placed = place_box(table, prim);
+    write_box(&placed, item, box);
+}
+
+// ---- Of all ----
+
+typedef struct box_work {
+    const glint_geometry *geometry;
+    glint_box *boxes;
+    uint32_t *first; ///< of each chunk's boxes; before that is known: how many they are
+    bool solids;
+} box_work;
+
+static inline bool has_box(const box_work *work, const glint_prim *prim)
+{
+    return glint_prim_in_tree(prim) && !(work->solids && prim->kind == GLINT_PRIM_TRIANGLE);
+}
+
+static uint32_t chunk_end(const box_work *work, size_t chunk)
+{
+    const size_t end = (chunk + 1) * CHUNK, count = work->geometry->table.prim_count;
+    return (uint32_t)(end < count ? end : count);
+}
+
+static void count_chunk(void *context, size_t index, int worker)
+{
+    (void)worker;
+    box_work *work = context;
+    uint32_t count = 0;
+    for (uint32_t i = (uint32_t)index * CHUNK; i < chunk_end(work, index); i++)
+        count += has_box(work, &work->geometry->prims[i]);
+    work->first[index] = count;
+}
+
+static void fill_chunk(void *context, size_t index, int worker)
+{
+    (void)worker;
+    const box_work *work = context;
+    glint_box *box = work->boxes + work->first[index];
+    for (uint32_t i = (uint32_t)index * CHUNK; i < chunk_end(work, index); i++)
+        if (has_box(work, &work->geometry->prims[i]))
+            glint_prim_place_box(&work->geometry->table, &work->geometry->prims[i], i, box++);
+}
+
+glint_box *glint_geometry_boxes(const glint_geometry *geometry, uint32_t count, bool solids, glint_pool *pool)
+{
+    const size_t chunks = ((size_t)geometry->table.prim_count + CHUNK - 1) / CHUNK;
+    box_work work = { geometry, glint_boxes_alloc(count), glint_alloc(chunks, sizeof *work.first), solids };
+    uint32_t next = 0;
+    if (!work.boxes || !work.first) {
+        if (work.boxes)
+            glint_boxes_free(work.boxes, count);
+        free(work.first);
+        return NULL;
+    }
+    glint_run_items(pool, chunks, count_chunk, &work);
+    for (size_t i = 0; i < chunks; i++) {
+        const uint32_t boxes = work.first[i];
+        work.first[i] = next;
+        next += boxes;
+    }
+    glint_run_items(pool, chunks, fill_chunk, &work);
+    free(work.first);
+    return work.boxes;
+}
