@@ -493,6 +493,12 @@ bench-effects-run: all
 	@$(MAKE) --no-print-directory $(EFFECT_PARTS:%=$(BUILD)/without/%/glint)
 	@$(LUA) tests/effects/table.lua bench $(BUILD)
 
+.PHONY: check-without
+check-without: ## a build without programs: patterns are errors with their line, all else is the same picture
+	@$(MAKE) --no-print-directory all
+	@$(MAKE) --no-print-directory $(BUILD)/without/PROGRAM/glint
+	@$(RUNNER) tests/command/without.sh
+
 # The bindings know nothing of what the engine leaves out.
 $(BUILD)/without/%/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	@$(MAKE) --no-print-directory -s BUILD=$(@D) WITHOUT=$* $(@D)/libglint.a

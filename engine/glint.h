@@ -184,7 +184,7 @@ void glint_op_apply(glint_op op, const double *operands, double *results);
 /// "p.x", "light.r"; static. NULL: there is no such input.
 const char *glint_input_name(glint_input input);
 
-/// Begins a program. GLINT_ERR_NOMEM.
+/// Begins a program. GLINT_ERR_NOMEM; GLINT_ERR_UNSUPPORTED in a build without programs.
 glint_status glint_builder_create(glint_program_kind kind, glint_builder **out, glint_error *error);
 /// NULL does nothing. Programs that were finished stay.
 void glint_builder_destroy(glint_builder *builder);

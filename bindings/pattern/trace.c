@@ -112,12 +112,26 @@ int glintL_call_function(lua_State *L)
     return 0;
 }
 
-static void set_place(lua_State *L, int function, glintL_trace *trace)
+// Where the function of the pattern at `index` begins; a texture has none.
+static void set_place(lua_State *L, int index, glintL_trace *trace)
 {
     lua_Debug info;
-    lua_pushvalue(L, function);
+    if (lua_getiuservalue(L, index, 1) != LUA_TFUNCTION) {
+        lua_pop(L, 1);
+        return;
+    }
     lua_getinfo(L, ">S", &info);
     snprintf(trace->place, sizeof trace->place, "%s:%d: ", info.short_src, info.linedefined);
+}
+
+static session *push_session(lua_State *L, int index)
+{
+    const glintL_pattern *pattern = lua_touserdata(L, index);
+    session *s = lua_newuserdatauv(L, sizeof *s, 0);
+    *s = (session) { .trace = { .is_shader = pattern->kind == GLINT_PROGRAM_SHADER } };
+    luaL_setmetatable(L, SESSION);
+    set_place(L, index, &s->trace);
+    return s;
 }
 
 // Calls the function of the pattern at `index`; the session is a userdata at `held`.
@@ -130,7 +144,6 @@ static void call(lua_State *L, int index, int held)
     lua_pushcfunction(L, glintL_call_function);
     lua_pushvalue(L, held);
     lua_getiuservalue(L, index, 1);
-    set_place(L, -1, &s->trace);
     glintL_enter_trace(L, &s->trace);
     const int status = lua_pcall(L, 2, 0, top + 1);
     glintL_leave_trace(L, &s->trace);
@@ -139,19 +152,10 @@ static void call(lua_State *L, int index, int held)
     lua_settop(L, top);
 }
 
-static session *push_session(lua_State *L, glint_program_kind kind)
-{
-    session *s = lua_newuserdatauv(L, sizeof *s, 0);
-    *s = (session) { .trace = { .is_shader = kind == GLINT_PROGRAM_SHADER } };
-    luaL_setmetatable(L, SESSION);
-    return s;
-}
-
 size_t glintL_run_on_numbers(lua_State *L, int index, const double inputs[GLINT_INPUT_COUNT], double *outputs)
 {
-    const glintL_pattern *pattern = lua_touserdata(L, index);
     const int top = lua_gettop(L);
-    session *s = push_session(L, pattern->kind);
+    session *s = push_session(L, index);
     s->trace.point = inputs;
     call(L, index, top + 1);
     for (size_t i = 0; i < s->count; i++)
@@ -231,16 +235,17 @@ glintL_traced *glintL_make_program(lua_State *L, int index, bool is_background)
     const int top = lua_gettop(L);
     *traced = (glintL_traced) { NULL, false };
     luaL_setmetatable(L, TRACED);
-    session *s = push_session(L, pattern->kind);
-    glintL_check_status(L, "", &error, glint_builder_create(pattern->kind, &s->trace.builder, &error));
-    if (pattern->texture) {
+    session *s = push_session(L, index);
+    status = glint_builder_create(pattern->kind, &s->trace.builder, &error);
+    if (!status && pattern->texture) {
         status = finish_texture(s->trace.builder, pattern->texture, is_background, &traced->program, &error);
-    } else {
+    } else if (!status) {
         call(L, index, top + 1);
         status = finish(s, &traced->program, &error);
     }
     if (status) {
-        lua_pushfstring(L, "%s%s: %s", s->trace.place, s->trace.is_shader ? "shader" : "pattern", error.message);
+        const char *what = pattern->texture ? "texture" : s->trace.is_shader ? "shader" : "pattern";
+        lua_pushfstring(L, "%s%s: %s", s->trace.place, what, error.message);
         lua_error(L);
     }
     traced->has_power = s->trace.has_power;

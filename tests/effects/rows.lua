@@ -73,7 +73,7 @@ return {
       scene:add(glint.plane { point = { 0, 1000, 0 }, normal = { 0, 1, 0 },
         material = glint.material { transmission = 1, ior = 1, absorption = 0.01 } })
     end },
-  { name = "environment", stage = "environment", functions = { "environment" },
+  { name = "environment", part = "PROGRAM", stage = "environment", functions = { "environment" },
     call = function(glint, _, scene) scene.background = glint.pattern(function(d) return 0.5 + 0.25 * d.y end) end },
   { name = "pattern", part = "PROGRAM", stage = "pattern", functions = { "^program$", "glint_tile_pattern" },
     call = function(glint, parts) parts.ball.diffuse = glint.pattern(function(p) return glint.fract(p.y) end) end },
