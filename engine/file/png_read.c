@@ -171,11 +171,17 @@ bool glint_png_has_text(const uint8_t *data, size_t size, const char *keyword, c
     return false;
 }
 
+/// The width (0) or height (1) that IHDR says; 0: there is no IHDR.
+static uint32_t side_of(const chunk *c, int which)
+{
+    return is_type(c, "IHDR") && c->size == 13 ? big_endian(c->body + 4 * which) : 0;
+}
+
 /// IHDR into the head. False: no such picture.
 static bool read_ihdr(const chunk *c, glint_png_head *head)
 {
     static const int channels[7] = { 1, 0, 3, 3, 2, 0, 4 };
-    uint32_t width = c->size == 13 ? big_endian(c->body) : 0, height = width ? big_endian(c->body + 4) : 0;
+    const uint32_t width = side_of(c, 0), height = side_of(c, 1);
     if (width < 1 || width > GLINT_SIDE_MAX || height < 1 || height > GLINT_SIDE_MAX || c->body[9] > 6)
         return false;
     head->width = (int)width;
@@ -183,6 +189,15 @@ static bool read_ihdr(const chunk *c, glint_png_head *head)
     head->bits = c->body[8] == 16 ? 16 : 8;
     head->channels = channels[c->body[9]];
     return head->channels > 0;
+}
+
+static glint_status refuse_ihdr(const chunk *c, glint_error *error)
+{
+    const uint32_t width = side_of(c, 0), height = side_of(c, 1);
+    if (width <= GLINT_SIDE_MAX && height <= GLINT_SIDE_MAX)
+        return glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: no size");
+    return glint_fail(error, GLINT_ERR_FORMAT, "a picture of at most %d pixels a side expected, got %u x %u",
+                      GLINT_SIDE_MAX, width, height);
 }
 
 /// What the chunks before the pixels say of transparency.
@@ -222,7 +237,7 @@ uint64_t glint_png_raw_bytes(const uint8_t *data, size_t size)
     uint64_t frames = 1;
     size_t at = FIRST_CHUNK;
     chunk c;
-    if (!has_signature(data, size) || !next_chunk(data, size, &at, &c) || !is_type(&c, "IHDR") || !read_ihdr(&c, &head))
+    if (!has_signature(data, size) || !next_chunk(data, size, &at, &c) || !read_ihdr(&c, &head))
         return 0;
     while (next_chunk(data, size, &at, &c) && !is_type(&c, "IDAT"))
         if (is_type(&c, "acTL") && c.size == 8)
@@ -240,8 +255,8 @@ glint_status glint_png_scan(const uint8_t *data, size_t size, glint_png_head *ou
     if (!has_signature(data, size))
         return glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: it does not begin as one");
     while (next_chunk(data, size, &at, &c)) {
-        if (!head.width && !(is_type(&c, "IHDR") && read_ihdr(&c, &head)))
-            return glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: no size");
+        if (!head.width && !read_ihdr(&c, &head))
+            return refuse_ihdr(&c, error);
         read_ancillary(&c, &seen, &head);
         if (text && is_type(&c, "tEXt") && !text(user, c.body, c.size))
             return glint_fail_nomem(error);

@@ -234,6 +234,8 @@ static void test_files(void **state)
     uint8_t *black = calloc(4097, 8200 / 8);
     write_png(path, 8193, 4097, PNG_COLOR_TYPE_GRAY, 1, 0, black);
     expect_failure(GLINT_ERR_FORMAT, "at most 33554432 pixels expected, got 8193 x 4097");
+    write_png(path, 65536, 1, PNG_COLOR_TYPE_GRAY, 1, 0, black);
+    expect_failure(GLINT_ERR_FORMAT, "at most 65535 pixels a side expected, got 65536 x 1");
     free(black);
     remove(path);
     expect_failure(GLINT_ERR_IO, "No such file");
