@@ -251,12 +251,11 @@ bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *
     lua_pushcfunction(L, run_protected);
     lua_pushlightuserdata(L, &work);
     int status = lua_pcall(L, 1, 0, 1);
-    const bool is_short = status == LUA_ERRMEM && !run->request.is_untrusted; // such a script has a limit of its own
     if (status != LUA_OK && !run->is_stopped && !run->interrupted) {
         char hint[GLINTL_PATH_SIZE + 32];
         const char *message = lua_tostring(L, -1);
-        glintL_run_fail(run, is_short ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s%s%s", message,
-                        dialect_hint(options, message), missing_hint(options, hint));
+        glintL_run_fail(run, glintL_script_exit(run, status), 0, "%s%s%s", message, dialect_hint(options, message),
+                        missing_hint(options, hint));
     }
     return status == LUA_OK && !run->exit_code && !run->interrupted;
 }

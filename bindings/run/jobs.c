@@ -220,8 +220,8 @@ static bool call(job_walk *walk, lua_CFunction function, int64_t n, int64_t numb
     int status = lua_pcall(L, 3, 0, -5);
     walk->run->in_frame = false;
     if (status != LUA_OK)
-        glintL_run_fail(walk->run, status == LUA_ERRMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, number,
-                        "frame %" PRId64 ": %s", number, lua_tostring(L, -1));
+        glintL_run_fail(walk->run, glintL_script_exit(walk->run, status), number, "frame %" PRId64 ": %s", number,
+                        lua_tostring(L, -1));
     lua_settop(L, walk->job_index);
     return status == LUA_OK;
 }

@@ -288,6 +288,11 @@ glintL_run **glintL_new_run_box(lua_State *L, lua_CFunction collect);
 /// Lets `L` use a run that the caller owns and keeps longer than `L`.
 void glintL_attach_run(lua_State *L, glintL_run *run);
 double glintL_now_ms(void);
+/// What a script's error is told with: lack of memory is not its doing, but where it has a limit of its own.
+static inline int glintL_script_exit(const glintL_run *run, int status)
+{
+    return status == LUA_ERRMEM && !run->request.is_untrusted ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE;
+}
 /// Keeps the first failure and returns false. `index` 0: not one frame's.
 bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

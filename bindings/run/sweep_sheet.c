@@ -338,8 +338,7 @@ bool glintL_sweep_make_sheet(lua_State *L, int index, const glintL_naming *namin
     int status = lua_pcall(L, 2, 0, top + 1);
     run->in_frame = false;
     if (status != LUA_OK)
-        glintL_run_fail(run, status == LUA_ERRMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s",
-                        lua_tostring(L, -1));
+        glintL_run_fail(run, glintL_script_exit(run, status), 0, "%s", lua_tostring(L, -1));
     lua_settop(L, top);
     return run->exit_code == 0;
 }

@@ -126,6 +126,9 @@ script 'error(setmetatable({}, { __tostring = function() while true do end end }
 refused "an error that is spelt for ever" "(error object is a table value)" -o a.png
 script 'local t = {}; for i = 1, 1e9 do t[i] = ("x"):rep(1e5) .. i end'
 refused "memory" "not enough memory" -o a.png
+script 'local function grow() local t = "x" while true do t = t .. t end end' \
+    'do return require "glint".animation { scene = require "glint".scene {}, frame = grow } end'
+refused "memory in a frame" "not enough memory" -o a.png
 script 'local t = { ("x"):rep(6e7) }; t[2] = ("y"):rep(6e7)'
 refused "memory in two strings" "not enough memory" -o a.png
 if [ $slack_ms -eq 1000 ]; then # a sanitizer maps terabytes, so that there is no limit
