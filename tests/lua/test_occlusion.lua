@@ -85,9 +85,9 @@ end
 
 -- Glass that does not bend: what it lets through, once for each pane; an opaque wall beyond it closes.
 function tests.glass()
-  local function pane(y)
+  local function pane(y, transmission)
     return glint.plane { point = { 0, y, 0 }, normal = { 0, 1, 0 },
-      material = glint.material { diffuse = 0, transmission = { 0.5, 0.8, 0.2 }, ior = 1 } }
+      material = glint.material { diffuse = 0, transmission = transmission or { 0.5, 0.8, 0.2 }, ior = 1 } }
   end
   local r, g, b = at(0, 0, { floor(), pane(1) }):pixel(0, 0)
   near(r, 0.5, ROUNDING, "red") near(g, 0.8, ROUNDING, "green") near(b, 0.2, ROUNDING, "blue")
@@ -96,6 +96,11 @@ function tests.glass()
   local half_space = glint.plane { point = { 0, 0, 0 }, normal = { 1, 0, 0 }, material = matt }
   near(open_at(1, 0, { floor(), pane(0.5), half_space }), 0.25, NOISE, "a wall beyond")
   check(open_at(0, 0, { floor(), pane(1) }, { max_depth = 0 }) == 0, "no deeper than max_depth")
+  local halves = pane(1, glint.pattern(function(p) return glint.select(glint.less(p.x, 0), 1, { 0.5, 0.25, 0 }) end))
+  r, g, b = at(0, 0, { floor(), halves }):pixel(0, 0)
+  near(r, 0.75, NOISE, "a painted pane") near(g, 0.625, NOISE, "green") near(b, 0.5, NOISE, "blue")
+  r, g, b = at(0, 0, { floor(), halves, pane(2) }):pixel(0, 0)
+  near(r, 0.375, NOISE, "and a plain one") near(g, 0.5, NOISE, "green") near(b, 0.1, NOISE, "blue")
 end
 
 -- min(ka, kd) Ia is what is closed off; beyond it `ambient` is light of the surface's own.

@@ -2,6 +2,7 @@
 /// sky, 1 where a ray leaves the scene, times the ambient light. What closes it is any surface within the distance that the
 /// scene says, but for what transmits: there rays go on refracted, weaker by what the surface takes.
 #include "engine/tile/indirect/paths.h"
+#include "engine/tile/pattern/pattern.h"
 
 #include <math.h>
 
@@ -20,13 +21,22 @@ static void open_far(glint_batch *batch, const glint_plan *plan)
         }
 }
 
+/// What programs give of the share that goes on.
+static void find_shares(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const uint32_t shares = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION;
+    if (glint_tile_fields_shown(tile, frame->plan) & shares)
+        glint_tile_find_patterns(tile, frame);
+}
+
 /// The rays that go on beyond what transmits. Returns whether there are any.
 static bool go_through(struct glint_indirect *indirect, const glint_tile_frame *frame, uint32_t step)
 {
     glint_batch *batch = &indirect->batch;
-    const glint_tile *tile = &batch->tile;
+    glint_tile *tile = &batch->tile;
     glint_rays *rays = &indirect->next[step & 1];
     unsigned any = 0;
+    find_shares(tile, frame);
     glint_indirect_find_ways(indirect, frame);
     glint_rays_clear(rays, tile->group_count);
     for (uint32_t g = 0; g < tile->group_count; g++) {
