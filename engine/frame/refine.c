@@ -56,7 +56,7 @@ typedef struct joiner {
 
 /// Two lines at a border as they are compared: with codes, or estimates of them.
 typedef struct border {
-    const float *p[GLINT_DIFFER_VALUES], *q[GLINT_DIFFER_VALUES];
+    const float *line[2][GLINT_DIFFER_VALUES], *light[2][3];
     _Alignas(64) float code[2][3][ESTIMATED];
 } border;
 
@@ -73,27 +73,42 @@ static void estimate_line(const glint_refine *refine, const float *line[GLINT_DI
 
 static void estimate_border(const glint_refine *refine, border *b)
 {
-    if (refine->coded)
-        return;
-    estimate_line(refine, b->p, b->code[0]);
-    estimate_line(refine, b->q, b->code[1]);
+    for (int k = 0; k < 2 && !refine->coded; k++) {
+        for (int c = 0; c < 3; c++)
+            b->light[k][c] = b->line[k][GLINT_DIFFER_CODE + c];
+        estimate_line(refine, b->line[k], b->code[k]);
+    }
+}
+
+/// Which of its pixels differ.
+static void compare_border(const glint_refine *refine, border *b, uint32_t count, uint32_t ahead,
+                           uint32_t differ[GLINT_DIFFER_WAYS])
+{
+    estimate_border(refine, b);
+    glint_refine_lines lines = { .args = { .p = b->line[0], .q = b->line[1], .count = count, .ahead = ahead } };
+    memcpy(lines.light, b->light, sizeof lines.light);
+    glint_refine_compare(refine, &lines, differ);
+}
+
+/// Whether all pixels of two tiles are.
+static bool are_alike(const glint_refine *refine, const glint_refine_tile *a, const glint_refine_tile *b)
+{
+    return a->ranged && b->ranged && glint_refine_alike(refine, &a->range, &b->range);
 }
 
 /// Compares the last column of a tile with the first of the tile to its right.
-static void join_columns(const glint_refine *refine, glint_refine_tile *left, glint_refine_tile *right, size_t first,
-                         uint32_t width, uint32_t height)
+static void join_columns(const glint_refine *refine, glint_refine_tile *left, glint_refine_tile *right, uint32_t width,
+                         uint32_t height)
 {
     border b;
     uint32_t differ[GLINT_DIFFER_WAYS];
+    if (are_alike(refine, left, right))
+        return;
     for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
-        b.p[v] = left->side[1][v];
-        b.q[v] = right->side[0][v];
+        b.line[0][v] = left->side[1][v];
+        b.line[1][v] = right->side[0][v];
     }
-    estimate_border(refine, &b);
-    const glint_refine_lines lines = { .args = { .p = b.p, .q = b.q, .count = height, .ahead = height - 1 },
-                                       .first = { first, first + 1 },
-                                       .step = (size_t)refine->base->width };
-    glint_refine_compare(refine, &lines, differ);
+    compare_border(refine, &b, height, height - 1, differ);
     const uint32_t across = differ[GLINT_DIFFER_ACROSS], falling = differ[GLINT_DIFFER_FALLING];
     const uint32_t rising = differ[GLINT_DIFFER_RISING];
     for (uint32_t own = across | falling | rising << 1; own; own &= own - 1)
@@ -106,21 +121,19 @@ static void join_columns(const glint_refine *refine, glint_refine_tile *left, gl
 static void join_rows(const joiner *j, uint32_t column, uint32_t row)
 {
     glint_refine *refine = j->refine;
-    const size_t stride = (size_t)refine->base->width, x = (size_t)column * GLINT_TILE_WIDTH;
-    const size_t end = (size_t)(j->extent->x + j->extent->width), y = (size_t)(row + 1) * GLINT_TILE_HEIGHT;
+    const size_t x = (size_t)column * GLINT_TILE_WIDTH, end = (size_t)(j->extent->x + j->extent->width);
     const uint32_t count = end - x < GLINT_TILE_WIDTH ? (uint32_t)(end - x) : GLINT_TILE_WIDTH;
     border b;
     uint32_t differ[GLINT_DIFFER_WAYS];
+    const glint_refine_tile *own = tile_at(refine, column, row), *below = tile_at(refine, column, row + 1);
+    const bool ahead = x + count < end; // a tile on the right
+    if (are_alike(refine, own, below) && (!ahead || (are_alike(refine, own, below + 1) && are_alike(refine, own + 1, below))))
+        return;
     for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
-        b.p[v] = glint_refine_edge(refine, row, 1, v) + x;
-        b.q[v] = glint_refine_edge(refine, row + 1, 0, v) + x;
+        b.line[0][v] = glint_refine_edge(refine, row, 1, v) + x;
+        b.line[1][v] = glint_refine_edge(refine, row + 1, 0, v) + x;
     }
-    estimate_border(refine, &b);
-    const uint32_t ahead = x + count < end ? count : count - 1;
-    const glint_refine_lines lines = { .args = { .p = b.p, .q = b.q, .count = count, .ahead = ahead },
-                                       .first = { (y - 1) * stride + x, y * stride + x },
-                                       .step = 1 };
-    glint_refine_compare(refine, &lines, differ);
+    compare_border(refine, &b, count, ahead ? count : count - 1, differ);
     const uint32_t across = differ[GLINT_DIFFER_ACROSS], falling = differ[GLINT_DIFFER_FALLING];
     const uint32_t rising = differ[GLINT_DIFFER_RISING], last = GLINT_TILE_WIDTH - 1;
     tile_at(refine, column, row)->chosen[GLINT_TILE_HEIGHT - 1] |= across | falling | rising << 1;
@@ -148,8 +161,7 @@ static void join_row(void *context, size_t index, int worker)
             tile_at(j->refine, x, row + 1)->above = 0;
     }
     for (uint32_t x = e->tile_x; x + 1 < end; x++)
-        join_columns(j->refine, tile_at(j->refine, x, row), tile_at(j->refine, x + 1, row),
-                     (size_t)y * (size_t)j->refine->base->width + (size_t)(x + 1) * GLINT_TILE_WIDTH - 1, GLINT_TILE_WIDTH, height);
+        join_columns(j->refine, tile_at(j->refine, x, row), tile_at(j->refine, x + 1, row), GLINT_TILE_WIDTH, height);
     for (uint32_t x = e->tile_x; x < end && index + 1 < e->down; x++)
         join_rows(j, x, row);
 }

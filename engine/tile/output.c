@@ -89,27 +89,29 @@ static void store_depth(const glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_store_pass(tile, frame, GLINT_PASS_DEPTH, depth);
 }
 
-/// The normals of a group some of whose rays hit nothing.
-static void part_normals(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, float *const normal[3])
+/// The normals of those rays of a group that hit nothing.
+static void rest_normals(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, float *const normal[3])
 {
-    for (uint32_t i = g * GLINT_GROUP; i < (g + 1) * GLINT_GROUP; i++) {
-        const bool hit = glint_has_lane(tile->at.hits, i);
+    for (unsigned left = 0xffffu & ~(unsigned)tile->at.hits[g]; left; left &= left - 1) {
+        const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
         double n[3] = { 0 };
-        if (!hit && sees_light(tile, frame->plan, i))
+        if (sees_light(tile, frame->plan, i))
             glint_tile_visible_light_normal(tile, frame, i, n);
         for (int c = 0; c < 3; c++)
-            normal[c][i] = (float)(hit ? glint_real_at(tile->surface.normal[c], frame->plan->desc.precision, i) : n[c]);
+            normal[c][i] = (float)n[c];
     }
 }
 
 /// A component of those of group g.
 static void round_normals(const void *reals, glint_precision precision, uint32_t g, float *restrict out)
 {
-    const size_t at = (size_t)g * GLINT_GROUP;
-    for (size_t i = 0; i < GLINT_GROUP && precision == GLINT_DOUBLE; i++)
-        out[i] = (float)((const double *)reals)[at + i];
-    if (precision == GLINT_FLOAT)
-        memcpy(out, (const float *)reals + at, GLINT_GROUP * sizeof *out);
+    const double *from = (const double *)reals + (size_t)g * GLINT_GROUP;
+    if (precision == GLINT_FLOAT) {
+        memcpy(out, (const float *)reals + (size_t)g * GLINT_GROUP, GLINT_GROUP * sizeof *out);
+        return;
+    }
+    for (size_t i = 0; i < GLINT_GROUP; i++)
+        out[i] = (float)from[i];
 }
 
 static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
@@ -123,14 +125,16 @@ static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
                 memset(normal[c] + g * GLINT_GROUP, 0, GLINT_GROUP * sizeof *normal[c]);
             continue;
         }
-        if (tile->at.hits[g] != 0xffff) {
-            part_normals(tile, frame, g, normal);
-            continue;
-        }
         for (int c = 0; c < 3; c++)
             round_normals(tile->surface.normal[c], frame->plan->desc.precision, g, normal[c] + g * GLINT_GROUP);
+        rest_normals(tile, frame, g, normal);
     }
     glint_tile_store_pass(tile, frame, GLINT_PASS_NORMAL, normal[0]);
+}
+
+static float object_of(const glint_tile_frame *frame, uint32_t prim)
+{
+    return (float)(glint_geometry_object(frame->plan->geometry, frame->geometry.prims[prim].id) + 1);
 }
 
 /// The numbers of a group some of whose rays hit nothing, or that shows several primitives. last: that of `object`, now and before.
@@ -141,7 +145,7 @@ static void part_ids(const glint_tile *tile, const glint_tile_frame *frame, uint
         const bool hit = tile->at.hits[g] >> lane & 1;
         if (hit && prim[lane] != *last) {
             *last = prim[lane];
-            *object = (float)(glint_geometry_object(frame->plan->geometry, frame->geometry.prims[*last].id) + 1);
+            *object = object_of(frame, *last);
         }
         id[lane] = hit ? *object : 0;
     }
@@ -150,11 +154,13 @@ static void part_ids(const glint_tile *tile, const glint_tile_frame *frame, uint
 static void store_object_id(const glint_tile *tile, const glint_tile_frame *frame)
 {
     float own[GLINT_TILE_SAMPLES], *id = geometry_of(tile, frame, GLINT_DIFFER_ID, own), object = 0;
-    uint32_t last = GLINT_MISS;
+    uint32_t last = tile->at.only ? *tile->at.only : GLINT_MISS;
+    if (tile->at.only)
+        object = object_of(frame, last);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const uint32_t *prim = tile->at.prim + (size_t)g * GLINT_GROUP;
         float *const out = id + (size_t)g * GLINT_GROUP;
-        const bool same = last != GLINT_MISS && tile->at.hits[g] == 0xffff && glint_all_are(prim, last);
+        const bool same = last != GLINT_MISS && tile->at.hits[g] == 0xffff && (tile->at.only || glint_all_are(prim, last));
         const float shown = same ? object : 0;
         if (same || !tile->at.hits[g])
             for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)

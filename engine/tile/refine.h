@@ -17,6 +17,11 @@
 
 #define GLINT_REFINE_NORMAL 0.9f ///< cosine
 
+/// The least and the most that some pixels have.
+typedef struct glint_refine_range {
+    float id[2], normal[3][2], code[3][2]; ///< codes: estimates
+} glint_refine_range;
+
 typedef struct glint_refine_tile {
     glint_key key; ///< of the base's pixels that were compared; all zero: not known
     // Pixels chosen: of each row, top first, a bit a pixel, the leftmost lowest.
@@ -24,6 +29,8 @@ typedef struct glint_refine_tile {
     uint32_t chosen[GLINT_TILE_HEIGHT]; ///< from any
     uint32_t above; ///< of the first row: from one of the tiles above
     uint64_t clipped, nonfinite; ///< counts of the base's pixels, where it has codes
+    glint_refine_range range; ///< of all pixels
+    bool ranged; ///< that is known
     /// What is compared of the first and last column; light where codes are estimated
     float side[2][GLINT_DIFFER_VALUES][GLINT_DIFFER_LENGTH];
 } glint_refine_tile;
@@ -34,6 +41,7 @@ typedef struct glint_refine {
     bool coded; ///< its codes are compared; else estimates of them
     bool whole; ///< tiles without a chosen pixel are the base's as they are
     bool in_place; ///< the base is in the picture that is made of it
+    bool in_codes; ///< likewise, and the picture is codes alone: the base's light is left only of tiles of which some is clipped
     glint_tone_desc tone; ///< of the codes
     uint32_t least; ///< sum of differences of codes that is not enough
     float low, high, gain; ///< see glint_differ_args, glint_estimate_args
@@ -54,8 +62,12 @@ static inline float *glint_refine_edge(const glint_refine *refine, uint32_t row,
 /// Two lines of the base.
 typedef struct glint_refine_lines {
     glint_differ_args args; ///< lines and counts
-    size_t first[2], step; ///< where in a plane of the base they begin; from a pixel to the next
+    const float *light[2][3]; ///< of their pixels, where codes are estimated
+    bool grouped; ///< four pixels lie together in each group: the lines are rows of a tile; else all do
 } glint_refine_lines;
+
+/// Whether pixels in these ranges are so much alike that no two of them can differ.
+bool glint_refine_alike(const glint_refine *refine, const glint_refine_range *a, const glint_refine_range *b);
 
 /// Which of their pixels differ, as glint_differences has it.
 void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *lines, uint32_t differ[GLINT_DIFFER_WAYS]);

@@ -432,6 +432,18 @@ static void tone(glint_tile *tile, const glint_tile_frame *frame)
     tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - start;
 }
 
+/// The tile into the image. Light that nothing reads is not stored: of a base that is codes, only where some is clipped, which is to be
+/// counted again when a part of it is refined.
+static void store(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before)
+{
+    const bool in_codes = frame->plan->is_base && frame->refine->in_codes;
+    if (!in_codes)
+        glint_tile_store_light(tile, frame);
+    tone(tile, frame);
+    if (in_codes && (tile->counts.clipped != before.clipped || tile->counts.nonfinite != before.nonfinite))
+        glint_tile_store_light(tile, frame);
+}
+
 /// Every stage that the tile needs.
 static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
 {
@@ -468,8 +480,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
         glint_tile_store_derivatives(tile, frame);
     if (frame->base)
         glint_tile_take_base(tile, frame);
-    glint_tile_store_light(tile, frame);
-    tone(tile, frame);
+    store(tile, frame, before);
     if (plan->is_base)
         glint_tile_compare(tile, frame, before);
     glint_tile_sign_film(tile, frame, before);

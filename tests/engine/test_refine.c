@@ -4,6 +4,7 @@
 
 #include "engine/film/tone.h"
 #include "engine/frame/refine.h"
+#include "tests/engine/cases/floor_scene.h"
 
 enum { WIDTH = 32, HEIGHT = 41, PIXELS = WIDTH * HEIGHT };
 
@@ -47,9 +48,9 @@ static uint32_t compare_row(const glint_refine *refine, size_t y)
         for (size_t x = 0; x < WIDTH && refine->coded; x++)
             code[c][x] = ((const uint16_t *)refine->base->codes)[3 * (y * WIDTH + x) + (size_t)c];
     }
-    const glint_refine_lines lines = { .args = { .p = line, .ahead = WIDTH - 1, .count = WIDTH, .along = true },
-                                       .first = { y * WIDTH, 0 },
-                                       .step = 1 };
+    glint_refine_lines lines = { .args = { .p = line, .ahead = WIDTH - 1, .count = WIDTH, .along = true } };
+    for (int c = 0; c < 3; c++)
+        lines.light[0][c] = lines.light[1][c] = refine->base->plane[GLINT_PASS_BEAUTY][c] + y * WIDTH;
     glint_refine_compare(refine, &lines, differ);
     return differ[GLINT_DIFFER_ALONG];
 }
@@ -189,10 +190,74 @@ static void test_kernels(void **unused)
     run_cases(2000, 24000, differ_case);
 }
 
+// ---- A picture of codes alone, of whose base no light is kept ----
+
+/// Balls over a floor, under a lamp of this strength.
+static glint_scene *make_balls(double strength)
+{
+    glint_scene *scene = make_floor((const double[3]) { 0, 3, 9 }, (const double[3]) { 0, 0.8, 0 });
+    glint_light_desc d = glint_light_desc_default(GLINT_LIGHT_POINT);
+    glint_light *light;
+    memcpy(d.position, (const double[3]) { 2, 6, 5 }, sizeof d.position);
+    d.intensity = strength;
+    assert_int_equal(glint_light_create(&d, &light, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_light(scene, light, NULL), GLINT_OK);
+    glint_light_release(light);
+    for (int i = 0; i < 6; i++)
+        add_ball(scene, (const double[3]) { 1.3 * (i % 3 - 1), 0.5, i / 3 - 0.5 }, 0.5, 0.2 * (i % 2));
+    return scene;
+}
+
+static glint_image *render_codes(const glint_scene *scene, uint32_t passes, int threads, glint_frame_stats *stats)
+{
+    glint_renderer_desc renderer_desc = glint_renderer_desc_default();
+    glint_render_desc desc = glint_render_desc_default();
+    glint_renderer *renderer;
+    glint_plan *plan;
+    glint_image *image;
+    renderer_desc.threads = threads;
+    renderer_desc.no_reuse = threads > 1;
+    desc.width = 101;
+    desc.height = 75;
+    desc.samples = 5;
+    desc.adaptive = 0.1;
+    desc.codes = true;
+    desc.passes = passes;
+    assert_int_equal(glint_renderer_create(&renderer_desc, &renderer, NULL), GLINT_OK);
+    assert_int_equal(glint_plan_create(scene, &desc, &plan, NULL), GLINT_OK);
+    assert_int_equal(glint_render(renderer, plan, &image, stats, NULL), GLINT_OK);
+    glint_plan_destroy(plan);
+    glint_renderer_destroy(renderer);
+    return image;
+}
+
+/// It has the codes and the counts of one with its light: none clipped, some, nearly all, and infinite light.
+static void test_codes_alone(void **unused)
+{
+    static const double strength[4] = { 0.4, 1.9, 30, 1e39 };
+    (void)unused;
+    for (int i = 0; i < 8; i++) {
+        glint_scene *scene = make_balls(strength[i % 4]);
+        glint_frame_stats with, alone;
+        glint_image *light = render_codes(scene, 1u << GLINT_PASS_BEAUTY, 1 + i / 4, &with);
+        glint_image *codes = render_codes(scene, 0, 1 + i / 4, &alone);
+        assert_true(with.refined > 100 && with.refined < 5000);
+        assert_int_equal(alone.refined, with.refined);
+        assert_int_equal(alone.clipped, with.clipped);
+        assert_int_equal(alone.nonfinite, with.nonfinite);
+        assert_int_equal(alone.clipped > 0, i % 4 > 0);
+        assert_memory_equal(codes->codes, light->codes, 101 * 75 * glint_image_pixel_bytes(light));
+        glint_image_release(light);
+        glint_image_release(codes);
+        glint_scene_release(scene);
+    }
+}
+
 int main(void)
 {
     find_tested();
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels), cmocka_unit_test(test_choice) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels), cmocka_unit_test(test_choice),
+                                        cmocka_unit_test(test_codes_alone) };
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     print_skipped();
     return failed;

@@ -120,7 +120,7 @@ static inline void tone_groups(const glint_tone_args *args, bool exposed)
     for (uint32_t g = 0; g < args->group_count; g++) {
         const bool last = ++column == args->groups_across;
         const bool spill = !last && args->active[g + 1] == 0xffff; // the next group is yet to be written, over it
-        for (int i = 0; i < GLINT_GROUP; i += VF) {
+        for (int i = 0; i < GLINT_GROUP && args->active[g]; i += VF) {
             const unsigned active = args->active[g] >> i & all;
             vf beauty[3], x[3];
             for (int c = 0; c < 3; c++) {
