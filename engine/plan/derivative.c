@@ -91,6 +91,19 @@ static void fill_f0(glint_dual out[3], const glint_material_desc *d, const glint
         out[c] = dual(d->f0[c], is_own ? slope->f0[c] : by_ior);
 }
 
+/// What a shader reads has the description's numbers, and has slopes; anything else of them has none.
+static void shader_material(glint_derivative_material *out, uint32_t inputs)
+{
+    for (int c = 0; c < 3; c++) {
+        if (!(inputs >> (GLINT_INPUT_KD_R + c) & 1))
+            out->diffuse[c].slope = 0;
+        if (!(inputs >> (GLINT_INPUT_KS_R + c) & 1))
+            out->specular[c].slope = 0;
+    }
+    if (!(inputs >> GLINT_INPUT_SHININESS & 1))
+        out->shininess.slope = 0;
+}
+
 /// planes: of glint_shade_material.
 static void fill_material(glint_derivative_material *out, const glint_material_desc *desc,
                           const glint_material_desc *slopes, uint32_t planes, const glint_dual light[3])
@@ -111,12 +124,14 @@ static void fill_material(glint_derivative_material *out, const glint_material_d
     bool shiny = glint_has_slope(out->specular, 3);
     for (int c = 0; c < 3; c++)
         shiny = shiny || d.specular[c] != 0;
-    shiny = shiny && d.model != GLINT_MODEL_LAMBERT;
-    if (shiny && d.model == GLINT_MODEL_COOK_TORRANCE)
+    shiny = shiny && d.model != GLINT_MODEL_LAMBERT && !d.program.shader;
+    if (d.program.shader)
+        shader_material(out, d.program.shader->inputs);
+    else if (shiny && d.model == GLINT_MODEL_COOK_TORRANCE)
         facet_material(out, &d, f0, dual(d.roughness, slope->roughness));
     else if (shiny)
         power_material(out, &d, !(planes & GLINT_PLANE_SHININESS));
-    if (out->highlight == GLINT_HIGHLIGHT_NONE) // what nothing reads makes nothing vary
+    if (out->highlight == GLINT_HIGHLIGHT_NONE && !d.program.shader) // what nothing reads makes nothing vary
         out->shininess = out->specular[0] = out->specular[1] = out->specular[2] = dual(0, 0);
     if (out->highlight == GLINT_HIGHLIGHT_FACETS)
         out->shininess = dual(0, 0);
@@ -243,10 +258,10 @@ static void fill_part(glint_derivative_part *out, const glint_part *part, const 
 /// What changes with programs that do.
 static void take_programs(const glint_derivative_programs *programs, size_t material, glint_plan_derivative *out)
 {
-    for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
+    for (int field = 0; field < GLINT_FIELD_COUNT; field++) {
         if (!programs->of[field])
             continue;
-        out->repaints = true;
+        out->repaints = out->repaints || field < GLINT_FIELD_PLANES;
         if (field == GLINT_FIELD_MIRROR || field == GLINT_FIELD_TRANSMISSION)
             out->weighs = true;
         else
@@ -416,7 +431,7 @@ static glint_status make_all(glint_plan *plan, const glint_scene *scene, const g
     free(slopes.materials);
     free(slopes.lights);
     free(slopes.shapes);
-    return status;
+    return status ? status : glint_derivative_find_gradients(plan, error);
 }
 
 glint_status glint_plan_find_derivatives(glint_plan *plan, const glint_scene *scene, const glint_render_desc *desc,
@@ -431,8 +446,8 @@ glint_status glint_plan_find_derivatives(glint_plan *plan, const glint_scene *sc
 
 static void free_one(glint_plan_derivative *d, size_t materials)
 {
-    for (size_t i = 0; i < materials * GLINT_FIELD_PLANES && d->programs; i++)
-        glint_program_release((glint_program *)(uintptr_t)d->programs[i / GLINT_FIELD_PLANES].of[i % GLINT_FIELD_PLANES]);
+    for (size_t i = 0; i < materials * GLINT_FIELD_COUNT && d->programs; i++)
+        glint_program_release((glint_program *)(uintptr_t)d->programs[i / GLINT_FIELD_COUNT].of[i % GLINT_FIELD_COUNT]);
     free(d->programs);
     free(d->materials);
     free(d->bounces);
@@ -446,6 +461,10 @@ void glint_plan_derivatives_free(glint_plan_derivatives *derivatives)
         free_one(&derivatives->of[i], derivatives->material_count);
         free_one(&derivatives->level[i], derivatives->material_count);
     }
+    for (size_t i = 0; derivatives && derivatives->gradients && i < derivatives->material_count; i++)
+        glint_gradient_release(&derivatives->gradients[i]);
+    if (derivatives)
+        free(derivatives->gradients);
     free(derivatives);
 }
 
@@ -455,8 +474,8 @@ glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key k
     key = glint_key_add_string(key, d->name);
     key = glint_key_add(key, d->materials, plan->geometry->materials.count * sizeof *d->materials);
     key = glint_key_add(key, d->bounces, plan->geometry->materials.count * sizeof *d->bounces);
-    for (size_t i = 0; i < plan->geometry->materials.count * GLINT_FIELD_PLANES; i++) {
-        const glint_program *program = d->programs[i / GLINT_FIELD_PLANES].of[i % GLINT_FIELD_PLANES];
+    for (size_t i = 0; i < plan->geometry->materials.count * GLINT_FIELD_COUNT; i++) {
+        const glint_program *program = d->programs[i / GLINT_FIELD_COUNT].of[i % GLINT_FIELD_COUNT];
         if (program) {
             key = glint_key_add(key, &i, sizeof i);
             key = glint_key_add(key, &program->structure, sizeof program->structure);

@@ -5,6 +5,7 @@
 #include "engine/base/dual.h"
 #include "engine/base/hash.h"
 #include "engine/plan/patterns.h"
+#include "engine/program/program.h"
 #include "engine/stages/stages.h"
 
 /// A material, as glint_shade_material has it.
@@ -54,7 +55,7 @@ typedef struct glint_derivative_view {
 
 /// How fast programs of a material change; owned references.
 typedef struct glint_derivative_programs {
-    const glint_program *of[GLINT_FIELD_PLANES]; ///< NULL: not at all
+    const glint_program *of[GLINT_FIELD_COUNT]; ///< NULL: not at all
 } glint_derivative_programs;
 
 typedef struct glint_plan_derivative {
@@ -81,6 +82,7 @@ typedef struct glint_plan_derivatives {
     size_t count, light_count, material_count;
     bool moves, bends, weighs, fades, everywhere, repaints;
     glint_plan_derivative of[GLINT_DERIVATIVES_MAX];
+    glint_gradient *gradients; ///< of materials' shaders, beside the plan's materials; NULL: none has one
     glint_plan_derivative level[GLINT_DERIVATIVES_MAX]; ///< of each, as if slopes that are 0 were not: tells what depends on it
 } glint_plan_derivatives;
 

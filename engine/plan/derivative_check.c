@@ -1,6 +1,7 @@
 /// What of a frame no derivative goes through.
 #include "engine/base/status.h"
 #include "engine/plan/derivative_slopes.h"
+#include "engine/program/program.h"
 
 /// Whether a surface moves, or the eye.
 static bool moves(const glint_plan *plan, const glint_plan_derivative *d)
@@ -29,9 +30,27 @@ static const char *find_obstacle(const glint_plan *plan)
 {
     if (plan->runs[GLINT_STAGE_INDIRECT])
         return "scene.indirect: indirect light and ambient occlusion have no derivative; leave them out";
-    if (plan->runs[GLINT_STAGE_SHADER])
-        return "material.model: a shader has no derivative; the built-in models have";
     return NULL;
+}
+
+/// Whether a material has something of a pattern, or a shader that reads coordinates on surfaces or how wide a pixel is: what moves
+/// changes these in ways that are not followed.
+static bool is_painted(const glint_plan_pattern *pattern)
+{
+    const uint32_t unknown = GLINT_READS_UV | 1u << GLINT_INPUT_FOOTPRINT;
+    const glint_program *shader = pattern->program[GLINT_FIELD_SHADER];
+    bool any = pattern->cut || (shader && shader->inputs & unknown);
+    for (int field = 0; field < GLINT_FIELD_SHADER; field++)
+        any = any || pattern->program[field];
+    return any;
+}
+
+static bool is_any_painted(const glint_plan *plan)
+{
+    for (uint32_t i = 0; plan->patterns && i < plan->material_count; i++)
+        if (is_painted(&plan->patterns->of[i]))
+            return true;
+    return false;
 }
 
 /// What beyond the first surface a derivative does not go through, or NULL.
@@ -49,9 +68,9 @@ static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan
                    "shadows = false have";
         absorbs = absorbs || glint_any_slope(d->bounces[i].absorption);
     }
-    if (plan->patterns && d->bends)
-        return "material: what moves or bends has no derivative where materials have patterns or bumps; where all have plain "
-               "numbers it has";
+    if (d->bends && is_any_painted(plan))
+        return "material: what moves or bends has no derivative where materials have patterns or bumps, or shaders that read uv or "
+               "footprint; where all have plain numbers it has";
     if (plan->tints && plan->patterns && plan->patterns->plane[GLINT_FIELD_TRANSMISSION] >= 0 && d->moves)
         return "material.transmission: light through what a pattern colours has no derivative by what moves; lights with shadows "
                "= false have";

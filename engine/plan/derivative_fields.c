@@ -83,13 +83,14 @@ static void add(void *desc, const slope_field *field, const double slope[3])
         to[c] += slope[c];
 }
 
-/// The program's field of that name; GLINT_FIELD_PLANES: there is none.
+/// The program's field of that name, of those that have derivatives; GLINT_FIELD_COUNT: there is none.
 static int find_program_field(const char *name)
 {
-    int field = 0;
-    while (field < GLINT_FIELD_PLANES && (!name || field == GLINT_FIELD_REST || strcmp(name, glint_field_name(field)) != 0))
-        field++;
-    return field;
+    for (int field = 0; field < GLINT_FIELD_COUNT; field++)
+        if ((field < GLINT_FIELD_PLANES || field == GLINT_FIELD_SHADER) && field != GLINT_FIELD_REST && name &&
+            strcmp(name, glint_field_name(field)) == 0)
+            return field;
+    return GLINT_FIELD_COUNT;
 }
 
 static glint_status add_program(const glint_plan *plan, const glint_derivative *d, const glint_slope *s,
@@ -100,14 +101,14 @@ static glint_status add_program(const glint_plan *plan, const glint_derivative *
     const int field = find_program_field(s->field);
     if (i == list->count)
         return GLINT_OK;
-    if (field == GLINT_FIELD_PLANES)
+    if (field == GLINT_FIELD_COUNT)
         return refuse_field(d, "material", s->field, material_fields, 0, error);
     const glint_program *own = plan->patterns ? plan->patterns->of[i].program[field] : NULL;
     if (!own || own->code.output_count != s->program->code.output_count || own->kind != s->program->kind)
         return glint_fail(error, GLINT_ERR_INVALID,
                           "derivative '%s': material.%s: the slope is a program's, but not of the one that gives the field", d->name,
                           s->field);
-    plan->patterns->of[i].repaints = true;
+    plan->patterns->of[i].repaints = plan->patterns->of[i].repaints || field < GLINT_FIELD_PLANES;
     if (plan->patterns->row_count < s->program->code.row_count)
         plan->patterns->row_count = s->program->code.row_count;
     glint_program_release((glint_program *)(uintptr_t)out->programs[i].of[field]);
@@ -122,7 +123,8 @@ static bool is_lost(const glint_material_desc *desc, const glint_slope *s)
     const glint_program *shape = facets ? desc->program.roughness : desc->program.shininess;
     const bool needs_all = !facets && desc->normalized;
     bool lost = false;
-    if (strcmp(s->field, "specular") != 0 || !shape || desc->program.specular || desc->model == GLINT_MODEL_LAMBERT)
+    if (strcmp(s->field, "specular") != 0 || !shape || desc->program.specular || desc->program.shader ||
+        desc->model == GLINT_MODEL_LAMBERT)
         return false;
     for (int c = 0; c < 3; c++)
         lost = lost || (s->slope[c] != 0 && desc->specular[c] == 0);

@@ -22,6 +22,9 @@ glint_status glint_derivative_add(const glint_plan *plan, const glint_scene *sce
 void glint_derivative_fill_view(glint_derivative_view *out, const glint_plan *plan, const glint_camera_desc *desc,
                                 const glint_camera_desc *slope);
 
+/// plan/derivative_shaders.c: how fast shaders change with what derivatives change of what they read.
+glint_status glint_derivative_find_gradients(glint_plan *plan, glint_error *error);
+
 static inline void duals(glint_dual out[3], const double value[3], const double slope[3])
 {
     for (int c = 0; c < 3; c++)

@@ -29,6 +29,28 @@ glint_key glint_texture_key(const glint_texture *texture);
 glint_status glint_program_slope(const glint_program *program, const glint_input *inputs, size_t count,
                                  glint_program **out, glint_error *error);
 
+/// Which slope a number of a gradient is: of a channel of light, by an input.
+typedef struct glint_gradient_place {
+    uint32_t channel, input;
+} glint_gradient_place;
+
+#define GLINT_GRADIENT_MAX (3 * GLINT_INPUT_COUNT)
+
+/// How fast the light that a shader gives, diffuse and specular, changes with its inputs; what is 0 everywhere is not listed.
+typedef struct glint_gradient {
+    uint32_t count;
+    glint_gradient_place of[GLINT_GRADIENT_MAX];
+    /// Owned; slope k is output k % GLINT_PROGRAM_OUTPUTS_MAX of program k / GLINT_PROGRAM_OUTPUTS_MAX. NULL beyond.
+    glint_program *programs[(GLINT_GRADIENT_MAX + GLINT_PROGRAM_OUTPUTS_MAX - 1) / GLINT_PROGRAM_OUTPUTS_MAX];
+} glint_gradient;
+
+/// inputs  those that count, a bit each.
+///
+/// As exact as glint_program_slope; what of an output is bounded, as glint_program_args' planes are, has slope 0. On error, too, the
+/// gradient is released by the caller.
+glint_status glint_shader_gradient(const glint_program *shader, uint32_t inputs, glint_gradient *out, glint_error *error);
+void glint_gradient_release(glint_gradient *gradient);
+
 /// Whether a kernel may run the code: operations, rows and textures that exist, and no row read before it is written.
 glint_status glint_code_check(const glint_program_code *code, uint32_t number_count, uint32_t texture_count,
                               uint32_t inputs, glint_error *error);

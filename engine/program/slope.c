@@ -280,8 +280,8 @@ static glint_value value_in(slope_maker *s, const glint_program_code *code, cons
     return out;
 }
 
-/// Builds the program's values once more. Returns its first output.
-static glint_value copy_values(slope_maker *s, const glint_program *program)
+/// Builds the program's values once more, and gives its outputs.
+static void copy_values(slope_maker *s, const glint_program *program, glint_value outputs[GLINT_PROGRAM_OUTPUTS_MAX])
 {
     const glint_program_code *code = &program->code;
     glint_value row[GLINT_PROGRAM_ROWS_MAX] = { 0 }, operands[GLINT_OPERANDS_MAX], results[GLINT_RESULTS_MAX];
@@ -296,7 +296,8 @@ static glint_value copy_values(slope_maker *s, const glint_program *program)
         for (uint32_t k = 0; k < in->results; k++)
             row[in->out[k]] = results[k];
     }
-    return value_in(s, code, row, code->outputs[0]);
+    for (uint32_t k = 0; k < code->output_count; k++)
+        outputs[k] = value_in(s, code, row, code->outputs[k]);
 }
 
 static void find_what_varies(slope_maker *s, uint32_t inputs)
@@ -339,35 +340,96 @@ static void finish(slope_maker *s, const glint_input *inputs, size_t count, glin
         s->status = glint_program_make(s->builder, outputs, count, out, s->error);
 }
 
+/// Begins with a program's values; `inputs`, a bit each, count.
+static void begin(slope_maker *s, const glint_program *program, uint32_t inputs, glint_value outputs[GLINT_PROGRAM_OUTPUTS_MAX])
+{
+    s->status = glint_builder_create(program->kind, &s->builder, s->error);
+    if (s->status)
+        return;
+    copy_values(s, program, outputs);
+    s->count = s->builder->count;
+    s->given = malloc((s->count + 1) * sizeof *s->given);
+    s->varies = calloc(s->count + 1, sizeof *s->varies);
+    if (!s->status && (!s->given || !s->varies))
+        s->status = glint_fail_nomem(s->error);
+    if (!s->status)
+        find_what_varies(s, inputs);
+}
+
+static glint_status end(slope_maker *s)
+{
+    free(s->given);
+    free(s->varies);
+    glint_builder_destroy(s->builder);
+    return s->status;
+}
+
 glint_status glint_program_slope(const glint_program *program, const glint_input *inputs, size_t count,
                                  glint_program **out, glint_error *error)
 {
     slope_maker s = { .error = error };
+    glint_value outputs[GLINT_PROGRAM_OUTPUTS_MAX];
     uint32_t wanted = 0;
     if (count < 1 || count > GLINT_PROGRAM_OUTPUTS_MAX)
         return glint_fail(error, GLINT_ERR_INVALID, "count: 1 .. %d inputs expected, got %zu",
                           GLINT_PROGRAM_OUTPUTS_MAX, count);
-    s.status = glint_builder_create(program->kind, &s.builder, error);
-    if (s.status)
-        return s.status;
-    const glint_value output = copy_values(&s, program);
-    s.count = s.builder->count;
-    s.given = malloc((s.count + 1) * sizeof *s.given);
-    s.varies = calloc(s.count + 1, sizeof *s.varies);
     for (size_t k = 0; k < count; k++)
         wanted |= 1u << inputs[k];
-    if (!s.status && (!s.given || !s.varies))
-        s.status = glint_fail_nomem(error);
+    begin(&s, program, wanted, outputs);
     if (!s.status) {
-        find_what_varies(&s, wanted);
-        give(&s, output, number(&s, 1));
+        give(&s, outputs[0], number(&s, 1));
         walk_back(&s);
         finish(&s, inputs, count, out);
     }
-    free(s.given);
-    free(s.varies);
-    glint_builder_destroy(s.builder);
-    return s.status;
+    return end(&s);
+}
+
+// ---- Of shaders ---------------------------------------------------------------------------------------------------
+
+/// 1 where an output is taken as it is, 0 where it is bounded.
+static glint_value is_within(slope_maker *s, glint_value output)
+{
+    return two(s, GLINT_OP_AND, two(s, GLINT_OP_LESS, number(s, 0), output),
+               two(s, GLINT_OP_LESSEQ, output, number(s, GLINT_REFLECTANCE_MAX)));
+}
+
+/// Lists the slopes of channel c of a shader's light that are not 0 everywhere.
+static void list_channel(slope_maker *s, const glint_value *outputs, uint32_t output_count, uint32_t c, uint32_t inputs,
+                         glint_gradient *out, glint_value *values)
+{
+    for (uint32_t i = 0; i < s->count; i++)
+        s->given[i] = NOTHING;
+    for (uint32_t k = c; k < output_count; k += 3)
+        give(s, outputs[k], is_within(s, outputs[k]));
+    walk_back(s);
+    for (uint32_t i = 0; i < s->count && !s->status; i++) {
+        const glint_ssa_node *node = &s->builder->nodes[i];
+        if (node->op != GLINT_SSA_INPUT || s->given[i] == NOTHING || !(inputs >> node->operand[0] & 1))
+            continue;
+        values[out->count] = s->given[i];
+        out->of[out->count++] = (glint_gradient_place) { c, node->operand[0] };
+    }
+}
+
+glint_status glint_shader_gradient(const glint_program *shader, uint32_t inputs, glint_gradient *out, glint_error *error)
+{
+    slope_maker s = { .error = error };
+    glint_value outputs[GLINT_PROGRAM_OUTPUTS_MAX], values[GLINT_GRADIENT_MAX];
+    *out = (glint_gradient) { .count = 0 };
+    begin(&s, shader, inputs, outputs);
+    for (uint32_t c = 0; c < 3 && !s.status; c++)
+        list_channel(&s, outputs, shader->code.output_count, c, inputs, out, values);
+    for (uint32_t k = 0; k < out->count && !s.status; k += GLINT_PROGRAM_OUTPUTS_MAX) {
+        const uint32_t left = out->count - k, count = left < GLINT_PROGRAM_OUTPUTS_MAX ? left : GLINT_PROGRAM_OUTPUTS_MAX;
+        s.status = glint_program_make(s.builder, values + k, count, &out->programs[k / GLINT_PROGRAM_OUTPUTS_MAX], error);
+    }
+    return end(&s);
+}
+
+void glint_gradient_release(glint_gradient *gradient)
+{
+    for (size_t k = 0; k < sizeof gradient->programs / sizeof *gradient->programs; k++)
+        glint_program_release(gradient->programs[k]);
 }
 
 // ---- By parameters ------------------------------------------------------------------------------------------------
@@ -424,8 +486,5 @@ glint_status glint_builder_tangent(const glint_builder *builder, const glint_val
     if (!s.status)
         s.status = glint_builder_close(s.builder, values, count, out, error);
     free(map);
-    free(s.given);
-    free(s.varies);
-    glint_builder_destroy(s.builder);
-    return s.status;
+    return end(&s);
 }

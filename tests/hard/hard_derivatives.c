@@ -1,5 +1,6 @@
 /// Derivatives of pictures against central differences of the formulas in 113 bits: every field that has one, of every model and
-/// kind of light.
+/// kind of light, and of shaders.
+#include "tests/hard/oracle/shaders.h"
 #include "tests/hard/oracle/slopes.h"
 
 #include <string.h>
@@ -20,6 +21,7 @@ typedef struct world {
     quad ball[3], radius[3], point[3], normal[3], eye[3], at[3], up[3], fov[3];
     glint_model model;
     bool beckmann, normalized, matched, own_terms; ///< own_terms: the light has a diffuse and a specular of its own
+    bool shader; ///< which says what the model says, times a wave
     glint_light_kind kind;
     dress dress;
 } world;
@@ -121,6 +123,13 @@ static void specular_of(const world *w, const quad n[3], const quad l[3], const 
                  (w->f0[c] + (1 - w->f0[c]) * powf128(1 - dot(v, h), 5));
 }
 
+/// By what shaders alone read: the point in the shape's own space, in the world, and how far the light is.
+static quad wave(const world *w, const quad p[3], quad distance)
+{
+    const quad own = w->dress == TURNED ? p[1] / 2 : p[0], far = w->kind == GLINT_LIGHT_DIRECTIONAL ? 0 : distance;
+    return w->shader ? (quad)1.5 + sinf128(3 * own) / 4 + sinf128(p[2]) / 4 + far / 16 : 1;
+}
+
 static quad cone(const world *w, const quad l[3])
 {
     quad axis[3] = { w->direction[0], w->direction[1], w->direction[2] };
@@ -145,6 +154,7 @@ static void add_light(const world *w, const quad p[3], const quad n[3], const qu
         strength /= w->attenuation[0] + w->attenuation[1] * distance + w->attenuation[2] * distance * distance;
     if (w->kind == GLINT_LIGHT_SPOT)
         strength *= cone(w, l);
+    strength *= wave(w, p, distance);
     specular_of(w, n, l, v, specular);
     for (int c = 0; c < 3; c++)
         out[c] += strength * (w->diffuse[c] * dot(n, l) * (w->own_terms ? w->light_diffuse[c] : w->color[c]) +
@@ -190,7 +200,9 @@ static glint_material *make_material(const world *w)
     put(&d.shininess, w->shininess, 1);
     put(&d.roughness, w->roughness, 1);
     put(d.f0, w->f0, 3);
+    d.program.shader = w->shader ? make_shader(w->model, w->kind == GLINT_LIGHT_DIRECTIONAL) : NULL;
     must(glint_material_create(&d, &material, &error), &error);
+    glint_program_release(d.program.shader);
     return material;
 }
 
@@ -312,7 +324,7 @@ static bool is_read(const world *w, const number *n)
     if (!strcmp(n->field, "inner_rad") || !strcmp(n->field, "outer_rad") || !strcmp(n->field, "exponent"))
         return spot;
     if (!strcmp(n->field, "point")) // along rays no angle changes under parallel light
-        return !directional;
+        return !directional || w->shader;
     return strcmp(n->field, "direction") != 0 || directional || spot;
 }
 
@@ -358,8 +370,8 @@ static void compare(const world *w, const number *n, const glint_scene *scene, g
     glint_image *image = slope_picture(scene, desc, &derivative);
     true_slopes(w, n, slope, want);
     const double worst = slope_distance(image, WIDTH, HEIGHT, want, &most);
-    hard_check(most > 0 && worst <= 1, "%s.%s, model %d, light %d, dress %d: %.2f of the bound, steepest pixel %g", n->object,
-               n->field, (int)w->model, (int)w->kind, (int)w->dress, worst, most);
+    hard_check(most > 0 && worst <= 1, "%s.%s, model %d, light %d, dress %d, shader %d: %.2f of the bound, steepest pixel %g",
+               n->object, n->field, (int)w->model, (int)w->kind, (int)w->dress, w->shader, worst, most);
     if (hard_table)
         printf("| %s.%s | %d | %d | %.3g | %.2f |\n", n->object, n->field, (int)w->model, (int)w->kind, most, worst);
     glint_image_release(image);
@@ -372,6 +384,11 @@ static world random_world(int turn)
     w.normalized = turn / 4 % 2;
     w.matched = w.model == GLINT_MODEL_BLINN_PHONG && turn % 3 == 0;
     w.own_terms = turn % 5 == 0;
+    w.shader = turn >= 24;
+    if (w.shader) {
+        w.model = turn % 2 ? GLINT_MODEL_PHONG : GLINT_MODEL_BLINN_PHONG;
+        w.normalized = w.matched = w.own_terms = false;
+    }
     w.dress = (dress)((turn / 2 + turn / 12) % DRESSES);
     fill(w.diffuse, 0.2, 0.9);
     fill(w.ambient, 0.1, 0.5);
@@ -413,10 +430,10 @@ static world random_world(int turn)
 int main(int argc, char **argv)
 {
     hard_begin(argc, argv);
-    hard_test("D1", "every field that has a derivative, of each model and light");
+    hard_test("D1", "every field that has a derivative, of each model and light, and of shaders");
     if (hard_table)
         printf("| field | model | light | steepest pixel | error / bound |\n| --- | --- | --- | --- | --- |\n");
-    for (int turn = 0; turn < 24; turn++) {
+    for (int turn = 0; turn < 36; turn++) {
         const world w = random_world(turn);
         glint_material *material = make_material(&w);
         glint_light *light = make_light(&w);

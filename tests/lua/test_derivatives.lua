@@ -271,6 +271,90 @@ function tests.patterns_against_differences()
   end)
 end
 
+-- Shaders, by what each reads and by their own numbers: nineteen pixels of twenty, which are no edges.
+function tests.shaders_against_differences()
+  local h = 1e-3
+  local function compare(name, at, make, more)
+    local image = render(make(glint.variable("p", at)), "d:p", more)
+    local plain, high, low = render(make(at), "beauty", more), render(make(at + h), "beauty", more), render(make(at - h), "beauty", more)
+    local list, most, distances, same = {}, 0, {}, true
+    each(high, "beauty", low, "beauty", function(p, q) list[#list + 1] = (p - q) / (2 * h) end)
+    each(image, "beauty", plain, "beauty", function(p, q) same = same and p == q end)
+    each(image, "d:p", image, "d:p", function(d)
+      distances[#distances + 1] = math.abs(d - list[#distances + 1])
+      most = math.max(most, math.abs(d))
+    end)
+    table.sort(distances)
+    local worst = distances[#distances * 19 // 20]
+    check(most > 0 and worst < 2e-3 * most, "%s: off by %.2g of %.2g", name, worst, most)
+    check(same, "%s: the picture is that of plain numbers", name)
+  end
+  local phong = glint.shader(function(s)
+    local r = 2 * glint.dot(s.n, s.l) * s.n - s.l
+    return s.kd * s.light * glint.max(0, glint.dot(s.n, s.l)), s.ks * s.light * glint.max(0, glint.dot(r, s.v)) ^ s.shininess
+  end)
+  local function of(fields)
+    local list = { model = phong, diffuse = { 0.7, 0.4, 0.2 }, specular = 0.4, shininess = 12 }
+    for key, value in pairs(fields or {}) do list[key] = value end
+    return glint.material(list)
+  end
+  local function with(lamp, fields, ...)
+    local scene = scene_of(lamp, { material = of(fields), background = { 0.2, 0.3, 0.4 }, ambient = 0.1 })
+    scene:add(glint.plane { point = { 0, 0, -3 }, normal = { 0, 0, 1 }, material = of(fields) })
+    for _, shape in ipairs { ... } do scene:add(shape) end
+    return scene
+  end
+  local function by(shader) return { model = glint.shader(shader) } end
+  local lamp = glint.point_light { position = { 2, 4, 3 }, attenuation = { 1, 0, 0.02 }, shadows = false }
+  compare("a lamp", 2, function(x) return with(glint.point_light { position = { x, 4, 3 }, attenuation = { 1, 0.05 * x, 0.02 } }) end)
+  compare("a spot light", 1, function(x) return with(glint.spot_light { position = { 2, 4, 3 }, direction = { -2, -4 * x, -3 }, inner = 5,
+    outer = 40 * x, exponent = 3 * x }) end)
+  compare("a parallel light", 0.3, function(x) return with(glint.directional_light { direction = { x, -1, -1 }, intensity = x }) end)
+  compare("a disk", 1, function(x) return with(glint.disk_light { position = { 2, 4, 3 }, normal = { -2, -4, -3 }, radius = 0.5,
+    radiance = x + 1, shadows = false }) end)
+  compare("a ball", 1, function(x) return with(glint.sphere_light { position = { 2, 4, 3 }, radius = 0.5, radiance = x + 1 }) end)
+  compare("a ball's caps", 1, function(x)
+    return with(glint.sphere_light { position = { 2, 4, 3 }, radius = 0.5, intensity = x, shadow = "caps", attenuation = { 1, 0.1, 0 } })
+  end)
+  compare("reflectances", 0.7, function(x) return with(lamp, { diffuse = { x, 0.4, x * x }, specular = 0.3 * x, shininess = 10 * x }) end)
+  compare("reflectances by patterns", 2, function(x)
+    return with(lamp, { diffuse = glint.pattern(function(p) return 0.4 + 0.3 * glint.sin(x * p.x) end),
+      shininess = glint.pattern(function(p) return 10 + glint.sin(p.x * x) end) })
+  end)
+  compare("numbers of both parts", 0.7, function(x)
+    return with(lamp, by(function(s) return s.kd * s.light * (x + glint.dot(s.n, s.l)), s.light * (x + glint.noise(x * s.p)) end))
+  end)
+  compare("a number of one", 0.7, function(x) return with(lamp, by(function(s) return s.kd * glint.sin(x * s.world.y + s.distance) end)) end)
+  compare("light through glass", 2, function(x)
+    return with(glint.point_light { position = { 2, 4, 3 } }, {}, glint.box { min = { -2, 2, 1 }, max = { 2, 2.1, 3 },
+      material = glint.material { diffuse = 0.2, transmission = { x / 4, 0.5, 0.2 } } })
+  end)
+  local waves = by(function(s) return s.light * (0.5 + 0.3 * glint.sin(4 * s.p.x + s.world.y + s.distance)) end)
+  for name, options in pairs { plain = {}, ["with samples"] = { samples = 4 } } do
+    compare("an eye before mirrors, " .. name, 0.2, function(x)
+      local scene = with(lamp, { mirror = 0.5 }, glint.sphere { center = { 1.5, 0.3, 2 + x }, radius = 0.4 + x, material = of(waves) })
+      scene.camera.eye = { x, 2, 8 }
+      scene.depth_cue = { near = 4, far = 25, color = 0.3 }
+      return scene
+    end, options)
+  end
+  compare("under a map that keeps no angles", 0.1, function(x)
+    return with(lamp, {}, glint.group { transform = glint.translate(1.5, 0.5, 2) * glint.rotate("z", 30) * glint.scale(0.5, 0.4, -0.7),
+      glint.sphere { center = { x, 0, 0 }, radius = 1 + x, material = of(waves) } })
+  end)
+  compare("meshes", 0.4, function(x)
+    local scene = with(lamp)
+    for i, shading in ipairs { "flat", "gouraud", "phong" } do
+      scene:add(glint.sphere_mesh { center = { 1.2 * i - 2.4, 0.2, 2 }, radius = 0.5, segments = 24, shading = shading, material = of() })
+    end
+    scene.camera.eye = { x, 2, 8 }
+    return scene
+  end)
+  compare("bumps", 0.4, function(x)
+    return with(glint.point_light { position = { x, 4, 3 }, shadows = false }, { bump = glint.pattern(function(p) return 0.05 * glint.sin(3 * p.y) end) })
+  end)
+end
+
 -- Every pixel, by the largest distance: a bump turns the normal of a few from the eye, where one wrong number is enough.
 function tests.every_pixel_against_differences()
   local function compare(name, at, h, fields)
@@ -503,8 +587,10 @@ function tests.errors_are_told()
   local lit = scene_of(lamp)
   lit.indirect = { samples = 4 }
   raises("derivative 'x': scene.indirect", render, lit, "d:x")
-  local shaded = glint.material { model = glint.shader(function(q) return q.light end) }
-  raises("derivative 'x': material.model: a shader", render, scene_of(lamp, { material = shaded }), "d:x")
+  local shaded = scene_of(lamp, { material = glint.material { model = glint.shader(function(q) return q.light * q.uv.u end) } })
+  shaded.camera.eye = { x, 2, 8 }
+  raises("derivative 'x': material: what moves or bends has no derivative where materials have patterns or bumps, or shaders that read uv",
+    render, shaded, "d:x")
   local bricks = glint.material { diffuse = glint.pattern(function(p) return p.x end), transmission = glint.pattern(function(p) return p.y end) }
   raises("derivative 'x': material.transmission: light through what a pattern colours", render, scene_of(lamp, { material = bricks }), "d:x")
   moved = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = bricks })
@@ -598,6 +684,9 @@ local soft = glint.disk_light { position = { -3, 5, 2 }, normal = { 3, -5, -2 },
 local shiny = glint.material { diffuse = { 0.7, 0.2, 0.1 }, specular = 0.5, shininess = P.s }
 local scene = glint.scene { camera = glint.camera { eye = { 0, 2, 8 }, at = { 0, 0, 0 } }, ambient = 0.1, lamp, soft,
   glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0.5, mirror = 0.1 } },
+  glint.sphere { center = { -1.4, P.s / 100 - 0.5, 2 }, radius = 0.4, material = glint.material { model = glint.shader(function(s)
+    return s.kd * s.light * glint.dot(s.n, s.l) ^ 2, s.light * glint.dot(s.n, glint.unit(s.l + s.v)) ^ s.shininess
+  end) } },
   glint.sphere { center = { 0, 0, 0 }, radius = 1, material = shiny },
   glint.sphere { center = { 2, P.s / 100, 0 }, radius = 0.5, material = glint.material { diffuse = 0, transmission = 0.9, fresnel = true } } }
 if P.meshes then

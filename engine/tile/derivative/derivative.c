@@ -16,6 +16,7 @@ void glint_derivative_destroy(struct glint_derivative_work *work)
     if (work) {
         free(work->painted);
         free(work->faded);
+        glint_shader_slopes_free(work->shader);
     }
     free(work);
 }
@@ -114,9 +115,8 @@ static glint_derivative_source source_of(glint_tile *tile, const glint_plan_ligh
     return out;
 }
 
-/// The sample that each lane of a group has of a ball, in the cone in which it sees that.
-static void take_cone(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
-                      const glint_derivative_points *points, glint_derivative_source *out)
+void glint_derivative_take_cone(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
+                                const glint_derivative_points *points, glint_derivative_source *out)
 {
     glint_derivative_work *work = tile->derivative;
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
@@ -133,6 +133,15 @@ static void take_cone(glint_tile *tile, const glint_tile_frame *frame, const gli
     for (int c = 0; c < 3; c++)
         out->position[c] = work->position[c];
     out->weight = work->weight;
+}
+
+void glint_derivative_take_tint(const glint_tile *tile, size_t index, uint32_t g, glint_derivative_source *out)
+{
+    const glint_derivative_work *work = tile->derivative;
+    for (int c = 0; c < 3; c++) {
+        out->tint[c] = work->tint[c] + (size_t)g * GLINT_GROUP;
+        out->tint_slope[c] = work->tint_slope[index][c] + (size_t)g * GLINT_GROUP;
+    }
 }
 
 // ---- What programs give -------------------------------------------------------------------------------------------
@@ -212,7 +221,7 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
     for (int i = 0; i < 9; i++)
         bent_points.slope[i / 3][i % 3] = work->bend[i / 3][i % 3];
     if (sample && sample->emission == GLINT_EMIT_CONE)
-        take_cone(tile, frame, light, &points, &source);
+        glint_derivative_take_cone(tile, frame, light, &points, &source);
     for (int i = 0; i < GLINT_GROUP && light->cap && light->shadows; i++) {
         work->weight[i] = (double)tile->at.light[slot].visible[at + (size_t)i];
         source.weight = work->weight;
@@ -220,16 +229,14 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
     for (unsigned left = reached, lanes; left; left &= ~lanes) {
         uint32_t material;
         lanes = lanes_alike(tile, g, left, &material);
-        for (size_t k = 0; k < all->count; k++) {
+        for (size_t k = 0; k < all->count && !(frame->plan->materials[material].planes & GLINT_PLANE_SHADED); k++) {
             const glint_derivative_light *l = &all->of[k].lights[light->source];
             const glint_derivative_material *m = &all->of[k].materials[material];
             glint_derivative_planes room;
             const glint_derivative_planes *planes = planes_of(tile, frame->plan, k, material, g, &room);
             double *const sum[3] = { work->sum[k][0] + at, work->sum[k][1] + at, work->sum[k][2] + at };
-            for (int c = 0; c < 3 && tinted; c++) {
-                source.tint[c] = work->tint[c] + at;
-                source.tint_slope[c] = work->tint_slope[k][c] + at;
-            }
+            if (tinted)
+                glint_derivative_take_tint(tile, k, g, &source);
             double *const whole[3] = { weighs && k == 0 ? work->light[0] + at : NULL, work->light[1] + at, work->light[2] + at };
             const unsigned bent = all->of[k].bends ? glint_bend_points(tile, frame, k, g, lanes, &points, work->bend) : 0;
             if (bent)
@@ -274,15 +281,20 @@ static void derive_light(glint_tile *tile, const glint_tile_frame *frame, uint32
     const uint16_t *open = light->shadows ? tile->at.light[slot].open : lit;
     const bool shift = light->shadows && moves(frame->plan->derivatives, light->source);
     const glint_derivative_source source = source_of(tile, light);
+    uint16_t lanes[GLINT_TILE_GROUPS] = { 0 };
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const unsigned hits = sampled[g] & tile->active[g], above = hits ? lit[g] & hits : 0;
         const unsigned reached = above ? open[g] & above : 0;
         const unsigned dimmed = reached && light->shadows && frame->plan->dims ? glint_tile_dim_lanes(tile, g) : 0;
         if (shift)
             note_shadows(tile, light, g, above, reached);
-        if (reached & ~dimmed)
-            derive_group(tile, frame, light, slot, source, g, reached & ~dimmed, false);
+        lanes[g] = (uint16_t)(reached & ~dimmed);
+        if (lanes[g])
+            derive_group(tile, frame, light, slot, source, g, lanes[g], false);
     }
+    const glint_derivative_reach reach = { light, slot, &source, lanes, false };
+    if (glint_tile_shows_shader(tile, frame->plan))
+        glint_derive_shaders(tile, frame, &reach);
 }
 
 // ---- Light through transparent objects ----------------------------------------------------------------------------
@@ -316,9 +328,15 @@ void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, c
                               const uint16_t *reached)
 {
     const glint_derivative_source source = source_of(tile, light);
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        if (reached[g] & tile->active[g])
-            derive_group(tile, frame, light, slot, source, g, reached[g] & tile->active[g], true);
+    uint16_t lanes[GLINT_TILE_GROUPS] = { 0 };
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        lanes[g] = reached[g] & tile->active[g];
+        if (lanes[g])
+            derive_group(tile, frame, light, slot, source, g, lanes[g], true);
+    }
+    const glint_derivative_reach reach = { light, slot, &source, lanes, true };
+    if (glint_tile_shows_shader(tile, frame->plan))
+        glint_derive_shaders(tile, frame, &reach);
 }
 
 // ---- A sample -----------------------------------------------------------------------------------------------------

@@ -61,6 +61,7 @@ INLINE lanes power(lanes x, lanes s)
 typedef struct shine {
     lanes way[3]; ///< unit, towards the light
     lanes cosine; ///< n.l
+    lanes distance; ///< directional: infinite
     lanes weight; ///< by distance, cone and surface, and what of it reaches
 } shine;
 
@@ -138,6 +139,7 @@ INLINE shine find_shine(bool bends, const glint_derivative_light *light, const g
     if (light->is_spot)
         s.weight = mul(s.weight, cone(light, s.way));
     s.cosine = dot_bent(bends, s.way, normal);
+    s.distance = light->directional ? number(HUGE_VAL) : distance;
     return s;
 }
 
@@ -293,4 +295,23 @@ void glint_derive_light(const glint_derivative_light *light, const glint_derivat
         derive_lanes(true, light, material, planes, points, source, which, sum, whole);
     else
         derive_lanes(false, light, material, planes, points, source, which, sum, whole);
+}
+
+void glint_derive_arrival(const glint_derivative_light *light, const glint_derivative_points *points,
+                          const glint_derivative_source *source, glint_derivative_arrival *out)
+{
+    const bool bends = points->slope[0][0];
+    for (int i = 0; i < GLINT_GROUP; i += VD) {
+        const shine s = find_shine(bends, light, points, source, i);
+        lanes all[GLINT_ARRIVAL_COUNT] = { s.way[0], s.way[1], s.way[2], number(0), number(0), number(0), s.distance };
+        for (int c = 0; c < 3; c++) {
+            all[3 + c] = mul(of(light->diffuse[c]), s.weight);
+            if (source->tint[0])
+                all[3 + c] = mul(all[3 + c], make(d_load(source->tint[c] + i), d_load(source->tint_slope[c] + i)));
+        }
+        for (int k = 0; k < GLINT_ARRIVAL_COUNT; k++) {
+            d_store(out->value[k] + i, all[k].v);
+            d_store(out->slope[k] + i, all[k].d);
+        }
+    }
 }

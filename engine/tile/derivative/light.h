@@ -44,6 +44,16 @@ unsigned glint_bend_points(const struct glint_tile *tile, const struct glint_til
                            unsigned lanes, const glint_derivative_points *points, double (*bend)[3][GLINT_GROUP]);
 /// Unit vectors against the directions of rays.
 void glint_derive_eyes(double direction[3][GLINT_GROUP], double *const eye[3]);
+/// How a light comes to points of a group: the unit way to it, what of its colour arrives, and how far it is, as the inputs from
+/// GLINT_INPUT_L_X on.
+#define GLINT_ARRIVAL_COUNT 7
+typedef struct glint_derivative_arrival {
+    double value[GLINT_ARRIVAL_COUNT][GLINT_GROUP], slope[GLINT_ARRIVAL_COUNT][GLINT_GROUP];
+} glint_derivative_arrival;
+
+void glint_derive_arrival(const glint_derivative_light *light, const glint_derivative_points *points,
+                          const glint_derivative_source *source, glint_derivative_arrival *out);
+
 /// planes: of what programs give; NULL: they give nothing.
 ///
 /// Adds the slope of what a light leaves on lanes, a bit each, of one material to `sum`, and that itself to `whole`. whole[0]

@@ -11,7 +11,7 @@
 
 bool glint_derivative_fits(struct glint_derivative_work *work, const glint_plan *plan)
 {
-    if (!glint_derive_fade_fits(work, plan))
+    if (!glint_derive_fade_fits(work, plan) || !glint_derive_shaders_fit(work, plan))
         return false;
     if (!plan->derivatives->repaints)
         return true;

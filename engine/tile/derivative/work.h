@@ -25,6 +25,7 @@ typedef struct glint_derivative_work {
     _Alignas(64) double planes[GLINT_DERIVED_COUNT][GLINT_GROUP]; ///< what programs give of the current material
     double (*faded)[3][GLINT_TILE_SAMPLES]; ///< where light fades, the slopes of the samples that are done; NULL: not yet
     double *painted; ///< slopes of what programs give: as many planes as the tile has, for each derivative; NULL: none changes
+    struct glint_shader_slopes *shader; ///< memory of shader.c; NULL: there are no shaders
     size_t painted_count; ///< numbers that it has room for
     float plane[3][GLINT_TILE_SAMPLES];
     uint32_t shadows[GLINT_TILE_SAMPLES]; ///< a hash of what is kept from each sample; in the first, and in this one
@@ -55,6 +56,27 @@ static inline bool glint_derivatives_read_light(const glint_tile *tile, const gl
 
 /// derivative.c: the group that sample i is in, after glint_tile_derive.
 glint_derivative_points glint_derivative_points_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g);
+
+/// The sample that each lane of a group has of a ball, in the cone in which it sees that.
+void glint_derivative_take_cone(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
+                                const glint_derivative_points *points, glint_derivative_source *out);
+/// What is left of a light's colours at group g, and how that changes by derivative number `index`.
+void glint_derivative_take_tint(const glint_tile *tile, size_t index, uint32_t g, glint_derivative_source *out);
+
+/// A light of the plan as derivatives see it.
+typedef struct glint_derivative_reach {
+    const glint_plan_light *light;
+    uint32_t slot;
+    const glint_derivative_source *source;
+    const uint16_t *lanes; ///< that it reaches, a bit each
+    bool tinted; ///< through something, which leaves its tint
+} glint_derivative_reach;
+
+/// shader.c: makes room; false: no memory.
+bool glint_derive_shaders_fit(glint_derivative_work *work, const glint_plan *plan);
+void glint_shader_slopes_free(struct glint_shader_slopes *slopes); ///< NULL: nothing
+/// Adds how fast what shaders make of a light changes.
+void glint_derive_shaders(glint_tile *tile, const glint_tile_frame *frame, const glint_derivative_reach *reach);
 
 /// pattern.c: finds the slopes of what programs give the current sample.
 void glint_derivative_repaint(const glint_tile *tile, const glint_tile_frame *frame);

@@ -13,7 +13,6 @@
 
 /// Some groups that show one material.
 typedef struct batch {
-    const glint_plan_pattern *own;
     const glint_program *program;
     const glint_pattern_lanes *entries;
     uint32_t groups[GLINT_PROGRAM_GROUPS]; ///< theirs
@@ -46,32 +45,50 @@ static reached find_reached(const batch *b, const uint16_t *lit)
 
 // ---- What a program reads ----
 
+/// What gathers numbers of a material.
+typedef struct reading {
+    const glint_plan_pattern *own;
+    uint32_t inputs;
+    const glint_pattern_lanes *entries;
+    uint32_t count;
+} reading;
+
 /// A number of a material, or what a program gave of it, if it is read.
-static void gather_field(glint_tile *tile, const glint_plan *plan, const batch *b, glint_field field, int channel,
+static void gather_field(glint_tile *tile, const glint_plan *plan, const reading *r, glint_field field, int channel,
                          double number, int input)
 {
     glint_pattern_inputs *inputs = &tile->pattern->inputs;
-    if (!(b->program->inputs >> input & 1))
+    if (!(r->inputs >> input & 1))
         return;
-    if (!(b->own->made >> field & 1)) {
+    if (!(r->own->made >> field & 1)) {
         glint_pattern_put_number(inputs, (glint_input)input, number);
         return;
     }
     const float *plane = glint_plane_of(tile->at.planes, plan, field, channel);
     double *to = glint_pattern_row(inputs, (glint_input)input);
-    for (uint32_t k = 0; k < b->count; k++)
+    for (uint32_t k = 0; k < r->count; k++)
         for (uint32_t i = 0; i < GLINT_GROUP; i++)
-            to[k * GLINT_GROUP + i] = (double)plane[b->groups[k] * GLINT_GROUP + i];
+            to[k * GLINT_GROUP + i] = (double)plane[r->entries[k].group * GLINT_GROUP + i];
 }
 
-static void gather_material(glint_tile *tile, const glint_plan *plan, const batch *b)
+static void gather_material(glint_tile *tile, const glint_plan *plan, const reading *r)
 {
-    const double *diffuse = glint_plan_diffuse(plan, b->entries[0].material);
+    const double *diffuse = glint_plan_diffuse(plan, r->entries[0].material);
     for (int c = 0; c < 3; c++) {
-        gather_field(tile, plan, b, GLINT_FIELD_DIFFUSE, c, diffuse[c], GLINT_INPUT_KD_R + c);
-        gather_field(tile, plan, b, GLINT_FIELD_SPECULAR, c, b->own->desc.specular[c], GLINT_INPUT_KS_R + c);
+        gather_field(tile, plan, r, GLINT_FIELD_DIFFUSE, c, diffuse[c], GLINT_INPUT_KD_R + c);
+        gather_field(tile, plan, r, GLINT_FIELD_SPECULAR, c, r->own->desc.specular[c], GLINT_INPUT_KS_R + c);
     }
-    gather_field(tile, plan, b, GLINT_FIELD_SHININESS, 0, b->own->desc.shininess, GLINT_INPUT_SHININESS);
+    gather_field(tile, plan, r, GLINT_FIELD_SHININESS, 0, r->own->desc.shininess, GLINT_INPUT_SHININESS);
+}
+
+void glint_shader_gather(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
+                         const glint_pattern_lanes *entries, uint32_t count)
+{
+    const glint_plan_pattern *own = &frame->plan->patterns->of[entries->material];
+    const reading r = { own, own->program[GLINT_FIELD_SHADER]->inputs, entries, count };
+    const uint32_t reads = (r.inputs & ~NUMBERS) | 7u << GLINT_INPUT_WORLD_X;
+    glint_pattern_gather(&tile->pattern->inputs, frame, points, reads, entries, count);
+    gather_material(tile, frame->plan, &r);
 }
 
 /// Where the batch sees an area light's sample.
@@ -195,7 +212,6 @@ static void clear_missing(struct glint_pattern *pattern, const batch *b)
 static void shade_batch(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
                         const batch *b, const glint_shader_light *lights, uint32_t light_count)
 {
-    const uint32_t reads = (b->program->inputs & ~NUMBERS) | 7u << GLINT_INPUT_WORLD_X;
     const result to = frame->plan->accumulate ? TO_SUMS : light_count > 1 || lights->visible ? TO_TOTALS : TO_PLANES;
     bool gathered = false;
     if (to == TO_TOTALS)
@@ -204,10 +220,8 @@ static void shade_batch(glint_tile *tile, const glint_tile_frame *frame, const g
         const reached lit = find_reached(b, lights[i].lit);
         if (!lit.count)
             continue;
-        if (!gathered) {
-            glint_pattern_gather(&tile->pattern->inputs, frame, points, reads, b->entries, b->count);
-            gather_material(tile, frame->plan, b);
-        }
+        if (!gathered)
+            glint_shader_gather(tile, frame, points, b->entries, b->count);
         gathered = true;
         add_light(tile, frame, b, &lit, &lights[i], to);
     }
@@ -223,17 +237,23 @@ static bool has_shader(const glint_plan_pattern *own, uint32_t fields)
     return own->program[GLINT_FIELD_SHADER];
 }
 
-void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const glint_shader_light *lights, uint32_t light_count)
+glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint_plan *plan)
 {
     glint_pattern_points points = glint_pattern_points_of(tile);
     points.shading = true;
     for (int c = 0; c < 3; c++)
         points.normal[c] = tile->surface.normal[c];
-    glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, has_shader);
+    glint_pattern_find_lanes(tile->pattern, plan->patterns, &points, has_shader);
+    return points;
+}
+
+void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const glint_shader_light *lights, uint32_t light_count)
+{
+    const glint_pattern_points points = glint_shader_find_lanes(tile, frame->plan);
     const glint_pattern_lanes *entries;
     for (uint32_t taken; (taken = glint_pattern_take(tile->pattern, &entries));) {
-        batch b = { .entries = entries, .count = taken, .own = &frame->plan->patterns->of[entries[0].material] };
-        b.program = b.own->program[GLINT_FIELD_SHADER];
+        batch b = { .entries = entries, .count = taken };
+        b.program = frame->plan->patterns->of[entries[0].material].program[GLINT_FIELD_SHADER];
         for (uint32_t k = 0; k < b.count; k++)
             b.groups[k] = entries[k].group;
         shade_batch(tile, frame, &points, &b, lights, light_count);

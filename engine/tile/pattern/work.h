@@ -42,6 +42,11 @@ void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_pa
 /// Takes the first entry that is left and those after it of the same material, as many as a call has room for, off the list.
 /// Returns how many: 0, where the list is empty.
 uint32_t glint_pattern_take(struct glint_pattern *pattern, const glint_pattern_lanes **entries);
+/// shader.c: lists the lanes of materials with shaders. Returns the points as shaders see them.
+glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint_plan *plan);
+/// Finds what a shader reads of the points of some entries, and of their material.
+void glint_shader_gather(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
+                         const glint_pattern_lanes *entries, uint32_t count);
 /// Runs a program on the inputs that are gathered, from entry `first` on.
 void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_program_code *code,
                         uint32_t first, glint_program_args *args);

@@ -1,0 +1,46 @@
+/// Derivatives of shaders: programs of how fast each changes with what it reads and derivatives change.
+#include "engine/base/status.h"
+#include "engine/plan/derivative_slopes.h"
+#include "engine/program/program.h"
+
+#include <stdlib.h>
+
+#define BITS(first, count) (((1u << (count)) - 1) << (first))
+#define PLACE (BITS(GLINT_INPUT_P_X, 12) | BITS(GLINT_INPUT_UV_U, 4)) ///< where a point is, how it lies, what sees it
+#define ARRIVAL BITS(GLINT_INPUT_L_X, 7) ///< ways to lights, what of their colours arrives, how far they are
+#define REFLECTANCES BITS(GLINT_INPUT_KD_R, 7) ///< with the exponent
+
+/// What of a shader's inputs a derivative changes, a bit each.
+static uint32_t find_inputs(const glint_plan *plan, const glint_plan_derivative *d, uint32_t material)
+{
+    uint32_t inputs = d->bends ? PLACE | ARRIVAL : 0;
+    for (size_t i = 0; i < plan->derivatives->light_count; i++)
+        inputs |= d->lights[i].varies ? ARRIVAL : 0;
+    for (size_t i = 0; i < plan->derivatives->material_count; i++) // through which the light may come
+        inputs |= glint_any_slope(d->bounces[i].transmission) ? ARRIVAL : 0;
+    return inputs | (d->materials[material].varies ? REFLECTANCES : 0);
+}
+
+glint_status glint_derivative_find_gradients(glint_plan *plan, glint_error *error)
+{
+    glint_plan_derivatives *all = plan->derivatives;
+    glint_status status = GLINT_OK;
+    if (!plan->patterns || !plan->patterns->shaders)
+        return GLINT_OK;
+    all->gradients = calloc(all->material_count, sizeof *all->gradients);
+    if (!all->gradients)
+        return glint_fail_nomem(error);
+    for (uint32_t i = 0; i < all->material_count && !status; i++) {
+        const glint_program *shader = plan->patterns->of[i].program[GLINT_FIELD_SHADER];
+        uint32_t inputs = 0;
+        for (size_t k = 0; k < all->count && shader; k++)
+            inputs |= find_inputs(plan, &all->of[k], i);
+        if (shader && shader->inputs & inputs)
+            status = glint_shader_gradient(shader, shader->inputs & inputs, &all->gradients[i], error);
+        for (uint32_t k = 0; k < all->gradients[i].count && !status; k += GLINT_PROGRAM_OUTPUTS_MAX) {
+            const uint32_t rows = all->gradients[i].programs[k / GLINT_PROGRAM_OUTPUTS_MAX]->code.row_count;
+            plan->patterns->row_count = plan->patterns->row_count < rows ? rows : plan->patterns->row_count;
+        }
+    }
+    return status;
+}

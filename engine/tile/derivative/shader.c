@@ -1,0 +1,261 @@
+/// How fast what shaders make of a light changes: the slopes of what each reads, by the gradient of its program, and those of its own
+/// numbers.
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/program/program.h"
+#include "engine/tile/derivative/work.h"
+#include "engine/tile/pattern/work.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BITS(first, count) (((1u << (count)) - 1) << (first))
+
+/// Of the groups of a call.
+struct glint_shader_slopes {
+    _Alignas(64) double gradient[GLINT_GRADIENT_MAX][GLINT_PROGRAM_LANES]; ///< see glint_gradient
+    _Alignas(64) double input[GLINT_INPUT_COUNT][GLINT_PROGRAM_LANES]; ///< slopes of what the shader reads, by one derivative
+    _Alignas(64) double value[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< what it gives
+    _Alignas(64) double tangent[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< how fast that changes with its numbers
+    double sum[3][GLINT_PROGRAM_LANES];
+    double share[GLINT_PROGRAM_LANES]; ///< how much is seen of a light that may be partly covered
+    uint16_t wanted[GLINT_PROGRAM_GROUPS];
+};
+
+/// Groups that show one material, under one light.
+typedef struct shading {
+    glint_tile *tile;
+    const glint_tile_frame *frame;
+    const glint_derivative_reach *reach;
+    struct glint_shader_slopes *slopes;
+    const glint_pattern_lanes *entries;
+    uint32_t count;
+} shading;
+
+bool glint_derive_shaders_fit(glint_derivative_work *work, const glint_plan *plan)
+{
+    if (plan->derivatives->gradients && !work->shader)
+        work->shader = glint_alloc(1, sizeof *work->shader);
+    return !plan->derivatives->gradients || work->shader;
+}
+
+void glint_shader_slopes_free(struct glint_shader_slopes *slopes) { free(slopes); }
+
+// ---- What a shader reads --------------------------------------------------------------------------------------------
+
+/// How the light comes to an entry's group; `points`: with their slopes by derivative number `index`.
+static void find_arrival(const shading *s, size_t index, uint32_t e, const glint_derivative_points *points,
+                         glint_derivative_arrival *out)
+{
+    const glint_plan_light *light = s->reach->light;
+    const glint_light_sample *sample = glint_tile_light_sample_of(s->tile, light);
+    const size_t at = (size_t)s->entries[e].group * GLINT_GROUP, slot = s->reach->slot;
+    glint_derivative_work *work = s->tile->derivative;
+    glint_derivative_source source = *s->reach->source;
+    if (sample && sample->emission == GLINT_EMIT_CONE)
+        glint_derivative_take_cone(s->tile, s->frame, light, points, &source);
+    for (int i = 0; i < GLINT_GROUP && light->cap && light->shadows; i++) {
+        const float seen = s->tile->at.light[slot].visible[at + (size_t)i];
+        const float whole = light->attenuated ? s->tile->at.light[slot].attenuation[at + (size_t)i] : 1;
+        const float weight = s->reach->tinted ? seen : whole; // as the shader itself has it
+        s->slopes->share[e * GLINT_GROUP + (uint32_t)i] = (double)(weight > 0 ? seen / weight : seen);
+        work->weight[i] = (double)weight;
+        source.weight = work->weight;
+    }
+    if (s->reach->tinted)
+        glint_derivative_take_tint(s->tile, index, s->entries[e].group, &source);
+    glint_derive_arrival(&s->frame->plan->derivatives->of[index].lights[light->source], points, &source, out);
+}
+
+/// What the shader reads of points, material and light.
+static void gather(const shading *s, const glint_pattern_points *points)
+{
+    glint_shader_gather(s->tile, s->frame, points, s->entries, s->count);
+    for (uint32_t e = 0; e < s->count; e++) {
+        const glint_derivative_points own = glint_derivative_points_of(s->tile, s->frame, s->entries[e].group);
+        glint_derivative_arrival arrival;
+        find_arrival(s, 0, e, &own, &arrival);
+        for (int k = 0; k < GLINT_ARRIVAL_COUNT; k++)
+            memcpy(glint_pattern_row(&s->tile->pattern->inputs, (glint_input)(GLINT_INPUT_L_X + k)) + e * GLINT_GROUP,
+                   arrival.value[k], sizeof arrival.value[k]);
+    }
+}
+
+/// The slopes of points in their shapes' own space, after those in the world.
+static void turn_points(const shading *s, uint32_t e)
+{
+    double (*input)[GLINT_PROGRAM_LANES] = s->slopes->input;
+    const glint_plan *plan = s->frame->plan;
+    for (unsigned left = s->slopes->wanted[e]; left; left &= left - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctz(left), i = e * GLINT_GROUP + lane;
+        const glint_prim *prim = &s->frame->geometry.prims[s->tile->at.prim[s->entries[e].group * GLINT_GROUP + lane]];
+        const glint_pattern_place *place = &plan->patterns->places[plan->geometry->prim_part[prim->id]];
+        const double world[3] = { input[GLINT_INPUT_WORLD_X][i], input[GLINT_INPUT_WORLD_Y][i], input[GLINT_INPUT_WORLD_Z][i] };
+        for (int c = 0; c < 3; c++)
+            input[GLINT_INPUT_P_X + c][i] = place->mapped ? vec_dot(place->inverse[c], world) : world[c];
+    }
+}
+
+/// The slopes of where an entry's points are, how they lie and of what reaches them.
+static void find_entry(const shading *s, size_t index, uint32_t e)
+{
+    static const int first[3] = { GLINT_INPUT_WORLD_X, GLINT_INPUT_N_X, GLINT_INPUT_V_X };
+    double (*bend)[3][GLINT_GROUP] = s->tile->derivative->bend;
+    const uint32_t g = s->entries[e].group;
+    const bool bends = s->frame->plan->derivatives->of[index].bends;
+    glint_derivative_points points = glint_derivative_points_of(s->tile, s->frame, g);
+    glint_derivative_arrival arrival;
+    if (bends) {
+        memset(s->tile->derivative->bend, 0, sizeof s->tile->derivative->bend);
+        if (glint_bend_points(s->tile, s->frame, index, g, s->slopes->wanted[e], &points, bend))
+            for (int i = 0; i < 9; i++)
+                points.slope[i / 3][i % 3] = bend[i / 3][i % 3];
+        for (int i = 0; i < 9; i++)
+            memcpy(s->slopes->input[first[i / 3] + i % 3] + e * GLINT_GROUP, bend[i / 3][i % 3], sizeof bend[i / 3][i % 3]);
+        turn_points(s, e);
+    }
+    find_arrival(s, index, e, &points, &arrival);
+    for (int k = 0; k < GLINT_ARRIVAL_COUNT; k++)
+        memcpy(s->slopes->input[GLINT_INPUT_L_X + k] + e * GLINT_GROUP, arrival.slope[k], sizeof arrival.slope[k]);
+}
+
+/// Those of one number of the material, or of what a program gives of it. False: there are none.
+static bool find_number(const shading *s, size_t index, glint_field field, int channel, double slope, double *to)
+{
+    const glint_plan *plan = s->frame->plan;
+    const bool made = plan->patterns->of[s->entries->material].made >> field & 1;
+    const double *painted = made ? glint_derivative_painted(s->tile, plan, index, field, channel) : NULL;
+    if (made ? !painted : slope == 0)
+        return false;
+    for (uint32_t e = 0; e < s->count; e++)
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            to[e * GLINT_GROUP + i] = painted ? painted[s->entries[e].group * GLINT_GROUP + i] : slope;
+    return true;
+}
+
+/// The slopes of the inputs by derivative number `index`. Returns which there are, a bit each.
+static uint32_t find_inputs(const shading *s, size_t index)
+{
+    const glint_plan_derivative *d = &s->frame->plan->derivatives->of[index];
+    const glint_derivative_material *m = &d->materials[s->entries->material];
+    double (*input)[GLINT_PROGRAM_LANES] = s->slopes->input;
+    uint32_t found = BITS(GLINT_INPUT_L_X, GLINT_ARRIVAL_COUNT) | (d->bends ? BITS(GLINT_INPUT_P_X, 12) : 0);
+    for (uint32_t e = 0; e < s->count; e++)
+        find_entry(s, index, e);
+    for (int c = 0; c < 3; c++) {
+        if (find_number(s, index, GLINT_FIELD_DIFFUSE, c, m->diffuse[c].slope, input[GLINT_INPUT_KD_R + c]))
+            found |= 1u << (GLINT_INPUT_KD_R + c);
+        if (find_number(s, index, GLINT_FIELD_SPECULAR, c, m->specular[c].slope, input[GLINT_INPUT_KS_R + c]))
+            found |= 1u << (GLINT_INPUT_KS_R + c);
+    }
+    if (find_number(s, index, GLINT_FIELD_SHININESS, 0, m->shininess.slope, input[GLINT_INPUT_SHININESS]))
+        found |= 1u << GLINT_INPUT_SHININESS;
+    return found;
+}
+
+// ---- What it gives --------------------------------------------------------------------------------------------------
+
+static void run(const shading *s, const glint_program *program, double (*to)[GLINT_PROGRAM_LANES])
+{
+    glint_program_args args = { .group_count = s->count, .wanted = s->slopes->wanted };
+    for (uint32_t k = 0; k < program->code.output_count; k++)
+        args.result[k] = to[k];
+    glint_pattern_call(s->tile->pattern, s->frame, &program->code, 0, &args);
+}
+
+/// Adds what a shader gives to the light of its samples, as bounded as planes are.
+static void add_light(const shading *s, uint32_t terms)
+{
+    glint_derivative_work *work = s->tile->derivative;
+    for (uint32_t k = 0; k < terms; k++)
+        for (uint32_t e = 0; e < s->count; e++)
+            for (unsigned left = s->slopes->wanted[e]; left; left &= left - 1) {
+                const uint32_t lane = (uint32_t)__builtin_ctz(left), i = e * GLINT_GROUP + lane;
+                const double value = s->slopes->value[k][i];
+                work->light[k % 3][s->entries[e].group * GLINT_GROUP + lane] +=
+                    value > 0 ? fmin(value, GLINT_REFLECTANCE_MAX) * s->slopes->share[i] : 0;
+            }
+}
+
+/// Sums up how fast a shader's light changes with what it reads, `inputs` of it, and with its own numbers.
+static void sum_up(const shading *s, const glint_gradient *gradient, uint32_t inputs, const glint_program *tangent)
+{
+    struct glint_shader_slopes *slopes = s->slopes;
+    const uint32_t lanes = s->count * GLINT_GROUP;
+    memset(slopes->sum, 0, sizeof slopes->sum);
+    for (uint32_t k = 0; k < gradient->count; k++) {
+        const double *by = slopes->input[gradient->of[k].input];
+        double *sum = slopes->sum[gradient->of[k].channel];
+        for (uint32_t i = 0; i < lanes && inputs >> gradient->of[k].input & 1; i++)
+            sum[i] += by[i] != 0 ? slopes->gradient[k][i] * by[i] : 0; // what is level may have no slope
+    }
+    if (!tangent)
+        return;
+    run(s, tangent, slopes->tangent);
+    for (uint32_t k = 0; k < tangent->code.output_count; k++)
+        for (uint32_t i = 0; i < lanes; i++)
+            if (slopes->value[k][i] > 0 && slopes->value[k][i] <= GLINT_REFLECTANCE_MAX)
+                slopes->sum[k % 3][i] += slopes->tangent[k][i];
+}
+
+/// Adds the sums to those of the samples. What has no slope, such as the root of what is 0 all around, stays.
+static void add_sums(const shading *s, double (*to)[GLINT_TILE_SAMPLES])
+{
+    for (int c = 0; c < 3; c++)
+        for (uint32_t e = 0; e < s->count; e++)
+            for (unsigned left = s->slopes->wanted[e]; left; left &= left - 1) {
+                const uint32_t lane = (uint32_t)__builtin_ctz(left), i = e * GLINT_GROUP + lane;
+                const double slope = s->slopes->sum[c][i] * s->slopes->share[i];
+                to[c][s->entries[e].group * GLINT_GROUP + lane] += isfinite(slope) ? slope : 0;
+            }
+}
+
+/// Finds what all derivatives have in common. False: the light reaches no group.
+static bool begin(const shading *s, const glint_pattern_points *points, bool gives)
+{
+    const glint_plan *plan = s->frame->plan;
+    const glint_gradient *gradient = &plan->derivatives->gradients[s->entries->material];
+    unsigned any = 0;
+    for (uint32_t e = 0; e < s->count; e++)
+        any |= s->slopes->wanted[e] = s->entries[e].lanes & s->reach->lanes[s->entries[e].group];
+    if (!any)
+        return false;
+    for (uint32_t i = 0; i < s->count * GLINT_GROUP; i++)
+        s->slopes->share[i] = 1;
+    gather(s, points);
+    for (uint32_t k = 0; k < gradient->count; k += GLINT_PROGRAM_OUTPUTS_MAX)
+        run(s, gradient->programs[k / GLINT_PROGRAM_OUTPUTS_MAX], s->slopes->gradient + k);
+    if (gives)
+        run(s, plan->patterns->of[s->entries->material].program[GLINT_FIELD_SHADER], s->slopes->value);
+    return true;
+}
+
+static void derive(const shading *s, const glint_pattern_points *points)
+{
+    const glint_plan *plan = s->frame->plan;
+    const glint_plan_derivatives *all = plan->derivatives;
+    const uint32_t material = s->entries->material, source = s->reach->light->source;
+    const bool weighs = glint_derivatives_read_light(s->tile, plan);
+    bool tangents = false, varies = weighs || s->reach->tinted;
+    for (size_t k = 0; k < all->count; k++) {
+        tangents = tangents || all->of[k].programs[material].of[GLINT_FIELD_SHADER];
+        varies = varies || all->of[k].bends || all->of[k].lights[source].varies || all->of[k].materials[material].varies;
+    }
+    if (!varies || !begin(s, points, weighs || tangents))
+        return;
+    if (weighs)
+        add_light(s, plan->patterns->of[material].program[GLINT_FIELD_SHADER]->code.output_count);
+    for (size_t k = 0; k < all->count; k++) {
+        sum_up(s, &all->gradients[material], find_inputs(s, k), all->of[k].programs[material].of[GLINT_FIELD_SHADER]);
+        add_sums(s, s->tile->derivative->sum[k]);
+    }
+}
+
+void glint_derive_shaders(glint_tile *tile, const glint_tile_frame *frame, const glint_derivative_reach *reach)
+{
+    const glint_pattern_points points = glint_shader_find_lanes(tile, frame->plan);
+    shading s = { tile, frame, reach, tile->derivative->shader, NULL, 0 };
+    while ((s.count = glint_pattern_take(tile->pattern, &s.entries)))
+        derive(&s, &points);
+}
