@@ -104,6 +104,8 @@ static glint_status add_program(const glint_plan *plan, const glint_derivative *
     if (field == GLINT_FIELD_COUNT)
         return refuse_field(d, "material", s->field, material_fields, 0, error);
     const glint_program *own = plan->patterns ? plan->patterns->of[i].program[field] : NULL;
+    if (!own && glint_pattern_program_of(&s->material->desc.program, field)) // which nothing reads
+        return GLINT_OK;
     if (!own || own->code.output_count != s->program->code.output_count || own->kind != s->program->kind)
         return glint_fail(error, GLINT_ERR_INVALID,
                           "derivative '%s': material.%s: the slope is a program's, but not of the one that gives the field", d->name,

@@ -18,7 +18,7 @@ const char *glint_field_name(int field)
     return names[field];
 }
 
-static const glint_program *program_of(const glint_material_programs *programs, int field)
+const glint_program *glint_pattern_program_of(const glint_material_programs *programs, int field)
 {
     switch (field) {
     case GLINT_FIELD_DIFFUSE:
@@ -118,7 +118,7 @@ static void add_material(glint_plan_patterns *patterns, glint_plan_pattern *patt
     for (int c = 0; c < 3; c++)
         pattern->desc.diffuse[c] = desc->program.diffuse ? 1 : fmin(desc->diffuse[c], STRENGTH_MAX);
     for (int field = 0; field < GLINT_FIELD_COUNT; field++) {
-        const glint_program *program = program_of(&desc->program, field);
+        const glint_program *program = glint_pattern_program_of(&desc->program, field);
         if (!program || !is_read(desc, field))
             continue;
         pattern->program[field] = glint_program_retain((glint_program *)program);
@@ -336,7 +336,7 @@ static glint_status find_places(glint_plan_patterns *patterns, const glint_geome
 static bool has_any(const glint_material_desc *desc)
 {
     for (int field = 0; field < GLINT_FIELD_COUNT; field++)
-        if (program_of(&desc->program, field))
+        if (glint_pattern_program_of(&desc->program, field))
             return true;
     return desc->opacity < 0.5;
 }

@@ -31,6 +31,8 @@ typedef enum glint_field {
 
 /// "diffuse", "model", "background"
 const char *glint_field_name(int field);
+/// The program of a field among a material's. NULL: none.
+const glint_program *glint_pattern_program_of(const glint_material_programs *programs, int field);
 /// How many numbers a field is.
 static inline int glint_field_channels(int field) { return field < GLINT_FIELD_SHININESS ? 3 : 1; }
 

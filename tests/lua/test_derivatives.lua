@@ -599,6 +599,12 @@ function tests.errors_are_told()
   local function patterned(field, f) return scene_of(glint.point_light { position = { 2, 4, 3 } },
     { material = glint.material { [field] = glint.pattern(f) } }) end
   raises("material.diffuse: a pattern that gives one number everywhere", render, patterned("diffuse", function() return x / 9 end), "d:x")
+  local unread = { model = "cook_torrance", diffuse = x / 9, specular = 0.5, shininess = glint.pattern(function(p) return 9 + x * p.x end) }
+  local dull_shine = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material(unread) })
+  check(pcall(render, dull_shine, "d:x"), "a pattern that nothing reads is passed over")
+  unread.diffuse = 0.5
+  dull_shine = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material(unread) })
+  raises("derivative 'x': nothing in the scene depends on it", render, dull_shine, "d:x")
   raises("derivative 'x': material.bump: no derivative", render, patterned("bump", function(p) return x * p.x end), "d:x")
   raises("derivative 'x': material.transmission: light through what a pattern colours has no derivative by the pattern", render,
     patterned("transmission", function(p) return x * p.x end), "d:x")
