@@ -18,11 +18,17 @@ static const unsigned char GENERATION[] = {
 static const unsigned char LAMP[] = {
 #include "scripts/lib/gr/lamp.lua.h"
 };
+static const unsigned char LAYERS[] = {
+#include "scripts/lib/gr/layers.lua.h"
+};
 static const unsigned char LUA5[] = {
 #include "scripts/lib/gr/lua5.lua.h"
 };
 static const unsigned char MESH[] = {
 #include "scripts/lib/gr/mesh.lua.h"
+};
+static const unsigned char NORMAL_MAP[] = {
+#include "scripts/lib/gr/normal_map.lua.h"
 };
 static const unsigned char OBJ[] = {
 #include "scripts/lib/gr/obj.lua.h"
@@ -50,8 +56,10 @@ static const struct carried {
     { "gr.files", "@gr/files.lua", FILES, sizeof FILES },
     { "gr.generation", "@gr/generation.lua", GENERATION, sizeof GENERATION },
     { "gr.lamp", "@gr/lamp.lua", LAMP, sizeof LAMP },
+    { "gr.layers", "@gr/layers.lua", LAYERS, sizeof LAYERS },
     { "gr.lua5", "@gr/lua5.lua", LUA5, sizeof LUA5 },
     { "gr.mesh", "@gr/mesh.lua", MESH, sizeof MESH },
+    { "gr.normal_map", "@gr/normal_map.lua", NORMAL_MAP, sizeof NORMAL_MAP },
     { "gr.obj", "@gr/obj.lua", OBJ, sizeof OBJ },
     { "gr.operations", "@gr/operations.lua", OPERATIONS, sizeof OPERATIONS },
     { "gr.options", "@gr/options.lua", OPTIONS, sizeof OPTIONS },

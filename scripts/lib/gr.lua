@@ -24,6 +24,7 @@
 --   gr.perlin_material({a}, {b}, {ks}, shininess)       two colours, mixed by noise
 --   gr.texture(file, u, v)  gr.texture(file, {ks}, shininess)  gr.texture_material(...)  gr.texture_map(file)
 --   gr.bump(file, height)  gr.bumpmap  gr.bump_map      gr.bump(material, file)
+--   gr.normal_map(file, strength, u, v)  gr.perlin(...)
 --   gr.light({position}, {colour}, {c0, c1, c2})        falls off by 1/(c0 + c1 r + c2 r^2); {1, 0, 0} when left out
 --   gr.area_light({position}, {colour}, {c0, c1, c2}, radius, samples)                a ball; arealight, sphericallight
 --   gr.area_light({middle}, {colour}, {c0, c1, c2}, {normal}, {up}, edge, samples)    a square
@@ -31,8 +32,9 @@
 --   gr.rect_light({middle}, width, depth, {colour}, {c0, c1, c2}, samples)            along x and z
 --   gr.render(root, file, width, height, {eye}, {view}, {up}, fov, {ambient}, {lights}, {lights} ...)
 --   material:set_texture(t)  :set_bump(b)  :set_bumpmap(b)  :set_reflect(r)  :reflection(r)  :set_refract(n)
---   :set_ri(n)
---   node:set_texture(t)  :set_texture_map(t)  :set_bump(b)  :set_bumpmap(b)  :set_bump_map(b)
+--   :set_ri(n)  :set_opacity(a, n)
+--   node:set_texture(t)  :set_texture_map(t)  :set_bump(b)  :set_bumpmap(b)  :set_bump_map(b)  :set_normal(n)
+--   :set_perlin(p)
 --   node:add_child(n)  :set_material(m)  :scale(x, y, z)  :rotate("x"|"y"|"z", degrees)  :translate(x, y, z)
 --
 -- `gr` is the nodes' metatable: gr.scale(n, ...) is n:scale(...), and functions a scene adds to it are methods.
@@ -349,6 +351,7 @@ end
 for _, call in pairs { "set_reflect", "reflection" } do
   material_methods[call] = changing(function(record, share) surface.mirror(record, call, share) end)
 end
+material_methods.set_opacity = changing(function(record, ...) surface.hide(record, "set_opacity", ...) end)
 for _, call in pairs { "set_refract", "set_ri" } do
   material_methods[call] = changing(function(record, index) surface.glass(record, call, index) end)
 end
@@ -431,6 +434,8 @@ local function bump(call)
   end
 end
 gr.bump, gr.bumpmap, gr.bump_map, gr.load_bumpmap = bump "bump", bump "bumpmap", bump "bump_map", bump "load_bumpmap"
+
+require "gr.layers"(gr, shape_of, function(kind) return with_methods(kind, {}) end)
 
 -- kind: the glint function that makes it.
 local function new_light(kind, fields)

@@ -390,9 +390,9 @@ refuses("gr.csg('c'):add_children(gr.sphere('s'), 3)", "gr.add_children: child: 
 refuses("gr.nh_torus('t', {0, 0, 0}, 2)", "gr.nh_torus: tube: number expected, got nil")
 refuses("gr.nh_torus('t', {0, 0}, 2, 1)", "gr.nh_torus: centre: table of 3 numbers expected, got table of 2")
 refuses("gr.csg_merge('c', gr.sphere('s'), gr.sphere('s'))", "gr.csg_merge: this function is not part of the dialect")
-refuses("gr.sphere('s'):set_normal('x.png')", "gr.set_normal: this function is not part of the dialect")
-refuses("gr.material({1,1,1}, {0,0,0}, 1):set_opacity(0, 1.5)",
-  "material:set_opacity: this method is not part of the dialect")
+refuses("gr.sphere('s'):set_ramp('x.png')", "gr.set_ramp: this function is not part of the dialect")
+refuses("gr.material({1,1,1}, {0,0,0}, 1):set_glossiness(0, 1.5)",
+  "material:set_glossiness: this method is not part of the dialect")
 refuses("gr.light({1,1,1}, {1,1,1}):set_radius(2)", "light:set_radius: this method is not part of the dialect")
 refuses("gr.sphere()", "gr.sphere: name: string expected, got nil")
 refuses("gr.joint('j', {1, 2}, {0, 0, 0})", "gr.joint: x: table of 3 numbers expected, got table of 2")

@@ -393,7 +393,11 @@ function tests.errors_name_the_call()
   refuses("gr.area_light({0, 0, 0}, {1, 0, 0}, 4, {2, 0, 0}, 4, {1, 1, 1})", "gr.area_light: edge: two edges of different directions expected")
   refuses("gr.rect_light({0, 0, 0}, 0, 1, {1, 1, 1})", "gr.rect_light: width: number above 0 expected, got 0")
   refuses("gr.rect_light({0, 0, 0}, 1, 1, {1, -1, 1})", "gr.rect_light: colour[2]: number >= 0 expected, got -1")
-  refuses("gr.normal_map('four.png', 1)", "gr.normal_map: this function is not part of the dialect")
+  refuses("gr.normal_map('four.png', 0)", "gr.normal_map: strength: number above 0 expected, got 0")
+  refuses("gr.sphere('s'):set_normal(1)", "gr.set_normal: map: normal map, or the name of a file, expected, got 1")
+  refuses("gr.sphere('s'):set_perlin('x')", "gr.set_perlin: kind: number expected, got \"x\"")
+  refuses("gr.material({1, 1, 1}, {0, 0, 0}, 1):set_opacity(1.5)", "gr.set_opacity: opacity: number 0 .. 1 expected, got 1.5")
+  refuses("gr.material({1, 1, 1}, {0, 0, 0}, 1, {1, 2, -1})", "gr.material: reflectivity[3]: number >= 0 expected, got -1")
   refuses("gr.bump('four.png'):remap(1)", "bump:remap: this method is not part of the dialect")
 end
 
@@ -405,6 +409,90 @@ function tests.later_changes_show()
     m:set_texture('four.png')
     gr.render(s, 'second', 8, 8, {0, 0, 9}, {0, 0, -1}, {0, 1, 0}, 10, {1, 1, 1}, {})]])
   is(pixel, 2, 2, "255,0,0", "after two pictures")
+end
+
+-- ---- What is seen through, mirrors in colour, noise ----
+
+-- In front of a red wall that gives 0.5 of its own.
+local WALL <const> = [[
+  m = gr.material({0.5, 0, 0}, {0, 0, 0}, 0)
+  wall = gr.nh_box('w', {-5, -5, -20}, 10) wall:set_material(m) ]]
+
+function tests.what_hides_a_share()
+  local pane = "s = gr.cube('s') s:translate(-0.5, -0.5, -1) s:add_child(wall) m = gr.material({0.4, 0.8, 0}, {0, 0, 0}, 0) "
+  is(look(WALL .. pane .. "m:set_opacity(1)"), 8, 8, "102,204,0", "all")
+  is(look(WALL .. pane .. "m:set_opacity(0.75)"), 8, 8, "103,191,0", "by both of its faces") -- 0.75 x + 0.25 (0.75 x + 0.25 red)
+  is(look(WALL .. pane .. "m:set_opacity(0, 1)"), 8, 8, "127,0,0", "nothing")
+end
+
+function tests.a_reflectivity_has_colours()
+  is(look(CUBE .. "gr.options.background = {0.5, 0.5, 0.5} m = gr.material({0.25, 0, 0}, {0, 0, 0}, 0, {0.5, 0, 1})"), 8, 8,
+    "127,0,127", "of the background")
+end
+
+function tests.noise_lies_on_shapes()
+  for _, text in ipairs { "s:set_perlin(1)", "s:set_perlin(1, 0)", "s:set_perlin(gr.perlin(0.01, 4, 1000, 1000))" } do
+    local pixel, least, most = look(CUBE .. PLAIN .. text), 255, 0
+    for x = 0, SIZE - 1 do
+      for y = 0, SIZE - 1 do least, most = math.min(least, (pixel(x, y))), math.max(most, (pixel(x, y))) end
+    end
+    check(least < 100 and most > 150, "%s: %d .. %d", text, least, most)
+  end
+end
+
+-- ---- Normals ----
+
+-- What a matt grey shows in ambient light of 1 and one light from l, where its normal is n.
+local function shade_of(n, l)
+  local function unit(v) return (v[1] * v[1] + v[2] * v[2] + v[3] * v[3]) ^ 0.5 end
+  local cosine = (n[1] * l[1] + n[2] * l[2] + n[3] * l[3]) / (unit(n) * unit(l))
+  return 255 * 0.4 * (1 + math.max(cosine, 0))
+end
+
+local function decode(x) return ((x + 0.055) / 1.055) ^ 2.4 end
+
+local LEAN <const> = { 204 / 255, 153 / 255, 1 } -- 0.6 along u, 0.2 along v, 1 outward
+local function lit(text, l)
+  local lean = png.new(1, 1)
+  lean:set(0, 0, { decode(LEAN[1]), decode(LEAN[2]), 1 })
+  lean:save(folder .. "/lean.png")
+  return look(("m = gr.material({0.4, 0.4, 0.4}, {0, 0, 0}, 0) lights = {gr.light({%g, %g, %g}, {1, 1, 1}, {1, 0, 0})} %s")
+    :format(1e6 * l[1], 1e6 * l[2], 1e6 * l[3], text))
+end
+
+local function leans(text, x, y, n, name)
+  for _, l in ipairs { { 1, 0.5, 2 }, { -1, 0.3, 1 }, { 0, -1, 1 } } do
+    local code, want = lit(text, l)(x, y), shade_of(n, l)
+    check(math.abs(code + 0.5 - want) <= 1, "%s: %.2f expected, got %d", name, want, code)
+  end
+end
+
+function tests.normals_lie_on_faces()
+  local map = " s:set_normal(gr.normal_map 'lean.png')"
+  for _, turn in ipairs { "", "s:rotate('y', 90)", "s:rotate('y', 180)", "s:rotate('y', -90)", "s:rotate('x', 90)",
+    "s:rotate('x', -90)" } do
+    leans("s = gr.nh_box('s', {-0.5, -0.5, -0.5}, 1) " .. turn .. map, 5, 9, { 0.6, 0.2, 1 }, "a face of a box, " .. turn)
+  end
+  local box = "s = gr.nh_box('s', {-0.5, -0.5, -0.5}, 1) "
+  leans(box .. "s:scale(-1, 1, 1)" .. map, 5, 9, { -0.6, 0.2, 1 }, "mirrored")
+  leans(box .. "s:scale(1, 2, 3)" .. map, 5, 9, { 0.6, 0.2, 1 }, "stretched")
+  leans(box .. "s:set_normal_map('lean.png')", 5, 9, { 0.6, 0.2, 1 }, "by the file's name")
+  leans(box .. "s:set_normal(gr.normal_map('lean.png', 0.5, 3, 4))", 5, 9, { 0.3, 0.1, 1 }, "weaker")
+end
+
+function tests.normals_lie_on_balls()
+  local map = " s:set_normal(gr.normal_map 'lean.png')"
+  local x, y = (2 * 10 + 1 - SIZE) / SIZE, (SIZE - 2 * 4 - 1) / SIZE -- of pixel 10, 4, nearly: it is seen from afar
+  local z = math.sqrt(1 - x * x - y * y)
+  local round = math.sqrt(x * x + z * z)
+  local u = { z / round, 0, -x / round }
+  local v = { y * u[3], z * u[1] - x * u[3], -y * u[1] }
+  local n = {}
+  for i, d in ipairs { x, y, z } do n[i] = d + 0.6 * u[i] + 0.2 * v[i] end
+  leans("s = gr.sphere('s') s:scale(0.5, 0.5, 0.5)" .. map, 10, 4, n, "a ball")
+  leans("s = gr.nh_sphere('s', {1, 0, 0}, 2) s:translate(-1, 0, 0) s:scale(0.25, 0.25, 0.25)" .. map, 10, 4, n, "placed")
+  leans("gr.options.axis = 'y' s = gr.cylinder('s') s:translate(0, -0.5, 0) s:scale(0.5, 2, 0.5)" .. map, 10, 4,
+    { x + 0.6 * math.sqrt(1 - x * x), 0.2, math.sqrt(1 - x * x) - 0.6 * x }, "a cylinder")
 end
 
 tally.run(tests)

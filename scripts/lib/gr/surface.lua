@@ -3,6 +3,7 @@
 local check = require "gr.check"
 local files = require "gr.files"
 local glint = require "glint"
+local normal_map = require "gr.normal_map"
 local options = require "gr.options"
 check.own_source()
 local surface = {}
@@ -39,6 +40,13 @@ function surface.picture(call, name, across, down)
     return photo(s.uv.u * across, s.uv.v * down, s.uv_footprint * most)
   end)
   return { photo = photo, across = across, down = down, most = most, pattern = pattern }
+end
+
+--- The normals that a picture has, which lean `strength` times as far, `across` and `down` times.
+function surface.normals(call, name, strength, across, down)
+  strength = check.above(call, "strength", strength == nil and 1 or strength, 0)
+  local picture = surface.picture(call, name, across, down)
+  return { photo = picture.photo, picture = picture, strength = strength }
 end
 
 --- A relief by the brightness of a picture.
@@ -109,6 +117,8 @@ local function read_more(record, call, ...)
       numbers[#numbers + 1] = value
     elseif type(value) == "string" and value:find "%.%a+$" and not record.picture then
       record.picture = surface.picture(call, value)
+    elseif i == 1 and type(value) == "table" and #value == 3 then
+      record.mirror = check.vector(call, "reflectivity", value, 3, 0)
     elseif value and value ~= "" then
       others[#others + 1] = value
     end
@@ -150,6 +160,14 @@ function surface.glass(record, call, index)
   make_glass(record, index)
 end
 
+--- A surface hides that share of what lies behind it, and has as much of its own light; index: of refraction.
+function surface.hide(record, call, share, index)
+  record.opacity = check.at_least(call, "opacity", share, 0)
+  if record.opacity > 1 then check.refuse(call, "opacity", "number 0 .. 1", share) end
+  record.ior = index == nil and 1 or check.above(call, "index", index, 0)
+  record.transmission, record.fresnel = 1 - record.opacity, nil
+end
+
 --- Two colours, mixed by noise.
 function surface.noisy(call, a, b, ks, shininess, ...)
   local record = surface.record(call, a, ks, shininess)
@@ -174,16 +192,31 @@ local function bump_of(relief, picture, scale)
   end)
 end
 
-local function make(record, picture, relief, scale)
-  local fields = { diffuse = picture and picture.pattern or record.kd, model = "lambert" }
+local function is_above_0(share)
+  if type(share) == "table" then return max(share[1], share[2], share[3]) > 0 end
+  return (share or 0) > 0
+end
+
+-- Grains darken by up to the whole, in the mean by half of it.
+local function diffuse_of(record, picture, grain)
+  local color, share = picture and picture.pattern or record.kd, record.opacity or 1
+  if not grain and share == 1 then return color end
+  return glint.pattern(function(p, s)
+    local base = share * (picture and color(p, s) or glint.vector(color))
+    if not grain then return base end
+    return base * glint.clamp(0.5 + 0.5 * (glint.noise(p * 4) + glint.noise(p * 8) / 2 + glint.noise(p * 16) / 4), 0, 1)
+  end)
+end
+
+local function make(record, picture, grain, bump)
+  local fields = { diffuse = diffuse_of(record, picture, grain), model = "lambert" }
   if max(record.ks[1], record.ks[2], record.ks[3]) > 0 then
     fields.model = record.model
-    fields.specular, fields.shininess = record.ks, record.shininess
+    fields.specular, fields.shininess = glint.vector(record.ks) * (record.opacity or 1), record.shininess
   end
-  if (record.mirror or 0) > 0 then fields.mirror = record.mirror end
-  if (record.transmission or 0) > 0 then fields.transmission, fields.ior = record.transmission, record.ior end
-  fields.fresnel = record.fresnel
-  if relief then fields.bump = bump_of(relief, picture, scale) end
+  if is_above_0(record.mirror) then fields.mirror = record.mirror end
+  if is_above_0(record.transmission) then fields.transmission, fields.ior = record.transmission, record.ior end
+  fields.fresnel, fields.bump = record.fresnel, bump
   return glint.material(fields)
 end
 
@@ -201,7 +234,7 @@ local function scale_of(map)
   return abs(determinant) ^ (1 / 3)
 end
 
-local kept = setmetatable({}, { __mode = "k" }) -- materials, by record, picture, relief and scale
+local kept = setmetatable({}, { __mode = "k" }) -- materials, by record and by what lies on the shape
 local NONE = {}
 
 local function part(all, key)
@@ -209,15 +242,24 @@ local function part(all, key)
   return all[key]
 end
 
+-- When a bump is the same, and what makes it: of normals it depends on the map, of a relief on its size.
+local function bump_on(relief, picture, node, map)
+  local normals = node.normals
+  if normals then return tostring(map), function() return normal_map.bump(normals, node, map) end end
+  local scale = relief and scale_of(map) * (node.size or 1) or 0
+  return scale, function() return relief and bump_of(relief, picture, scale) end
+end
+
 --- The glint.material of a record on a node's shape, under what lies on that alone, where the map has put it.
 -- bare: the shape has no coordinates for pictures and reliefs.
 function surface.shade(record, node, map, bare)
   local picture, relief = node.picture or record.picture, node.relief or record.relief
   if bare then picture, relief = picture and picture.photo == nil and picture or nil, nil end
-  local scale = relief and scale_of(map) * (node.size or 1) or 0
-  local made = part(part(part(kept, record), picture or NONE), relief or NONE)
-  made[scale] = made[scale] or make(record, picture, relief, scale)
-  return made[scale]
+  local key, bump = bump_on(relief, picture, node, map)
+  local all = part(part(kept, record), picture or NONE)
+  local made = part(part(part(all, relief or NONE), node.normals or NONE), node.grain or NONE)
+  made[key] = made[key] or make(record, picture, node.grain, bump())
+  return made[key]
 end
 
 --- After a record's fields were changed.

@@ -1,0 +1,70 @@
+-- Pictures of normals: red along u, green along v, blue outward, -1 .. 1 as codes from 0 to the last.
+--
+-- A bump's normal follows from the slopes of a height. One whose slopes are what the picture says is made of constants
+-- at each point: floor has no slope, so that of floor(a) x is floor(a). Heights are the world's: so are directions.
+local check = require "gr.check"
+local glint = require "glint"
+check.own_source()
+local normal_map = {}
+
+local tonumber, tostring = tonumber, tostring
+
+local STEPS = 1 << 20 -- of a constant, from one whole number to the next
+local FLAT = 0.02 -- the least that a normal points outward
+local AXES = { x = { 1, 0, 0 }, y = { 0, 1, 0 }, z = { 0, 0, 1 } }
+
+local function constant(a) return glint.floor(a * STEPS) / STEPS end
+
+-- The direction of u at a point of a shape, in its own space; of any length.
+local along_u = {
+  sphere = function(p, node) return glint.vector(AXES.y):cross(p - node.center) end,
+  cylinder = function(p, node) return glint.vector(AXES[node.axis]):cross(p) end,
+  box = function(p, node)
+    local z = glint.equal(p.x, node.min[1]) - glint.equal(p.x, node.max[1])
+    local x = glint.select(z, 0, 1) * (1 - 2 * glint.equal(p.z, node.min[3]) * glint.less(node.min[2], p.y)
+      * glint.less(p.y, node.max[2]))
+    return glint.vector(x, 0, z)
+  end,
+}
+along_u.cone = along_u.cylinder
+
+--- Whether shapes of that kind have such directions.
+function normal_map.lies_on(node) return along_u[node.kind] ~= nil end
+
+local function numbers_of(map)
+  local m = {}
+  for word in tostring(map):gmatch "[-+%w.]+" do m[#m + 1] = tonumber(word) end
+  return m
+end
+
+-- A direction in the world: of length 1, or 0 where it was.
+local function to_world(m, d)
+  local w = glint.vector(m[1] * d.x + m[2] * d.y + m[3] * d.z, m[5] * d.x + m[6] * d.y + m[7] * d.z,
+    m[9] * d.x + m[10] * d.y + m[11] * d.z)
+  return w / glint.max(w:length(), 1e-300)
+end
+
+local function is_mirrored(m)
+  return m[1] * (m[6] * m[11] - m[7] * m[10]) - m[2] * (m[5] * m[11] - m[7] * m[9])
+    + m[3] * (m[5] * m[10] - m[6] * m[9]) < 0
+end
+
+--- The bump of a picture of normals on a node's shape, where the map has put it.
+function normal_map.bump(normals, node, map)
+  local m, photo, picture = numbers_of(map), normals.photo, normals.picture
+  local side = is_mirrored(m) and -1 or 1
+  return glint.pattern(function(p, s)
+    local c = photo(s.uv.u * picture.across, s.uv.v * picture.down, s.uv_footprint * picture.most)
+    local outward = glint.max(2 * c.b - 1, FLAT) / normals.strength
+    local u = to_world(m, along_u[node.kind](p, node))
+    local v = s.n:cross(u) * side
+    local function slope(code, d)
+      local at = s.world
+      local a = constant((1 - 2 * code) / outward)
+      return a * (constant(d.x) * at.x + constant(d.y) * at.y + constant(d.z) * at.z)
+    end
+    return slope(c.r, u) + slope(c.g, v)
+  end)
+end
+
+return normal_map
