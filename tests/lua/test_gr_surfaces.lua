@@ -207,7 +207,8 @@ function tests.glass_is_seen_through()
     CUBE .. KD .. ", 1.5)", CUBE .. KD .. ", 0, 1.5)", CUBE .. KD .. ", 0.7, 1.5)", CUBE .. "m = gr.refractive(1.5)",
     CUBE .. KD .. ") m:set_refract(1.5)", CUBE .. KD .. ") m:set_ri(1.5)",
   }, options)
-  same({ CUBE .. KD .. ", 0, 0.8, 1.33)", CUBE .. KD .. ", 1.33, 0.8)", CUBE .. "m = gr.material_refr({0, 0, 0}, {0, 0, 0}, 0, 0.8, 1.33)" }, options)
+  same({ CUBE .. KD .. ", 0, 0.8, 1.33)", CUBE .. KD .. ", 1.33, 0.8)", CUBE .. KD .. ", 0, 0, 0.8, 1.33)",
+    CUBE .. "m = gr.material_refr({0, 0, 0}, {0, 0, 0}, 0, 0.8, 1.33)" }, options)
   -- All light is either mirrored or goes through: before an even background a ball of glass is that background, but for
   -- what is still within after 5 surfaces.
   local r = look("s = gr.sphere('s') s:scale(0.5, 0.5, 0.5) " .. KD .. ", 1.5)", options)(8, 8)
@@ -225,6 +226,8 @@ function tests.what_means_nothing_is_told_of_once()
     ["0.05, 100"] = "0.05, 100; a reflectivity and a transparency 0 .. 1, or an index up to 4, expected",
     ["1.3, 0, 0.6"] = "1.3, 0, 0.6; a reflectivity, a transparency and an index expected",
     ["0.5, 0.2, 1.33, 0.15"] = "0.15; three numbers are read",
+    ["2, 0.5, 0.2, 1.33"] = "2; mirrors are sharp",
+    ["2, 0.5, 0.2, 9"] = "2, 0.5, 0.2, 9; a glossiness, a reflectivity, a transparency and an index expected",
     ["{1, 2}"] = "table of 2; numbers, and the name of a picture, expected",
     ["'soft'"] = '"soft"; numbers, and the name of a picture, expected',
   } do

@@ -9,7 +9,7 @@ check.own_source()
 local surface = {}
 
 local pcall, select, setmetatable, tonumber, tostring, type = pcall, select, setmetatable, tonumber, tostring, type
-local abs, concat, max, unpack = math.abs, table.concat, math.max, table.unpack
+local abs, concat, max, min, unpack = math.abs, table.concat, math.max, math.min, table.unpack
 
 local INDEX_MAX = 4 -- a number beyond is no index of refraction: variants use large ones for what is opaque
 local HEIGHT = 0.05 -- of a relief's white above its black, over the shape's size before its transforms
@@ -97,15 +97,22 @@ local readers = {
     end
     record.mirror, record.transmission, record.ior = a, b, c == 0 and 1 or c
   end,
+  function(record, gloss, a, b, c) -- how blurred the mirror is comes first
+    if not (is_share(a) and is_share(b) and is_index(c)) then
+      return "a glossiness, a reflectivity, a transparency and an index expected"
+    end
+    record.mirror, record.transmission, record.ior = a, b, c
+    if gloss ~= 0 then return "mirrors are sharp", { gloss } end
+  end,
 }
 
 local function read_numbers(record, call, numbers)
   while numbers[#numbers] == 0 do numbers[#numbers] = nil end -- what is 0 adds nothing
   if #numbers == 0 then return end
-  local given = { unpack(numbers, 1, 3) }
-  local why, which = readers[#given](record, unpack(given))
+  local count = #numbers == 4 and not is_index(numbers[3]) and 4 or min(#numbers, 3)
+  local why, which = readers[count](record, unpack(numbers, 1, count))
   if why then return leave_out(call, which or numbers, why) end
-  if #numbers > 3 then leave_out(call, { unpack(numbers, 4) }, "three numbers are read") end
+  if #numbers > count then leave_out(call, { unpack(numbers, count + 1) }, "three numbers are read") end
 end
 
 -- Numbers, and names of pictures: the first that is not "" lies on the surface.
