@@ -195,6 +195,7 @@ static void unit_case(int precision, bool odd)
     (void)precision;
     const uint32_t groups = 1 + below(GLINT_PROGRAM_GROUPS), n = groups * GLINT_GROUP;
     const bool one_place = one_in(2), from = one_in(2), in_place = one_in(2), back = one_in(3);
+    const bool hard_length = one_in(4); // whose last bits are ones: where a reciprocal is hardest to round
     const glint_camera_args camera = any_camera(odd);
     uint32_t *places = input(KIND_U32, groups);
     for (uint32_t g = 0; g < groups; g++)
@@ -207,6 +208,12 @@ static void unit_case(int precision, bool odd)
             const double scale = one_in(8) ? power_of_ten(-200, 200) : 10;
             to[c][i] = maybe_odd(odd, one_in(6) ? (double)below(5) - 2 : between(-scale, scale));
             start[c][i] = maybe_odd(odd, one_in(6) ? to[c][i] : between(-scale, scale));
+            if (hard_length)
+                start[c][i] = 0;
+            if (hard_length && c == 0)
+                to[c][i] = ldexp(2 - (1 + below(4)) * 0x1p-52, (int)below(9) - 4);
+            else if (hard_length)
+                to[c][i] = ldexp(one_in(2) ? 1 : between(-2, 2), -(int)below(80));
         }
     }
     const double place[3] = { to[0][0], to[1][0], to[2][0] };

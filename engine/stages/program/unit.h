@@ -8,17 +8,36 @@ static inline void divide_each(const vd d[3], vd by, vd q[3])
 }
 
 #ifdef GLINT_D_FUSED
-/// The same bits by one division: where y is 1 / by rounded to nearest and q is off d / by by at most one unit in the last place,
-/// q + (d - q by) y, with both steps fused, is d / by rounded to nearest (P. Markstein, IBM J. Res. Dev. 34(1), 1990). The first step
-/// brings q there. Within the bounds nothing over- or underflows.
+#ifdef GLINT_D_INVERSE
+/// 1 / by within 2^-53 of itself, without the divider, which a square root keeps. Returns whether it is, in all lanes: where
+/// |1 - y by| is below 2^-53 once rounded, it was before.
+static inline bool find_inverse(vd by, vd *y)
+{
+    const vd one = d_set(1), guess = d_inverse(by), r = d_fnma(by, guess, one);
+    const vd near = d_fma(d_fma(r, r, r), guess, guess);
+    *y = d_fma(d_fnma(by, near, one), near, near);
+    return dm_bits(d_lt(d_abs(d_fnma(by, *y, one)), d_set(0x1p-53))) == D_ALL;
+}
+#else
+static inline bool find_inverse(vd by, vd *y)
+{
+    *y = d_set(1) / by;
+    return dm_bits(d_le(by, d_set(0x1p400))) == D_ALL;
+}
+#endif
+
+/// The same bits without three divisions, where |1 - y by| < 2^-53. If q is a neighbour of d / by, q + (d - q by) y with both steps
+/// fused is d / by rounded to nearest (after P. Markstein, IBM J. Res. Dev. 34(1), 1990): what is rounded last is off by less than
+/// 2^-53 of q's own error, and d / by is 2^-54 of a last place or more from where rounding turns. The first step makes q a
+/// neighbour. Within the bounds nothing over- or underflows.
 static inline void divide_by_length(const vd d[3], vd by, vd q[3])
 {
     const vd least = d_min(d_min(d_abs(d[0]), d_abs(d[1])), d_abs(d[2]));
-    if (dm_bits(dm_and(d_le(d_set(0x1p-400), least), d_le(by, d_set(0x1p400)))) != D_ALL) {
+    vd y;
+    if (!find_inverse(by, &y) || dm_bits(d_le(d_set(0x1p-400), least)) != D_ALL) {
         divide_each(d, by, q);
         return;
     }
-    const vd y = d_set(1) / by;
     for (int c = 0; c < 3; c++) {
         q[c] = d[c] * y;
         for (int step = 0; step < 2; step++)

@@ -3,8 +3,8 @@
 /// vf  16 floats     vd  8 doubles     vi  32-bit integers, as many as vf     vq  64-bit integers, as many as vd
 /// fm, dm  masks of vf and vd
 /// An index is a 32-bit number below 2^31 (or GLINT_MISS) in a lane of either width: a double's value in vd, the raw
-/// bits in vf. Arithmetic is written with operators. fma appears in two_prod, and in the estimate of tone, whose rounding
-/// no result sees.
+/// bits in vf. Arithmetic is written with operators. fma appears in two_prod, in unit, where it
+/// gives a division's bits, and in the estimate of tone, whose rounding no result sees.
 #ifndef GLINT_SIMD_H
 #define GLINT_SIMD_H
 
@@ -185,6 +185,9 @@ static inline dm q_test(vq x, uint32_t bit) { return _mm512_test_epi64_mask(x, q
 /// a * b + c and c - a * b, rounded once.
 static inline vd d_fma(vd a, vd b, vd c) { return _mm512_fmadd_pd(a, b, c); }
 static inline vd d_fnma(vd a, vd b, vd c) { return _mm512_fnmadd_pd(a, b, c); }
+
+#define GLINT_D_INVERSE 1 ///< there is the next: 1 / x within 2^-14 of itself, no two processors need agree
+static inline vd d_inverse(vd x) { return _mm512_rcp14_pd(x); }
 
 static inline vd d_two_prod(vd a, vd b, vd *error)
 {
