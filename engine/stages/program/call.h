@@ -16,16 +16,21 @@ static inline vd op_in(const op_call *call, int k, size_t lane) { return d_load(
     static void op_##name(const op_call *call) \
     { \
         const op_call at = *call; \
-        for (size_t group = 0; group < at.lanes; group += GLINT_GROUP) { \
-            operands(OP_GROUP); \
+        const double *const end = at.out[0] + at.lanes; \
+        operands(OP_BEGIN); \
+        for (double *to = at.out[0]; to < end; to += GLINT_GROUP) { \
             for (int i = 0; i < GLINT_GROUP; i += VD) { \
                 operands(OP_VECTOR); \
-                d_store(at.out[0] + group + i, expression); \
+                d_store(to + i, expression); \
             } \
+            operands(OP_NEXT); \
         } \
     }
-#define OP_GROUP(k, name) const double *from_##name = at.in[k] + (group & at.step[k])
+#define OP_BEGIN(k, name) \
+    const double *from_##name = at.in[k]; \
+    const size_t group_of_##name = GLINT_GROUP & at.step[k]
 #define OP_VECTOR(k, name) const vd name = d_load(from_##name + i)
+#define OP_NEXT(k, name) from_##name += group_of_##name
 #define OP_A(each) each(0, a)
 #define OP_AB(each) \
     OP_A(each); \
