@@ -90,9 +90,7 @@ typedef struct noise_axes {
 
 INNER noise_axes noise_axes_of(vq h)
 {
-    const dm upper = q_test(h, 8u << 28), middle = q_test(h, 4u << 28), all = dm_from_bits(D_ALL);
-    return (noise_axes) { upper, dm_andnot(all, dm_or(upper, middle)),
-                          dm_andnot(dm_and(upper, middle), q_test(h, 1u << 28)) };
+    return (noise_axes) { q_test(h, 8u << 28), q_is(h, 12u << 28, 0), q_is(h, 13u << 28, 12u << 28) };
 }
 
 /// The gradient of a corner times the way from there to the point.

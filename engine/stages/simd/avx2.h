@@ -184,11 +184,11 @@ static inline vq q_xor(vq a, vq b) { return _mm256_xor_si256(a, b); }
 static inline vq q_mul(vq a, vq b) { return _mm256_mul_epu32(a, b); }
 #define q_shl(x, n) _mm256_slli_epi64(x, n)
 #define q_shr(x, n) _mm256_srli_epi64(x, n)
-static inline dm q_test(vq x, uint32_t bit)
+static inline dm q_is(vq x, uint32_t bits, uint32_t value)
 {
-    const vq want = q_set(bit);
-    return _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(x, want), want));
+    return _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(x, q_set(bits)), q_set(value)));
 }
+static inline dm q_test(vq x, uint32_t bit) { return q_is(x, bit, bit); }
 
 #define GLINT_D_FUSED 1 ///< there are the two that follow
 /// a * b + c and c - a * b, rounded once.

@@ -178,6 +178,12 @@ static inline vq q_xor(vq a, vq b) { return _mm512_xor_si512(a, b); }
 /// The products of the lower 32 bits, without sign: 64 bits.
 static inline vq q_mul(vq a, vq b) { return _mm512_mul_epu32(a, b); }
 
+/// Lanes where these of the lower 32 bits are those of `value`.
+static inline dm q_is(vq x, uint32_t bits, uint32_t value)
+{
+    return value ? _mm512_cmpeq_epi64_mask(q_and(x, q_set(bits)), q_set(value)) : _mm512_testn_epi64_mask(x, q_set(bits));
+}
+
 /// Lanes where the bit, one of the lower 32, is set.
 static inline dm q_test(vq x, uint32_t bit) { return _mm512_test_epi64_mask(x, q_set(bit)); }
 

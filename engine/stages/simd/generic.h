@@ -178,7 +178,8 @@ static inline vq q_or(vq a, vq b) { return a | b; }
 static inline vq q_xor(vq a, vq b) { return a ^ b; }
 #define q_shl(x, n) ((x) << (n))
 #define q_shr(x, n) ((x) >> (n))
-static inline dm q_test(vq x, uint32_t bit) { return (x & bit) != 0; }
+static inline dm q_is(vq x, uint32_t bits, uint32_t value) { return (x & bits) == value; }
+static inline dm q_test(vq x, uint32_t bit) { return q_is(x, bit, bit); }
 
 #ifdef __FP_FAST_FMA
 static inline vd d_two_prod(vd a, vd b, vd *error)

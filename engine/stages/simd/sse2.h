@@ -168,11 +168,12 @@ static inline vq q_xor(vq a, vq b) { return _mm_xor_si128(a, b); }
 static inline vq q_mul(vq a, vq b) { return _mm_mul_epu32(a, b); }
 #define q_shl(x, n) _mm_slli_epi64(x, n)
 #define q_shr(x, n) _mm_srli_epi64(x, n)
-static inline dm q_test(vq x, uint32_t bit)
+static inline dm q_is(vq x, uint32_t bits, uint32_t value)
 {
-    const vq want = q_set(bit);
-    return _mm_castsi128_pd(_mm_shuffle_epi32(_mm_cmpeq_epi32(_mm_and_si128(x, want), want), 0xa0));
+    const vq same = _mm_cmpeq_epi32(_mm_and_si128(x, q_set(bits)), q_set(value));
+    return _mm_castsi128_pd(_mm_shuffle_epi32(same, 0xa0));
 }
+static inline dm q_test(vq x, uint32_t bit) { return q_is(x, bit, bit); }
 
 /// Dekker's product (1971), with Veltkamp's splitting: the same bits as the FMA, short of over- and underflow.
 static inline vd d_two_prod(vd a, vd b, vd *error)
