@@ -2,6 +2,7 @@
 #include "bindings/pattern/pattern.h"
 
 #include <ctype.h>
+#include <float.h>
 #include <string.h>
 
 typedef struct symbol {
@@ -117,18 +118,20 @@ glintL_term glintL_dot_terms(lua_State *L, const glintL_term a[3], const glintL_
 
 // ---- From Lua ----
 
-// A number that changes with variables: while a function is traced a parameter of the program, for one point the number.
+// A number that changes with variables: while a function is traced a parameter of the program, for one point the number. A slope that
+// is 0 by a variable that the number is made of is the least number there, so that the program knows what it depends on: of its
+// products nothing is left in float32.
 static glintL_term dual_term(lua_State *L, const glintL_trace *trace, const glintL_dual *d)
 {
     glint_error error;
     glintL_term term = { .is_symbol = true };
-    bool level = true;
+    double slope[GLINTL_VARIABLES_MAX];
     for (int i = 0; i < GLINTL_VARIABLES_MAX; i++)
-        level = level && d->slope[i] == 0;
-    if (!trace->builder || level)
+        slope[i] = d->slope[i] == 0 && d->depends >> i & 1 ? DBL_TRUE_MIN : d->slope[i];
+    if (!trace->builder || !d->depends)
         return glintL_number_term(d->value);
     glintL_check_status(L, "", &error,
-                        glint_builder_parameter(trace->builder, d->value, d->slope, GLINTL_VARIABLES_MAX, &term.value, &error));
+                        glint_builder_parameter(trace->builder, d->value, slope, GLINTL_VARIABLES_MAX, &term.value, &error));
     return term;
 }
 

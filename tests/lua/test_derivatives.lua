@@ -117,6 +117,17 @@ function tests.level_here_is_no_error()
   refused("a mirror that sends nothing on", scene_of(lamp, { material = glint.material { mirror = 0.5 + level } }), { max_depth = 0 })
   image = render(scene_of(lamp, { material = glint.material { mirror = 0.5 + level } }), "d:x")
   check(image:pixel(24, 18, "d:x") == 0, "a mirror that is level")
+  for what, fields in pairs {
+    ["a pattern that is level"] = { diffuse = glint.pattern(function(p) return 0.5 + level * p.x * 1e9 end) },
+    ["one with a root of 0"] = { diffuse = glint.pattern(function(p) return 0.5 + glint.sqrt(level * glint.abs(p.x)) end) },
+    ["a shader that is level"] = { model = glint.shader(function(s) return s.kd * s.light * (level + glint.dot(s.n, s.l)) end) },
+  } do
+    most = 0
+    image = render(scene_of(lamp, { material = glint.material(fields) }), "d:x")
+    each(image, "d:x", image, "d:x", function(p) most = math.max(most, math.abs(p)) end)
+    check(most == 0, "%s: slopes of 0 give %g", what, most)
+  end
+  refused("a pattern without it", scene_of(lamp, { material = glint.material { diffuse = glint.pattern(function(p) return p.x end) } }))
 end
 
 -- Against differences of pictures, whose float32 leaves five digits of them: area lights, whose samples move with them.
