@@ -178,23 +178,45 @@ static void add_light(const shading *s, uint32_t terms)
             }
 }
 
-/// Sums up how fast a shader's light changes with what it reads, `inputs` of it, and with its own numbers.
-static void sum_up(const shading *s, const glint_gradient *gradient, uint32_t inputs, const glint_program *tangent)
+/// The sum of channel c in lane i, of inputs that change: what is level may have no slope, and adds none.
+static double sum_lane(const struct glint_shader_slopes *slopes, const glint_gradient *gradient, uint32_t inputs, uint32_t c, uint32_t i)
+{
+    double sum = 0;
+    for (uint32_t k = 0; k < gradient->count; k++) {
+        const glint_gradient_place at = gradient->of[k];
+        if (at.channel == c && inputs >> at.input & 1 && slopes->input[at.input][i] != 0)
+            sum += slopes->gradient[k][i] * slopes->input[at.input][i];
+    }
+    return sum;
+}
+
+/// Sums up how fast a shader's light changes with what it reads: `inputs` of it, a bit each.
+static void sum_up(const shading *s, const glint_gradient *gradient, uint32_t inputs)
 {
     struct glint_shader_slopes *slopes = s->slopes;
     const uint32_t lanes = s->count * GLINT_GROUP;
     memset(slopes->sum, 0, sizeof slopes->sum);
     for (uint32_t k = 0; k < gradient->count; k++) {
-        const double *by = slopes->input[gradient->of[k].input];
-        double *sum = slopes->sum[gradient->of[k].channel];
-        for (uint32_t i = 0; i < lanes && inputs >> gradient->of[k].input & 1; i++)
-            sum[i] += by[i] != 0 ? slopes->gradient[k][i] * by[i] : 0; // what is level may have no slope
+        const double *restrict by = slopes->input[gradient->of[k].input], *restrict slope = slopes->gradient[k];
+        double *restrict sum = slopes->sum[gradient->of[k].channel];
+        if (!(inputs >> gradient->of[k].input & 1))
+            continue;
+        for (uint32_t i = 0; i < lanes; i++)
+            sum[i] += slope[i] * by[i];
     }
-    if (!tangent)
-        return;
+    for (uint32_t c = 0; c < 3; c++)
+        for (uint32_t i = 0; i < lanes; i++)
+            if (!isfinite(slopes->sum[c][i]))
+                slopes->sum[c][i] = sum_lane(slopes, gradient, inputs, c, i);
+}
+
+/// Adds how fast it changes with its own numbers.
+static void add_tangent(const shading *s, const glint_program *tangent)
+{
+    struct glint_shader_slopes *slopes = s->slopes;
     run(s, tangent, slopes->tangent);
     for (uint32_t k = 0; k < tangent->code.output_count; k++)
-        for (uint32_t i = 0; i < lanes; i++)
+        for (uint32_t i = 0; i < s->count * GLINT_GROUP; i++)
             if (slopes->value[k][i] > 0 && slopes->value[k][i] <= GLINT_REFLECTANCE_MAX)
                 slopes->sum[k % 3][i] += slopes->tangent[k][i];
 }
@@ -247,7 +269,10 @@ static void derive(const shading *s, const glint_pattern_points *points)
     if (weighs)
         add_light(s, plan->patterns->of[material].program[GLINT_FIELD_SHADER]->code.output_count);
     for (size_t k = 0; k < all->count; k++) {
-        sum_up(s, &all->gradients[material], find_inputs(s, k), all->of[k].programs[material].of[GLINT_FIELD_SHADER]);
+        const glint_program *tangent = all->of[k].programs[material].of[GLINT_FIELD_SHADER];
+        sum_up(s, &all->gradients[material], find_inputs(s, k));
+        if (tangent)
+            add_tangent(s, tangent);
         add_sums(s, s->tile->derivative->sum[k]);
     }
 }
