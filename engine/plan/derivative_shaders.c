@@ -21,6 +21,21 @@ static uint32_t find_inputs(const glint_plan *plan, const glint_plan_derivative 
     return inputs | (d->materials[material].varies ? REFLECTANCES : 0);
 }
 
+static glint_status find_gradient(glint_plan *plan, const glint_program *shader, uint32_t inputs, glint_gradient *out,
+                                  glint_error *error)
+{
+    glint_error why;
+    const glint_status status = glint_shader_gradient(shader, inputs, out, &why);
+    if (status)
+        return glint_fail(error, status, "derivative '%s': material.model: how fast the shader changes: %s",
+                          plan->derivatives->of[0].name, why.message);
+    for (uint32_t k = 0; k < out->count; k += GLINT_PROGRAM_OUTPUTS_MAX) {
+        const uint32_t rows = out->programs[k / GLINT_PROGRAM_OUTPUTS_MAX]->code.row_count;
+        plan->patterns->row_count = plan->patterns->row_count < rows ? rows : plan->patterns->row_count;
+    }
+    return GLINT_OK;
+}
+
 glint_status glint_derivative_find_gradients(glint_plan *plan, glint_error *error)
 {
     glint_plan_derivatives *all = plan->derivatives;
@@ -36,11 +51,7 @@ glint_status glint_derivative_find_gradients(glint_plan *plan, glint_error *erro
         for (size_t k = 0; k < all->count && shader; k++)
             inputs |= find_inputs(plan, &all->of[k], i);
         if (shader && shader->inputs & inputs)
-            status = glint_shader_gradient(shader, shader->inputs & inputs, &all->gradients[i], error);
-        for (uint32_t k = 0; k < all->gradients[i].count && !status; k += GLINT_PROGRAM_OUTPUTS_MAX) {
-            const uint32_t rows = all->gradients[i].programs[k / GLINT_PROGRAM_OUTPUTS_MAX]->code.row_count;
-            plan->patterns->row_count = plan->patterns->row_count < rows ? rows : plan->patterns->row_count;
-        }
+            status = find_gradient(plan, shader, shader->inputs & inputs, &all->gradients[i], error);
     }
     return status;
 }

@@ -602,6 +602,13 @@ function tests.errors_are_told()
   shaded.camera.eye = { x, 2, 8 }
   raises("derivative 'x': material: what moves or bends has no derivative where materials have patterns or bumps, or shaders that read uv",
     render, shaded, "d:x")
+  local long = glint.material { model = glint.shader(function(q)
+    local a = q.n
+    for i = 1, 200 do a = a + 0.01 * glint.sin(q.l * i + a * q.v) end
+    return a * q.light
+  end) }
+  raises("derivative 'x': material.model: how fast the shader changes: program: at most 4096 instructions", render,
+    scene_of(glint.point_light { position = { x, 4, 3 } }, { material = long }), "d:x")
   local bricks = glint.material { diffuse = glint.pattern(function(p) return p.x end), transmission = glint.pattern(function(p) return p.y end) }
   raises("derivative 'x': material.transmission: light through what a pattern colours", render, scene_of(lamp, { material = bricks }), "d:x")
   moved = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = bricks })
