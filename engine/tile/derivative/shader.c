@@ -97,8 +97,8 @@ static void turn_points(const shading *s, uint32_t e)
     }
 }
 
-/// The slopes of where an entry's points are, how they lie and of what reaches them.
-static void find_entry(const shading *s, size_t index, uint32_t e)
+/// The slopes of where an entry's points are and how they lie, and of how the light comes there, where `arrives`.
+static void find_entry(const shading *s, size_t index, uint32_t e, bool arrives)
 {
     static const int first[3] = { GLINT_INPUT_WORLD_X, GLINT_INPUT_N_X, GLINT_INPUT_V_X };
     double (*bend)[3][GLINT_GROUP] = s->tile->derivative->bend;
@@ -115,6 +115,8 @@ static void find_entry(const shading *s, size_t index, uint32_t e)
             memcpy(s->slopes->input[first[i / 3] + i % 3] + e * GLINT_GROUP, bend[i / 3][i % 3], sizeof bend[i / 3][i % 3]);
         turn_points(s, e);
     }
+    if (!arrives)
+        return;
     find_arrival(s, index, e, &points, &arrival);
     for (int k = 0; k < GLINT_ARRIVAL_COUNT; k++)
         memcpy(s->slopes->input[GLINT_INPUT_L_X + k] + e * GLINT_GROUP, arrival.slope[k], sizeof arrival.slope[k]);
@@ -140,9 +142,10 @@ static uint32_t find_inputs(const shading *s, size_t index)
     const glint_plan_derivative *d = &s->frame->plan->derivatives->of[index];
     const glint_derivative_material *m = &d->materials[s->entries->material];
     double (*input)[GLINT_PROGRAM_LANES] = s->slopes->input;
-    uint32_t found = BITS(GLINT_INPUT_L_X, GLINT_ARRIVAL_COUNT) | (d->bends ? BITS(GLINT_INPUT_P_X, 12) : 0);
-    for (uint32_t e = 0; e < s->count; e++)
-        find_entry(s, index, e);
+    const bool arrives = d->bends || d->lights[s->reach->light->source].varies || s->reach->tinted;
+    uint32_t found = (arrives ? BITS(GLINT_INPUT_L_X, GLINT_ARRIVAL_COUNT) : 0) | (d->bends ? BITS(GLINT_INPUT_P_X, 12) : 0);
+    for (uint32_t e = 0; e < s->count && found; e++)
+        find_entry(s, index, e, arrives);
     for (int c = 0; c < 3; c++) {
         if (find_number(s, index, GLINT_FIELD_DIFFUSE, c, m->diffuse[c].slope, input[GLINT_INPUT_KD_R + c]))
             found |= 1u << (GLINT_INPUT_KD_R + c);
