@@ -184,7 +184,11 @@ void glint_op_apply(glint_op op, const double *operands, double *results);
 /// "p.x", "light.r"; static. NULL: there is no such input.
 const char *glint_input_name(glint_input input);
 
-/// Begins a program. GLINT_ERR_NOMEM; GLINT_ERR_UNSUPPORTED in a build without programs.
+/// Begins a program; the caller destroys the builder. GLINT_ERR_INVALID: no such kind; GLINT_ERR_NOMEM; GLINT_ERR_UNSUPPORTED
+/// in a build without programs.
+///
+/// Its values are the caller's to pass on, and last as long as it. It holds fewer than 65536, numbers and inputs included: the calls
+/// that make one fail with GLINT_ERR_INVALID beyond that, with GLINT_ERR_NOMEM for lack of memory, and have changed nothing then.
 glint_status glint_builder_create(glint_program_kind kind, glint_builder **out, glint_error *error);
 /// NULL does nothing. Programs that were finished stay.
 void glint_builder_destroy(glint_builder *builder);
@@ -215,12 +219,12 @@ glint_status glint_builder_texel(glint_builder *builder, const glint_texture *te
 bool glint_builder_is_number(const glint_builder *builder, glint_value value, double *number);
 /// How many instructions the builder has so far, those that no output needs included.
 size_t glint_builder_length(const glint_builder *builder);
-/// Makes a program that gives these values; the builder may go on.
+/// Makes a program that gives these values; the builder may go on. The caller has a reference to the program, and releases it.
 ///
 /// count  pattern: 1 or 3; shader: 3, the diffuse part, or 6, diffuse and specular.
 ///
-/// GLINT_ERR_INVALID when the program is longer than GLINT_PROGRAM_LENGTH_MAX or needs more rows than
-/// GLINT_PROGRAM_ROWS_MAX.
+/// GLINT_ERR_NOMEM; GLINT_ERR_INVALID for another count, for what is no value of the builder, and when the program is longer
+/// than GLINT_PROGRAM_LENGTH_MAX or needs more rows than GLINT_PROGRAM_ROWS_MAX.
 glint_status glint_builder_finish(glint_builder *builder, const glint_value *outputs, size_t count, glint_program **out,
                                   glint_error *error);
 
