@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#define FEWEST 4096 ///< primitives; among fewer the walk of the index is as quick
+#define FEWEST 256 ///< primitives; among fewer the walk of the index is as quick
 #define SAMPLES_A_PRIMITIVE 0.5 ///< of a frame: with fewer a grid is never made
 #define SAMPLES_AT_ONCE 4.0 ///< with so many, shared by the threads, it saves more in one frame than it takes; with fewer it is
     ///< made in the second frame that finds the light and the geometry where they were

@@ -4,18 +4,22 @@ local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
 
-local WIDTH <const>, HEIGHT <const>, COUNT <const> = 480, 360, 8000
+local WIDTH <const>, HEIGHT <const> = 480, 360
 local PARTS <const> = { { 160, 100, 24, 16 }, { 225, 165, 24, 16 }, { 90, 225, 24, 16 }, { 330, 255, 24, 16 } }
 
--- Small balls above a floor and a few large ones among them.
-local function scene_of(lights)
+-- Small balls above a floor and a few large ones among them: so many that pixels beside each other look into cells of their own, or few
+-- and larger.
+local MANY <const>, FEW <const> = { 8000, 0.045 }, { 900, 0.15 }
+
+local function scene_of(lights, balls)
   local data, state = {}, 7
   local function random()
     state = (state * 1103515245 + 12345) % 2147483648
     return state / 2147483648
   end
-  for _ = 1, COUNT do
-    table.move({ 8 * random() - 4, 3 * random(), 8 * random() - 4, 0.02 + 0.05 * random() }, 1, 4, #data + 1, data)
+  for _ = 1, balls[1] do
+    local radius = balls[2] * (0.44 + 1.12 * random())
+    table.move({ 8 * random() - 4, 3 * random(), 8 * random() - 4, radius }, 1, 4, #data + 1, data)
   end
   local scene = glint.scene {
     camera = glint.camera { eye = { 0, 5, 11 }, at = { 0, 1, 0 }, fov = 40 }, ambient = 0.1,
@@ -30,8 +34,8 @@ end
 
 local function pixel(image, x, y) return ("%a %a %a"):format(image:pixel(x, y)) end
 
-local function check_parts(name, lights)
-  local scene, parts = scene_of(lights), {}
+local function check_parts(name, lights, balls)
+  local scene, parts = scene_of(lights, balls or MANY), {}
   for i, region in ipairs(PARTS) do
     parts[i] = scene:render { width = WIDTH, height = HEIGHT, region = region }
   end
@@ -55,6 +59,10 @@ end
 local tests = {}
 
 function tests.above() check_parts("above", { glint.point_light { position = { 2, 12, 3 } } }) end
+
+function tests.few() check_parts("few", { glint.point_light { position = { 2, 12, 3 } } }, FEW) end
+
+function tests.few_afar() check_parts("few, afar", { glint.directional_light { direction = { -1, -2, -0.5 } } }, FEW) end
 
 function tests.afar() check_parts("afar", { glint.directional_light { direction = { -1, -2, -0.5 } } }) end
 

@@ -1,6 +1,7 @@
-// grid: points of a tile against what their light has in the cells of its own view (glint_light_grid). Each point finds the
-// entries that may block it in one cell, nearest to the light first; what is found is decided a vector at a time, each
-// lane with a sphere of its own, until every point is blocked or has no entry left. Contract: stages.h, occlude.
+// grid: points of a tile against what their light has in the cells of its own view (glint_light_grid). Points of a group that share
+// a cell are tested together, an entry after the other. Of the others each finds the entries that may block it in its cell, nearest
+// to the light first; what is found is decided a vector at a time, each lane with a sphere of its own, until every point is
+// blocked or has no entry left. Contract: stages.h, occlude.
 
 #if GLINT_REAL == 64
 
@@ -18,6 +19,14 @@ typedef struct grid_points {
     uint16_t at[GLINT_TILE_SAMPLES]; ///< number of the sample
 } grid_points;
 
+#define GRID_TOGETHER 12 // points of a group in one cell from which on they are tested together
+
+/// Points of a group that share a cell.
+typedef struct grid_run {
+    uint32_t next, end; ///< the cell's entries
+    uint16_t lanes, group;
+} grid_run;
+
 /// Pairs of a point and the sphere that it is tested against.
 typedef struct grid_pairs {
     uint32_t count;
@@ -34,24 +43,31 @@ typedef struct grid_places {
     unsigned known; ///< lanes whose numbers mean something
 } grid_places;
 
+/// The tile's places and runs.
+typedef struct grid_runs {
+    grid_places places[GLINT_TILE_GROUPS];
+    uint32_t count;
+    grid_run run[GLINT_TILE_GROUPS];
+} grid_runs;
+
 /// VD lanes from i on.
 static void grid_place_lanes(const glint_occlude_args *args, size_t at, int i, grid_places *out)
 {
     const glint_light_grid *grid = args->grid;
     const vd one = d_set(1);
-    vd x[3], seen[3], size = d_set(0), reach = one;
+    vd x[3], seen[3], size = d_set(0), reach = one, per_w = one;
     for (int k = 0; k < 3; k++)
         x[k] = d_load((const double *)args->point[k] + at + i) - d_set(grid->origin[k]);
     for (int j = 0; j < 3; j++) {
         seen[j] = (d_set(grid->axis[j][0]) * x[0] + d_set(grid->axis[j][1]) * x[1]) + d_set(grid->axis[j][2]) * x[2];
         size = size + abs_f64(seen[j]);
     }
+    if (!grid->directional)
+        per_w = one / seen[2];
     for (int j = 0; j < 2; j++) {
-        vd place = seen[j];
-        if (!grid->directional) {
-            place = place / seen[2];
+        const vd place = seen[j] * per_w;
+        if (!grid->directional)
             reach = reach + place * place;
-        }
         d_store_f(out->place[j] + i, place);
     }
     d_store_f(out->w + i, seen[2]);
@@ -79,6 +95,7 @@ static unsigned grid_cells(const glint_light_grid *grid, grid_places *places)
             f_store(places->place[j] + i, (x - (grid_biased(cell[j]) - bias)) * f_set(GLINT_GRID_STEPS) + aside);
         }
         f_store(places->w + i, (w - f_set(grid->nearest)) * f_set(grid->slices) + bias);
+        f_store(places->reach + i, f_load(places->reach + i) * f_set(GRID_REACH));
         i_store(places->cell + i, i_or(i_shl(cell[1], 16), cell[0])); // a row and a column
         inside |= fm_bits(in) << i;
     }
@@ -106,34 +123,62 @@ static inline void grid_prefetch(const glint_light_grid *grid, uint32_t entry)
     __builtin_prefetch(grid->size + entry);
 }
 
-/// Adds the open points of a group that may be blocked. False: some place is not known.
-static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_points *points)
+/// The entries of a lane's cell, which are on their way then.
+static grid_run grid_look_up(const glint_light_grid *grid, const grid_places *places, unsigned lane)
 {
-    const glint_light_grid *grid = args->grid;
-    const size_t at = (size_t)g * GLINT_GROUP;
-    grid_places places;
-    places.known = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VD)
-        grid_place_lanes(args, at, i, &places);
-    if (args->open[0][g] & ~places.known)
-        return false;
-    args->open[0][g] &= (uint16_t)~grid_own(args, at, args->open[0][g] & args->back[g]);
-    for (unsigned left = args->open[0][g] & grid_cells(grid, &places); left; left &= left - 1) {
-        const unsigned lane = (unsigned)__builtin_ctz(left);
-        const uint32_t cell = (places.cell[lane] >> 16) * grid->count[0] + (places.cell[lane] & 0xffff), k = points->count;
-        points->next[k] = grid->begin[cell];
-        points->end[k] = grid->begin[cell + 1];
-        if (points->next[k] == points->end[k])
+    const uint32_t cell = (places->cell[lane] >> 16) * grid->count[0] + (places->cell[lane] & 0xffff);
+    const grid_run run = { .next = grid->begin[cell], .end = grid->begin[cell + 1] };
+    if (run.next < run.end)
+        grid_prefetch(grid, run.next);
+    return run;
+}
+
+/// Adds lanes of a group one by one.
+static void grid_add_points(const glint_light_grid *grid, const grid_places *places, uint32_t g, unsigned lanes, grid_points *points)
+{
+    for (; lanes; lanes &= lanes - 1) {
+        const uint32_t lane = (unsigned)__builtin_ctz(lanes), k = points->count;
+        const grid_run run = grid_look_up(grid, places, lane);
+        if (run.next == run.end)
             continue;
-        grid_prefetch(grid, points->next[k]);
-        points->place[0][k] = places.place[0][lane];
-        points->place[1][k] = places.place[1][lane];
-        points->near[k] = places.w[lane];
-        points->reach[k] = places.reach[lane] * GRID_REACH;
-        points->at[k] = (uint16_t)(at + lane);
+        points->next[k] = run.next;
+        points->end[k] = run.end;
+        points->place[0][k] = places->place[0][lane];
+        points->place[1][k] = places->place[1][lane];
+        points->near[k] = places->w[lane];
+        points->reach[k] = places->reach[lane];
+        points->at[k] = (uint16_t)(g * GLINT_GROUP + lane);
         points->live[k] = (uint16_t)k;
         points->count++;
     }
+}
+
+/// Adds the open points of a group that may be blocked. False: some place is not known.
+static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_runs *runs, grid_points *points)
+{
+    const glint_light_grid *grid = args->grid;
+    const size_t at = (size_t)g * GLINT_GROUP;
+    grid_places *places = &runs->places[g];
+    places->known = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VD)
+        grid_place_lanes(args, at, i, places);
+    if (args->open[0][g] & ~places->known)
+        return false;
+    args->open[0][g] &= (uint16_t)~grid_own(args, at, args->open[0][g] & args->back[g]);
+    const unsigned left = args->open[0][g] & grid_cells(grid, places);
+    if (!left)
+        return true;
+    const unsigned first = (unsigned)__builtin_ctz(left), same = left & lanes_equal(places->cell, places->cell[first]);
+    if (__builtin_popcount(same) < GRID_TOGETHER) {
+        grid_add_points(grid, places, g, left, points);
+        return true;
+    }
+    grid_run run = grid_look_up(grid, places, first);
+    run.lanes = (uint16_t)same;
+    run.group = (uint16_t)g;
+    if (run.next < run.end)
+        runs->run[runs->count++] = run;
+    grid_add_points(grid, places, g, left & ~same, points);
     return true;
 }
 
@@ -141,19 +186,30 @@ static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_poin
 
 static inline vi grid_load(const uint32_t *p) { return f_bits(f_load_any((const float *)p)); }
 
+/// An entry's place along an axis, as a point has it: the lower 16 bits.
+static inline vf grid_step(vi place) { return grid_biased(i_and(place, i_set(0xffff))); }
+
+/// Whether the squares of a distance in steps are within an entry's reach.
+static inline fm grid_within(vi size, vf du, vf dv, vf reach)
+{
+    const vf radius = grid_biased(i_and(size, i_set((1u << GLINT_GRID_RADIUS_BITS) - 1))) - f_set(GRID_BIAS);
+    return f_le(du * du + dv * dv, radius * radius * reach);
+}
+
+/// Whether an entry may block a point of this w, by depth.
+static inline fm grid_before(vi size, vf w) { return f_le(grid_biased(i_shr(size, GLINT_GRID_RADIUS_BITS)), w); }
+
 /// The next entry that may block point k, whose own primitive is `own`; GLINT_MISS: none.
 static uint32_t grid_next(const glint_light_grid *grid, const grid_points *points, uint32_t k, uint32_t own)
 {
     const uint32_t end = points->end[k];
     const vf u = f_set(points->place[0][k]), v = f_set(points->place[1][k]), reach = f_set(points->reach[k]);
-    const vf w = f_set(points->near[k]), bias = f_set(GRID_BIAS);
+    const vf w = f_set(points->near[k]);
     for (uint32_t from = points->next[k]; from < end; from += VF) {
         const unsigned there = end - from < VF ? (1u << (end - from)) - 1 : (1u << VF) - 1;
         const vi place = grid_load(grid->place + from), size = grid_load(grid->size + from);
-        const vf du = grid_biased(i_and(place, i_set(0xffff))) - u, dv = grid_biased(i_shr(place, 16)) - v;
-        const vf radius = grid_biased(i_and(size, i_set((1u << GLINT_GRID_RADIUS_BITS) - 1))) - bias;
-        const unsigned before = fm_bits(f_le(grid_biased(i_shr(size, GLINT_GRID_RADIUS_BITS)), w)) & there;
-        unsigned near = before & fm_bits(f_le(du * du + dv * dv, radius * radius * reach));
+        const unsigned before = fm_bits(grid_before(size, w)) & there;
+        unsigned near = before & fm_bits(grid_within(size, grid_step(place) - u, grid_step(i_shr(place, 16)) - v, reach));
         for (; near; near &= near - 1)
             if (grid->id[from + (unsigned)__builtin_ctz(near)] != own)
                 return from + (unsigned)__builtin_ctz(near);
@@ -238,6 +294,81 @@ static void grid_decide(const glint_occlude_args *args, const grid_pairs *pairs,
     }
 }
 
+// ---- Points of one cell ----
+
+/// Bounds of a run's places.
+typedef struct grid_bounds {
+    vf least[2], most[2], w, reach; ///< one number in all lanes
+} grid_bounds;
+
+static inline grid_bounds grid_bound(const grid_places *places, unsigned lanes)
+{
+    const float *const of[4] = { places->place[0], places->place[1], places->w, places->reach };
+    vf least[4], most[4];
+    for (int j = 0; j < 4; j++) {
+        least[j] = f_set(HUGE_VALF);
+        most[j] = f_set(-HUGE_VALF);
+        widen(of[j], lanes, &least[j], &most[j]);
+        least[j] = f_set(f_min_all(least[j]));
+        most[j] = f_set(f_max_all(most[j]));
+    }
+    return (grid_bounds) { { least[0], least[1] }, { most[0], most[1] }, most[2], most[3] };
+}
+
+/// Steps from a place to the next one within bounds.
+static inline vf grid_beside(vf place, vf least, vf most) { return f_max(f_max(least - place, place - most), f_set(0)); }
+
+/// The lanes of `open`, all in the cell of an entry, that its sphere keeps from the light.
+static unsigned grid_entry_blocks(const shadow_tile_f64 *tile, const grid_places *places, size_t at, uint32_t entry, unsigned open)
+{
+    const glint_occlude_args *args = tile->args;
+    const glint_light_grid *grid = args->grid;
+    const vi place = i_set(grid->place[entry]), size = i_set(grid->size[entry]);
+    const vf u = grid_step(place), v = grid_step(i_shr(place, 16));
+    const light_sides_f64 sides = { 0xffff, 0 };
+    unsigned near = 0, blocked = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const fm within = grid_within(size, u - f_load(places->place[0] + i), v - f_load(places->place[1] + i), f_load(places->reach + i));
+        near |= fm_bits(fm_and(within, grid_before(size, f_load(places->w + i)))) << i;
+    }
+    near &= open & ~lanes_equal(args->prim + at, grid->id[entry]);
+    if (!near)
+        return 0;
+    const glint_prim *prim = &args->geometry->prims[grid->id[entry]];
+    const ball_f64 ball = ball_of_f64(prim);
+    count_tests(args->tests, near);
+    for (int i = 0; i < GLINT_GROUP; i += VD) {
+        vd d[3];
+        if (!(near >> i & ((1u << VD) - 1)))
+            continue;
+        directions_to_f64(args, tile->position, at, i, d);
+        blocked |= lanes_blocked_f64(args, prim, &ball, sides, at, i, d) << i;
+    }
+    return blocked & near;
+}
+
+/// Tests a run's points against its cell's entries.
+static void grid_test_run(const shadow_tile_f64 *tile, const grid_places *places, const grid_run *run)
+{
+    const glint_light_grid *grid = tile->args->grid;
+    const grid_bounds bounds = grid_bound(places, run->lanes);
+    unsigned open = run->lanes;
+    for (uint32_t from = run->next; from < run->end && open; from += VF) {
+        const unsigned there = run->end - from < VF ? (1u << (run->end - from)) - 1 : (1u << VF) - 1;
+        const vi place = grid_load(grid->place + from), size = grid_load(grid->size + from);
+        const vf du = grid_beside(grid_step(place), bounds.least[0], bounds.most[0]);
+        const vf dv = grid_beside(grid_step(i_shr(place, 16)), bounds.least[1], bounds.most[1]);
+        const unsigned before = fm_bits(grid_before(size, bounds.w)) & there;
+        for (unsigned near = before & fm_bits(grid_within(size, du, dv, bounds.reach)); near && open; near &= near - 1)
+            open &= ~grid_entry_blocks(tile, places, (size_t)run->group * GLINT_GROUP, from + (unsigned)__builtin_ctz(near), open);
+        if (grid->sorted && before != there) // what follows is behind the points
+            break;
+    }
+    tile->args->open[0][run->group] &= (uint16_t)~(run->lanes & ~open);
+}
+
+// ---- All ----
+
 /// Takes out of args->open what is blocked by primitives that are in no cell.
 static void grid_others(const shadow_tile_f64 *tile, shadow_group_f64 *group)
 {
@@ -262,11 +393,14 @@ static bool occlude_grid(const shadow_tile_f64 *tile, shadow_group_f64 *group)
     const glint_occlude_args *args = tile->args;
     grid_points points;
     grid_pairs pairs;
+    grid_runs runs;
     grid_others(tile, group);
-    points.count = 0;
+    points.count = runs.count = 0;
     for (uint32_t g = 0; g < args->group_count; g++)
-        if (args->open[0][g] && !grid_add_group(args, g, &points))
+        if (args->open[0][g] && !grid_add_group(args, g, &runs, &points))
             return false;
+    for (uint32_t i = 0; i < runs.count && !is_stopped(args->stop); i++)
+        grid_test_run(tile, &runs.places[runs.run[i].group], &runs.run[i]);
     points.live_count = points.count;
     while (points.live_count && !is_stopped(args->stop)) {
         grid_pair(args, &points, &pairs);
