@@ -103,19 +103,34 @@ static void take_all(glint_batch *batch, const glint_tile_frame *frame)
         glint_tile_see_lights(tile, frame, tile->active);
 }
 
-/// Moves what ray i has met to sample `to`.
-static void move_hit(glint_batch *batch, glint_precision precision, uint32_t i, uint32_t to)
+/// Gives ray i sample `to`.
+static void give_sample(glint_batch *batch, uint32_t i, uint32_t to)
+{
+    batch->sample[i] = (uint16_t)to;
+    batch->ray_of[to] = (uint16_t)i;
+}
+
+/// Takes the numbers that rays have, of an array of real, to their samples.
+static void take_reals(const uint16_t *ray_of, uint32_t count, glint_precision precision, const void *from, void *to)
+{
+    for (uint32_t n = 0; n < count && precision == GLINT_DOUBLE; n++)
+        ((double *)to)[n] = ((const double *)from)[ray_of[n]];
+    for (uint32_t n = 0; n < count && precision == GLINT_FLOAT; n++)
+        ((float *)to)[n] = ((const float *)from)[ray_of[n]];
+}
+
+/// Moves what rays have met to the first `count` samples, of which those that no ray has get anything.
+static void move_hits(glint_batch *batch, glint_precision precision, uint32_t count)
 {
     glint_tile *tile = &batch->tile;
     const glint_rays *rays = batch->rays;
     for (int c = 0; c < 3; c++) {
-        glint_real_put(tile->rays.origin[c], precision, to, glint_real_at(rays->origin[c], precision, i));
-        glint_real_put(tile->rays.direction[c], precision, to, glint_real_at(rays->direction[c], precision, i));
+        take_reals(batch->ray_of, count, precision, rays->origin[c], tile->rays.origin[c]);
+        take_reals(batch->ray_of, count, precision, rays->direction[c], tile->rays.direction[c]);
     }
-    glint_real_put(tile->at.t, precision, to, glint_real_at(batch->t, precision, i));
-    tile->at.prim[to] = batch->prim[i];
-    batch->sample[i] = (uint16_t)to;
-    batch->ray_of[to] = (uint16_t)i;
+    take_reals(batch->ray_of, count, precision, batch->t, tile->at.t);
+    for (uint32_t n = 0; n < count; n++)
+        tile->at.prim[n] = batch->prim[batch->ray_of[n]];
 }
 
 /// Marks the samples that hits have been moved to. next: of each lane, the first without one.
@@ -141,15 +156,18 @@ static void mark_hits(glint_tile *tile, const uint32_t next[GLINT_GROUP])
 /// Rays that meet something get the first samples of their lane, by which area lights choose their points.
 static void pack_lanes(glint_batch *batch, glint_precision precision)
 {
-    uint32_t next[GLINT_GROUP];
+    uint32_t next[GLINT_GROUP], end = 0;
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
         next[lane] = lane;
+    memset(batch->ray_of, 0, batch->rays->group_count * GLINT_GROUP * sizeof *batch->ray_of); // some keep that
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
         for (unsigned left = batch->met[g]; left; left &= left - 1) {
             const uint32_t lane = (uint32_t)__builtin_ctz(left);
-            move_hit(batch, precision, g * GLINT_GROUP + lane, next[lane]);
+            give_sample(batch, g * GLINT_GROUP + lane, next[lane]);
+            end = next[lane] >= end ? next[lane] + 1 : end;
             next[lane] += GLINT_GROUP;
         }
+    move_hits(batch, precision, end);
     mark_hits(&batch->tile, next);
 }
 
@@ -169,7 +187,8 @@ static void pack(glint_batch *batch, const glint_tile_frame *frame)
     for (uint32_t k = 1; k < kinds; k++)
         first[k] += first[k - 1];
     for (uint32_t n = 0; n < count; n++)
-        move_hit(batch, frame->plan->desc.precision, from[n], first[batch->prim[from[n]] % kinds]++);
+        give_sample(batch, from[n], first[batch->prim[from[n]] % kinds]++);
+    move_hits(batch, frame->plan->desc.precision, count);
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
         next[lane] = lane + (count + GLINT_GROUP - 1 - lane) / GLINT_GROUP * GLINT_GROUP;
     mark_hits(&batch->tile, next);
@@ -438,8 +457,10 @@ void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const g
     const double mirrored = m->fresnel ? glint_real_at(batch->reflectance, precision, i) : 1;
     glint_batch_start_ray(batch, tile, frame, i, mirror);
     mirror->depth++;
-    if (m->transmits)
-        *through = *mirror;
+    if (m->transmits) { // not a copy of what was just written number by number, which processors wait for
+        glint_batch_start_ray(batch, tile, frame, i, through);
+        through->depth++;
+    }
     send(mirror, batch->reflected, precision, i, m->mirror, mirrored);
     mirror->inward = back;
     if (!m->transmits) { // a mirror alone

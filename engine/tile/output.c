@@ -246,7 +246,7 @@ void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
     store_coverage(tile, frame);
     store_refined(tile, frame);
     for (int k = GLINT_TERM_LOCAL; k < GLINT_TERM_COUNT; k++)
-        if (!glint_plan_has_term(frame->plan, (glint_term)k) &&
+        if ((tile->direct || !glint_plan_has_term(frame->plan, (glint_term)k)) &&
             frame->plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1)
             memset(tile->film.terms[k], 0, sizeof tile->film.terms[k]);
     glint_tile_store_pass(tile, frame, GLINT_PASS_BEAUTY, tile->film.beauty[0]);

@@ -76,12 +76,44 @@ static void run_shaders(glint_tile *tile, const glint_tile_frame *frame, uint32_
     glint_tile_shader(tile, frame, seen, count);
 }
 
+/// Whether all light of the tile's only sample is what one call of shade makes: nothing in sight sends rays on, and none is kept from a
+/// light, which might come through something. Hits are known, materials named, shadows found.
+static bool is_direct(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    static const glint_stage_id adding[] = { GLINT_STAGE_VISIBLE_LIGHT, GLINT_STAGE_DEPTH_CUE, GLINT_STAGE_SHADER,
+                                             GLINT_STAGE_ENVIRONMENT };
+    unsigned any = 0;
+    for (size_t i = 0; i < sizeof adding / sizeof *adding; i++)
+        if (plan->runs[adding[i]])
+            return false;
+    if (!plan->accumulate || plan->desc.samples > 1 || plan->light_count > GLINT_LIGHT_CHUNK || plan->derivatives)
+        return false;
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        any |= tile->at.hits[g];
+    return !any || !(plan->dims || plan->runs[GLINT_STAGE_INDIRECT] || plan->runs[GLINT_STAGE_VERTEX] ||
+                     (plan->runs[GLINT_STAGE_BOUNCE] && glint_tile_sends_on(tile, frame)) ||
+                     (plan->tints && glint_tile_is_shadowed(tile, plan, 0, plan->light_count)));
+}
+
+/// Before the first call for what the eye sees: the sums that it adds to, where it does.
+static void begin_sums(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    tile->direct = is_direct(tile, frame);
+    for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate && !tile->direct; k++)
+        if (glint_plan_has_term(plan, (glint_term)k))
+            memset(tile->film.sum[k], 0, sizeof tile->film.sum[k]);
+}
+
 void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count)
 {
     const glint_plan *plan = frame->plan;
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
     uint16_t whole[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS], unlit[GLINT_TILE_GROUPS];
     glint_shade_planes planes;
+    if (!tile->batch && tile->sample == 0 && from == 0)
+        begin_sums(tile, frame);
     glint_shade_args args = glint_tile_shade_args(tile, frame, from, count, lights, &planes);
     const bool dims = plan->dims && count > 0 && glint_tile_find_dim(tile, frame);
     for (uint32_t i = 0; i < count && dims; i++) { // no light is summed
@@ -95,7 +127,7 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         args.active = glint_tile_unlit_lanes(tile, unlit);
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         for (int c = 0; c < 3; c++)
-            args.sum[k][c] = plan->accumulate ? tile->film.sum[k][c] : NULL;
+            args.sum[k][c] = plan->accumulate && !tile->direct ? tile->film.sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
     if (count > 0 && glint_tile_shows_shader(tile, plan))
         run_shaders(tile, frame, from, count, lights);

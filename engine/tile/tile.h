@@ -156,6 +156,7 @@ typedef struct glint_tile {
     glint_cached_tile *cached; ///< NULL: nothing is kept for this tile
     bool anew; ///< its hits are found, though they are kept
     bool timed; ///< this frame's time tells whether that is quicker
+    bool direct; ///< its only sample gets no light but what shade makes, without sums
     uint64_t begun; ///< of such a frame
 
     uint32_t x0, y0, width, height; ///< of the part of the tile inside the image

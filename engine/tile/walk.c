@@ -355,7 +355,7 @@ static void find_rest(glint_tile *tile, const glint_tile_frame *frame, walk *w, 
         find_shading_points(tile, frame, w);
     if (any && runs[GLINT_STAGE_INDIRECT])
         find_indirect(tile, frame, w);
-    if (any && runs[GLINT_STAGE_BOUNCE])
+    if (any && runs[GLINT_STAGE_BOUNCE] && !tile->direct)
         find_bounces(tile, frame, w);
     if (runs[GLINT_STAGE_DEPTH_CUE] && frame->plan->derivatives)
         glint_derive_fade(tile, frame);
@@ -394,7 +394,7 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
             glint_tile_shade(tile, frame, from, count);
         if (frame->plan->derivatives)
             derive(tile, frame, &w, any, from, count);
-        if (frame->plan->tints)
+        if (frame->plan->tints && !tile->direct)
             find_transparent_shadows(tile, frame, &w, from, count);
         from += count;
     } while (from < lights && !glint_tile_cancelled(frame));
@@ -432,8 +432,7 @@ static void tone(glint_tile *tile, const glint_tile_frame *frame)
     tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - start;
 }
 
-/// The tile into the image. Light that nothing reads is not stored: of a base that is codes, only where some is clipped, which is to be
-/// counted again when a part of it is refined.
+/// The tile into the image. A base that is codes leaves light only where some is clipped, which is counted again where it is refined.
 static void store(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before)
 {
     const bool in_codes = frame->plan->is_base && frame->refine->in_codes;
@@ -458,9 +457,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     }
     if (plan->runs[GLINT_STAGE_TONE])
         glint_tile_prefetch_codes(tile, frame->image);
-    for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate && !plan->together; k++)
-        if (glint_plan_has_term(plan, (glint_term)k))
-            memset(tile->film.sum[k], 0, sizeof tile->film.sum[k]);
+    tile->direct = false;
     if (plan->lens && !plan->is_base && glint_tile_wants_geometry(plan))
         find_geometry(tile, frame);
     const bool refined = !frame->base || glint_tile_choose_refined(tile, frame);
@@ -474,7 +471,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
         glint_tile_take_faded(tile, plan);
     if (plan->together && refined)
         glint_tile_resolve_samples(tile, frame);
-    else if (plan->accumulate && refined)
+    else if (plan->accumulate && refined && !tile->direct)
         glint_tile_resolve(tile, frame);
     if (plan->derivatives)
         glint_tile_store_derivatives(tile, frame);

@@ -467,4 +467,38 @@ local fresh = frames "--no-reuse"
 for _, way in ipairs { "", "-t 1", "-t 3 --samples 1" } do check(frames(way) == fresh, "reused as fresh, %s", way) end
 os.remove(path)
 
+-- ---- What a mirror or glass elsewhere leaves alone ----
+
+-- Pixels that show no mirror and whose light nothing dims have the same bits with a mirror or glass in the frame as without,
+-- in tiles that show it and in tiles that do not.
+local LIGHT = { "beauty", "background", "ambient", "diffuse", "specular", "mirror", "transmission" }
+local function with_ball(of, samples)
+  local scene = glint.scene {
+    camera = glint.camera { eye = { 0, 3, 9 }, at = { 0, 0.6, 0 }, fov = 40 }, ambient = 0.1, background = { 0.2, 0.3, 0.5 },
+    glint.point_light { position = { 4, 6, 5 } }, glint.point_light { position = { -3, 5, 4 }, color = { 0.3, 0.4, 0.1 } },
+    glint.disk_light { position = { 0, 7, 2 }, normal = { 0, -1, 0 }, radius = 0.5, samples = 4, intensity = 0.5 },
+    floor(glint.material { diffuse = { 0.7, 0.5, 0.2 }, specular = 0.3, shininess = 20 }),
+    ball(0.8, glint.material { diffuse = { 0.1, 0.5, 0.7 }, specular = 0.6 }, { -1.6, 0.8, 0 }), ball(0.7, of, { 2.2, 0.7, 1 }),
+  }
+  return scene:render { width = 130, height = 90, samples = samples, output = "none", passes = table.concat(LIGHT, ",") .. ",object_id" }
+end
+for _, samples in ipairs { 1, 3 } do
+  local plain = with_ball(material { diffuse = 0.3 }, samples)
+  for name, of in pairs { mirror = material { diffuse = 0.3, mirror = 0.5 }, glass = glass(1, { diffuse = 0.3, transmission = 0.5 }) } do
+    local picture, shown, changed = with_ball(of, samples), 0, 0
+    for y = 0, 89 do
+      for x = 0, 129 do
+        local is_shown, equal = plain:pixel(x, y, "object_id") == 3, true
+        for _, pass in ipairs(LIGHT) do
+          local a, b = { plain:pixel(x, y, pass) }, { picture:pixel(x, y, pass) }
+          equal = equal and a[1] == b[1] and a[2] == b[2] and a[3] == b[3]
+        end
+        shown, changed = shown + (is_shown and 1 or 0), changed + ((is_shown or equal) and 0 or 1)
+      end
+    end
+    local most = name == "glass" and 400 or samples > 1 and 40 or 0 -- its shadow; pixels that show a part of it
+    check(shown > 300 and changed <= most, "%s, %d samples: of %d other pixels %d changed", name, samples, 130 * 90 - shown, changed)
+  end
+end
+
 tally.finish()
