@@ -106,14 +106,13 @@ static bool shows_geometry(const glint_tile *tile, const glint_tile_frame *frame
     return plan->lens && !plan->is_base ? !tile->camera.lens : !frame->base;
 }
 
-/// Whether the points and what the light does there can be found in one: of spheres, planes and one plain lamp, where
-/// bumps do not turn normals. Where stages are timed, each runs by itself.
+/// Whether the points and what the light does there can be found in one: of one plain lamp, where bumps do not turn
+/// normals. Where stages are timed, each runs by itself.
 static bool is_plain(const glint_tile_frame *frame, const walk *w)
 {
     const glint_plan *plan = frame->plan;
     return !w->points && !frame->time_stages && !plan->derivatives && !glint_plan_bumps(plan) && plan->light_count == 1 &&
-           !plan->lights[0].light_samples && !plan->lights[0].is_spot && !frame->geometry.triangles &&
-           !frame->geometry.solids;
+           !plan->lights[0].light_samples && !plan->lights[0].is_spot;
 }
 
 /// Stores the picture's geometry where this walk has it to store.
@@ -196,11 +195,14 @@ static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     glint_tile_view(tile, frame);
 }
 
-/// Whether a stage after the light is likely to read normals.
-static bool wants_normals(const glint_plan *plan, const walk *w)
+/// Whether the light leaves normals: where a stage after it is likely to read them, and of triangles and solids, since they
+/// cost little beside these.
+static bool wants_normals(const glint_tile_frame *frame, const walk *w)
 {
+    const glint_plan *plan = frame->plan;
     return w->shows || glint_pattern_needs_normals(plan) || plan->runs[GLINT_STAGE_INDIRECT] ||
-           plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || plan->dims;
+           plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || plan->dims || frame->geometry.triangles ||
+           frame->geometry.solids;
 }
 
 /// Which lights a light's samples, or several that are alike, leave to be found: `shine` and `occlude` get their slots.
@@ -244,7 +246,7 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
     const glint_plan_light *lights = &frame->plan->lights[first];
     light_work work = find_light_work(tile, frame, w, first, slot, count);
     if (work.shining && is_plain(frame, w)) {
-        const bool normals = wants_normals(frame->plan, w);
+        const bool normals = wants_normals(frame, w);
         need_rays(tile, frame, w);
         glint_tile_find_lit_surfaces(tile, frame, first, normals);
         w->lit = true;

@@ -149,18 +149,24 @@ static void leave_triangle(ray_case *c, uint32_t i, const glint_prim *prim)
     put3(c->direction, c->precision, i, direction);
 }
 
+/// Makes the scene anew, with triangles or solids.
+static void mix_scene(ray_case *c, bool triangles, bool solids)
+{
+    free_scene(c->scene);
+    c->plan.triangles = triangles;
+    c->plan.solids = solids;
+    c->scene = random_scene(&c->plan);
+    c->cast.geometry = &c->scene->table;
+}
+
 /// Rays that start on the primitives, some of them into the inside.
 static void leaving_case(int precision, bool odd)
 {
     (void)odd;
     ray_case c;
     start_rays(&c, RAYS_FREE, precision);
-    if (precision == GLINT_DOUBLE && one_in(2)) { // triangles in float: see test_stages_occlude.c
-        free_scene(c.scene);
-        c.plan.triangles = true;
-        c.scene = random_scene(&c.plan);
-        c.cast.geometry = &c.scene->table;
-    }
+    if (precision == GLINT_DOUBLE && one_in(2)) // triangles in float: see test_stages_occlude.c
+        mix_scene(&c, true, false);
     const uint32_t n = c.cast.group_count * GLINT_GROUP;
     uint32_t *leaving = input(KIND_U32, n);
     for (uint32_t i = 0; i < n; i++) {
@@ -515,14 +521,19 @@ static void make_hits(ray_case *c, bool odd)
 }
 
 /// What surface reads; returns how many lanes there are.
-static uint32_t make_surface_case(ray_case *c, glint_surface_args *args, int precision, bool odd)
+static uint32_t make_surface_case(ray_case *c, glint_surface_args *args, int precision, bool odd, bool mixed)
 {
     start_rays(c, (ray_kind)below(RAY_KINDS), precision);
+    if (mixed)
+        mix_scene(c, one_in(2), one_in(2));
     make_hits(c, odd);
     *args = (glint_surface_args) { .group_count = c->cast.group_count,
                                    .hits = c->cast.hits,
                                    .prim = c->cast.prim,
                                    .prims = c->scene->prims,
+                                   .mixed = c->plan.triangles || c->plan.solids,
+                                   .scale = c->scene->table.scale,
+                                   .solids = c->scene->solids,
                                    .camera = c->kind == RAYS_OF_EYE ? &c->camera : NULL,
                                    .t = c->cast.t };
     memcpy(args->origin, c->origin, sizeof args->origin);
@@ -535,6 +546,7 @@ static void ask_surface(glint_surface_args *args, uint32_t n)
     args->material = output("material", KIND_U32, n);
     args->back = output("back", KIND_U16, args->group_count);
     args->dark = output("dark", KIND_U16, args->group_count);
+    args->slack = args->mixed ? output("slack", KIND_DOUBLE, n) : NULL;
 }
 
 static void put_box(const glint_point_box *box)
@@ -546,12 +558,15 @@ static void put_box(const glint_point_box *box)
     *only = box->only;
 }
 
+/// Triangles and solids are asked where rays have met them.
+static bool may_mix(int precision, bool odd) { return precision == GLINT_DOUBLE && !odd && one_in(2); }
+
 static void surface_case(int precision, bool odd)
 {
     ray_case c;
     glint_surface_args args;
     glint_point_box box;
-    const uint32_t n = make_surface_case(&c, &args, precision, odd);
+    const uint32_t n = make_surface_case(&c, &args, precision, odd, may_mix(precision, odd));
     args.box = one_in(2) ? &box : NULL;
     FOR_EACH_TESTED
     {
@@ -574,7 +589,7 @@ static void points_case(int precision, bool odd)
     static uint16_t back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
     ray_case c;
     glint_surface_args args;
-    const uint32_t n = make_surface_case(&c, &args, precision, odd);
+    const uint32_t n = make_surface_case(&c, &args, precision, odd, false);
     args.material = material;
     args.back = back;
     args.dark = dark;
@@ -639,7 +654,7 @@ static void lit_surface_case(int precision, bool odd)
     glint_surface_args args;
     glint_light_args light;
     glint_point_box box;
-    const uint32_t n = make_surface_case(&c, &args, precision, odd);
+    const uint32_t n = make_surface_case(&c, &args, precision, odd, may_mix(precision, odd));
     args.box = &box;
     args.all_normals = one_in(2);
     make_lamp(&c, &light);
@@ -649,7 +664,7 @@ static void lit_surface_case(int precision, bool odd)
     }
     FOR_EACH_TESTED
     {
-        if (args.all_normals)
+        if (args.all_normals || args.mixed)
             output3(args.normal, "normal", real_kind(precision), n);
         memcpy(light.normal, args.normal, sizeof args.normal);
         output3(args.point, "point", real_kind(precision), n);

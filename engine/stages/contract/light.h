@@ -90,8 +90,8 @@ typedef struct glint_light_args {
 
 // ---- lit_surface: surface and the light of a plain lamp in one ----
 //
-// surface and then light of the same groups, with three differences: there are spheres and planes alone, a light without
-// samples and without a cone, and normals may be left out but where `all_normals` is set.
+// surface and then light of the same groups, with two differences: of a light without samples and without a cone alone, and
+// normals may be left out but where `all_normals` or `mixed` is set.
 
 // ---- facet: how a light's half vector lies, for materials of microfacets ----
 

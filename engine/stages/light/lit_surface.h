@@ -17,9 +17,9 @@ typedef struct R(lit_call) {
     bool scaled;
 } R(lit_call);
 
-/// VR lanes of it, of a sphere near the eye or of a plane; `sphere` and `normals` are constants.
+/// VR lanes of it, of a sphere near the eye or of a plane; `sphere`, `normals` and `slack` are constants.
 INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args *light, const R(lit_call) * call,
-                       const bool sphere, const bool normals, const glint_shade_material *material,
+                       const bool sphere, const bool normals, const bool slack, const glint_shade_material *material,
                        R(group_directions) directions, size_t at, int j, R(point_box) * box, R(lit_whole) * whole)
 {
     const R(seen_prim) *seen = &call->walk.seen;
@@ -36,6 +36,8 @@ INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args
     }
     if (surface->box)
         R(enclose)(box, p, true, rm_from_bits(0));
+    if (slack)
+        r_store((real *)surface->slack + at + i, r_set(-GLINT_POINT_SLACK) * R(largest)(p));
     const vr away = DOT(n, d), l2 = DOT(l, l);
     const rm back = r_lt(r_set(0), away);
     for (int k = 0; normals && k < 3; k++)
@@ -115,10 +117,11 @@ INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * w
     }
 }
 
-/// A group that shows one primitive in every lane, and that from where it is not dark: the common case. Returns whether
-/// it is one. normals: surface->all_normals, a constant.
+/// A group that shows one sphere or plane in every lane, and that from where it is not dark: the common case. Returns whether
+/// it is one. mixed: surface->mixed; normals: whether all are wanted; both constants.
 INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
-                          const bool normals, R(group_place) place, R(point_box) * box, vf *brightest)
+                          const bool mixed, const bool normals, R(group_place) place, R(point_box) * box,
+                          vf *brightest)
 {
     const size_t at = (size_t)place.g * GLINT_GROUP;
     if (!surface->camera || (surface->hits[place.g] & light->hits[place.g]) != 0xffff)
@@ -129,7 +132,7 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     R(look_at)(surface, &call->walk, id);
     const glint_prim *prim = call->walk.seen.prim;
     const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
-    if (!prim->two_sided || (sphere && call->walk.seen.range == R(RANGE_ANY)))
+    if (!prim->two_sided || !R(is_near_or_plane)(&call->walk.seen))
         return false;
     const glint_shade_material *material = &light->materials[prim->material];
     if (!light->highlights || (material->highlight != GLINT_HIGHLIGHT_PHONG &&
@@ -138,12 +141,13 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     const R(group_directions) directions = R(directions_of)(surface->camera, place.x, place.y);
     R(lit_whole) whole;
     whole.lit = whole.back = whole.some = 0;
+    const bool slack = mixed && surface->slack;
 #pragma GCC unroll 8
     for (int j = 0; j < LIT_PARTS; j++) {
         if (sphere)
-            R(lit_part)(surface, light, call, true, normals, material, directions, at, j, box, &whole);
+            R(lit_part)(surface, light, call, true, normals, slack, material, directions, at, j, box, &whole);
         else
-            R(lit_part)(surface, light, call, false, normals, material, directions, at, j, box, &whole);
+            R(lit_part)(surface, light, call, false, normals, slack, material, directions, at, j, box, &whole);
     }
     lanes_put(surface->material + at, 0xffff, prim->material);
     surface->back[place.g] = (uint16_t)whole.back;
@@ -155,7 +159,9 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     return true;
 }
 
-INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_args *light, const bool normals)
+/// mixed, normals: constants.
+INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_args *light, const bool mixed,
+                           const bool normals)
 {
     R(lit_call) call;
     R(point_box) box;
@@ -174,8 +180,8 @@ INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_
         if (!surface->hits[g]) {
             surface->back[g] = surface->dark[g] = 0;
             light->lit[0][g] = 0;
-        } else if (!R(light_whole)(surface, light, &call, normals, place, &box, &group.brightest)) {
-            R(surface_group)(surface, &call.walk, &box, place, R(BALLS_AND_PLANES));
+        } else if (!R(light_whole)(surface, light, &call, mixed, normals, place, &box, &group.brightest)) {
+            R(surface_group)(surface, &call.walk, &box, place, mixed ? R(MIXED) : R(BALLS_AND_PLANES));
             R(light_group)(light, LIGHT_PLAIN, 1, NULL, place, &point, &group);
             light->lit[0][g] = (uint16_t)group.lit;
             if (group.lit)
@@ -188,8 +194,10 @@ INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_
 
 static void R(lit_surface)(const glint_surface_args *surface, const glint_light_args *light)
 {
-    if (surface->all_normals)
-        R(lit_surfaces)(surface, light, true);
+    if (surface->mixed)
+        R(lit_surfaces)(surface, light, true, true);
+    else if (surface->all_normals)
+        R(lit_surfaces)(surface, light, false, true);
     else
-        R(lit_surfaces)(surface, light, false);
+        R(lit_surfaces)(surface, light, false, false);
 }
