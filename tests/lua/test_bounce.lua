@@ -485,12 +485,12 @@ end
 for _, samples in ipairs { 1, 3 } do
   local plain = with_ball(material { diffuse = 0.3 }, samples)
   for name, of in pairs { mirror = material { diffuse = 0.3, mirror = 0.5 }, glass = glass(1, { diffuse = 0.3, transmission = 0.5 }) } do
-    local picture, shown, changed = with_ball(of, samples), 0, 0
+    local mixed, shown, changed = with_ball(of, samples), 0, 0
     for y = 0, 89 do
       for x = 0, 129 do
         local is_shown, equal = plain:pixel(x, y, "object_id") == 3, true
         for _, pass in ipairs(LIGHT) do
-          local a, b = { plain:pixel(x, y, pass) }, { picture:pixel(x, y, pass) }
+          local a, b = { plain:pixel(x, y, pass) }, { mixed:pixel(x, y, pass) }
           equal = equal and a[1] == b[1] and a[2] == b[2] and a[3] == b[3]
         end
         shown, changed = shown + (is_shown and 1 or 0), changed + ((is_shown or equal) and 0 or 1)
