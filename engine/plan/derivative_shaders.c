@@ -21,14 +21,15 @@ static uint32_t find_inputs(const glint_plan *plan, const glint_plan_derivative 
     return inputs | (d->materials[material].varies ? REFLECTANCES : 0);
 }
 
-static glint_status find_gradient(glint_plan *plan, const glint_program *shader, uint32_t inputs, glint_gradient *out,
-                                  glint_error *error)
+/// name: of the derivative that an error is told of.
+static glint_status find_gradient(glint_plan *plan, const glint_program *shader, uint32_t inputs, const char *name,
+                                  glint_gradient *out, glint_error *error)
 {
     glint_error why;
     const glint_status status = glint_shader_gradient(shader, inputs, out, &why);
     if (status)
         return glint_fail(error, status, "derivative '%s': material.model: how fast the shader changes: %s",
-                          plan->derivatives->of[0].name, why.message);
+                          name, why.message);
     for (uint32_t k = 0; k < out->count; k += GLINT_PROGRAM_OUTPUTS_MAX) {
         const uint32_t rows = out->programs[k / GLINT_PROGRAM_OUTPUTS_MAX]->code.row_count;
         plan->patterns->row_count = plan->patterns->row_count < rows ? rows : plan->patterns->row_count;
@@ -47,11 +48,14 @@ glint_status glint_derivative_find_gradients(glint_plan *plan, glint_error *erro
         return glint_fail_nomem(error);
     for (uint32_t i = 0; i < all->material_count && !status; i++) {
         const glint_program *shader = plan->patterns->of[i].program[GLINT_FIELD_SHADER];
+        const char *name = NULL; // of the first derivative that needs any
         uint32_t inputs = 0;
-        for (size_t k = 0; k < all->count && shader; k++)
-            inputs |= find_inputs(plan, &all->of[k], i);
-        if (shader && shader->inputs & inputs)
-            status = find_gradient(plan, shader, shader->inputs & inputs, &all->gradients[i], error);
+        for (size_t k = 0; k < all->count && shader; k++) {
+            inputs |= shader->inputs & find_inputs(plan, &all->of[k], i);
+            name = inputs && !name ? all->of[k].name : name;
+        }
+        if (inputs)
+            status = find_gradient(plan, shader, inputs, name, &all->gradients[i], error);
     }
     return status;
 }

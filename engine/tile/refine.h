@@ -41,7 +41,8 @@ typedef struct glint_refine {
     bool coded; ///< its codes are compared; else estimates of them
     bool whole; ///< tiles without a chosen pixel are the base's as they are
     bool in_place; ///< the base is in the picture that is made of it
-    bool in_codes; ///< likewise, and the picture is codes alone: the base's light is left only of tiles of which some is clipped
+    bool in_codes; ///< likewise, and the picture is codes alone: the base's light is left only of tiles of which some is clipped or
+                   ///< not finite
     glint_tone_desc tone; ///< of the codes
     uint32_t least; ///< sum of differences of codes that is not enough
     float low, high, gain; ///< see glint_differ_args, glint_estimate_args

@@ -368,7 +368,8 @@ bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
 bool glint_tile_is_base(glint_tile *tile, const glint_tile_frame *frame);
 /// Takes the lanes that are not refined from a plane of the base, of numbers of four bytes, into an array of the tile.
 void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame, const void *plane, void *groups);
-/// The other pixels' light, and all pixels' geometry, are those of the base; all are active again.
+/// The other pixels' light, and all pixels' geometry, are those of the base; all are active again. Of codes alone, where no light
+/// is clipped or not finite, nothing is taken and the refined pixels stay the active ones: see glint_refine.in_codes.
 void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile/indirect/: follows paths of light from the points that `seen` hits, and adds what they find to the sums of `tile`.

@@ -434,7 +434,8 @@ static void tone(glint_tile *tile, const glint_tile_frame *frame)
     tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - start;
 }
 
-/// The tile into the image. A base that is codes leaves light only where some is clipped, which is counted again where it is refined.
+/// The tile into the image. A base that is codes leaves light only where some is clipped or not finite: these are counted again
+/// where the tile is refined.
 static void store(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before)
 {
     const bool in_codes = frame->plan->is_base && frame->refine->in_codes;

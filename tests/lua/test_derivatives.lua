@@ -609,6 +609,9 @@ function tests.errors_are_told()
   end) }
   raises("derivative 'x': material.model: how fast the shader changes: program: at most 4096 instructions", render,
     scene_of(glint.point_light { position = { x, 4, 3 } }, { material = long }), "d:x")
+  local both = scene_of(glint.point_light { position = { x, 4, 3 } }, { material = long })
+  both.background = glint.variable("sky", 0.2)
+  raises("derivative 'x': material.model: how fast the shader changes", render, both, "d:sky,d:x")
   local bricks = glint.material { diffuse = glint.pattern(function(p) return p.x end), transmission = glint.pattern(function(p) return p.y end) }
   raises("derivative 'x': material.transmission: light through what a pattern colours", render, scene_of(lamp, { material = bricks }), "d:x")
   moved = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = bricks })

@@ -227,7 +227,9 @@ function tests.what_means_nothing_is_told_of_once()
     ["1.3, 0, 0.6"] = "1.3, 0, 0.6; a reflectivity, a transparency and an index expected",
     ["0.5, 0.2, 1.33, 0.15"] = "0.15; three numbers are read",
     ["2, 0.5, 0.2, 1.33"] = "2; mirrors are sharp",
-    ["2, 0.5, 0.2, 9"] = "2, 0.5, 0.2, 9; a glossiness, a reflectivity, a transparency and an index expected",
+    ["2, 0.5, 0.2, 9"] = "2, 0.5, 0.2, 9; a reflectivity, a transparency and an index expected",
+    ["0.2, 0.5, 1, 7"] = "7; three numbers are read",
+    ["{3, 0, 0}"] = "table of 3; a reflectivity of three numbers 0 .. 1 expected",
     ["{1, 2}"] = "table of 2; numbers, and the name of a picture, expected",
     ["'soft'"] = '"soft"; numbers, and the name of a picture, expected',
   } do
@@ -481,6 +483,24 @@ function tests.normals_lie_on_faces()
   leans(box .. "s:scale(1, 2, 3)" .. map, 5, 9, { 0.6, 0.2, 1 }, "stretched")
   leans(box .. "s:set_normal_map('lean.png')", 5, 9, { 0.6, 0.2, 1 }, "by the file's name")
   leans(box .. "s:set_normal(gr.normal_map('lean.png', 0.5, 3, 4))", 5, 9, { 0.3, 0.1, 1 }, "weaker")
+  leans(box .. "map = gr.normal_map 'lean.png' s:set_normal(map) ball = gr.nh_sphere('b', {-30, 0, -1}, 1) ball:set_material(m) "
+    .. "ball:set_normal(map) root = gr.node('r') root:add_child(ball) root:add_child(s) s:set_material(m) s, has_no_material = root, true",
+    5, 9, { 0.6, 0.2, 1 }, "beside a ball with the same map")
+end
+
+-- Normals that lean up by 0.6 on a cube of index 1.3 turn a level ray down on both faces, by Snell's law to (0, -0.395, -0.919).
+function tests.normals_lean_alike_from_within()
+  local up = png.new(1, 1)
+  up:set(0, 0, { decode(128 / 255), decode(204 / 255), 1 })
+  up:save(folder .. "/up.png")
+  local scene = [[
+    red, blue = gr.material({1, 0, 0}, {0, 0, 0}, 0), gr.material({0, 0, 1}, {0, 0, 0}, 0)
+    low, middle = gr.nh_box('low', {-7, -15, -40}, 14), gr.nh_box('middle', {-2, -0.9, -40}, 4)
+    low:set_material(red) middle:set_material(blue)
+    s = gr.nh_box('s', {-0.5, -0.5, -0.5}, 1) s:add_child(low) s:add_child(middle)
+    m = gr.material({0, 0, 0}, {0, 0, 0}, 0, 0, 1, 1.3) ]]
+  is(look(scene), 8, 8, "0,0,255", "straight through")
+  is(look(scene .. "s:set_normal(gr.normal_map 'up.png')"), 8, 8, "255,0,0", "down")
 end
 
 function tests.normals_lie_on_balls()

@@ -216,7 +216,7 @@ typedef struct glint_tone_fit {
 
 typedef struct glint_tone_args {
     uint32_t group_count, groups_across; ///< as in glint_camera_args; group_count is a multiple of groups_across
-    const uint16_t *active; ///< a bit a lane: pixels inside the image
+    const uint16_t *active; ///< a bit a lane: pixels whose codes are wanted, of those inside the image
     const float *beauty[3];
     float gain; ///< > 0: what light is multiplied by
     float white, top; ///< light above `white` is clipped; above `top` (at most `white`) all codes are that of `top`

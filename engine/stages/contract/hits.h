@@ -129,7 +129,7 @@ typedef struct glint_surface_args {
     const void *origin[3], *direction[3]; ///< real, one a ray
     const void *t;
     void *point[3], *normal[3]; ///< out, real; the normal is unit and turned to the viewer; normal[0] NULL: points alone
-    bool all_normals; ///< of lit_surface, which else may leave some out
+    bool all_normals; ///< of lit_surface, which else may leave some out where `mixed` is not set
     uint32_t *material; ///< out
     uint16_t *back; ///< out: lanes seen from behind (from inside), whose normal was turned to the viewer
     uint16_t *dark; ///< out: of these, lanes of one-sided surfaces: ambient only

@@ -10,7 +10,7 @@ static inline void divide_each(const vd d[3], vd by, vd q[3])
 #ifdef GLINT_D_FUSED
 #ifdef GLINT_D_INVERSE
 /// 1 / by within 2^-53 of itself, without the divider, which a square root keeps. Returns whether it is, in all lanes: where
-/// |1 - y by| is below 2^-53 once rounded, it was before.
+/// |1 - y by| is below 2^-53 once rounded, it was before. by: a root of a sum of squares, and so at most 2^512.
 static inline bool find_inverse(vd by, vd *y)
 {
     const vd one = d_set(1), guess = d_inverse(by), r = d_fnma(by, guess, one);

@@ -28,6 +28,20 @@ local along_u = {
 }
 along_u.cone = along_u.cylinder
 
+-- A place within a shape, in its own space.
+local inside = {
+  sphere = function(node) return node.center end,
+  cylinder = function(node)
+    local axis = AXES[node.axis]
+    return { axis[1] / 2, axis[2] / 2, axis[3] / 2 }
+  end,
+  box = function(node)
+    local low, high = node.min, node.max
+    return { (low[1] + high[1]) / 2, (low[2] + high[2]) / 2, (low[3] + high[3]) / 2 }
+  end,
+}
+inside.cone = inside.cylinder
+
 --- Whether shapes of that kind have such directions.
 function normal_map.lies_on(node) return along_u[node.kind] ~= nil end
 
@@ -44,6 +58,11 @@ local function to_world(m, d)
   return w / glint.max(w:length(), 1e-300)
 end
 
+local function place_in_world(m, p)
+  return glint.vector(m[1] * p[1] + m[2] * p[2] + m[3] * p[3] + m[4], m[5] * p[1] + m[6] * p[2] + m[7] * p[3] + m[8],
+    m[9] * p[1] + m[10] * p[2] + m[11] * p[3] + m[12])
+end
+
 local function is_mirrored(m)
   return m[1] * (m[6] * m[11] - m[7] * m[10]) - m[2] * (m[5] * m[11] - m[7] * m[9])
     + m[3] * (m[5] * m[10] - m[6] * m[9]) < 0
@@ -52,12 +71,13 @@ end
 --- The bump of a picture of normals on a node's shape, where the map has put it.
 function normal_map.bump(normals, node, map)
   local m, photo, picture = numbers_of(map), normals.photo, normals.picture
-  local side = is_mirrored(m) and -1 or 1
+  local side, middle = is_mirrored(m) and -1 or 1, place_in_world(m, inside[node.kind](node))
   return glint.pattern(function(p, s)
     local c = photo(s.uv.u * picture.across, s.uv.v * picture.down, s.uv_footprint * picture.most)
     local outward = glint.max(2 * c.b - 1, FLAT) / normals.strength
     local u = to_world(m, along_u[node.kind](p, node))
-    local v = s.n:cross(u) * side
+    local from_within = glint.less(s.n:dot(s.world - middle), 0) -- s.n is on the viewer's side; the shapes are convex
+    local v = s.n:cross(u) * glint.select(from_within, -side, side)
     local function slope(code, d)
       local at = s.world
       local a = constant((1 - 2 * code) / outward)

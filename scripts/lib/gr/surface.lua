@@ -98,9 +98,6 @@ local readers = {
     record.mirror, record.transmission, record.ior = a, b, c == 0 and 1 or c
   end,
   function(record, gloss, a, b, c) -- how blurred the mirror is comes first
-    if not (is_share(a) and is_share(b) and is_index(c)) then
-      return "a glossiness, a reflectivity, a transparency and an index expected"
-    end
     record.mirror, record.transmission, record.ior = a, b, c
     if gloss ~= 0 then return "mirrors are sharp", { gloss } end
   end,
@@ -109,7 +106,8 @@ local readers = {
 local function read_numbers(record, call, numbers)
   while numbers[#numbers] == 0 do numbers[#numbers] = nil end -- what is 0 adds nothing
   if #numbers == 0 then return end
-  local count = #numbers == 4 and not is_index(numbers[3]) and 4 or min(#numbers, 3)
+  local has_gloss = #numbers == 4 and is_share(numbers[2]) and is_share(numbers[3]) and is_index(numbers[4])
+  local count = has_gloss and 4 or min(#numbers, 3)
   local why, which = readers[count](record, unpack(numbers, 1, count))
   if why then return leave_out(call, which or numbers, why) end
   if #numbers > count then leave_out(call, { unpack(numbers, count + 1) }, "three numbers are read") end
@@ -125,7 +123,12 @@ local function read_more(record, call, ...)
     elseif type(value) == "string" and value:find "%.%a+$" and not record.picture then
       record.picture = surface.picture(call, value)
     elseif i == 1 and type(value) == "table" and #value == 3 then
-      record.mirror = check.vector(call, "reflectivity", value, 3, 0)
+      local mirror = check.vector(call, "reflectivity", value, 3, 0)
+      if max(unpack(mirror)) > 1 then
+        leave_out(call, { value }, "a reflectivity of three numbers 0 .. 1 expected")
+      else
+        record.mirror = mirror
+      end
     elseif value and value ~= "" then
       others[#others + 1] = value
     end
@@ -249,7 +252,7 @@ local function part(all, key)
   return all[key]
 end
 
--- When a bump is the same, and what makes it: of normals it depends on the map, of a relief on its size.
+-- When a bump is the same, and what makes it: of normals it depends on shape and map, of a relief on its size.
 local function bump_on(relief, picture, node, map)
   local normals = node.normals
   if normals then return tostring(map), function() return normal_map.bump(normals, node, map) end end
@@ -264,7 +267,8 @@ function surface.shade(record, node, map, bare)
   if bare then picture, relief = picture and picture.photo == nil and picture or nil, nil end
   local key, bump = bump_on(relief, picture, node, map)
   local all = part(part(kept, record), picture or NONE)
-  local made = part(part(part(all, relief or NONE), node.normals or NONE), node.grain or NONE)
+  local relieved = part(part(all, relief or NONE), node.normals or NONE)
+  local made = part(part(relieved, node.normals and node or NONE), node.grain or NONE)
   made[key] = made[key] or make(record, picture, node.grain, bump())
   return made[key]
 end
