@@ -159,7 +159,7 @@ static void pack_lanes(glint_batch *batch, glint_precision precision)
     uint32_t next[GLINT_GROUP], end = 0;
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
         next[lane] = lane;
-    memset(batch->ray_of, 0, batch->rays->group_count * GLINT_GROUP * sizeof *batch->ray_of); // some keep that
+    memset(batch->ray_of, 0, batch->rays->group_count * GLINT_GROUP * sizeof *batch->ray_of); // of samples without a ray
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
         for (unsigned left = batch->met[g]; left; left &= left - 1) {
             const uint32_t lane = (uint32_t)__builtin_ctz(left);
