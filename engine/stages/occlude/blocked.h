@@ -22,7 +22,7 @@ typedef struct R(shadow_tile) {
     const glint_occlude_args *args;
     light_place light; ///< of an area light, all of it
     _Alignas(64) real position[3][GLINT_GROUP]; ///< of the light, or of its sample at hand, for each lane
-    float local_light[3][GLINT_GROUP]; ///< the same in the index's frame
+    _Alignas(64) float local_light[3][GLINT_GROUP]; ///< the same in the index's frame
     R(occluder) occluders[GLINT_OCCLUDERS];
     int count; ///< more than GLINT_OCCLUDERS: too many, groups walk by themselves
     float lower[3], upper[3]; ///< a box around the lit points, in the index's frame
@@ -35,8 +35,7 @@ typedef struct R(shadow_group) {
     _Alignas(64) float local[3][GLINT_GROUP]; ///< where placed: the points in the index's frame
     uint32_t last_blocker; ///< of the groups so far, or GLINT_MISS
     int shafts_failed; ///< of the last groups in a row
-    _Alignas(64) real to_light[3][GLINT_GROUP]; ///< in the light's units
-    R(ray_group) rays;
+    R(ray_group) rays; ///< where made: in the index's units; --precision float: in the light's
 } R(shadow_group);
 
 /// 1: the light is outside or in front of the primitive, -1: inside or behind, 0: on it.
@@ -97,8 +96,6 @@ static inline void R(aim_at)(R(shadow_tile) * tile, const double (*place)[GLINT_
             else
                 r_store(tile->position[k] + i, r_set(args->position[k]));
         }
-    if (tile->count <= GLINT_OCCLUDERS)
-        return; // only lone segments need where the light is in the index's frame
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < GLINT_GROUP; i++) {
             const double x = place ? place[k][i] : args->position[k];
@@ -130,20 +127,27 @@ static inline void R(place_group)(const R(shadow_tile) * tile, R(shadow_group) *
     group->placed = true;
 }
 
+/// A direction is the difference of what float knows of both ends. What that is off counts by how far along the segment a primitive
+/// is, and is within GLINT_FILTER_SLACK of its centre and the point.
 static inline void R(make_shadow_rays)(const R(shadow_tile) * tile, R(shadow_group) * group)
 {
     const glint_occlude_args *args = tile->args;
-    const size_t at = group->at;
-    for (int i = 0; i < GLINT_GROUP; i += VR) {
-        vr d[3];
-        R(directions_to)(args, tile->position, at, i, d);
-        for (int k = 0; k < 3; k++)
-            r_store(group->to_light[k] + i, d[k]);
-    }
-    for (int k = 0; k < 3; k++)
-        R(narrow)(group->to_light[k], group->rays.direction[k]);
     R(place_group)(tile, group);
-    R(set_origins)(args->point, at, (const float(*)[GLINT_GROUP])group->local, &group->rays);
+    R(set_origins)(args->point, group->at, (const float(*)[GLINT_GROUP])group->local, &group->rays);
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vf d[3];
+#if GLINT_REAL == 64
+        for (int k = 0; k < 3; k++) {
+            d[k] = f_load(tile->local_light[k] + i);
+            if (!args->directional)
+                d[k] = d[k] - f_load(group->local[k] + i);
+        }
+#else // where float decides, the filter must see what it sees
+        R(directions_to)(args, tile->position, group->at, i, d);
+#endif
+        for (int k = 0; k < 3; k++)
+            f_store(group->rays.direction[k] + i, d[k]);
+    }
     group->made = true;
 }
 
@@ -335,6 +339,47 @@ static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const gl
     return rm_bits(R(plane_blocks)(outside, inside, R(point_constant)(f, prim)));
 }
 
+/// Lanes of a group by what float says of their segments and a sphere.
+typedef struct R(sphere_lanes) {
+    unsigned near; ///< it may meet them
+    unsigned within; ///< of these, it has some point of the segment inside for certain
+} R(sphere_lanes);
+
+/// A sphere is away from a segment where its line passes it, or where it is behind a point that is outside of it. As much as
+/// the filter adds to its radius is taken off it for what is certain.
+static R(sphere_lanes) R(sort_by_sphere)(const R(shadow_tile) * tile, const R(ray_group) * rays, const glint_prim *prim)
+{
+#if GLINT_REAL == 64
+    const vf zero = f_set(0), width = f_set(2 * (float)(prim->radius * tile->args->geometry->scale));
+    R(sphere_lanes) out = { 0, 0 };
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vf f[3], d[3];
+        for (int k = 0; k < 3; k++)
+            d[k] = f_load(rays->direction[k] + i);
+        const vf limit = R(filter_offset)(rays, i, prim, f), limit2 = limit * limit;
+        const vf x[3] = { f[1] * d[2] - f[2] * d[1], f[2] * d[0] - f[0] * d[2], f[0] * d[1] - f[1] * d[0] };
+        const vf beside2 = DOT(x, x), length2 = DOT(d, d), back = DOT(f, d);
+        const fm behind = fm_and(f_lt(zero, back), f_lt(limit2, DOT(f, f)));
+        const unsigned away = fm_bits(fm_or(f_lt(limit2 * length2, beside2), behind));
+        out.near |= (~away & ((1u << VF) - 1)) << i;
+        if (away == (1u << VF) - 1)
+            continue;
+        const vf inner = width - limit, inner2 = (inner * inner) * length2;
+        fm within = fm_and(f_lt(zero, inner), f_lt(beside2, inner2));
+        within = fm_and(within, f_le(back, zero)); // the foot of the perpendicular is on the segment
+        if (!tile->args->directional)
+            within = fm_and(within, f_le(-back, length2));
+        // where squares overflow or vanish, nothing is certain
+        within = fm_and(within, fm_and(f_lt(f_set(0x1p-100f), inner2), f_lt(length2, f_set(0x1p80f))));
+        out.within |= (fm_bits(within) & ~away) << i;
+    }
+    return out;
+#else // float decides
+    (void)tile;
+    return (R(sphere_lanes)) { R(near_rays)(rays, prim), 0 };
+#endif
+}
+
 /// The lanes of `wanted` that the primitive blocks.
 INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, R(shadow_group) * group,
                              unsigned wanted)
@@ -368,13 +413,18 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
     if (own && sphere)
         blocked = own & args->back[group->at / GLINT_GROUP] & occluder.sides.outside;
     wanted &= ~own;
-    if (!wanted)
-        return blocked;
-    if (!group->made)
-        R(make_shadow_rays)(tile, group);
-    if (occluder.sides.inside != 0xffff) // with the light inside, being outside is enough: no distance is computed
-        wanted &= R(near_rays)(&group->rays, prim) | occluder.sides.inside;
+    R(sphere_lanes) sorted = { 0xffff, 0 };
+    if (wanted && sphere && occluder.sides.inside != 0xffff) { // with the light inside, being outside is enough
+        if (!group->made)
+            R(make_shadow_rays)(tile, group);
+        sorted = R(sort_by_sphere)(tile, &group->rays, prim);
+    }
+    wanted &= sorted.near | occluder.sides.inside;
     count_tests(args->tests, wanted);
+    if (occluder.sides.outside == 0xffff) {
+        blocked |= wanted & sorted.within;
+        wanted &= ~sorted.within;
+    }
     if (!wanted)
         return blocked;
     const R(ball) ball = R(ball_of)(prim);
@@ -383,8 +433,7 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
         vr d[3];
         if (!lanes)
             continue;
-        for (int k = 0; k < 3; k++)
-            d[k] = r_load(group->to_light[k] + i);
+        R(directions_to)(args, tile->position, group->at, i, d);
         blocked |= (R(lanes_blocked)(args, prim, &ball, occluder.sides, group->at, i, d) & lanes) << i;
     }
     return blocked;

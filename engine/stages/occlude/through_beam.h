@@ -203,7 +203,9 @@ static void R(occlude_point)(const glint_occlude_args *args)
 {
     uint16_t *out = args->open[0];
     R(shadow_tile) tile;
-    R(shadow_group) group = { .last_blocker = GLINT_MISS };
+    R(shadow_group) group;
+    group.last_blocker = GLINT_MISS;
+    group.shafts_failed = 0;
     R(begin_shadows)(args, args->lit[0], &tile);
     for (uint32_t g = 0; g < args->group_count; g++) {
         out[g] = args->lit[0][g];
