@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#define SORTED_PRIMS 32 ///< in scenes of no more, packed hits are sorted by what is hit
+#define SORTED_PRIMS 32 ///< in scenes of no more, packed hits are sorted by what is hit; a power of 2
 
 // ---- Before and after ----
 
@@ -175,19 +175,19 @@ static void pack_lanes(glint_batch *batch, glint_precision precision)
 /// groups show one.
 static void pack(glint_batch *batch, const glint_tile_frame *frame)
 {
-    const uint32_t kinds = frame->geometry.prim_count <= SORTED_PRIMS ? SORTED_PRIMS : 1;
+    const uint32_t last = frame->geometry.prim_count <= SORTED_PRIMS ? SORTED_PRIMS - 1 : 0; // kind
     uint32_t first[SORTED_PRIMS + 1] = { 0 }, next[GLINT_GROUP], count = 0;
     uint16_t from[GLINT_TILE_SAMPLES];
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
         for (unsigned left = batch->met[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             from[count++] = (uint16_t)i;
-            first[batch->prim[i] % kinds + 1]++;
+            first[(batch->prim[i] & last) + 1]++;
         }
-    for (uint32_t k = 1; k < kinds; k++)
+    for (uint32_t k = 1; k <= last; k++)
         first[k] += first[k - 1];
     for (uint32_t n = 0; n < count; n++)
-        give_sample(batch, from[n], first[batch->prim[from[n]] % kinds]++);
+        give_sample(batch, from[n], first[batch->prim[from[n]] & last]++);
     move_hits(batch, frame->plan->desc.precision, count);
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
         next[lane] = lane + (count + GLINT_GROUP - 1 - lane) / GLINT_GROUP * GLINT_GROUP;

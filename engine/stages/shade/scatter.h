@@ -31,19 +31,35 @@ static inline void R(scatter_lanes)(const glint_scatter_args *args, vr u, vr v, 
         r_store((real *)args->direction[k] + at, (x * tangent[k] + y * bitangent[k]) + h * n[k]);
 }
 
+/// Directions of the first `count` of some groups; the others are any.
+static void R(scatter_groups)(const glint_scatter_args *args, const uint32_t groups[DRAWN_GROUPS], uint32_t count)
+{
+    _Alignas(64) double place[2][DRAWN];
+    _Alignas(64) real square[2][DRAWN];
+    scrambled_groups(args, groups, place);
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < DRAWN; i++)
+            square[k][i] = (real)place[k][i];
+    for (uint32_t k = 0; k < count; k++)
+        for (uint32_t i = 0; i < GLINT_GROUP; i += VR) {
+            const uint32_t from = k * GLINT_GROUP + i;
+            const size_t at = (size_t)groups[k] * GLINT_GROUP + i;
+            R(scatter_lanes)(args, r_load(square[0] + from), r_load(square[1] + from), at);
+        }
+}
+
 static void R(scatter)(const glint_scatter_args *args)
 {
-    _Alignas(64) double place[2][GLINT_GROUP];
-    _Alignas(64) real square[2][GLINT_GROUP];
+    uint32_t groups[DRAWN_GROUPS] = { 0 }, count = 0;
     for (uint32_t g = 0; g < args->group_count; g++) {
-        const size_t at = (size_t)g * GLINT_GROUP;
         if (!args->wanted[g])
             continue;
-        scrambled_group(args, at, place);
-        for (int k = 0; k < 2; k++)
-            for (int i = 0; i < GLINT_GROUP; i++)
-                square[k][i] = (real)place[k][i];
-        for (int i = 0; i < GLINT_GROUP; i += VR)
-            R(scatter_lanes)(args, r_load(square[0] + i), r_load(square[1] + i), at + (size_t)i);
+        groups[count++] = g;
+        if (count < DRAWN_GROUPS)
+            continue;
+        R(scatter_groups)(args, groups, count);
+        count = 0;
     }
+    if (count)
+        R(scatter_groups)(args, groups, count);
 }

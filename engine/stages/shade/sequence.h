@@ -1,10 +1,13 @@
-// sequence: points of scrambled Sobol sequences, a group at a time: plain loops over arrays of 16, which compilers make vectors
-// of. The arithmetic: base/sequence.c, glint_sequence_flipped.
+// sequence: points of scrambled Sobol sequences: plain loops over arrays, which compilers make vectors of. Each product waits for
+// the one before it: while one vector's does, another's is made. The arithmetic: base/sequence.c, glint_sequence_flipped.
+
+#define DRAWN_GROUPS (VF < GLINT_GROUP ? 1 : 2) ///< drawn together, so that there are two vectors
+#define DRAWN (DRAWN_GROUPS * GLINT_GROUP)
 
 /// The bits of each number in the other order.
-static inline void reverse_group(uint32_t x[GLINT_GROUP])
+static inline void reverse_drawn(uint32_t x[DRAWN])
 {
-    for (int i = 0; i < GLINT_GROUP; i++) {
+    for (int i = 0; i < DRAWN; i++) {
         uint32_t y = x[i] >> 16 | x[i] << 16;
         y = (y & 0xff00ff00u) >> 8 | (y & 0x00ff00ffu) << 8;
         y = (y & 0xf0f0f0f0u) >> 4 | (y & 0x0f0f0f0fu) << 4;
@@ -14,9 +17,9 @@ static inline void reverse_group(uint32_t x[GLINT_GROUP])
 }
 
 /// Flips each bit or not, by the seed and the bits below it.
-static inline void flip_group(uint32_t x[GLINT_GROUP], const uint32_t seed[GLINT_GROUP])
+static inline void flip_drawn(uint32_t x[DRAWN], const uint32_t seed[DRAWN])
 {
-    for (int i = 0; i < GLINT_GROUP; i++) {
+    for (int i = 0; i < DRAWN; i++) {
         uint32_t y = x[i] ^ x[i] * 0x9e3779b2u;
         y = (y + seed[i]) * (seed[i] >> 16 | 1);
         y ^= y * 0x7f4a7c16u;
@@ -26,9 +29,9 @@ static inline void flip_group(uint32_t x[GLINT_GROUP], const uint32_t seed[GLINT
 
 /// The second coordinate's bits, lowest first, from those of the place. Bit i of the place stands for (1 + x)^i modulo 2; halves
 /// are parted by (1 + x)^16 = 1 + x^16, and so on down.
-static inline void second_group(uint32_t x[GLINT_GROUP])
+static inline void second_drawn(uint32_t x[DRAWN])
 {
-    for (int i = 0; i < GLINT_GROUP; i++) {
+    for (int i = 0; i < DRAWN; i++) {
         uint32_t y = x[i] ^ x[i] >> 16;
         y ^= y >> 8 & 0x00ff00ffu;
         y ^= y >> 4 & 0x0f0f0f0fu;
@@ -38,27 +41,39 @@ static inline void second_group(uint32_t x[GLINT_GROUP])
 }
 
 /// Digits as a number in 0 .. 1.
-static inline void scale_group(const uint32_t digits[GLINT_GROUP], double out[GLINT_GROUP])
+static inline void scale_drawn(const uint32_t digits[DRAWN], double out[DRAWN])
 {
-    for (int i = 0; i < GLINT_GROUP; i++)
+    for (int i = 0; i < DRAWN; i++)
         out[i] = (digits[i] + 0.5) * 0x1p-32;
 }
 
-/// Points of the sequences of one group, from `at` on.
-static inline void scrambled_group(const glint_scatter_args *args, size_t at, double out[2][GLINT_GROUP])
+/// The numbers of some groups, one after the other.
+static inline void take_groups(const uint32_t *from, const uint32_t groups[DRAWN_GROUPS], uint32_t to[DRAWN])
 {
-    _Alignas(64) uint32_t first[GLINT_GROUP], second[GLINT_GROUP];
-    for (int i = 0; i < GLINT_GROUP; i++)
-        first[i] = args->number[at + (size_t)i] + args->further;
-    reverse_group(first);
-    flip_group(first, args->order + at);
-    reverse_group(first);
+    for (int k = 0; k < DRAWN_GROUPS; k++)
+        memcpy(to + k * GLINT_GROUP, from + (size_t)groups[k] * GLINT_GROUP, GLINT_GROUP * sizeof *to);
+}
+
+/// Points of the sequences of some groups.
+static inline void scrambled_groups(const glint_scatter_args *args, const uint32_t groups[DRAWN_GROUPS],
+                                    double out[2][DRAWN])
+{
+    _Alignas(64) uint32_t first[DRAWN], second[DRAWN], seed[DRAWN];
+    take_groups(args->number, groups, first);
+    for (int i = 0; i < DRAWN; i++)
+        first[i] += args->further;
+    reverse_drawn(first);
+    take_groups(args->order, groups, seed);
+    flip_drawn(first, seed);
+    reverse_drawn(first);
     memcpy(second, first, sizeof second);
-    second_group(second);
-    flip_group(first, args->digits[0] + at);
-    flip_group(second, args->digits[1] + at);
-    reverse_group(first);
-    reverse_group(second);
-    scale_group(first, out[0]);
-    scale_group(second, out[1]);
+    second_drawn(second);
+    take_groups(args->digits[0], groups, seed);
+    flip_drawn(first, seed);
+    take_groups(args->digits[1], groups, seed);
+    flip_drawn(second, seed);
+    reverse_drawn(first);
+    reverse_drawn(second);
+    scale_drawn(first, out[0]);
+    scale_drawn(second, out[1]);
 }
