@@ -34,7 +34,7 @@ layer engine/overlay engine/text $base
 layer engine/film engine/overlay engine/stages $base
 layer engine/program engine/file $stages $base
 layer engine/plan engine/program engine/geometry engine/scene engine/overlay engine/film $stages $base
-layer engine/reuse engine/plan engine/film $stages $base
+layer engine/reuse engine/program engine/plan engine/film $stages $base
 for room in engine/tile engine/tile/pattern engine/tile/derivative engine/tile/indirect; do
     layer $room engine/tile engine/tile/pattern engine/tile/derivative engine/tile/indirect engine/program engine/reuse engine/plan engine/film $stages \
         engine/stages/light engine/stages/program $base

@@ -39,6 +39,7 @@ void glint_reuse_clear(glint_reuse *reuse)
 void glint_reuse_destroy(glint_reuse *reuse)
 {
     glint_reuse_clear(reuse);
+    glint_splits_clear(&reuse->splits);
     free(reuse->places);
     pthread_mutex_destroy(&reuse->lock);
 }
@@ -84,6 +85,7 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     reuse->cast = plan->keys[GLINT_STAGE_CAST];
     reuse->keep_pattern = plan->patterns && glint_key_equal(reuse->pattern, plan->keys[GLINT_STAGE_PATTERN]);
     reuse->pattern = plan->keys[GLINT_STAGE_PATTERN];
+    glint_splits_begin(&reuse->splits, plan);
     reuse->keep_view = glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_VIEW]);
     reuse->view = plan->keys[GLINT_STAGE_VIEW];
     for (uint32_t i = 0; i < lights; i++) {
@@ -249,6 +251,16 @@ bool glint_reuse_hold_planes(glint_reuse *reuse, glint_cached_tile *tile)
         tile->planes =
             hold(reuse, (size_t)reuse->samples * reuse->plane_count * GLINT_TILE_SAMPLES * sizeof *tile->planes);
     return tile->planes != NULL;
+}
+
+bool glint_reuse_hold_values(glint_reuse *reuse, glint_cached_tile *tile)
+{
+    const size_t bytes = reuse->samples * glint_splits_bytes(&reuse->splits);
+    if (bytes > tile->value_bytes) { // other programs, as a rule: what was there is of no more use
+        tile->values = hold(reuse, bytes);
+        tile->value_bytes = tile->values ? bytes : 0;
+    }
+    return tile->values != NULL;
 }
 
 bool glint_reuse_hold_view(glint_reuse *reuse, glint_cached_tile *tile)

@@ -15,6 +15,7 @@
 
 #include "engine/film/image.h"
 #include "engine/plan/plan.h"
+#include "engine/reuse/splits.h"
 
 #include <pthread.h>
 
@@ -53,6 +54,9 @@ typedef struct glint_cached_tile {
     float *facing; ///< its own block
     glint_key pattern;
     float *planes; ///< its own block: of each sample the plan's planes, one after the other
+    glint_key split; ///< of what the first parts of programs gave:
+    void *values; ///< its own block: of each sample what glint_splits_bytes says
+    size_t value_bytes;
     glint_cached_light *lights;
     // what the tile's pixels show, as far as known
     glint_key seen; ///< the surfaces' key when that was found; all zero: never
@@ -89,6 +93,7 @@ typedef struct glint_reuse {
     size_t tile_count;
     uint32_t light_count; ///< slots in each tile
     glint_key cast, pattern, view, light[GLINT_CACHED_LIGHTS]; ///< of the last frame
+    glint_splits splits;
     glint_key where; ///< of the places of the last frame's surfaces, and
     glint_cached_place *places; ///< these, by id; owned; NULL: there were too many
     uint32_t place_count;
@@ -126,6 +131,7 @@ bool glint_reuse_hold_cast(glint_reuse *reuse, glint_cached_tile *tile);
 bool glint_reuse_hold_light(glint_reuse *reuse, glint_cached_light *light);
 bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_cached_light *light, bool caps);
 bool glint_reuse_hold_planes(glint_reuse *reuse, glint_cached_tile *tile);
+bool glint_reuse_hold_values(glint_reuse *reuse, glint_cached_tile *tile);
 bool glint_reuse_hold_view(glint_reuse *reuse, glint_cached_tile *tile);
 bool glint_reuse_hold_facet(glint_reuse *reuse, glint_cached_light *light);
 

@@ -170,7 +170,7 @@ void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame)
             cached->lights[i].occlude = plan->lights[i].key;
     }
     if (plan->runs[GLINT_STAGE_PATTERN])
-        glint_tile_sign_pattern(tile, frame);
+        glint_tile_sign_pattern(tile, frame), glint_tile_sign_values(tile, frame);
     if (plan->runs[GLINT_STAGE_FACET])
         glint_tile_sign_facets(tile, frame);
 }

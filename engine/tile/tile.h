@@ -151,6 +151,7 @@ typedef struct glint_tile {
     glint_cast_view view; ///< of the frame's cameras
     uint32_t sample; ///< which it is
     uint32_t boxed; ///< samples so far whose points are in the kept box
+    uint32_t painted, kept; ///< samples so far that programs were run of; of which the values of their first parts are kept
     glint_tile_sample at;
     size_t index; ///< of the tile in the picture
     glint_cached_tile *cached; ///< NULL: nothing is kept for this tile

@@ -87,14 +87,14 @@ static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, walk 
         glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, true);
         return;
     }
-    if (!glint_tile_find_painted(tile, frame))
+    if (!glint_tile_find_painted(tile, frame) || glint_tile_recall_pattern(tile, frame, w->sample))
         return;
     if (!w->lit && !w->points && normals) {
         need_points(tile, frame, w);
         glint_tile_find_painted(tile, frame); // bumps make lists of their own
     } else if (!w->lit && !w->points)
         need_painted(tile, frame, w);
-    glint_tile_pattern(tile, frame);
+    glint_tile_keep_pattern(tile, frame, w->sample);
 }
 
 /// Whether the picture's geometry is that of this walk: of sample 0; where the camera has a lens, of the ray through its middle.
@@ -369,7 +369,8 @@ static void find_rest(glint_tile *tile, const glint_tile_frame *frame, walk *w, 
 static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     walk w = { .sample = k };
-    tile->boxed = k ? tile->boxed : 0;
+    if (k == 0)
+        tile->boxed = tile->painted = tile->kept = 0;
     tile->own_lights = frame->plan->together ? k * frame->plan->light_count : 0;
     glint_tile_aim(tile, frame, k);
     tile->own_planes = frame->plan->together ? k : 0;

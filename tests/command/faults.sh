@@ -71,6 +71,12 @@ local P = glint.params { glow = 1.5 }
 S.lamp.intensity, S.lamp.position = P.glow, { P.glow, 8, 4 }
 return S.scene
 LUA
+cat >knob.lua <<'LUA'
+local glint, S = require "glint", require "helper"
+return glint.animation { scene = S.scene, frames = 4, width = 16, height = 12, frame = function(_, n)
+  S.gold.diffuse = glint.pattern(function(p) return glint.select(glint.checker(p), 0.2 * n, 0.1) end)
+end }
+LUA
 cat >mesh.lua <<'LUA'
 local glint, S = require "glint", require "helper"
 S.scene:add(glint.mesh { file = "m.obj", material = glint.material { diffuse = glint.texture { file = "f_1.png" } } })
@@ -104,6 +110,7 @@ each() {
 for kind in alloc write; do
     each $kind "a still" still.lua -o out/w.png -t 1 -q
     each $kind "frames and passes" film.lua -o 'out/f_%d.png' --passes diffuse,depth -t 1 -q
+    each $kind "a pattern's number" knob.lua -o 'out/k_%d.png' -t 1 -q
     each $kind "a sweep with its sheet" sweep.lua -o 'out/s_%d.png' -t 1 -q
     each $kind "a shutter, a torus out of a box" open.lua -o out/o.png -t 1 -q
     each $kind "a shutter and a lens" open.lua -D moves=all -o out/o.png -t 1 -q --passes depth

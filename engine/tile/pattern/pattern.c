@@ -15,7 +15,7 @@ static glint_pattern_room room_for(const glint_plan *plan)
     const glint_plan_patterns *patterns = plan->patterns;
     return (glint_pattern_room) { .planes = (size_t)patterns->plane_count * GLINT_TILE_SAMPLES,
                                   .samples = plan->together ? (size_t)plan->desc.samples : 1,
-                                  .rows = patterns->row_count,
+                                  .rows = patterns->row_count + GLINT_PROGRAM_OUTPUTS_MAX, // of split programs
                                   .bumps = patterns->bumps,
                                   .cut_outs = patterns->cut_outs };
 }
@@ -206,8 +206,8 @@ static void finish_roughness(const glint_plan_pattern *own, const glint_pattern_
     *roughness = (float)fmax(r * r, 1e-18);
 }
 
-static void finish(const glint_plan_pattern *own, const glint_pattern_points *points, const glint_plan *plan,
-                   const glint_pattern_lanes *entries, uint32_t count, int field)
+void glint_pattern_finish(const glint_pattern_batch *batch, const glint_pattern_points *points, const glint_plan *plan,
+                          int field)
 {
     static void (*const finishers[GLINT_FIELD_PLANES])(const glint_plan_pattern *, const glint_pattern_points *,
                                                        const glint_plan *, uint32_t) = {
@@ -215,9 +215,11 @@ static void finish(const glint_plan_pattern *own, const glint_pattern_points *po
         [GLINT_FIELD_SHININESS] = finish_exponent,
         [GLINT_FIELD_ROUGHNESS] = finish_roughness,
     };
-    for (uint32_t k = 0; k < count && finishers[field]; k++)
+    const glint_pattern_lanes *entries = batch->entries;
+    for (uint32_t k = 0; k < batch->count && finishers[field]; k++)
         for (unsigned left = entries[k].lanes; left; left &= left - 1)
-            finishers[field](own, points, plan, entries[k].group * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+            finishers[field](batch->own, points, plan,
+                             entries[k].group * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
 }
 
 // ---- The programs ----
@@ -236,14 +238,14 @@ void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *f
     frame->stages->program(args);
 }
 
-/// One program, into planes: of one number, into all of them.
-static void run_program(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_program *program,
-                        glint_program_args *args, int channels)
+void glint_pattern_point_planes(glint_pattern_batch *batch, const glint_tile_frame *frame,
+                                const glint_pattern_points *points, int field, glint_program_code *code)
 {
-    glint_program_code code = program->code;
-    for (; code.output_count < (uint32_t)channels; code.output_count++)
-        code.outputs[code.output_count] = code.outputs[0];
-    glint_pattern_call(pattern, frame, &code, 0, args);
+    const int planes = frame->plan->patterns->planes[field];
+    for (int c = 0; c < planes; c++)
+        batch->args.plane[c] = plane_at(points, frame->plan, field, c);
+    for (; code->output_count < (uint32_t)planes; code->output_count++)
+        code->outputs[code->output_count] = code->outputs[0];
 }
 
 static bool is_before(const double a[3], const double b[3])
@@ -262,50 +264,57 @@ void glint_odd_pattern_add(glint_odd_pattern *to, const glint_odd_pattern *more)
     to->count = count;
 }
 
-/// Notes the lanes at which a program of a field gave what is no reflectance.
-static void note_odd(glint_tile_counts *counts, const glint_tile_frame *frame, const glint_pattern_points *points,
-                     const glint_pattern_lanes *entries, uint32_t count, const uint16_t *odd, int field)
+void glint_pattern_note_odd(const glint_pattern_batch *batch, const glint_tile_frame *frame,
+                            const glint_pattern_points *points, int field, glint_tile_counts *counts)
 {
-    for (uint32_t k = 0; k < count; k++)
-        for (unsigned left = odd[k]; left; left &= left - 1) {
-            const uint32_t i = entries[k].group * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            glint_odd_pattern one = { .count = 1, .material = entries[k].material, .field = field };
+    for (uint32_t k = 0; k < batch->count; k++)
+        for (unsigned left = batch->called.odd[k]; left; left &= left - 1) {
+            const uint32_t i = batch->entries[k].group * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            glint_odd_pattern one = { .count = 1, .material = batch->entries[k].material, .field = field };
             for (int c = 0; c < 3; c++)
                 one.point[c] = glint_real_at(points->point[c], frame->plan->desc.precision, i);
             glint_odd_pattern_add(&counts->odd, &one);
         }
 }
 
-/// Which lanes a call of a program is about.
-typedef struct called {
-    uint32_t groups[GLINT_PROGRAM_GROUPS];
-    uint16_t wanted[GLINT_PROGRAM_GROUPS], odd[GLINT_PROGRAM_GROUPS];
-} called;
-
-/// The programs of one material, for some groups that show it. args: of `call`.
-static void run_material(struct glint_pattern *pattern, const glint_tile_frame *frame,
-                         const glint_pattern_points *points, const glint_pattern_lanes *entries, uint32_t count,
-                         called *call, glint_program_args *args, glint_tile_counts *counts)
+bool glint_pattern_next(struct glint_pattern *pattern, const glint_tile_frame *frame, glint_pattern_batch *batch)
 {
-    const glint_plan_pattern *own = &frame->plan->patterns->of[entries[0].material];
-    args->group_count = count;
-    for (uint32_t k = 0; k < count; k++) {
-        call->groups[k] = entries[k].group;
-        call->wanted[k] = entries[k].lanes;
-        counts->work.patterns += glint_count_lanes(entries[k].lanes);
+    glint_pattern_called *called = &batch->called;
+    batch->count = glint_pattern_take(pattern, &batch->entries);
+    if (!batch->count)
+        return false;
+    batch->own = &frame->plan->patterns->of[batch->entries[0].material];
+    batch->args = (glint_program_args) { .group_count = batch->count,
+                                         .wanted = called->wanted,
+                                         .groups = called->groups,
+                                         .odd = called->odd };
+    for (uint32_t k = 0; k < batch->count; k++) {
+        called->groups[k] = batch->entries[k].group;
+        called->wanted[k] = batch->entries[k].lanes;
     }
-    glint_pattern_gather(&pattern->inputs, frame, points, own->reads, entries, count);
+    return true;
+}
+
+static void count_lanes(const glint_pattern_batch *batch, glint_tile_counts *counts)
+{
+    for (uint32_t k = 0; k < batch->count; k++)
+        counts->work.patterns += glint_count_lanes(batch->entries[k].lanes);
+}
+
+void glint_pattern_run_batch(struct glint_pattern *pattern, const glint_tile_frame *frame,
+                             const glint_pattern_points *points, glint_pattern_batch *batch, glint_tile_counts *counts)
+{
+    const glint_plan_pattern *own = batch->own;
     for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
         if (!(own->made & points->fields & 1u << field))
             continue;
-        const int planes = frame->plan->patterns->planes[field];
-        for (int c = 0; c < planes && own->program[field]; c++)
-            args->plane[c] = plane_at(points, frame->plan, field, c);
         if (own->program[field]) {
-            run_program(pattern, frame, own->program[field], args, planes);
-            note_odd(counts, frame, points, entries, count, call->odd, field);
+            glint_program_code code = own->program[field]->code;
+            glint_pattern_point_planes(batch, frame, points, field, &code);
+            glint_pattern_call(pattern, frame, &code, 0, &batch->args);
+            glint_pattern_note_odd(batch, frame, points, field, counts);
         }
-        finish(own, points, frame->plan, entries, count, field);
+        glint_pattern_finish(batch, points, frame->plan, field);
     }
 }
 
@@ -315,11 +324,12 @@ static bool has_planes(const glint_plan_pattern *own, uint32_t fields) { return 
 static void run_list(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
                      glint_tile_counts *counts)
 {
-    const glint_pattern_lanes *entries;
-    called call;
-    glint_program_args args = { .wanted = call.wanted, .groups = call.groups, .odd = call.odd };
-    for (uint32_t taken; (taken = glint_pattern_take(pattern, &entries));)
-        run_material(pattern, frame, points, entries, taken, &call, &args, counts);
+    glint_pattern_batch batch;
+    while (glint_pattern_next(pattern, frame, &batch)) {
+        count_lanes(&batch, counts);
+        glint_pattern_gather(&pattern->inputs, frame, points, batch.own->reads, batch.entries, batch.count);
+        glint_pattern_run_batch(pattern, frame, points, &batch, counts);
+    }
 }
 
 bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,

@@ -48,6 +48,13 @@ bool glint_tile_find_painted(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_painted_lanes(const glint_tile *tile, uint16_t painted[GLINT_TILE_GROUPS]);
 /// Points the planes of sample k to where they are kept, or go. Returns whether they are there already.
 bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
+/// kept.c: of what glint_tile_find_painted has listed, where what first parts of programs give is kept of sample k: runs their second
+/// parts into the tile's planes. Returns false where that is not, or a point has to be named; the list is as it was.
+bool glint_tile_recall_pattern(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
+/// As glint_tile_pattern, and keeps what later frames can recall.
+void glint_tile_keep_pattern(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
+/// Writes down what is kept so.
+void glint_tile_sign_values(glint_tile *tile, const glint_tile_frame *frame);
 /// Writes down what the kept planes hold now.
 void glint_tile_sign_pattern(glint_tile *tile, const glint_tile_frame *frame);
 

@@ -22,6 +22,7 @@ struct glint_pattern {
     _Alignas(64) float shaded[GLINT_SHADER_TERMS][GLINT_TILE_SAMPLES]; ///< what shaders made of all lights; see glint_shade_planes
     _Alignas(64) double total[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< the same of a call's groups, before it is rounded
     _Alignas(64) double bounced[3][GLINT_TILE_SAMPLES]; ///< real: see glint_tile_bounce_normals
+    _Alignas(64) double values[GLINT_PROGRAM_OUTPUTS_MAX][GLINT_PROGRAM_LANES]; ///< that go from a program's first part to its second
     double *rows; ///< scratch of the kernel
     float *planes[GLINT_WALK_COUNT]; ///< those of the first walk for each sample that is shaded together with others
     double *normals[GLINT_WALK_COUNT]; ///< of bumped surfaces, before; NULL: there are none
@@ -33,6 +34,35 @@ struct glint_pattern {
     glint_pattern_lanes taken[GLINT_PROGRAM_GROUPS];
 };
 
+/// Which lanes a call of a program is about.
+typedef struct glint_pattern_called {
+    uint32_t groups[GLINT_PROGRAM_GROUPS];
+    uint16_t wanted[GLINT_PROGRAM_GROUPS], odd[GLINT_PROGRAM_GROUPS];
+} glint_pattern_called;
+
+/// Some groups that show one material, and what its programs are run with.
+typedef struct glint_pattern_batch {
+    const glint_plan_pattern *own;
+    const glint_pattern_lanes *entries;
+    uint32_t count;
+    glint_pattern_called called;
+    glint_program_args args; ///< of a call about all of these
+} glint_pattern_batch;
+
+/// Takes a batch off the list of glint_pattern_find_lanes. Returns false where it is empty.
+bool glint_pattern_next(struct glint_pattern *pattern, const glint_tile_frame *frame, glint_pattern_batch *batch);
+/// The batch's programs of points->fields, whose inputs are gathered.
+void glint_pattern_run_batch(struct glint_pattern *pattern, const glint_tile_frame *frame,
+                             const glint_pattern_points *points, glint_pattern_batch *batch, glint_tile_counts *counts);
+/// Points the batch's arguments at the planes of a field; where what a program gives is one number, at all of them.
+void glint_pattern_point_planes(glint_pattern_batch *batch, const glint_tile_frame *frame,
+                                const glint_pattern_points *points, int field, glint_program_code *code);
+/// What follows from the program of a field, once it has been run.
+void glint_pattern_finish(const glint_pattern_batch *batch, const glint_pattern_points *points, const glint_plan *plan,
+                          int field);
+/// Notes the lanes at which the last call gave what is no reflectance.
+void glint_pattern_note_odd(const glint_pattern_batch *batch, const glint_tile_frame *frame,
+                            const glint_pattern_points *points, int field, glint_tile_counts *counts);
 /// The points that a tile has found.
 glint_pattern_points glint_pattern_points_of(const glint_tile *tile);
 /// Lists the lanes of the materials that are wanted.

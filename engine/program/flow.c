@@ -1,0 +1,78 @@
+/// Flow along one shortest way after the other (J. Edmonds and R. M. Karp, 1972).
+#include "engine/program/flow.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+bool glint_flow_create(glint_flow *flow, size_t node_count, size_t edge_count)
+{
+    *flow = (glint_flow) { .node_count = (uint32_t)node_count };
+    flow->edges = malloc(2 * edge_count * sizeof *flow->edges);
+    flow->from = calloc(node_count, sizeof *flow->from);
+    flow->queue = malloc(node_count * sizeof *flow->queue);
+    flow->way = malloc(node_count * sizeof *flow->way);
+    return flow->edges && flow->from && flow->queue && flow->way;
+}
+
+void glint_flow_destroy(glint_flow *flow)
+{
+    free(flow->edges);
+    free(flow->from);
+    free(flow->queue);
+    free(flow->way);
+}
+
+static void add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t room)
+{
+    flow->edges[flow->edge_count] = (glint_flow_edge) { to, room, flow->from[from] };
+    flow->from[from] = ++flow->edge_count;
+}
+
+void glint_flow_add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t room)
+{
+    add(flow, from, to, room);
+    add(flow, to, from, 0);
+}
+
+/// Meets every node from which there is a way to the sink that is not full; of each, its first step.
+static bool find_way(glint_flow *flow)
+{
+    uint32_t count = 0;
+    memset(flow->way, 0, flow->node_count * sizeof *flow->way);
+    flow->queue[count++] = GLINT_FLOW_SINK;
+    for (uint32_t at = 0; at < count; at++)
+        for (uint32_t e = flow->from[flow->queue[at]]; e; e = flow->edges[e - 1].next) {
+            const uint32_t node = flow->edges[e - 1].to, step = ((e - 1) ^ 1) + 1;
+            if (node == GLINT_FLOW_SINK || flow->way[node] || !flow->edges[step - 1].room)
+                continue;
+            flow->way[node] = step;
+            flow->queue[count++] = node;
+        }
+    return flow->way[GLINT_FLOW_SOURCE];
+}
+
+/// Fills the way from the source that was found. Returns how much.
+static uint32_t fill_way(glint_flow *flow)
+{
+    uint32_t room = UINT32_MAX, node = GLINT_FLOW_SOURCE;
+    for (; node != GLINT_FLOW_SINK; node = flow->edges[flow->way[node] - 1].to)
+        room = room < flow->edges[flow->way[node] - 1].room ? room : flow->edges[flow->way[node] - 1].room;
+    for (node = GLINT_FLOW_SOURCE; node != GLINT_FLOW_SINK; node = flow->edges[flow->way[node] - 1].to) {
+        flow->edges[flow->way[node] - 1].room -= room;
+        flow->edges[(flow->way[node] - 1) ^ 1].room += room;
+    }
+    return room;
+}
+
+uint32_t glint_flow_fill(glint_flow *flow, uint32_t limit)
+{
+    uint32_t flowing = 0;
+    while (flowing <= limit && find_way(flow))
+        flowing += fill_way(flow);
+    return flowing;
+}
+
+bool glint_flow_near_sink(const glint_flow *flow, uint32_t node)
+{
+    return node == GLINT_FLOW_SINK || flow->way[node];
+}

@@ -1,0 +1,206 @@
+#include "engine/reuse/splits.h"
+#include "engine/base/alloc.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define COST_OF_POINTS 20u ///< tenths of a nanosecond: of what programs read
+
+static const glint_key none;
+
+static void clear_field(glint_split_field *f)
+{
+    free(f->numbers);
+    free(f->changed);
+    free(f->now);
+    glint_split_destroy(f->split);
+    *f = (glint_split_field) { .number_count = 0 };
+}
+
+void glint_splits_clear(glint_splits *splits)
+{
+    for (uint32_t i = 0; i < splits->material_count; i++)
+        for (int field = 0; field < GLINT_FIELD_PLANES; field++)
+            clear_field(&splits->of[i].of[field]);
+    free(splits->of);
+    *splits = (glint_splits) { .of = NULL };
+}
+
+// ---- What has changed ---------------------------------------------------------------------------------------------
+
+static glint_key like_of(const glint_plan_pattern *own, int field)
+{
+    const glint_program *program = own->program[field];
+    const glint_key parts[] = { own->numbers, own->places };
+    return program ? glint_key_add(program->structure, parts, sizeof parts) : none;
+}
+
+/// Begins with a program that was another in the last frame. Returns false without memory.
+static bool begin_field(glint_split_field *f, const glint_program *program, glint_key like)
+{
+    clear_field(f);
+    if (!program)
+        return true;
+    f->numbers = malloc((program->number_count + 1u) * sizeof *f->numbers);
+    f->changed = calloc(program->number_count + 1u, sizeof *f->changed);
+    f->now = calloc(program->number_count + 1u, sizeof *f->now);
+    if (!f->numbers || !f->changed || !f->now)
+        return false;
+    f->like = like;
+    f->number_count = program->number_count;
+    for (uint32_t i = 0; i < f->number_count; i++)
+        f->numbers[i] = program->code.numbers[i][0];
+    return true;
+}
+
+/// Which numbers have changed since the last frame. Returns whether some had not before.
+static bool find_changes(glint_split_field *f, const glint_program *program)
+{
+    bool more = false;
+    for (uint32_t i = 0; i < f->number_count; i++) {
+        const double *number = &program->code.numbers[i][0];
+        f->now[i] = memcmp(&f->numbers[i], number, sizeof *number) != 0;
+        f->numbers[i] = *number;
+        more = more || (f->now[i] && !f->changed[i]);
+    }
+    return more;
+}
+
+static bool any_changed(const glint_split_field *f)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < f->number_count; i++)
+        any = any || f->changed[i];
+    return any;
+}
+
+/// Whether what follows from a material's programs is made in place of what they give, so that all of them are run again.
+static bool is_joined(const glint_plan_pattern *own)
+{
+    return own->made >> GLINT_FIELD_AMBIENT & 1 || own->desc.normalized;
+}
+
+/// Splits a material's programs. Returns false without memory.
+static bool split(glint_split_material *m, const glint_plan_pattern *own)
+{
+    uint32_t cost = 0, saved = COST_OF_POINTS;
+    m->again = 0;
+    m->whole = false;
+    for (int field = 0; field < GLINT_FIELD_PLANES; field++)
+        m->again |= any_changed(&m->of[field]) ? 1u << field : 0;
+    if (m->again && is_joined(own))
+        m->again = own->made & GLINT_FIELDS_PLANES;
+    for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
+        glint_split_field *f = &m->of[field];
+        glint_split_destroy(f->split);
+        f->split = NULL;
+        if (!(m->again >> field & 1) || !own->program[field])
+            continue;
+        if (!glint_split_create(own->program[field], f->changed, &f->split))
+            return false;
+        m->whole = m->whole || !f->split;
+        cost += f->split ? f->split->cost : 0;
+        saved += f->split ? f->split->saved : 0;
+    }
+    m->whole = m->whole || cost >= saved;
+    return true;
+}
+
+/// Sees to a material's splits; `more`: numbers have changed that had not. Where keeping for all that ever did does not pay, it is for those
+/// that have just changed. Returns false without memory.
+static bool split_again(glint_split_material *m, const glint_plan_pattern *own)
+{
+    for (int field = 0; field < GLINT_FIELD_PLANES; field++)
+        for (uint32_t i = 0; i < m->of[field].number_count; i++)
+            m->of[field].changed[i] = m->of[field].changed[i] || m->of[field].now[i];
+    if (!split(m, own))
+        return false;
+    if (!m->whole)
+        return true;
+    for (int field = 0; field < GLINT_FIELD_PLANES; field++)
+        if (m->of[field].number_count)
+            memcpy(m->of[field].changed, m->of[field].now, m->of[field].number_count * sizeof *m->of[field].now);
+    return split(m, own);
+}
+
+/// Compares a material's programs with the last frame's, and splits them as they have changed. Returns false without memory.
+static bool follow(glint_split_material *m, const glint_plan_pattern *own)
+{
+    bool more = false, other = false;
+    for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
+        const glint_key like = like_of(own, field);
+        if (!glint_key_equal(m->of[field].like, like)) {
+            other = true;
+            if (!begin_field(&m->of[field], own->program[field], like))
+                return false;
+        }
+        more = find_changes(&m->of[field], own->program[field]) || more;
+    }
+    return more ? split_again(m, own) : !other || split(m, own);
+}
+
+// ---- What is kept -------------------------------------------------------------------------------------------------
+
+static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
+
+/// Finds places for what is kept of a material.
+static void place(glint_splits *splits, glint_split_material *m, const glint_plan_patterns *patterns, uint32_t made)
+{
+    uint32_t numbers = 0, truths = 0;
+    for (int field = 0; field < GLINT_FIELD_PLANES && !m->whole; field++) {
+        glint_split_field *f = &m->of[field];
+        for (uint32_t k = 0; f->split && k < f->split->first.output_count; k++)
+            f->place[k] = f->split->truths >> k & 1 ? truths++ : numbers++;
+    }
+    splits->numbers = larger(splits->numbers, numbers);
+    splits->truths = larger(splits->truths, truths);
+    if (made & GLINT_FIELDS_PLANES & ~m->again && !m->whole)
+        splits->planes = patterns->plane_count;
+}
+
+/// Of all that what is kept is made from.
+static glint_key kept_key(const glint_splits *splits)
+{
+    glint_key key = splits->surface;
+    for (uint32_t i = 0; i < splits->material_count; i++)
+        for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
+            const glint_split_field *f = &splits->of[i].of[field];
+            key = glint_key_add(key, &f->like, sizeof f->like);
+            if (f->number_count)
+                key = glint_key_add(key, f->changed, f->number_count * sizeof *f->changed);
+            for (uint32_t n = 0; n < f->number_count; n++)
+                if (!f->changed[n])
+                    key = glint_key_add(key, &f->numbers[n], sizeof f->numbers[n]);
+        }
+    return key;
+}
+
+static bool begin(glint_splits *splits, const glint_plan *plan)
+{
+    if (splits->material_count == plan->material_count &&
+        glint_key_equal(splits->surface, plan->keys[GLINT_STAGE_SURFACE]))
+        return true;
+    glint_splits_clear(splits);
+    splits->of = glint_alloc(plan->material_count, sizeof *splits->of);
+    splits->material_count = splits->of ? plan->material_count : 0;
+    splits->surface = plan->keys[GLINT_STAGE_SURFACE];
+    return splits->of;
+}
+
+void glint_splits_begin(glint_splits *splits, const glint_plan *plan)
+{
+    const glint_plan_patterns *patterns = plan->patterns;
+    bool good = patterns && patterns->any && begin(splits, plan), any = false;
+    for (uint32_t i = 0; good && i < plan->material_count; i++) {
+        good = follow(&splits->of[i], &patterns->of[i]);
+        any = any || (splits->of[i].again && !splits->of[i].whole);
+    }
+    if (!good) {
+        glint_splits_clear(splits);
+        return;
+    }
+    splits->numbers = splits->planes = splits->truths = 0;
+    for (uint32_t i = 0; any && i < plan->material_count; i++)
+        place(splits, &splits->of[i], patterns, patterns->of[i].made);
+    splits->key = any ? kept_key(splits) : none;
+}
