@@ -280,11 +280,22 @@ glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame 
     return args;
 }
 
+/// What the stage light says of a light that shines nowhere.
+static void leave_unlit(const glint_tile *tile, const glint_light_args *args)
+{
+    memset(args->lit[0], 0, tile->group_count * sizeof *args->lit[0]);
+    if (args->highlights)
+        *args->brightest[0] = GLINT_NO_SPECULAR;
+}
+
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                       uint32_t count)
 {
     const glint_light_args args = glint_tile_light_args(tile, frame, first, slot, count);
-    frame->stages->geometry[frame->plan->desc.precision].light(&args);
+    if (glint_tile_is_past_spot(tile, &frame->plan->lights[first + slot[0]]))
+        leave_unlit(tile, &args);
+    else
+        frame->stages->geometry[frame->plan->desc.precision].light(&args);
     if (glint_plan_bumps(frame->plan))
         glint_tile_cut_horizon(tile, frame->plan, &args);
     bound_brightest(tile, frame, &args, slot);

@@ -262,6 +262,9 @@ void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_find_points(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *hits);
 /// The same and light number `light` of the plan, a plain one, in slot 0. Some normals are left out unless all are wanted.
 void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light, bool normals);
+/// Whether a spot light shines at no point of the tile, by the box around them. False where that is not known.
+bool glint_tile_is_past_spot(const glint_tile *tile, const glint_plan_light *light);
+
 /// One light, samples of one, or lights that are alike: light `first + slot[i]` of the plan, for each of `count` slots of the
 /// chunk. Shadows are those of one light, or of its samples.
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,

@@ -70,6 +70,32 @@ function tests.profile()
   near(spot { inner = 0, outer = 0, direction = { 0, -1, 0 } }, 1, 1, "no angle at all: no NaN")
 end
 
+-- A picture of many tiles: each spot lights what its cone holds, however little of a tile that is.
+function tests.spots_on_tiles()
+  local pixels, width, height = 160, 12, 3
+  local wrong, lit, unlit = 0, 0, 0
+  for i = 1, 24 do
+    local x, z, outer = 7 * glint.sin(2.4 * i), 7 * glint.cos(2.4 * i), 2 + 3 * (i % 16)
+    local axis = { 0.7 * glint.sin(5 * i), -1, 0.7 * glint.cos(3 * i) }
+    local length = math.sqrt(axis[1] ^ 2 + 1 + axis[3] ^ 2)
+    local image = render(above(glint.spot_light { position = { x, height, z }, direction = axis, inner = outer,
+      outer = outer }, width), pixels)
+    for row = 0, pixels - 1 do
+      for column = 0, pixels - 1 do
+        local dx = ((column + 0.5) / pixels - 0.5) * width - x
+        local dz = ((row + 0.5) / pixels - 0.5) * width - z
+        local far = math.sqrt(dx * dx + height * height + dz * dz)
+        local inside = (axis[1] * dx + height + axis[3] * dz) / (length * far) - glint.cos(math.rad(outer))
+        local want = inside > 0 and height / far or 0
+        if math.abs(inside) > 1e-9 and math.abs(image:pixel(column, row) - want) > 1e-6 then wrong = wrong + 1 end
+        lit, unlit = lit + (inside > 0 and 1 or 0), unlit + (inside > 0 and 0 or 1)
+      end
+    end
+  end
+  check(wrong == 0, wrong .. " pixels are not what the cones say")
+  check(lit > 10000 and unlit > 10000, "cones end within the pictures")
+end
+
 function tests.whole_spot()
   local ball = glint.sphere { center = { 0, 1, 0 }, radius = 1, material = WHITE }
   local place = { 3, 4, 1 }
