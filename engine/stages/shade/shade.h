@@ -356,6 +356,52 @@ static __attribute__((noinline)) void shade_lit(const glint_shade_args *args, co
     }
 }
 
+/// A light's factor of diffuse light, of one vector of a group.
+INNER vf diffuse_factor(const glint_shade_light *light, size_t at, int i)
+{
+    vf w = f_set(1);
+    if (light->attenuation)
+        w = w * f_load(light->attenuation + at + i);
+    const fm lit = fm_from_bits(light->lit[at / GLINT_GROUP] >> i & ((1u << VF) - 1));
+    return f_select(lit, w * f_load(light->cosine + at + i), f_set(0));
+}
+
+/// Whether there are several lights, none of which is a sample or the sum of samples.
+static inline bool has_plain_lights(const glint_shade_args *args)
+{
+    bool plain = args->light_count > 1;
+    for (uint32_t k = 0; plain && k < args->light_count; k++)
+        plain = !args->lights[k].joined && !args->lights[k].summed;
+    return plain;
+}
+
+/// The same of a material without highlights and of plain lights, in registers.
+static __attribute__((noinline)) void shade_matt(const glint_shade_args *args, const glint_shade_material *material,
+                                                 light_colors *colors, size_t at)
+{
+    color_lights(args, material, false, colors);
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vd total[3][VF / VD];
+        for (int c = 0; c < 3; c++)
+            for (int h = 0; h < VF / VD; h++)
+                total[c][h] = d_set(0);
+        for (uint32_t k = 0; k < args->light_count; k++) {
+            const glint_shade_light *light = &args->lights[k];
+            if (!light->lit[at / GLINT_GROUP])
+                continue;
+            const vf factor = diffuse_factor(light, at, i);
+            for (int c = 0; c < 3; c++) {
+                vd share[VF / VD];
+                f_split(factor * f_set(colors->color[0][k][c]), share);
+                for (int h = 0; h < VF / VD; h++)
+                    total[c][h] = total[c][h] + share[h];
+            }
+        }
+        for (int c = 0; c < 3; c++)
+            f_store(args->beauty[c] + at + i, f_set(0 + (float)material->ambient[c]) + f_join(total[c][0], total[c][1]));
+    }
+}
+
 /// A group without any surface.
 static inline void store_background(const glint_shade_args *args, const float background[3], size_t at)
 {
@@ -372,8 +418,9 @@ static inline bool wants_terms(const glint_shade_args *args)
     return false;
 }
 
-/// A group whose terms are final; `simple` is a constant.
-INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t g, plane_numbers *numbers, light_colors *colors)
+/// A group whose terms are final; `simple` is a constant. plain: has_plain_lights(args).
+INNER void shade_group(const glint_shade_args *args, const bool simple, bool plain, uint32_t g, plane_numbers *numbers,
+                       light_colors *colors)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
     unsigned left = args->hits[g];
@@ -394,6 +441,10 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
         const bool shaded = planes && material->planes & GLINT_PLANE_SHADED && args->planes->shaded[0][0];
         if (shaded && simple && lanes == 0xffff) {
             whole_shaded(args, material, g);
+            return;
+        }
+        if (plain && !specular && !planes && simple && lanes == 0xffff) {
+            shade_matt(args, material, colors, at);
             return;
         }
         if (planes)
@@ -428,7 +479,7 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
 
 static void shade(const glint_shade_args *args)
 {
-    const bool simple = !wants_terms(args);
+    const bool simple = !wants_terms(args), plain = has_plain_lights(args);
     plane_numbers numbers = { 0 };
     light_colors colors;
     colors.of = NULL;
@@ -439,9 +490,9 @@ static void shade(const glint_shade_args *args)
         }
     } else if (simple) {
         for (uint32_t g = 0; g < args->group_count; g++)
-            shade_group(args, true, g, &numbers, &colors);
+            shade_group(args, true, plain, g, &numbers, &colors);
     } else {
         for (uint32_t g = 0; g < args->group_count; g++)
-            shade_group(args, false, g, &numbers, &colors);
+            shade_group(args, false, plain, g, &numbers, &colors);
     }
 }
