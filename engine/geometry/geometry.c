@@ -125,6 +125,20 @@ static void choose_frame(glint_geometry *geometry)
     table->scale = largest > 0 && isfinite(largest) ? power_of_two_scale(largest) : 1;
 }
 
+/// Of what is not round, for segments to a light: a sphere around it is far larger.
+static void keep_box(const glint_geometry *geometry, const glint_prim *prim)
+{
+    glint_box box;
+    if (prim->kind != GLINT_PRIM_SOLID && prim->kind != GLINT_PRIM_COMBINED)
+        return;
+    const bool combined = prim->kind == GLINT_PRIM_COMBINED;
+    float *lower = combined ? geometry->combined[prim->item].lower : geometry->solids[prim->item].lower;
+    float *upper = combined ? geometry->combined[prim->item].upper : geometry->solids[prim->item].upper;
+    glint_prim_place_box(&geometry->table, prim, 0, &box);
+    memcpy(lower, box.lower, sizeof box.lower);
+    memcpy(upper, box.upper, sizeof box.upper);
+}
+
 static glint_status index_create(glint_geometry *geometry, glint_error *error)
 {
     const uint32_t count = geometry->table.prim_count;
@@ -144,8 +158,13 @@ static glint_status index_create(glint_geometry *geometry, glint_error *error)
         prim->filter_bound = HUGE_VALF;
         if (glint_prim_bounded(prim)) {
             glint_prim_place_sphere(&geometry->table, prim);
+            keep_box(geometry, prim);
             index->box_count++;
         } else {
+            for (int c = 0; c < 3 && prim->kind == GLINT_PRIM_COMBINED; c++) {
+                geometry->combined[prim->item].lower[c] = -HUGE_VALF;
+                geometry->combined[prim->item].upper[c] = HUGE_VALF;
+            }
             geometry->unbounded[geometry->table.unbounded_count++] = i;
         }
     }

@@ -376,6 +376,21 @@ static void R(keep_part)(const glint_cast_args *args, const glint_combined *whol
     }
 }
 
+/// Decides a pair where that is simple. Returns the lanes that are left; *any: a hit was kept.
+static unsigned R(cast_pair)(const glint_cast_args *args, const glint_combined *whole, size_t at, const R(whole_rays) * w,
+                             unsigned *any)
+{
+    const uint32_t first = args->geometry->prim_count + whole->first;
+    R(pair_hits) hits;
+    const unsigned told = R(meet_pair)(args->geometry, whole, w->o, w->d, &hits) & w->lanes;
+    const rm lanes = rm_from_bits(w->lanes), by[2] = { rm_and(hits.first, lanes), rm_and(hits.second, lanes) };
+    for (uint32_t j = 0; j < 2; j++)
+        if (rm_bits(by[j]))
+            R(keep_nearest)(args, at, first + j, by[j], hits.t);
+    *any = rm_bits(rm_or(by[0], by[1]));
+    return w->lanes & ~told;
+}
+
 /// Decides the whole for a vector of rays, from lane `at` of the call on, and keeps the nearest: a part of it. Returns whether any hit
 /// was kept.
 static bool R(cast_combined)(const glint_cast_args *args, const glint_prim *prim, size_t at, const R(whole_rays) * w)
@@ -383,8 +398,10 @@ static bool R(cast_combined)(const glint_cast_args *args, const glint_prim *prim
     const glint_combined *whole = &args->geometry->combined[prim->item];
     R(stretches) s;
     vr from = r_set(0), t;
-    unsigned any = 0, hit;
-    for (unsigned left = w->lanes; left;) {
+    unsigned any = 0, hit, left = w->lanes;
+    if (R(is_pair)(args->geometry, whole) && !R(starts_on)(w->on, args->geometry->prim_count + whole->first, whole->count))
+        left = R(cast_pair)(args, whole, at, w, &any);
+    while (left) {
         left = R(next_change)(args->geometry, whole, w, left, &from, &s, &t, &hit);
         any |= hit;
         if (!hit)

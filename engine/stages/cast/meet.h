@@ -149,6 +149,29 @@ static unsigned R(near_rays)(const R(ray_group) * rays, const glint_prim *prim)
     return near;
 }
 
+/// Lanes of the group that may enter a box ahead, from `lower` to `upper` in the index's frame; inverse: of the directions. What these
+/// are off counts by how far along the ray the box is.
+static unsigned R(rays_to_box)(const R(ray_group) * rays, float (*inverse)[GLINT_GROUP], const float lower[3],
+                               const float upper[3])
+{
+    unsigned inside = 0;
+    float slack = 0;
+    for (int k = 0; k < 3; k++)
+        slack += GLINT_FILTER_SLACK * (fabsf(lower[k]) + fabsf(upper[k]));
+    for (int i = 0; i < GLINT_GROUP && GLINT_REAL == 64; i += VF) {
+        const vf bound = f_load(rays->bound + i) + f_set(slack);
+        vf enter = f_set(0), leave = f_set(HUGE_VALF);
+        for (int k = 0; k < 3; k++) {
+            const vf from = f_load(rays->local[k] + i), over = f_load(inverse[k] + i);
+            const vf x = ((f_set(lower[k]) - from) - bound) * over, y = ((f_set(upper[k]) - from) + bound) * over;
+            enter = f_max(f_min(x, y), enter); // NaN, 0 times infinity, keeps what there was
+            leave = f_min(f_max(x, y), leave);
+        }
+        inside |= (~fm_bits(f_lt(leave * f_set(1 + WALK_SLACK), enter)) & ((1u << VF) - 1)) << i;
+    }
+    return GLINT_REAL == 64 ? inside : 0xffff; // where float decides, nothing is kept from it
+}
+
 // ---- The decision ----
 
 /// Of equal hits the one defined first stays; t = inf, where float overflows, is a miss's own and no hit. Returns the lanes of `tied` in which that is `id`.

@@ -119,8 +119,14 @@ INNER void R(cut_by_disk)(R(span) * span, const glint_solid *solid, const R(soli
     span->hit = r_le(x * x + y * y, r_set(1));
 }
 
-/// a t^2 - 2 b t + c <= 0 for a ball (three axes) or cylinder (two). places: of the solid.
-INNER void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball, double places)
+/// a t^2 - 2 b t + c <= 0 and what its roots are made of: of b >= 0 the far one is q / a, the other c / q; else the other way round.
+typedef struct R(quadratic) {
+    vr a, b, c, disc, s, q;
+    rm ahead, along; ///< b >= 0; along the axis of a cylinder: all of it or nothing
+} R(quadratic);
+
+/// Of a ball (three axes) or cylinder (two). places: of the solid.
+INNER R(quadratic) R(quadratic_of)(const vr f[3], const vr e[3], bool ball, double places)
 {
     const vr zero = r_set(0), one = r_set(1);
     vr a = e[0] * e[0] + e[1] * e[1], b = f[0] * e[0] + f[1] * e[1], c = f[0] * f[0] + f[1] * f[1];
@@ -139,13 +145,17 @@ INNER void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball,
     const vr disc = r_select(near, b * b - a * c, a - cross);
     const vr s = r_sqrt(r_max(disc, zero));
     const rm ahead = r_le(zero, b), along = rm_andnot(r_le(a, zero), r_lt(a, zero));
-    const vr q = r_select(ahead, b + s, b - s);
-    const vr far = q / a, other = c / q;
-    // along the axis of a cylinder: all of it or nothing. In order though they were rounded: what is seen from afar may be
-    // thinner than that
-    span->t[0] = r_select(along, r_set(-HUGE_VAL), r_min(far, other));
-    span->t[1] = r_select(along, r_set(HUGE_VAL), r_max(far, other));
-    span->hit = rm_or(rm_and(along, r_le(c, zero)), rm_andnot(r_le(zero, disc), along));
+    return (R(quadratic)) { a, b, c, disc, s, r_select(ahead, b + s, b - s), ahead, along };
+}
+
+INNER void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball, double places)
+{
+    const R(quadratic) round = R(quadratic_of)(f, e, ball, places);
+    const vr far = round.q / round.a, other = round.c / round.q, zero = r_set(0);
+    // in order though they were rounded: what is seen from afar may be thinner than that
+    span->t[0] = r_select(round.along, r_set(-HUGE_VAL), r_min(far, other));
+    span->t[1] = r_select(round.along, r_set(HUGE_VAL), r_max(far, other));
+    span->hit = rm_or(rm_and(round.along, r_le(round.c, zero)), rm_andnot(r_le(zero, round.disc), round.along));
 }
 
 /// x^2 + y^2 <= z^2 on the side of z >= 0, the apex at the origin.
@@ -321,11 +331,86 @@ INNER void R(onto_unit)(uint32_t form, vr which, rm flat, vr k[3], vr g[3], vr f
         k[2] = r_select(rm_and(flat, r_lt(g[2], r_set(0))), r_set(0), k[2]);
 }
 
-/// Where rays that start at `start`, of a box with its f, meet the solid, and the unit normal there.
-static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, const R(solid_start) * start,
-                             const vr d[3], vr t, vr n[3], vr p[3])
+/// The faces of a box that rays are on at t: of each the height there is nothing but rounding. which: as in span. Returns whether
+/// each of `lanes` is on one alone: that is the face that t was made of.
+INNER bool R(faces_at)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], vr t, unsigned lanes, vr *which)
 {
-    vr e[3], k[3], g[3], face[3];
+    const vr share = r_set(GLINT_REAL == 64 ? 0x1p-40 : 0x1p-14), zero = r_set(0), one = r_set(1);
+    vr count = zero, face = zero;
+    for (int axis = 0; axis < 3; axis++) {
+        vr height[2] = { zero, zero };
+        const vr rise = R(over_slab)(solid->faces + 2 * axis, start->height ? NULL : start->place, d, height);
+        for (int i = 0; i < 2; i++) {
+            const vr from = start->height ? r_set(start->height[2 * axis + i]) : height[i];
+            const rm on = r_le(R(abs)(from + t * rise), share * R(abs)(from));
+            count = count + r_select(on, one, zero);
+            face = r_select(on, r_set(i ? axis + 1 : -axis - 1), face);
+        }
+    }
+    *which = face;
+    return (~rm_bits(rm_and(r_eq(count, one), r_lt(r_set(0x1p-100), t))) & lanes) == 0; // not at GLINT_LEAST_WAY
+}
+
+/// The outward normal, of length 1, where the unit shape's is g.
+INNER void R(normal_of)(const glint_solid *solid, const vr g[3], vr n[3])
+{
+    for (int c = 0; c < 3; c++)
+        n[c] = (r_set(solid->inverse[0][c]) * g[0] + r_set(solid->inverse[1][c]) * g[1]) +
+               r_set(solid->inverse[2][c]) * g[2];
+    const vr length = r_sqrt(DOT(n, n));
+    for (int c = 0; c < 3; c++)
+        n[c] = n[c] / length;
+}
+
+/// What is known of a box's faces, low x first: normals, found when the first ray meets each.
+typedef struct R(box_faces) {
+    unsigned known; ///< a bit each
+    real normal[6][3];
+} R(box_faces);
+
+static __attribute__((noinline)) void R(learn_face)(const glint_solid *solid, int face, R(box_faces) * faces)
+{
+    vr g[3], n[3];
+    for (int c = 0; c < 3; c++)
+        g[c] = r_set(c != face / 2 ? 0 : face % 2 ? 1 : -1);
+    R(normal_of)(solid, g, n);
+    for (int c = 0; c < 3; c++)
+        faces->normal[face][c] = R(first_lane)(n[c]);
+    faces->known |= 1u << face;
+}
+
+/// The same as below of a box where all of `lanes` meet one face. Returns whether they do; else nothing is done. which: see faces_at;
+/// k: where the box is the unit one.
+INNER bool R(face_surface)(const glint_solid *solid, const glint_prim *prim, vr which, unsigned lanes, vr k[3],
+                           R(box_faces) * faces, vr n[3], vr p[3])
+{
+    _Alignas(64) real each[VR];
+    r_store(each, which);
+    const real first = each[__builtin_ctz(lanes)];
+    if (~rm_bits(r_eq(which, r_set(first))) & lanes)
+        return false;
+    const int axis = (int)(first < 0 ? -first : first) - 1, face = 2 * axis + (first > 0);
+    const glint_face *plane = &solid->faces[face];
+    if (!(faces->known >> face & 1))
+        R(learn_face)(solid, face, faces);
+    for (int c = 0; c < 3; c++)
+        if (c == axis)
+            k[c] = r_set(first < 0 ? -1 : 1);
+    for (int c = 0; c < 3; c++) {
+        n[c] = r_set(faces->normal[face][c]);
+        p[c] = r_set(prim->center[c]) + ((r_set(solid->forward[c][0]) * k[0] + r_set(solid->forward[c][1]) * k[1]) +
+                                         r_set(solid->forward[c][2]) * k[2]);
+        if (plane->axis == (uint32_t)c)
+            p[c] = r_set(plane->at[c]);
+    }
+    return true;
+}
+
+/// Where rays that start at `start`, of a box with its f, meet the solid, and the unit normal there. lanes: those that do.
+static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, const R(solid_start) * start,
+                             const vr d[3], vr t, unsigned lanes, R(box_faces) * faces, vr n[3], vr p[3])
+{
+    vr e[3], k[3], g[3], face[3], which;
     rm flat = rm_from_bits(0);
     R(to_unit)(solid, d, e);
     for (int c = 0; c < 3; c++)
@@ -334,22 +419,22 @@ static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, c
         R(onto_torus)(solid->tube, k, g);
     } else if (solid->form == GLINT_FORM_BALL) {
         R(onto_side)(solid->form, k, g);
+    } else if (solid->form == GLINT_FORM_BOX && R(faces_at)(solid, start, d, t, lanes, &which)) {
+        if (R(face_surface)(solid, prim, which, lanes, k, faces, n, p))
+            return;
+        flat = rm_from_bits((1u << VR) - 1);
+        R(onto_unit)(GLINT_FORM_BOX, which, flat, k, g, face);
     } else {
         const R(span) span = R(span_of)(solid, start, d, e, true, true);
         const rm entering = r_eq(t, span.t[0]);
         flat = rm_or(rm_and(entering, span.flat[0]), rm_andnot(span.flat[1], entering));
         R(onto_unit)(solid->form, r_select(entering, span.face[0], span.face[1]), flat, k, g, face);
     }
-    for (int c = 0; c < 3; c++) {
-        n[c] = (r_set(solid->inverse[0][c]) * g[0] + r_set(solid->inverse[1][c]) * g[1]) +
-               r_set(solid->inverse[2][c]) * g[2];
+    for (int c = 0; c < 3; c++)
         p[c] = r_set(prim->center[c]) + ((r_set(solid->forward[c][0]) * k[0] + r_set(solid->forward[c][1]) * k[1]) +
                                          r_set(solid->forward[c][2]) * k[2]);
-    }
     R(onto_plane)(solid, flat, face, p);
-    const vr length = r_sqrt(DOT(n, n));
-    for (int c = 0; c < 3; c++)
-        n[c] = n[c] / length;
+    R(normal_of)(solid, g, n);
 }
 
 /// Whether the surface is crossed by segments from `point` along d, which end at 1 / scale; directional: nowhere. In lanes

@@ -147,6 +147,7 @@ typedef struct glint_solid {
     double places; ///< ball, cylinder, cone: bound of what x^2 + y^2 - 1 and the like are made of where a place is on the side;
         ///< torus: of what the distance from the circle in the middle of its tube is made of
     double tube; ///< torus: radius of its tube where that circle's is 1, above 0 and below 1
+    float lower[3], upper[3]; ///< a box around it, in the index's frame and rounded outwards; of a part: not known
     uint32_t form;
 } glint_solid;
 
@@ -167,6 +168,7 @@ typedef struct glint_combined {
     uint32_t first; ///< prims[prim_count + first] is part 0
     uint32_t count; ///< of parts
     uint32_t length; ///< of the program
+    float lower[3], upper[3]; ///< a box around it, as of a solid
     // sets of parts, a bit each:
     uint64_t all; ///< every part, where the program has no empty set; else 0
     uint64_t needs; ///< those without any of which the whole is nothing

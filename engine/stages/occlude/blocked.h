@@ -36,6 +36,7 @@ typedef struct R(shadow_group) {
     uint32_t last_blocker; ///< of the groups so far, or GLINT_MISS
     int shafts_failed; ///< of the last groups in a row
     R(ray_group) rays; ///< where made: in the index's units; --precision float: in the light's
+    _Alignas(64) float inverse[3][GLINT_GROUP]; ///< of their directions, where there are solids
 } R(shadow_group);
 
 /// 1: the light is outside or in front of the primitive, -1: inside or behind, 0: on it.
@@ -148,6 +149,9 @@ static inline void R(make_shadow_rays)(const R(shadow_tile) * tile, R(shadow_gro
         for (int k = 0; k < 3; k++)
             f_store(group->rays.direction[k] + i, d[k]);
     }
+    for (int k = 0; args->geometry->solids && k < 3; k++)
+        for (int i = 0; i < GLINT_GROUP; i += VF)
+            f_store(group->inverse[k] + i, f_set(1) / f_load(group->rays.direction[k] + i));
     group->made = true;
 }
 
@@ -380,6 +384,23 @@ static R(sphere_lanes) R(sort_by_sphere)(const R(shadow_tile) * tile, const R(ra
 #endif
 }
 
+/// Of the lanes in `wanted`, those whose segments pass near a solid, or one that is combined: by the sphere around it, then by its box.
+static unsigned R(segments_near)(const R(shadow_tile) * tile, const glint_prim *prim, R(shadow_group) * group, unsigned wanted)
+{
+    const glint_geometry_table *table = tile->args->geometry;
+    if (!group->made)
+        R(make_shadow_rays)(tile, group);
+    wanted &= R(near_rays)(&group->rays, prim);
+    if (!wanted)
+        return 0;
+    if (prim->kind == GLINT_PRIM_SOLID) {
+        const glint_solid *solid = &table->solids[prim->item];
+        return wanted & R(rays_to_box)(&group->rays, group->inverse, solid->lower, solid->upper);
+    }
+    const glint_combined *whole = &table->combined[prim->item];
+    return wanted & R(rays_to_box)(&group->rays, group->inverse, whole->lower, whole->upper);
+}
+
 /// The lanes of `wanted` that the primitive blocks.
 INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, R(shadow_group) * group,
                              unsigned wanted)
@@ -396,18 +417,16 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
         return R(blocked_by_triangle)(args, prim, tile->position, group->at, own, wanted);
     }
     if (prim->kind == GLINT_PRIM_SOLID) {
-        if (!group->made)
-            R(make_shadow_rays)(tile, group);
-        wanted &= own | R(near_rays)(&group->rays, prim);
+        wanted &= own | R(segments_near)(tile, prim, group, wanted);
+        if (!wanted)
+            return 0;
         return R(blocked_by_solid)(args, prim, tile->position, group->at, own, wanted, occluder.sides.outside);
     }
     if (prim->kind == GLINT_PRIM_COMBINED) {
         wanted = R(stay_in_combined)(args, prim, group->at, wanted);
+        wanted = wanted ? R(segments_near)(tile, prim, group, wanted) : 0;
         if (!wanted)
             return 0;
-        if (!group->made)
-            R(make_shadow_rays)(tile, group);
-        wanted &= R(near_rays)(&group->rays, prim);
         return R(blocked_by_combined)(args, prim, tile->position, group->at, wanted);
     }
     if (own && sphere)

@@ -132,8 +132,8 @@ INNER void R(face_viewer)(const vr n[3], R(found) * found)
         found->normal[k] = r_select(found->back, -n[k], n[k]);
 }
 
-INNER void R(find_on_solid)(const glint_surface_args *args, const R(seen_prim) * seen, const vr from[3],
-                            const vr d[3], vr t, vr n[3], vr p[3])
+INNER void R(find_on_solid)(const glint_surface_args *args, const R(seen_prim) * seen, const vr from[3], const vr d[3],
+                            vr t, unsigned lanes, R(box_faces) * faces, vr n[3], vr p[3])
 {
     const glint_solid *solid = &args->solids[seen->prim->item];
     R(solid_start) start = { .place = from, .height = args->camera ? seen->height : NULL };
@@ -141,13 +141,14 @@ INNER void R(find_on_solid)(const glint_surface_args *args, const R(seen_prim) *
         start.f[k] = r_set(seen->f[k]);
     if (!args->camera)
         R(unit_offset)(solid, seen->prim, from, start.f);
-    R(solid_surface)(solid, seen->prim, &start, d, t, n, p);
+    R(solid_surface)(solid, seen->prim, &start, d, t, lanes, faces, n, p);
     for (int k = 0; seen->prim->turned && k < 3; k++)
         n[k] = -n[k];
 }
 
+/// Of lanes from i on those in `lanes`; what the others get is of no use.
 INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * seen, R(group_directions) directions,
-                         size_t at, int i, bool mixed, R(found) * found)
+                         size_t at, int i, unsigned lanes, bool mixed, R(box_faces) * faces, R(found) * found)
 {
     const glint_prim *prim = seen->prim;
     const bool smooth = mixed && prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS;
@@ -175,7 +176,7 @@ INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * se
             R(corners_of)(prim, corner);
             R(triangle_point)(corner, args->scale, from, d, w, p, &found->slack);
         } else if (mixed && prim->kind == GLINT_PRIM_SOLID)
-            R(find_on_solid)(args, seen, from, d, t, n, p);
+            R(find_on_solid)(args, seen, from, d, t, lanes, faces, n, p);
     }
     if (prim->kind == GLINT_PRIM_PLANE && seen->level == 3)
         R(onto_plane_of)(prim, n, p);
@@ -294,6 +295,7 @@ static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
 /// What is known while the groups of a tile are gone through.
 typedef struct R(surface_walk) {
     R(seen_prim) seen; ///< the last primitive
+    R(box_faces) faces; ///< of it, where it is a box
     uint32_t only; ///< the only primitive so far, GLINT_MISS: none
     bool several, turned; ///< there are others; some lane is seen from behind
 } R(surface_walk);
@@ -310,6 +312,7 @@ static __attribute__((noinline)) void R(look_at_other)(const glint_surface_args 
                                                        uint32_t id)
 {
     walk->seen = R(see_prim)(args, id);
+    walk->faces.known = 0;
     walk->several = walk->several || (walk->only != GLINT_MISS && walk->only != id);
     walk->only = id;
 }
@@ -450,7 +453,7 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
             if (!here)
                 continue;
             R(found) found;
-            R(find_lanes)(args, &walk->seen, directions, at, i, way == R(MIXED), &found);
+            R(find_lanes)(args, &walk->seen, directions, at, i, here, way == R(MIXED), &walk->faces, &found);
             behind |= R(put_found)(args, &found, at + (size_t)i, here, way, box) << i;
         }
         if (way != R(POINTS_ALONE))

@@ -363,6 +363,10 @@ static inline void build_index(test_scene *scene)
             continue;
         }
         boxes[next] = prim->kind == GLINT_PRIM_SPHERE ? place_sphere(table, prim) : place_corners_of(scene, prim);
+        for (int c = 0; c < 3 && prim->kind == GLINT_PRIM_SOLID; c++) {
+            scene->solids[prim->item].lower[c] = boxes[next].lower[c];
+            scene->solids[prim->item].upper[c] = boxes[next].upper[c];
+        }
         boxes[next++].item = i;
     }
     glint_error error;
