@@ -30,7 +30,7 @@ static void read_file(lua_State *L, char out[4096])
 {
     size_t length;
     lua_pushliteral(L, "file");
-    if (lua_rawget(L, 1) != LUA_TSTRING)
+    if (lua_rawget(L, 1) != LUA_TSTRING || lua_rawlen(L, -1) == 0)
         glintL_refuse(L, -1, "texture.file", "name of a PNG file");
     const char *file = lua_tolstring(L, -1, &length);
     if (length >= 4096 || memchr(file, '\0', length))

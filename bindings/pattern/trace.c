@@ -64,6 +64,8 @@ static int explain(lua_State *L)
         cure = "a loop runs over numbers, not over values of the point";
     else if (strstr(text, "got " GLINTL_SYMBOL))
         cure = "a symbol has no number yet; write glint's own function, glint.sin(x) for math.sin(x)";
+    else if (strstr(text, "stack overflow"))
+        cure = "functions call each other without an end";
     if (!cure || !trace)
         return 1;
     luaL_checkstack(L, 4, "message");

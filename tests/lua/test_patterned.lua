@@ -281,6 +281,7 @@ function tests.textures_are_looked_up()
   raises("a texture does not change", function() photo.wrap = "repeat" end)
   raises("texture.wrong: no such field", function() return photo.wrong end)
   raises("texture.file: name of a PNG file expected, got nil", function() return glint.texture {} end)
+  raises('texture.file: name of a PNG file expected, got string ""', function() return glint.texture { file = "" } end)
   raises("no_such_file.png", function() return glint.texture { file = "no_such_file.png" } end)
   local file = assert(io.open(name, "rb"))
   local bytes = file:read "a"
