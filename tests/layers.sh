@@ -37,7 +37,7 @@ layer engine/plan engine/program engine/geometry engine/scene engine/overlay eng
 layer engine/reuse engine/program engine/plan engine/film $stages $base
 for room in engine/tile engine/tile/pattern engine/tile/derivative engine/tile/indirect; do
     layer $room engine/tile engine/tile/pattern engine/tile/derivative engine/tile/indirect engine/program engine/reuse engine/plan engine/film $stages \
-        engine/stages/light engine/stages/program $base
+        engine/stages/light $base
 done
 layer engine/frame engine/program engine/tile engine/reuse engine/plan engine/film $base
 layer engine/file engine/text engine/overlay engine/film engine/stages $base

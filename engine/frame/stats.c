@@ -92,18 +92,21 @@ void glint_renderer_collect(const glint_renderer *renderer, const glint_plan *pl
     list_stages(&sum, plan, renderer->time_stages, out);
 }
 
+static inline bool is_shifted(uint32_t own, uint32_t before, uint32_t after, uint32_t up, uint32_t down)
+{
+    return (own == 0) | (((own ^ before) | (own ^ after) | (own ^ up) | (own ^ down)) != 0);
+}
+
 /// Pixels of a row from whose samples other things are kept than from those of one beside them, or not from all the same. `up` and
 /// `down`: the rows beside it; at an edge itself.
 static uint64_t count_row(const uint32_t *at, const uint32_t *up, const uint32_t *down, int width)
 {
-    uint64_t count = 0;
-    uint32_t before = 0, own = at[0]; // before: what parts this pixel from the one before it
-    for (int x = 0; x < width; x++) {
-        const uint32_t next = x + 1 < width ? at[x + 1] : own, after = own ^ next;
-        count += own == 0 || (before | after | (own ^ up[x]) | (own ^ down[x])) != 0;
-        before = after;
-        own = next;
-    }
+    const int last = width - 1;
+    uint32_t count = is_shifted(at[0], at[0], at[last > 0], up[0], down[0]);
+    for (int x = 1; x < last; x++)
+        count += is_shifted(at[x], at[x - 1], at[x + 1], up[x], down[x]);
+    if (last > 0)
+        count += is_shifted(at[last], at[last - 1], at[last], up[last], down[last]);
     return count;
 }
 

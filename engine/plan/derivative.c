@@ -207,9 +207,11 @@ static void fill_light(glint_derivative_light *out, const glint_plan_light *rows
     out->attenuated = is_cap ? false : out->coefficients[0].value != 1 || out->coefficients[1].value != 0 ||
                       out->coefficients[2].value != 0 || glint_has_slope(out->coefficients, 3); // caps: what is seen has it
     out->moves = glint_has_slope(out->position, 3);
-    out->varies = out->moves || glint_has_slope(out->diffuse, 3) || glint_has_slope(out->specular, 3) ||
-                  glint_has_slope(out->coefficients, 3) || glint_has_slope(out->axis, 3) || out->outer.slope != 0 ||
-                  out->inverse.slope != 0 || out->exponent.slope != 0;
+    out->turns = out->moves || glint_has_slope(out->axis, 3);
+    out->shines = glint_has_slope(out->diffuse, 3) || glint_has_slope(out->specular, 3) ||
+                  glint_has_slope(out->coefficients, 3) || out->outer.slope != 0 || out->inverse.slope != 0 ||
+                  out->exponent.slope != 0;
+    out->varies = out->turns || out->shines;
 }
 
 // ---- Surfaces -----------------------------------------------------------------------------------------------------

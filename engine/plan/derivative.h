@@ -8,50 +8,10 @@
 #include "engine/program/program.h"
 #include "engine/stages/stages.h"
 
-/// A material, as glint_shade_material has it.
-typedef struct glint_derivative_material {
-    uint32_t varies; ///< 0: nothing of it has a slope
-    uint32_t highlight, lobe; ///< glint_highlight, glint_lobe; of a material without a highlight that gets one, too
-    uint32_t unused; ///< 0: no padding
-    glint_dual diffuse[3], specular[3], grazing[3], ambient[3], shininess, alpha;
-} glint_derivative_material;
-
 /// What a material sends on; slopes.
 typedef struct glint_derivative_bounce {
     double mirror[3], transmission[3], absorption[3], ior; ///< of a number that nothing reads 0
 } glint_derivative_bounce;
-
-/// A light of the scene, or what its samples have in common.
-typedef struct glint_derivative_light {
-    uint32_t varies;
-    uint32_t moves; ///< its shadows do
-    uint32_t directional, is_spot;
-    uint32_t attenuated; ///< by distance
-    uint32_t unused; ///< 0: no padding
-    glint_dual position[3]; ///< directional: the unit vector towards it; of an area light the slope is that of its samples
-    glint_dual coefficients[3], diffuse[3], specular[3];
-    glint_dual axis[3], outer, inverse, exponent; ///< of a spot, see glint_spot
-} glint_derivative_light;
-
-/// A surface that moves; slopes, in the world.
-typedef struct glint_derivative_part {
-    uint32_t moves;
-    uint32_t unused; ///< 0: no padding
-    double place[3]; ///< of a sphere's centre or a plane's point
-    double growth; ///< of a sphere's radius, in shares of it
-    double normal[3]; ///< of a plane's unit normal
-    double pivot[3]; ///< around which a plane turns: no slope
-} glint_derivative_part;
-
-/// The eye and its lens; slopes.
-typedef struct glint_derivative_view {
-    uint32_t moves;
-    uint32_t unused; ///< 0: no padding
-    double eye[3], forward[3], right[3], up[3]; ///< as in glint_plan_camera
-    double lens[2][3]; ///< of the unit axes of the lens, to the right and up; without a lens 0, and so the next
-    double wider; ///< of the aperture, in shares of it
-    double nearer; ///< of one over the distance of its focus
-} glint_derivative_view;
 
 /// How fast programs of a material change; owned references.
 typedef struct glint_derivative_programs {

@@ -17,6 +17,7 @@
 #define GLINT_STAGES_H
 
 #include "engine/base/machine.h"
+#include "engine/stages/contract/derivative.h"
 #include "engine/stages/contract/film.h"
 #include "engine/stages/contract/hits.h"
 #include "engine/stages/contract/light.h"
@@ -45,6 +46,10 @@ typedef struct glint_stages {
     } geometry[2]; ///< by glint_precision: double, float
     void (*program)(const glint_program_args *args);
     void (*unit)(const glint_unit_args *args);
+    void (*eyes)(const glint_eyes_args *args);
+    void (*bend)(const glint_bend_args *args);
+    void (*slope)(const glint_slope_args *args);
+    void (*arrival)(const glint_arrival_args *args);
     void (*sky)(const glint_sky_args *args);
     void (*shade)(const glint_shade_args *args);
     void (*resolve)(const glint_resolve_args *args);

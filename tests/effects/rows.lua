@@ -91,7 +91,7 @@ return {
   { name = "shutter", file = "png", functions = { "^glint_plan_create_exposed$", "^glint_shutter_desc$" },
     call = function(_, _, scene) scene.camera.shutter, scene.camera.shutter_times = 0.5, 2 end,
     frame = function(parts, t) parts.lamp.position = { 20 * t, 20, 0 } end },
-  { name = "derivative", stage = "derivative", functions = { "glint_tile_derive", "glint_derive_light" },
+  { name = "derivative", part = "DERIVATIVE", stage = "derivative", functions = { "^slope$", "glint_tile_derive" },
     options = "--passes d:strength",
     call = function(glint, parts) parts.lamp.intensity = glint.variable("strength", 1) end },
   { name = "samples", part = "SAMPLES", stage = "resolve", functions = { "^resolve" }, options = "--samples 4" },

@@ -46,6 +46,9 @@
 #ifndef GLINT_WITH_PROGRAM
 #define GLINT_WITH_PROGRAM 1
 #endif
+#ifndef GLINT_WITH_DERIVATIVE
+#define GLINT_WITH_DERIVATIVE 1
+#endif
 #ifndef GLINT_WITH_LENS
 #define GLINT_WITH_LENS 1
 #endif

@@ -259,6 +259,8 @@ static void resolve_samples(const glint_shade_args *sample, uint32_t count)
 }
 
 #include "engine/stages/ref/program.h"
+#include "engine/stages/ref/derivative.h"
+#include "engine/stages/ref/bend.h"
 #include "engine/stages/ref/differ.h"
 
 // ---- tone --------------------------------------------------------------------------------------------------------
@@ -314,6 +316,10 @@ const glint_stages glint_stages_ref = {
     .geometry = { GEOMETRY_STAGES(double), GEOMETRY_STAGES(float) },
     .program = program,
     .unit = unit,
+    .eyes = eyes,
+    .bend = bend,
+    .slope = slope,
+    .arrival = arrival,
     .sky = sky,
     .shade = shade,
     .resolve = resolve,

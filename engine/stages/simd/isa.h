@@ -25,6 +25,9 @@
 #include "engine/stages/program/coefficients.h"
 #include "engine/stages/program/program.h"
 #include "engine/stages/program/unit.h"
+#include "engine/stages/derivative/sloped.h"
+#include "engine/stages/derivative/light.h"
+#include "engine/stages/derivative/bend.h"
 #include "engine/stages/shade/shade.h"
 #include "engine/stages/shade/sky.h"
 #include "engine/stages/film/resolve.h"
@@ -51,6 +54,10 @@ const glint_stages GLINT_STAGES_SYMBOL = {
     .sky = GLINT_WITH_INDIRECT ? sky : NULL,
     .program = GLINT_WITH_PROGRAM ? program : NULL,
     .unit = GLINT_WITH_PROGRAM ? unit : NULL,
+    .eyes = GLINT_WITH_DERIVATIVE ? eyes : NULL,
+    .bend = GLINT_WITH_DERIVATIVE ? bend : NULL,
+    .slope = GLINT_WITH_DERIVATIVE ? slope : NULL,
+    .arrival = GLINT_WITH_DERIVATIVE ? arrival : NULL,
     .shade = shade,
     .resolve = GLINT_WITH_SAMPLES ? resolve : NULL,
     .resolve_samples = GLINT_WITH_SAMPLES ? resolve_samples : NULL,

@@ -293,113 +293,38 @@ bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, si
 
 // ---- Hits of a group on one sphere or plane: as above, lanes side by side ------------------------------------------------
 
-/// Rays of a group that camera's eye sees by: where each is as long as the hit's way, and its slopes.
-typedef struct bent_rays {
-    double way[3][GLINT_GROUP], moved[3][GLINT_GROUP], turned[3][GLINT_GROUP], far[GLINT_GROUP];
-} bent_rays;
-
-/// See bend_view.
-static void see_from_point(const glint_plan *plan, const glint_derivative_view *view, const glint_derivative_points *points,
-                           bent_rays *restrict out)
-{
-    const glint_plan_camera camera = plan->camera;
-    const glint_derivative_view own = *view;
-    const double wide = vec_dot(camera.right, camera.right), high = vec_dot(camera.up, camera.up);
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < GLINT_GROUP; i++)
-            out->way[c][i] = own.moves ? points->point[c][i] - camera.eye[c] : -points->eye[c][i];
-    for (int i = 0; i < GLINT_GROUP; i++) {
-        const double way[3] = { out->way[0][i], out->way[1][i], out->way[2][i] };
-        const double along = vec_dot(way, camera.forward), across = vec_dot(way, camera.right) / wide,
-                     down = vec_dot(way, camera.up) / high;
-        for (int c = 0; c < 3; c++) {
-            out->turned[c][i] = (along * own.forward[c] + across * own.right[c]) + down * own.up[c];
-            out->moved[c][i] = own.eye[c];
-        }
-        out->far[i] = 1;
-    }
-}
-
-/// See aim.
-static void see_along(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t g,
-                      const glint_derivative_points *points, bent_rays *restrict out)
-{
-    const glint_plan_camera camera = plan->camera;
-    const glint_derivative_view own = *view;
-    const double near = plan->lens ? 1 / camera.focus : 0, near_slope = plan->lens ? own.nearer : 0;
-    const double parallel = camera.orthographic ? 1 : 0;
-    double place[2][GLINT_GROUP], at[3][GLINT_GROUP] = { { 0 } }, slope[3][GLINT_GROUP] = { { 0 } };
-    for (uint32_t i = 0; i < GLINT_GROUP; i++) {
-        double middle[2], lens[3] = { 0 }, change[3] = { 0 };
-        find_place(tile, g * GLINT_GROUP + i, middle);
-        find_lens(tile, plan, view, i, lens, change);
-        for (int c = 0; c < 3; c++) {
-            place[c % 2][i] = middle[c % 2];
-            at[c][i] = lens[c];
-            slope[c][i] = change[c];
-        }
-    }
-    for (int i = 0; i < GLINT_GROUP; i++) {
-        double way[3], seen[3];
-        for (int c = 0; c < 3; c++) {
-            const double across = place[0][i] * camera.right[c] + place[1][i] * camera.up[c];
-            const double changed = place[0][i] * own.right[c] + place[1][i] * own.up[c];
-            seen[c] = points->point[c][i] - (camera.eye[c] + (parallel * across + at[c][i]));
-            way[c] = camera.forward[c] + ((1 - parallel) * across - at[c][i] * near);
-            out->way[c][i] = way[c];
-            out->moved[c][i] = own.eye[c] + (parallel * changed + slope[c][i]);
-            out->turned[c][i] = own.forward[c] + ((1 - parallel) * changed - (slope[c][i] * near + at[c][i] * near_slope));
-        }
-        out->far[i] = vec_dot(seen, way) / vec_dot(way, way);
-    }
-}
-
-/// See hold; out: the slopes of points, normals and eyes.
-static inline __attribute__((always_inline)) void hold_lanes(bool round, const bent_rays *rays, const glint_prim *prim,
-                                                             const glint_derivative_part *part,
-                                                             const glint_derivative_points *points,
-                                                             double (*restrict out)[3][GLINT_GROUP])
-{
-    for (int i = 0; i < GLINT_GROUP; i++) {
-        double way[3], gradient[3], off[3], carried[3], normal[3], turned[3], eye[3], rest = 0;
-        for (int c = 0; c < 3; c++) {
-            way[c] = rays->way[c][i];
-            turned[c] = rays->turned[c][i];
-            eye[c] = points->eye[c][i];
-            normal[c] = points->normal[c][i];
-            off[c] = points->point[c][i] - prim->center[c];
-            gradient[c] = round ? off[c] : prim->normal[c];
-            carried[c] = rays->moved[c][i] + rays->far[i] * turned[c];
-            rest += gradient[c] * ((part->place[c] - carried[c]) + part->growth * off[c]);
-            rest -= part->normal[c] * (points->point[c][i] - part->pivot[c]);
-        }
-        const double further = rest / vec_dot(gradient, way), side = vec_dot(gradient, normal) < 0 ? -1 : 1;
-        const double shorter = 1 / sqrt(vec_dot(way, way)), away = vec_dot(turned, eye), curved = side / prim->radius;
-        for (int c = 0; c < 3; c++) {
-            const double moved = carried[c] + further * way[c];
-            out[0][c][i] = moved;
-            out[1][c][i] = round ? ((moved - part->place[c]) - off[c] * part->growth) * curved : side * part->normal[c];
-            out[2][c][i] = (away * eye[c] - turned[c]) * shorter;
-        }
-    }
-}
-
 /// Of lanes that show a sphere or a plane, seen by the eye.
 static void bend_lanes(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g,
                        const glint_prim *prim, const glint_derivative_points *points, double (*out)[3][GLINT_GROUP])
 {
     const glint_plan *plan = frame->plan;
     const glint_plan_derivative *d = &plan->derivatives->of[index];
-    const glint_derivative_part *part = &d->parts[plan->geometry->prim_part[prim->id]];
-    bent_rays rays;
-    if (d->view.moves && (plan->lens || plan->camera.orthographic))
-        see_along(tile, plan, &d->view, g, points, &rays);
-    else
-        see_from_point(plan, &d->view, points, &rays);
-    if (prim->kind == GLINT_PRIM_SPHERE)
-        hold_lanes(true, &rays, prim, part, points, out);
-    else
-        hold_lanes(false, &rays, prim, part, points, out);
+    glint_bend_camera camera = { .near = plan->lens ? 1 / plan->camera.focus : 0, .orthographic = plan->camera.orthographic };
+    _Alignas(64) double place[2][GLINT_GROUP], shift[3][GLINT_GROUP], shift_slope[3][GLINT_GROUP];
+    glint_bend_args args = { .points = points, .prim = prim, .view = &d->view, .camera = &camera, .slope = out };
+    args.part = &d->parts[plan->geometry->prim_part[prim->id]];
+    vec_copy(camera.eye, plan->camera.eye);
+    vec_copy(camera.forward, plan->camera.forward);
+    vec_copy(camera.right, plan->camera.right);
+    vec_copy(camera.up, plan->camera.up);
+    if (d->view.moves && (plan->lens || plan->camera.orthographic)) {
+        for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+            double middle[2], lens[3] = { 0 }, change[3] = { 0 };
+            find_place(tile, g * GLINT_GROUP + i, middle);
+            find_lens(tile, plan, &d->view, i, lens, change);
+            for (int c = 0; c < 3; c++) {
+                place[c % 2][i] = middle[c % 2];
+                shift[c][i] = lens[c];
+                shift_slope[c][i] = change[c];
+            }
+        }
+        for (int c = 0; c < 3; c++) {
+            args.place[c % 2] = place[c % 2];
+            args.shift[c] = shift[c];
+            args.shift_slope[c] = shift_slope[c];
+        }
+    }
+    frame->stages->bend(&args);
 }
 
 /// Puts some lanes beside others.
@@ -447,7 +372,7 @@ unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame
 {
     const glint_plan_derivative *d = &frame->plan->derivatives->of[index];
     const uint32_t *prims = tile->at.prim + (size_t)g * GLINT_GROUP;
-    double some[3][3][GLINT_GROUP];
+    _Alignas(64) double some[3][3][GLINT_GROUP];
     unsigned bent = 0;
     if (tile->batch || glint_derives_sites(tile))
         return bend_each(tile, frame, index, g, lanes, points, bend);

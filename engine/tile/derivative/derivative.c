@@ -23,8 +23,8 @@ void glint_derivative_destroy(struct glint_derivative_work *work)
 
 // ---- Points ---------------------------------------------------------------------------------------------------------
 
-/// The group's rays, by the tables that glint_tile_direction reads lane by lane.
-static void gather_directions(const glint_tile *tile, glint_precision precision, uint32_t g, double out[3][GLINT_GROUP])
+/// The group's rays, one by one.
+static void gather_directions(const glint_tile *tile, glint_precision precision, uint32_t g, double (*out)[GLINT_GROUP])
 {
     for (uint32_t c = 0; c < 3; c++) {
         double down[GLINT_GROUP];
@@ -35,8 +35,24 @@ static void gather_directions(const glint_tile *tile, glint_precision precision,
         glint_reals_of(tile->rays.across, precision, 3 * (g % tile->groups_across) + c, out[c]);
         glint_reals_of(tile->rays.down, precision, 3 * (g / tile->groups_across) + c, down);
         for (int i = 0; i < GLINT_GROUP; i++)
-            out[c][i] = precision == GLINT_FLOAT ? (double)(float)(out[c][i] + down[i]) : out[c][i] + down[i];
+            out[c][i] = (double)(float)(out[c][i] + down[i]);
     }
+}
+
+/// Finds the group's ways to where it is seen from.
+static void find_eyes(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
+{
+    double (*eye)[GLINT_TILE_SAMPLES] = tile->derivative->eye;
+    const size_t at = (size_t)g * GLINT_GROUP;
+    _Alignas(64) double room[3][GLINT_GROUP];
+    glint_eyes_args args = { .direction = room[0], .eye = { eye[0] + at, eye[1] + at, eye[2] + at } };
+    if (glint_tile_has_arrays(tile) || frame->plan->desc.precision == GLINT_FLOAT) {
+        gather_directions(tile, frame->plan->desc.precision, g, room);
+    } else {
+        args.direction = (const double *)tile->rays.across + (size_t)3 * GLINT_GROUP * (g % tile->groups_across);
+        args.more = (const double *)tile->rays.down + (size_t)3 * GLINT_GROUP * (g / tile->groups_across);
+    }
+    frame->stages->eyes(&args);
 }
 
 /// The lanes of group g, among those that are left, that show the material of the first of them.
@@ -71,11 +87,8 @@ static void gather_points(glint_tile *tile, const glint_tile_frame *frame, uint3
     glint_derivative_work *work = tile->derivative;
     const glint_precision precision = frame->plan->desc.precision;
     const size_t at = (size_t)g * GLINT_GROUP;
-    if (reads_eyes(tile, frame->plan, g)) {
-        _Alignas(64) double d[3][GLINT_GROUP];
-        gather_directions(tile, precision, g, d);
-        glint_derive_eyes(d, (double *const[3]) { work->eye[0] + at, work->eye[1] + at, work->eye[2] + at });
-    }
+    if (reads_eyes(tile, frame->plan, g))
+        find_eyes(tile, frame, g);
     for (int c = 0; c < 3 && precision == GLINT_FLOAT; c++) {
         glint_reals_of(tile->surface.point[c], precision, g, work->point[c] + at);
         glint_reals_of(tile->surface.normal[c], precision, g, work->normal[c] + at);
@@ -230,19 +243,26 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
         uint32_t material;
         lanes = lanes_alike(tile, g, left, &material);
         for (size_t k = 0; k < all->count && !(frame->plan->materials[material].planes & GLINT_PLANE_SHADED); k++) {
-            const glint_derivative_light *l = &all->of[k].lights[light->source];
-            const glint_derivative_material *m = &all->of[k].materials[material];
+            glint_slope_args args = { .light = &all->of[k].lights[light->source],
+                                      .material = &all->of[k].materials[material],
+                                      .source = &source };
             glint_derivative_planes room;
-            const glint_derivative_planes *planes = planes_of(tile, frame->plan, k, material, g, &room);
-            double *const sum[3] = { work->sum[k][0] + at, work->sum[k][1] + at, work->sum[k][2] + at };
+            args.planes = planes_of(tile, frame->plan, k, material, g, &room);
             if (tinted)
                 glint_derivative_take_tint(tile, k, g, &source);
-            double *const whole[3] = { weighs && k == 0 ? work->light[0] + at : NULL, work->light[1] + at, work->light[2] + at };
-            const unsigned bent = all->of[k].bends ? glint_bend_points(tile, frame, k, g, lanes, &points, work->bend) : 0;
-            if (bent)
-                glint_derive_light(l, m, planes, &bent_points, &source, bent, sum, whole);
-            if (lanes & ~bent && (tinted || whole[0] || l->varies || m->varies))
-                glint_derive_light(l, m, planes, &points, &source, lanes & ~bent, sum, whole);
+            for (int c = 0; c < 3; c++) {
+                args.sum[c] = work->sum[k][c] + at;
+                args.whole[c] = weighs && k == 0 ? work->light[c] + at : NULL;
+            }
+            args.lanes = all->of[k].bends ? glint_bend_points(tile, frame, k, g, lanes, &points, work->bend) : 0;
+            args.points = &bent_points;
+            const unsigned rest = lanes & ~args.lanes;
+            if (args.lanes)
+                frame->stages->slope(&args);
+            args.points = &points;
+            args.lanes = rest;
+            if (rest && (tinted || args.whole[0] || args.light->varies || args.material->varies))
+                frame->stages->slope(&args);
         }
     }
 }
@@ -383,6 +403,23 @@ static void turn_sample(glint_tile *tile, bool is_first)
     }
 }
 
+/// Notes which surfaces group g shows.
+static void note_hits(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
+{
+    uint32_t *shadows = tile->derivative->shadows + (size_t)g * GLINT_GROUP;
+    const uint32_t *prims = tile->at.prim + (size_t)g * GLINT_GROUP;
+    for (unsigned left = tile->at.hits[g], same; left; left &= ~same) {
+        const uint32_t prim = prims[__builtin_ctz(left)];
+        const uint32_t hash = (NO_SHADOWS ^ (frame->geometry.prims[prim].id + 1)) * GLINT_SHADOW_MIXER;
+        same = 0;
+        for (unsigned i = 0; i < GLINT_GROUP; i++) {
+            const bool is = prims[i] == prim && left >> i & 1;
+            same |= (unsigned)is << i;
+            shadows[i] = is ? hash : shadows[i];
+        }
+    }
+}
+
 static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_derivative_work *work = tile->derivative;
@@ -406,10 +443,8 @@ static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
             gather_points(tile, frame, g);
         if (glint_derivatives_read_light(tile, frame->plan))
             begin_light(tile, frame, g);
-        for (unsigned rest = frame->plan->derivatives->bends ? tile->at.hits[g] : 0; rest; rest &= rest - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(rest);
-            work->shadows[i] = (NO_SHADOWS ^ (frame->geometry.prims[tile->at.prim[i]].id + 1)) * GLINT_SHADOW_MIXER;
-        }
+        if (frame->plan->derivatives->bends)
+            note_hits(tile, frame, g);
     }
 }
 

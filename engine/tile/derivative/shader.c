@@ -44,9 +44,9 @@ void glint_shader_slopes_free(struct glint_shader_slopes *slopes) { free(slopes)
 
 // ---- What a shader reads --------------------------------------------------------------------------------------------
 
-/// How the light comes to an entry's group; `points`: with their slopes by derivative number `index`.
-static void find_arrival(const shading *s, size_t index, uint32_t e, const glint_derivative_points *points,
-                         glint_derivative_arrival *out)
+/// Puts how the light comes to an entry's group where the shader reads it; `sloped`: the slopes of that by derivative number `index`,
+/// where the points' slopes are.
+static void find_arrival(const shading *s, size_t index, uint32_t e, const glint_derivative_points *points, bool sloped)
 {
     const glint_plan_light *light = s->reach->light;
     const glint_light_sample *sample = glint_tile_light_sample_of(s->tile, light);
@@ -65,7 +65,15 @@ static void find_arrival(const shading *s, size_t index, uint32_t e, const glint
     }
     if (s->reach->tinted)
         glint_derivative_take_tint(s->tile, index, s->entries[e].group, &source);
-    glint_derive_arrival(&s->frame->plan->derivatives->of[index].lights[light->source], points, &source, out);
+    glint_arrival_args args = { &s->frame->plan->derivatives->of[index].lights[light->source], points, &source, .value = { NULL } };
+    for (int k = 0; k < GLINT_ARRIVAL_COUNT; k++) {
+        const glint_input input = (glint_input)(GLINT_INPUT_L_X + k);
+        if (sloped)
+            args.slope[k] = s->slopes->input[input] + e * GLINT_GROUP;
+        else
+            args.value[k] = glint_pattern_row(&s->tile->pattern->inputs, input) + e * GLINT_GROUP;
+    }
+    s->frame->stages->arrival(&args);
 }
 
 /// What the shader reads of points, material and light.
@@ -74,11 +82,7 @@ static void gather(const shading *s, const glint_pattern_points *points)
     glint_shader_gather(s->tile, s->frame, points, s->entries, s->count);
     for (uint32_t e = 0; e < s->count; e++) {
         const glint_derivative_points own = glint_derivative_points_of(s->tile, s->frame, s->entries[e].group);
-        glint_derivative_arrival arrival;
-        find_arrival(s, 0, e, &own, &arrival);
-        for (int k = 0; k < GLINT_ARRIVAL_COUNT; k++)
-            memcpy(glint_pattern_row(&s->tile->pattern->inputs, (glint_input)(GLINT_INPUT_L_X + k)) + e * GLINT_GROUP,
-                   arrival.value[k], sizeof arrival.value[k]);
+        find_arrival(s, 0, e, &own, false);
     }
 }
 
@@ -105,7 +109,6 @@ static void find_entry(const shading *s, size_t index, uint32_t e, bool arrives)
     const uint32_t g = s->entries[e].group;
     const bool bends = s->frame->plan->derivatives->of[index].bends;
     glint_derivative_points points = glint_derivative_points_of(s->tile, s->frame, g);
-    glint_derivative_arrival arrival;
     if (bends) {
         memset(s->tile->derivative->bend, 0, sizeof s->tile->derivative->bend);
         if (glint_bend_points(s->tile, s->frame, index, g, s->slopes->wanted[e], &points, bend))
@@ -115,11 +118,8 @@ static void find_entry(const shading *s, size_t index, uint32_t e, bool arrives)
             memcpy(s->slopes->input[first[i / 3] + i % 3] + e * GLINT_GROUP, bend[i / 3][i % 3], sizeof bend[i / 3][i % 3]);
         turn_points(s, e);
     }
-    if (!arrives)
-        return;
-    find_arrival(s, index, e, &points, &arrival);
-    for (int k = 0; k < GLINT_ARRIVAL_COUNT; k++)
-        memcpy(s->slopes->input[GLINT_INPUT_L_X + k] + e * GLINT_GROUP, arrival.slope[k], sizeof arrival.slope[k]);
+    if (arrives)
+        find_arrival(s, index, e, &points, true);
 }
 
 /// Those of one number of the material, or of what a program gives of it. False: there are none.

@@ -2,8 +2,8 @@
 #ifndef GLINT_DERIVATIVE_WORK_H
 #define GLINT_DERIVATIVE_WORK_H
 
+#include "engine/plan/derivative.h"
 #include "engine/tile/batch.h"
-#include "engine/tile/derivative/light.h"
 
 #define GLINT_SHADOW_MIXER 0x9e3779b1u
 
@@ -97,6 +97,10 @@ bool glint_derive_fade_fits(glint_derivative_work *work, const glint_plan *plan)
 /// bend.c: by derivative number `index`. False: nothing moves it.
 bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
                        const glint_derivative_points *points, glint_bend *out);
+
+/// The slopes of those points of a group, among `lanes`, that derivative number `index` moves; returns which they are.
+unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
+                           const glint_derivative_points *points, double (*bend)[3][GLINT_GROUP]);
 
 /// The shares of a triangle's corners at the end of a way `at` from the first of them, less the 1 that the first has at its own
 /// place: of the slope of a point, the slopes of its shares. scale: of the table.

@@ -1,0 +1,113 @@
+// How fast hits on one sphere or plane move, that an eye sees. Contract: contract/derivative.h; one hit of any kind: bend.c of
+// tile/derivative.
+
+/// Rays of VD hits: along them, of any length; how fast they start elsewhere and turn; how far along the hits are.
+typedef struct bent_rays {
+    vd way[3], moved[3], turned[3], far;
+} bent_rays;
+
+INNER void d_set_3(const double from[3], vd out[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = d_set(from[c]);
+}
+
+INNER bent_rays see_from_point(const glint_bend_args *args, int i)
+{
+    const glint_derivative_view *view = args->view;
+    const glint_bend_camera *camera = args->camera;
+    const glint_derivative_points *points = args->points;
+    bent_rays out = { .far = d_set(1) };
+    vd forward[3], right[3], up[3];
+    d_set_3(camera->forward, forward);
+    d_set_3(camera->right, right);
+    d_set_3(camera->up, up);
+    for (int c = 0; c < 3; c++) {
+        out.way[c] = d_either(view->moves, d_load(points->point[c] + i) - d_set(camera->eye[c]), -d_load(points->eye[c] + i));
+        out.moved[c] = d_set(view->eye[c]);
+    }
+    const vd along = DOT(out.way, forward), across = DOT(out.way, right) / d_set(DOT(camera->right, camera->right)),
+             down = DOT(out.way, up) / d_set(DOT(camera->up, camera->up));
+    for (int c = 0; c < 3; c++)
+        out.turned[c] = (along * d_set(view->forward[c]) + across * d_set(view->right[c])) + down * d_set(view->up[c]);
+    return out;
+}
+
+/// The ray of an orthographic camera, or of one with a lens.
+INNER bent_rays see_along(const glint_bend_args *args, const bool parallel, int i)
+{
+    const glint_derivative_view *view = args->view;
+    const glint_bend_camera *camera = args->camera;
+    const vd x = d_load(args->place[0] + i), y = d_load(args->place[1] + i), zero = d_set(0), near = d_set(camera->near);
+    bent_rays out;
+    vd seen[3];
+    for (int c = 0; c < 3; c++) {
+        const vd across = x * d_set(camera->right[c]) + y * d_set(camera->up[c]);
+        const vd changed = x * d_set(view->right[c]) + y * d_set(view->up[c]);
+        const vd at = d_load(args->shift[c] + i), slope = d_load(args->shift_slope[c] + i);
+        seen[c] = d_load(args->points->point[c] + i) - (d_set(camera->eye[c]) + (d_either(parallel, across, zero) + at));
+        out.way[c] = d_set(camera->forward[c]) + (d_either(parallel, zero, across) - at * near);
+        out.moved[c] = d_set(view->eye[c]) + (d_either(parallel, changed, zero) + slope);
+        out.turned[c] = d_set(view->forward[c]) + (d_either(parallel, zero, changed) - (slope * near + at * d_set(view->nearer)));
+    }
+    out.far = DOT(seen, out.way) / DOT(out.way, out.way);
+    return out;
+}
+
+/// The point stays on the tangent plane, which moves as the surface does there.
+INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const bool round, int i)
+{
+    const glint_prim *prim = args->prim;
+    const glint_derivative_part *part = args->part;
+    const glint_derivative_points *points = args->points;
+    vd gradient[3], off[3], carried[3], normal[3], eye[3], rest = d_set(0);
+    for (int c = 0; c < 3; c++) {
+        const vd point = d_load(points->point[c] + i);
+        eye[c] = d_load(points->eye[c] + i);
+        normal[c] = d_load(points->normal[c] + i);
+        off[c] = point - d_set(prim->center[c]);
+        gradient[c] = d_either(round, off[c], d_set(round ? 0 : prim->normal[c]));
+        carried[c] = rays->moved[c] + rays->far * rays->turned[c];
+        rest = rest + gradient[c] * ((d_set(part->place[c]) - carried[c]) + d_set(part->growth) * off[c]);
+        if (!round)
+            rest = rest - d_set(part->normal[c]) * (point - d_set(part->pivot[c]));
+    }
+    const vd further = rest / DOT(gradient, rays->way);
+    const vd side = d_select(d_lt(DOT(gradient, normal), d_set(0)), d_set(-1), d_set(1));
+    const vd shorter = d_set(1) / d_sqrt(DOT(rays->way, rays->way)), away = DOT(rays->turned, eye);
+    const vd curved = side / d_set(round ? prim->radius : 1);
+    for (int c = 0; c < 3; c++) {
+        const vd moved = carried[c] + further * rays->way[c];
+        const vd left = (moved - d_set(part->place[c])) - off[c] * d_set(part->growth);
+        d_store(args->slope[0][c] + i, moved);
+        d_store(args->slope[1][c] + i, d_either(round, left * curved, side * d_set(part->normal[c])));
+        d_store(args->slope[2][c] + i, (away * eye[c] - rays->turned[c]) * shorter);
+    }
+}
+
+INNER void bend_group(const glint_bend_args *args, const bool along, const bool parallel, const bool round)
+{
+    const glint_bend_args call = *args; // stores may not change it
+    for (int i = 0; i < GLINT_GROUP; i += VD) {
+        const bent_rays rays = along ? see_along(&call, parallel, i) : see_from_point(&call, i);
+        hold_lanes(&call, &rays, round, i);
+    }
+}
+
+static void bend(const glint_bend_args *args)
+{
+    const bool along = args->place[0], parallel = along && args->camera->orthographic;
+    const bool round = args->prim->kind == GLINT_PRIM_SPHERE;
+    if (parallel && round)
+        bend_group(args, true, true, true);
+    else if (parallel)
+        bend_group(args, true, true, false);
+    else if (along && round)
+        bend_group(args, true, false, true);
+    else if (along)
+        bend_group(args, true, false, false);
+    else if (round)
+        bend_group(args, false, false, true);
+    else
+        bend_group(args, false, false, false);
+}
