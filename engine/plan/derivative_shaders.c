@@ -30,8 +30,8 @@ static glint_status find_gradient(glint_plan *plan, const glint_program *shader,
     if (status)
         return glint_fail(error, status, "derivative '%s': material.model: how fast the shader changes: %s",
                           name, why.message);
-    for (uint32_t k = 0; k < out->count; k += GLINT_PROGRAM_OUTPUTS_MAX) {
-        const uint32_t rows = out->programs[k / GLINT_PROGRAM_OUTPUTS_MAX]->code.row_count;
+    for (uint32_t k = 0; k < out->count; k += out->each) {
+        const uint32_t rows = out->programs[k / out->each]->code.row_count;
         plan->patterns->row_count = plan->patterns->row_count < rows ? rows : plan->patterns->row_count;
     }
     return GLINT_OK;

@@ -253,7 +253,7 @@ static bool allocate(glint_program *program, const glint_builder *builder, uint3
 {
     program->code.instructions = glint_alloc(length, sizeof(glint_instruction));
     program->code.numbers =
-        glint_alloc((size_t)GLINT_OPERANDS_MAX * length + GLINT_PROGRAM_OUTPUTS_MAX, sizeof *program->code.numbers);
+        glint_alloc((size_t)GLINT_OPERANDS_MAX * length + GLINT_CODE_OUTPUTS_MAX, sizeof *program->code.numbers);
     program->textures = calloc(builder->texture_count + 1u, sizeof *program->textures);
     program->code.textures = calloc(builder->texture_count + 1u, sizeof *program->code.textures);
     return program->code.instructions && program->code.numbers && program->textures && program->code.textures;
@@ -338,9 +338,9 @@ static void make_keys(glint_program *program)
 static glint_status check_outputs(const glint_builder *builder, const glint_value *outputs, size_t count,
                                   glint_error *error)
 {
-    if (count < 1 || count > GLINT_PROGRAM_OUTPUTS_MAX)
-        return glint_fail(error, GLINT_ERR_INVALID, "count: 1 .. %d outputs expected, got %zu",
-                          GLINT_PROGRAM_OUTPUTS_MAX, count);
+    if (count < 1 || count > GLINT_CODE_OUTPUTS_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID, "count: 1 .. %d outputs expected, got %zu", GLINT_CODE_OUTPUTS_MAX,
+                          count);
     for (size_t k = 0; k < count; k++)
         if (outputs[k] >= builder->count)
             return glint_fail(error, GLINT_ERR_INVALID, "outputs: number %zu is no value of this builder", k + 1);

@@ -106,9 +106,9 @@ glint_status glint_code_check(const glint_program_code *code, uint32_t number_co
         return glint_fail(error, GLINT_ERR_INVALID,
                           "program: at most %d instructions and %d rows expected, got %u and %u",
                           GLINT_PROGRAM_LENGTH_MAX, GLINT_PROGRAM_ROWS_MAX, code->length, code->row_count);
-    if (code->output_count < 1 || code->output_count > GLINT_PROGRAM_OUTPUTS_MAX)
-        return glint_fail(error, GLINT_ERR_INVALID, "program: 1 .. %d outputs expected, got %u",
-                          GLINT_PROGRAM_OUTPUTS_MAX, code->output_count);
+    if (code->output_count < 1 || code->output_count > GLINT_CODE_OUTPUTS_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID, "program: 1 .. %d outputs expected, got %u", GLINT_CODE_OUTPUTS_MAX,
+                          code->output_count);
     for (uint32_t at = 0; at < code->length && !status; at++)
         status = check_instruction(&k, code, at, texture_count, error);
     for (uint32_t i = 0; i < code->output_count && !status; i++)

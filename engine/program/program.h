@@ -35,13 +35,15 @@ typedef struct glint_gradient_place {
 } glint_gradient_place;
 
 #define GLINT_GRADIENT_MAX (3 * GLINT_INPUT_COUNT)
+#define GLINT_GRADIENT_PART 8
+_Static_assert(GLINT_GRADIENT_MAX <= GLINT_CODE_OUTPUTS_MAX, "a program may give all slopes");
 
 /// How fast the light that a shader gives, diffuse and specular, changes with its inputs; what is 0 everywhere is not listed.
 typedef struct glint_gradient {
     uint32_t count;
     glint_gradient_place of[GLINT_GRADIENT_MAX];
-    /// Owned; slope k is output k % GLINT_PROGRAM_OUTPUTS_MAX of program k / GLINT_PROGRAM_OUTPUTS_MAX. NULL beyond.
-    glint_program *programs[(GLINT_GRADIENT_MAX + GLINT_PROGRAM_OUTPUTS_MAX - 1) / GLINT_PROGRAM_OUTPUTS_MAX];
+    uint32_t each; ///< slopes that a program gives: all, or where that is too much for one GLINT_GRADIENT_PART
+    glint_program *programs[(GLINT_GRADIENT_MAX + GLINT_GRADIENT_PART - 1) / GLINT_GRADIENT_PART]; ///< owned; NULL beyond
 } glint_gradient;
 
 /// inputs  those that count, a bit each.

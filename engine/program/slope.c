@@ -411,6 +411,22 @@ static void list_channel(slope_maker *s, const glint_value *outputs, uint32_t ou
     }
 }
 
+/// One program finds what its slopes share once.
+static glint_status make_gradient(const glint_builder *builder, const glint_value *values, glint_gradient *out, glint_error *error)
+{
+    glint_status status = glint_program_make(builder, values, out->count, &out->programs[0], error);
+    out->each = out->count;
+    if (status != GLINT_ERR_INVALID)
+        return status;
+    out->each = GLINT_GRADIENT_PART;
+    status = GLINT_OK;
+    for (uint32_t k = 0; k < out->count && !status; k += out->each) {
+        const uint32_t left = out->count - k, count = left < out->each ? left : out->each;
+        status = glint_program_make(builder, values + k, count, &out->programs[k / out->each], error);
+    }
+    return status;
+}
+
 glint_status glint_shader_gradient(const glint_program *shader, uint32_t inputs, glint_gradient *out, glint_error *error)
 {
     slope_maker s = { .error = error };
@@ -419,10 +435,8 @@ glint_status glint_shader_gradient(const glint_program *shader, uint32_t inputs,
     begin(&s, shader, inputs, outputs);
     for (uint32_t c = 0; c < 3 && !s.status; c++)
         list_channel(&s, outputs, shader->code.output_count, c, inputs, out, values);
-    for (uint32_t k = 0; k < out->count && !s.status; k += GLINT_PROGRAM_OUTPUTS_MAX) {
-        const uint32_t left = out->count - k, count = left < GLINT_PROGRAM_OUTPUTS_MAX ? left : GLINT_PROGRAM_OUTPUTS_MAX;
-        s.status = glint_program_make(s.builder, values + k, count, &out->programs[k / GLINT_PROGRAM_OUTPUTS_MAX], error);
-    }
+    if (out->count && !s.status)
+        s.status = make_gradient(s.builder, values, out, error);
     return end(&s);
 }
 

@@ -268,12 +268,96 @@ static void test_results(void **state)
     glint_builder_destroy(b);
 }
 
+enum { CHAIN_INPUTS = 9 };
+static const glint_input chain_inputs[CHAIN_INPUTS] = { GLINT_INPUT_N_X, GLINT_INPUT_N_Y, GLINT_INPUT_N_Z, GLINT_INPUT_V_X, GLINT_INPUT_V_Y,
+                                                        GLINT_INPUT_V_Z, GLINT_INPUT_L_X, GLINT_INPUT_L_Y, GLINT_INPUT_L_Z };
+
+static double chain_factor(int i) { return 1 + i % 7; }
+
+/// The light times `length` factors 1 + c x, of each input in turn.
+static glint_program *make_chain(int length)
+{
+    glint_builder *b = new_builder(GLINT_PROGRAM_SHADER);
+    glint_value product = number(b, 1), out[3];
+    for (int i = 0; i < length; i++) {
+        const glint_value x = read_input(b, chain_inputs[i % CHAIN_INPUTS]);
+        product = op2(b, GLINT_OP_MUL, product, op3(b, GLINT_OP_MULADD, x, number(b, chain_factor(i)), number(b, 1)));
+    }
+    for (int c = 0; c < 3; c++)
+        out[c] = op2(b, GLINT_OP_MUL, product, read_input(b, (glint_input)(GLINT_INPUT_LIGHT_R + c)));
+    glint_program *program = finish(b, out, 3);
+    glint_builder_destroy(b);
+    return program;
+}
+
+/// The slopes of the chain's light, as a lane's sums have them, where input k changes by weight[k].
+static void sum_gradient(const glint_gradient *gradient, double (*inputs)[GLINT_GROUP], double (*weights)[GLINT_GROUP],
+                         double (*sum)[GLINT_GROUP])
+{
+    const uint16_t first_lane = 1;
+    for (uint32_t from = 0; from < gradient->count; from += gradient->each) {
+        glint_program_sums sums = { .sum = { sum[0], sum[1], sum[2] } };
+        glint_program_args args = { .code = &gradient->programs[from / gradient->each]->code, .group_count = 1, .wanted = &first_lane,
+                                    .sums = &sums, .sums_count = 1, .sums_alone = true };
+        for (int k = 0; k < GLINT_INPUT_COUNT; k++)
+            args.input[k] = inputs[k];
+        for (uint32_t n = 0; n < args.code->output_count; n++) {
+            sums.by[n] = weights[gradient->of[from + n].input];
+            sums.sum_of[n] = (uint8_t)gradient->of[from + n].channel;
+        }
+        glint_stages_ref.program(&args);
+    }
+}
+
+static void check_chain(int length, const glint_gradient *gradient)
+{
+    double inputs[GLINT_INPUT_COUNT][GLINT_GROUP] = { { 0 } }, weights[GLINT_INPUT_COUNT][GLINT_GROUP] = { { 0 } };
+    double sum[3][GLINT_GROUP] = { { 0 } }, product = 1, slope = 0;
+    for (int k = 0; k < CHAIN_INPUTS; k++) {
+        inputs[chain_inputs[k]][0] = 0.002 * (k - 4);
+        weights[chain_inputs[k]][0] = k + 1;
+    }
+    for (int i = 0; i < length; i++) {
+        const double factor = 1 + chain_factor(i) * inputs[chain_inputs[i % CHAIN_INPUTS]][0];
+        product *= factor;
+        slope += chain_factor(i) * weights[chain_inputs[i % CHAIN_INPUTS]][0] / factor;
+    }
+    for (int c = 0; c < 3; c++)
+        inputs[GLINT_INPUT_LIGHT_R + c][0] = c + 1;
+    sum_gradient(gradient, inputs, weights, sum);
+    for (int c = 0; c < 3; c++)
+        assert_true(fabs(sum[c][0] / ((c + 1) * product * slope) - 1) < 1e-12);
+}
+
+/// One program gives all slopes; where that were too long a program, several do, and then there is none.
+static void test_gradients(void **state)
+{
+    (void)state;
+    int whole = 0, parts = 0;
+    glint_status status = GLINT_OK;
+    for (int length = 10; !status; length += length / 10) {
+        glint_program *chain = make_chain(length);
+        glint_gradient gradient;
+        status = glint_shader_gradient(chain, chain->inputs, &gradient, &error);
+        if (!status) {
+            check_chain(length, &gradient);
+            whole += gradient.each == gradient.count;
+            parts += gradient.each == GLINT_GRADIENT_PART;
+        }
+        glint_gradient_release(&gradient);
+        glint_program_release(chain);
+    }
+    assert_int_equal(status, GLINT_ERR_INVALID);
+    assert_true(whole > 0 && parts > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_listing), cmocka_unit_test(test_pairs),   cmocka_unit_test(test_numbers),
         cmocka_unit_test(test_rows),    cmocka_unit_test(test_limits),  cmocka_unit_test(test_errors),
         cmocka_unit_test(test_keys),    cmocka_unit_test(test_results),
+        cmocka_unit_test(test_gradients),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -85,6 +85,67 @@ static void *plain_output(const char *name, array_kind kind, uint32_t count)
     return new_array(gotten, &gotten_count, name, kind, count);
 }
 
+/// Factors of outputs, and which sums they are in: what is infinite or no number meets some that are 0.
+static void random_sums(uint32_t outputs, uint32_t n, bool odd, glint_program_sums *out)
+{
+    *out = (glint_program_sums) { .by = { NULL } };
+    for (uint32_t k = 0; k < outputs; k++) {
+        double *by = input(KIND_DOUBLE, n);
+        for (uint32_t i = 0; i < n; i++)
+            by[i] = one_in(4) ? 0 : maybe_odd(odd, between(-2, 2));
+        out->by[k] = one_in(4) ? NULL : by;
+        out->sum_of[k] = (uint8_t)below(3);
+    }
+}
+
+/// Those of the set that is running; of lanes not wanted they may be anything.
+static void run_sums(glint_program_args *args, glint_program_sums *sums, uint32_t count, uint32_t n)
+{
+    for (uint32_t k = 0; k < 3 * count; k++) {
+        double *sum = sums[k / 3].sum[k % 3] = output("sum", KIND_DOUBLE, n);
+        for (uint32_t i = 0; i < n; i++)
+            sum[i] = 0.25 * i; // whatever was added before
+    }
+    args->sums = sums;
+    args->sums_count = count;
+    running->program(args);
+    for (uint32_t k = 0; k < 3 * count; k++)
+        for (uint32_t i = 0; i < n; i++)
+            if (!lane_of(args->wanted, i))
+                sums[k / 3].sum[k % 3][i] = 0;
+}
+
+/// A program whose outputs are one several times, as many as there may be, and no others are stored.
+static void random_gradient(int precision, bool odd)
+{
+    (void)precision;
+    const recipe r = random_recipe(odd);
+    glint_program *program = recipe_build(&r, false);
+    const uint32_t groups = 1 + below(GLINT_PROGRAM_GROUPS), n = groups * GLINT_GROUP, count = 1 + below(3);
+    glint_program_args args = program_inputs(program, groups, odd);
+    glint_program_code code = program->code;
+    glint_program_sums sums[3];
+    while (code.output_count < GLINT_CODE_OUTPUTS_MAX)
+        code.outputs[code.output_count++] = code.outputs[below(program->code.output_count)];
+    for (uint32_t k = 0; k < count; k++)
+        random_sums(code.output_count, n, odd, &sums[k]);
+    args.code = &code;
+    args.wanted = masks(groups);
+    args.sums_alone = true;
+    FOR_EACH_TESTED
+    {
+        run_sums(&args, sums, count, n);
+        compare_outputs("sums");
+    }
+    glint_program_release(program);
+}
+
+static void test_gradients(void **state)
+{
+    (void)state;
+    run_cases(CASES / 10, 47000, random_gradient);
+}
+
 /// Stored as they are, as reflectances and as totals of these, in groups that lie anywhere.
 static void random_program(int precision, bool odd)
 {
@@ -286,6 +347,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_operations),
         cmocka_unit_test(test_random_programs),
+        cmocka_unit_test(test_gradients),
         cmocka_unit_test(test_damaged_programs),
         cmocka_unit_test(test_unit),
         cmocka_unit_test(test_texels),

@@ -8,6 +8,7 @@
 
 #define GLINT_PROGRAM_GROUPS 8 ///< groups at a time
 #define GLINT_PROGRAM_LANES 128 ///< a row: one double a lane, 1 KB
+#define GLINT_CODE_OUTPUTS_MAX 96 ///< of gradients; what is stored has at most GLINT_PROGRAM_OUTPUTS_MAX
 #define GLINT_NUMBER_LANES 16 ///< how often a number stands in memory: a group
 
 // Where an operand is, and where a result goes.
@@ -40,10 +41,17 @@ typedef struct glint_program_code {
     uint32_t length;
     uint32_t row_count; ///< at most GLINT_PROGRAM_ROWS_MAX
     uint32_t output_count;
-    uint16_t outputs[GLINT_PROGRAM_OUTPUTS_MAX]; ///< rows, inputs or numbers
+    uint16_t outputs[GLINT_CODE_OUTPUTS_MAX]; ///< rows, inputs or numbers
     const double (*numbers)[GLINT_NUMBER_LANES];
     const glint_texture_table *const *textures;
 } glint_program_code;
+
+/// Sums of products of a program's outputs with other numbers.
+typedef struct glint_program_sums {
+    const double *by[GLINT_CODE_OUTPUTS_MAX]; ///< what an output is multiplied by, 16 numbers a group; NULL: it is in no sum
+    uint8_t sum_of[GLINT_CODE_OUTPUTS_MAX]; ///< in which sum it is
+    double *sum[3]; ///< in and out, 16 numbers a group: the products are added one after another; of lanes not wanted anything
+} glint_program_sums;
 
 typedef struct glint_program_args {
     const glint_program_code *code;
@@ -53,6 +61,9 @@ typedef struct glint_program_args {
     uint32_t same; ///< a bit an input: it is one number, which stands there GLINT_NUMBER_LANES times
     double *rows; ///< scratch: row_count * GLINT_PROGRAM_LANES
     const uint32_t *groups; ///< where each group is stored in the arrays below; NULL: 0, 1, 2 ...
+    const glint_program_sums *sums; ///< where a factor is 0 nothing is added, whatever the output is
+    uint32_t sums_count;
+    bool sums_alone; ///< no output is stored below
     double *result[GLINT_PROGRAM_OUTPUTS_MAX]; ///< out: the outputs as they are; NULL: not wanted
     /// out: the outputs as reflectances, v > 0 ? min(v, 2^100) : 0 in double, then rounded to float; NULL: not wanted
     float *plane[GLINT_PROGRAM_OUTPUTS_MAX];

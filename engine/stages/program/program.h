@@ -199,6 +199,32 @@ static void store_output(const output *out, double *result, float *plane, double
         add_total(out, total);
 }
 
+/// Adds an output's products to a sum.
+INNER void add_products(const output *out, const double *by, double *sum)
+{
+    const size_t further = GLINT_GROUP & out->step;
+    const double *row = out->row, *const end = by + (size_t)out->args->group_count * GLINT_GROUP;
+    const vd zero = d_set(0);
+    for (; by < end; by += GLINT_GROUP, sum += GLINT_GROUP, row += further)
+        for (int i = 0; i < GLINT_GROUP; i += VD) {
+            const vd factor = d_load(by + i);
+            d_store(sum + i, d_load(sum + i) + d_select(d_eq(factor, zero), zero, d_load(row + i) * factor));
+        }
+}
+
+static void add_sums(const glint_program_args *args)
+{
+    for (uint32_t n = 0; n < args->sums_count; n++)
+        for (uint32_t k = 0; k < args->code->output_count; k++) {
+            const glint_program_sums *sums = &args->sums[n];
+            output out = { .args = args };
+            if (!sums->by[k])
+                continue;
+            out.row = find_operand(args, args->code->outputs[k], &out.step);
+            add_products(&out, sums->by[k], sums->sum[sums->sum_of[k]]);
+        }
+}
+
 static void program(const glint_program_args *args)
 {
     const glint_program_code *code = args->code;
@@ -217,8 +243,10 @@ static void program(const glint_program_args *args)
     }
     for (uint32_t g = 0; args->odd && g < args->group_count; g++)
         args->odd[g] = 0;
+    if (args->sums_count)
+        add_sums(args);
     const bool whole = is_whole(args);
-    for (uint32_t k = 0; k < code->output_count; k++) {
+    for (uint32_t k = 0; k < code->output_count && !args->sums_alone; k++) {
         output out = { .args = args, .whole = whole };
         out.row = find_operand(args, code->outputs[k], &out.step);
         store_output(&out, args->result[k], args->plane[k], args->total[k]);

@@ -244,6 +244,16 @@ static double row_value(const glint_program_args *args, const double *rows, uint
     return args->input[input][args->same >> input & 1 ? 0 : lane];
 }
 
+static void add_sums(const glint_program_args *args, const double *rows, uint32_t lane)
+{
+    for (uint32_t k = 0; k < args->code->output_count; k++) {
+        const double v = row_value(args, rows, args->code->outputs[k], lane);
+        for (const glint_program_sums *sums = args->sums; sums < args->sums + args->sums_count; sums++)
+            if (sums->by[k] && sums->by[k][lane] != 0)
+                sums->sum[sums->sum_of[k]][lane] += v * sums->by[k][lane];
+    }
+}
+
 static void store_outputs(const glint_program_args *args, const double *rows, uint32_t lane)
 {
     const uint32_t group = lane / GLINT_GROUP;
@@ -279,7 +289,10 @@ static void program(const glint_program_args *args)
             for (uint32_t k = 0; k < at->results; k++)
                 rows[at->out[k]] = out[k];
         }
-        store_outputs(args, rows, lane);
+        if (args->sums_count)
+            add_sums(args, rows, lane);
+        if (!args->sums_alone)
+            store_outputs(args, rows, lane);
     }
 }
 

@@ -12,15 +12,22 @@
 
 #define BITS(first, count) (((1u << (count)) - 1) << (first))
 
+/// By one derivative.
+typedef struct input_slopes {
+    _Alignas(64) double input[GLINT_INPUT_COUNT][GLINT_PROGRAM_LANES]; ///< slopes of what the shader reads
+    uint32_t found; ///< which there are, a bit each
+    _Alignas(64) double sum[3][GLINT_PROGRAM_LANES]; ///< slopes of the light
+} input_slopes;
+
 /// Of the groups of a call.
 struct glint_shader_slopes {
-    _Alignas(64) double gradient[GLINT_GRADIENT_MAX][GLINT_PROGRAM_LANES]; ///< see glint_gradient
-    _Alignas(64) double input[GLINT_INPUT_COUNT][GLINT_PROGRAM_LANES]; ///< slopes of what the shader reads, by one derivative
-    _Alignas(64) double value[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< what it gives
+    _Alignas(64) double value[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< what the shader gives
     _Alignas(64) double tangent[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< how fast that changes with its numbers
-    double sum[3][GLINT_PROGRAM_LANES];
     double share[GLINT_PROGRAM_LANES]; ///< how much is seen of a light that may be partly covered
     uint16_t wanted[GLINT_PROGRAM_GROUPS];
+    glint_program_sums sums[GLINT_DERIVATIVES_MAX]; ///< of the derivatives that change something
+    size_t room; ///< derivatives that there is memory for
+    input_slopes of[];
 };
 
 /// Groups that show one material, under one light.
@@ -35,17 +42,22 @@ typedef struct shading {
 
 bool glint_derive_shaders_fit(glint_derivative_work *work, const glint_plan *plan)
 {
-    if (plan->derivatives->gradients && !work->shader)
-        work->shader = glint_alloc(1, sizeof *work->shader);
-    return !plan->derivatives->gradients || work->shader;
+    const size_t wanted = plan->derivatives->count;
+    if (!plan->derivatives->gradients || (work->shader && work->shader->room >= wanted))
+        return true;
+    free(work->shader);
+    work->shader = glint_alloc(1, sizeof *work->shader + wanted * sizeof *work->shader->of);
+    if (work->shader)
+        work->shader->room = wanted;
+    return work->shader;
 }
 
 void glint_shader_slopes_free(struct glint_shader_slopes *slopes) { free(slopes); }
 
 // ---- What a shader reads --------------------------------------------------------------------------------------------
 
-/// Puts how the light comes to an entry's group where the shader reads it; `sloped`: the slopes of that by derivative number `index`,
-/// where the points' slopes are.
+/// Puts how the light comes to an entry's group where the shader reads it, once for all derivatives, and where it is wanted `sloped`
+/// its slopes by number `index` where the points' slopes are.
 static void find_arrival(const shading *s, size_t index, uint32_t e, const glint_derivative_points *points, bool sloped)
 {
     const glint_plan_light *light = s->reach->light;
@@ -69,27 +81,31 @@ static void find_arrival(const shading *s, size_t index, uint32_t e, const glint
     for (int k = 0; k < GLINT_ARRIVAL_COUNT; k++) {
         const glint_input input = (glint_input)(GLINT_INPUT_L_X + k);
         if (sloped)
-            args.slope[k] = s->slopes->input[input] + e * GLINT_GROUP;
-        else
+            args.slope[k] = s->slopes->of[index].input[input] + e * GLINT_GROUP;
+        if (index == 0)
             args.value[k] = glint_pattern_row(&s->tile->pattern->inputs, input) + e * GLINT_GROUP;
     }
     s->frame->stages->arrival(&args);
 }
 
-/// What the shader reads of points, material and light.
-static void gather(const shading *s, const glint_pattern_points *points)
+/// Makes other lanes 0.
+static void keep_lanes(unsigned lanes, double slope[GLINT_GROUP])
 {
-    glint_shader_gather(s->tile, s->frame, points, s->entries, s->count);
-    for (uint32_t e = 0; e < s->count; e++) {
-        const glint_derivative_points own = glint_derivative_points_of(s->tile, s->frame, s->entries[e].group);
-        find_arrival(s, 0, e, &own, false);
-    }
+    for (unsigned left = 0xffff & ~lanes; left; left &= left - 1)
+        slope[__builtin_ctz(left)] = 0;
+}
+
+/// Whether the shader reads points in their shapes' own space.
+static bool reads_own_space(const shading *s)
+{
+    const glint_program *shader = s->frame->plan->patterns->of[s->entries->material].program[GLINT_FIELD_SHADER];
+    return shader->inputs & BITS(GLINT_INPUT_P_X, 3);
 }
 
 /// The slopes of points in their shapes' own space, after those in the world.
-static void turn_points(const shading *s, uint32_t e)
+static void turn_points(const shading *s, size_t index, uint32_t e)
 {
-    double (*input)[GLINT_PROGRAM_LANES] = s->slopes->input;
+    double (*input)[GLINT_PROGRAM_LANES] = s->slopes->of[index].input;
     const glint_plan *plan = s->frame->plan;
     for (unsigned left = s->slopes->wanted[e]; left; left &= left - 1) {
         const uint32_t lane = (uint32_t)__builtin_ctz(left), i = e * GLINT_GROUP + lane;
@@ -101,7 +117,7 @@ static void turn_points(const shading *s, uint32_t e)
     }
 }
 
-/// The slopes of where an entry's points are and how they lie, and of how the light comes there, where `arrives`.
+/// The slopes of where an entry's points are and how they lie, and where `arrives` of how the light comes there.
 static void find_entry(const shading *s, size_t index, uint32_t e, bool arrives)
 {
     static const int first[3] = { GLINT_INPUT_WORLD_X, GLINT_INPUT_N_X, GLINT_INPUT_V_X };
@@ -110,16 +126,19 @@ static void find_entry(const shading *s, size_t index, uint32_t e, bool arrives)
     const bool bends = s->frame->plan->derivatives->of[index].bends;
     glint_derivative_points points = glint_derivative_points_of(s->tile, s->frame, g);
     if (bends) {
-        memset(s->tile->derivative->bend, 0, sizeof s->tile->derivative->bend);
-        if (glint_bend_points(s->tile, s->frame, index, g, s->slopes->wanted[e], &points, bend))
-            for (int i = 0; i < 9; i++)
-                points.slope[i / 3][i % 3] = bend[i / 3][i % 3];
-        for (int i = 0; i < 9; i++)
-            memcpy(s->slopes->input[first[i / 3] + i % 3] + e * GLINT_GROUP, bend[i / 3][i % 3], sizeof bend[i / 3][i % 3]);
-        turn_points(s, e);
+        const unsigned wanted = s->slopes->wanted[e];
+        const unsigned bent = wanted ? glint_bend_points(s->tile, s->frame, index, g, wanted, &points, bend) : 0;
+        for (int i = 0; i < 9; i++) {
+            points.slope[i / 3][i % 3] = bend[i / 3][i % 3];
+            if (wanted & ~bent)
+                keep_lanes(bent, bend[i / 3][i % 3]);
+            memcpy(s->slopes->of[index].input[first[i / 3] + i % 3] + e * GLINT_GROUP, bend[i / 3][i % 3], sizeof bend[i / 3][i % 3]);
+        }
+        if (reads_own_space(s))
+            turn_points(s, index, e);
     }
-    if (arrives)
-        find_arrival(s, index, e, &points, true);
+    if (arrives || index == 0)
+        find_arrival(s, index, e, &points, arrives);
 }
 
 /// Those of one number of the material, or of what a program gives of it. False: there are none.
@@ -136,15 +155,16 @@ static bool find_number(const shading *s, size_t index, glint_field field, int c
     return true;
 }
 
-/// The slopes of the inputs by derivative number `index`. Returns which there are, a bit each.
+/// The slopes of what the shader reads, by derivative number `index`, the first of which finds how the light comes, too. Returns which
+/// there are, a bit each.
 static uint32_t find_inputs(const shading *s, size_t index)
 {
     const glint_plan_derivative *d = &s->frame->plan->derivatives->of[index];
     const glint_derivative_material *m = &d->materials[s->entries->material];
-    double (*input)[GLINT_PROGRAM_LANES] = s->slopes->input;
+    double (*input)[GLINT_PROGRAM_LANES] = s->slopes->of[index].input;
     const bool arrives = d->bends || d->lights[s->reach->light->source].varies || s->reach->tinted;
     uint32_t found = (arrives ? BITS(GLINT_INPUT_L_X, GLINT_ARRIVAL_COUNT) : 0) | (d->bends ? BITS(GLINT_INPUT_P_X, 12) : 0);
-    for (uint32_t e = 0; e < s->count && found; e++)
+    for (uint32_t e = 0; e < s->count && (found || index == 0); e++)
         find_entry(s, index, e, arrives);
     for (int c = 0; c < 3; c++) {
         if (find_number(s, index, GLINT_FIELD_DIFFUSE, c, m->diffuse[c].slope, input[GLINT_INPUT_KD_R + c]))
@@ -181,66 +201,71 @@ static void add_light(const shading *s, uint32_t terms)
             }
 }
 
-/// The sum of channel c in lane i, of inputs that change: what is level may have no slope, and adds none.
-static double sum_lane(const struct glint_shader_slopes *slopes, const glint_gradient *gradient, uint32_t inputs, uint32_t c, uint32_t i)
+/// The derivatives that part of a gradient is summed up for: its slopes from `from` on. Returns how many there are.
+static uint32_t list_sums(const shading *s, const glint_gradient *gradient, uint32_t from)
 {
-    double sum = 0;
-    for (uint32_t k = 0; k < gradient->count; k++) {
-        const glint_gradient_place at = gradient->of[k];
-        if (at.channel == c && inputs >> at.input & 1 && slopes->input[at.input][i] != 0)
-            sum += slopes->gradient[k][i] * slopes->input[at.input][i];
+    uint32_t count = 0;
+    for (size_t k = 0; k < s->frame->plan->derivatives->count; k++) {
+        input_slopes *own = &s->slopes->of[k];
+        glint_program_sums *sums = &s->slopes->sums[count];
+        bool any = false;
+        for (uint32_t n = from; n < gradient->count && n < from + gradient->each; n++) {
+            const glint_gradient_place at = gradient->of[n];
+            const bool found = own->found >> at.input & 1;
+            sums->by[n - from] = found ? own->input[at.input] : NULL;
+            sums->sum_of[n - from] = (uint8_t)at.channel;
+            any = any || found;
+        }
+        for (int c = 0; c < 3; c++)
+            sums->sum[c] = own->sum[c];
+        count += any;
     }
-    return sum;
+    return count;
 }
 
-/// Sums up how fast a shader's light changes with what it reads: `inputs` of it, a bit each.
-static void sum_up(const shading *s, const glint_gradient *gradient, uint32_t inputs)
+/// Sums up how fast a shader's light changes with what it reads.
+static void sum_up(const shading *s, const glint_gradient *gradient)
 {
-    struct glint_shader_slopes *slopes = s->slopes;
-    const uint32_t lanes = s->count * GLINT_GROUP;
-    memset(slopes->sum, 0, sizeof slopes->sum);
-    for (uint32_t k = 0; k < gradient->count; k++) {
-        const double *restrict by = slopes->input[gradient->of[k].input], *restrict slope = slopes->gradient[k];
-        double *restrict sum = slopes->sum[gradient->of[k].channel];
-        if (!(inputs >> gradient->of[k].input & 1))
-            continue;
-        for (uint32_t i = 0; i < lanes; i++)
-            sum[i] += slope[i] * by[i];
+    for (uint32_t from = 0; from < gradient->count; from += gradient->each) {
+        glint_program_args args = { .group_count = s->count, .wanted = s->slopes->wanted, .sums_alone = true };
+        args.sums = s->slopes->sums;
+        args.sums_count = list_sums(s, gradient, from);
+        if (args.sums_count)
+            glint_pattern_call(s->tile->pattern, s->frame, &gradient->programs[from / gradient->each]->code, 0, &args);
     }
-    for (uint32_t c = 0; c < 3; c++)
-        for (uint32_t i = 0; i < lanes; i++)
-            if (!isfinite(slopes->sum[c][i]))
-                slopes->sum[c][i] = sum_lane(slopes, gradient, inputs, c, i);
 }
 
 /// Adds how fast it changes with its own numbers.
-static void add_tangent(const shading *s, const glint_program *tangent)
+static void add_tangent(const shading *s, size_t index, const glint_program *tangent)
 {
     struct glint_shader_slopes *slopes = s->slopes;
     run(s, tangent, slopes->tangent);
     for (uint32_t k = 0; k < tangent->code.output_count; k++)
         for (uint32_t i = 0; i < s->count * GLINT_GROUP; i++)
             if (slopes->value[k][i] > 0 && slopes->value[k][i] <= GLINT_REFLECTANCE_MAX)
-                slopes->sum[k % 3][i] += slopes->tangent[k][i];
+                slopes->of[index].sum[k % 3][i] += slopes->tangent[k][i];
 }
 
 /// Adds the sums to those of the samples. What has no slope, such as the root of what is 0 all around, stays.
-static void add_sums(const shading *s, double (*to)[GLINT_TILE_SAMPLES])
+static void add_sums(const shading *s, size_t index)
 {
-    for (int c = 0; c < 3; c++)
-        for (uint32_t e = 0; e < s->count; e++)
-            for (unsigned left = s->slopes->wanted[e]; left; left &= left - 1) {
-                const uint32_t lane = (uint32_t)__builtin_ctz(left), i = e * GLINT_GROUP + lane;
-                const double slope = s->slopes->sum[c][i] * s->slopes->share[i];
-                to[c][s->entries[e].group * GLINT_GROUP + lane] += isfinite(slope) ? slope : 0;
-            }
+    double (*to)[GLINT_TILE_SAMPLES] = s->tile->derivative->sum[index];
+    for (uint32_t e = 0; e < s->count; e++)
+        for (int c = 0; c < 3; c++) {
+            const double *share = s->slopes->share + e * GLINT_GROUP, *from = s->slopes->of[index].sum[c] + e * GLINT_GROUP;
+            double *sum = to[c] + s->entries[e].group * GLINT_GROUP, slope[GLINT_GROUP];
+            for (int i = 0; i < GLINT_GROUP; i++)
+                slope[i] = fabs(from[i] * share[i]) < HUGE_VAL ? from[i] * share[i] : 0;
+            if (s->slopes->wanted[e] != 0xffff)
+                keep_lanes(s->slopes->wanted[e], slope);
+            for (int i = 0; i < GLINT_GROUP; i++)
+                sum[i] += slope[i];
+        }
 }
 
-/// Finds what all derivatives have in common. False: the light reaches no group.
-static bool begin(const shading *s, const glint_pattern_points *points, bool gives)
+/// Finds what the shader reads of points and material. False: the light reaches no group.
+static bool begin(const shading *s, const glint_pattern_points *points)
 {
-    const glint_plan *plan = s->frame->plan;
-    const glint_gradient *gradient = &plan->derivatives->gradients[s->entries->material];
     unsigned any = 0;
     for (uint32_t e = 0; e < s->count; e++)
         any |= s->slopes->wanted[e] = s->entries[e].lanes & s->reach->lanes[s->entries[e].group];
@@ -248,11 +273,7 @@ static bool begin(const shading *s, const glint_pattern_points *points, bool giv
         return false;
     for (uint32_t i = 0; i < s->count * GLINT_GROUP; i++)
         s->slopes->share[i] = 1;
-    gather(s, points);
-    for (uint32_t k = 0; k < gradient->count; k += GLINT_PROGRAM_OUTPUTS_MAX)
-        run(s, gradient->programs[k / GLINT_PROGRAM_OUTPUTS_MAX], s->slopes->gradient + k);
-    if (gives)
-        run(s, plan->patterns->of[s->entries->material].program[GLINT_FIELD_SHADER], s->slopes->value);
+    glint_shader_gather(s->tile, s->frame, points, s->entries, s->count);
     return true;
 }
 
@@ -267,16 +288,22 @@ static void derive(const shading *s, const glint_pattern_points *points)
         tangents = tangents || all->of[k].programs[material].of[GLINT_FIELD_SHADER];
         varies = varies || all->of[k].bends || all->of[k].lights[source].varies || all->of[k].materials[material].varies;
     }
-    if (!varies || !begin(s, points, weighs || tangents))
+    if (!varies || !begin(s, points))
         return;
+    for (size_t k = 0; k < all->count; k++) {
+        s->slopes->of[k].found = find_inputs(s, k);
+        memset(s->slopes->of[k].sum, 0, sizeof s->slopes->of[k].sum);
+    }
+    if (weighs || tangents)
+        run(s, plan->patterns->of[material].program[GLINT_FIELD_SHADER], s->slopes->value);
     if (weighs)
         add_light(s, plan->patterns->of[material].program[GLINT_FIELD_SHADER]->code.output_count);
+    sum_up(s, &all->gradients[material]);
     for (size_t k = 0; k < all->count; k++) {
         const glint_program *tangent = all->of[k].programs[material].of[GLINT_FIELD_SHADER];
-        sum_up(s, &all->gradients[material], find_inputs(s, k));
         if (tangent)
-            add_tangent(s, tangent);
-        add_sums(s, s->tile->derivative->sum[k]);
+            add_tangent(s, k, tangent);
+        add_sums(s, k);
     }
 }
 

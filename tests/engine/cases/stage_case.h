@@ -47,7 +47,7 @@ static inline uint16_t random_mask(void)
 
 // ---- Arrays ------------------------------------------------------------------------------------------------------
 
-enum { GUARD_BYTES = 128, MOST_ARRAYS = 160 };
+enum { GUARD_BYTES = 128, MOST_ARRAYS = 400 };
 typedef enum array_kind { KIND_U16, KIND_U32, KIND_FLOAT, KIND_DOUBLE } array_kind;
 
 typedef struct test_array {
