@@ -97,6 +97,15 @@ local measurements = {
   { "g.encode", "glint", "encode out=$OUT" },
   { "h.encode", "hand", "encode" },
 
+  -- a pass of how fast the picture changes
+  { "g.eye", "glint", "frame derivative=eye" },
+  { "g.lamp", "glint", "frame derivative=lamp" },
+  { "g.shininess", "glint", "frame derivative=shininess" },
+  { "g.lens.4", "glint", "frame lens=1 samples=4" },
+  { "g.lens.eye", "glint", "frame lens=1 samples=4 derivative=eye" },
+  { "g.phong.lamp", "glint", "frame pattern=phong derivative=lamp" },
+  { "g.phong.eye", "glint", "frame pattern=phong derivative=eye" },
+
   -- patterns and shaders: the kernel alone; the floor of the workshop; all of it by Phong as a program
   { "g.program", "glint", "program" },
   { "h.program", "hand", "program" },
@@ -183,6 +192,14 @@ local rows = {
   { "jobs", "60-frame shininess job, two threads / one", "g.shininess.2:job", "g.shininess.1:job", bar = 0.55 },
   { "jobs", "60-frame light job, reuse / none", "g.light.2:job", "g.light.fresh:job" },
   { "many", "1,000,000 spheres, two threads / one", "g.1M.2:render", "g.1M:render", bar = 0.55 },
+
+  { "A frame with a pass of a derivative, of the frame without it" },
+  { "slopes", "by the eye", "g.eye:render", "g.frame:render", bar = 3 },
+  { "slopes", "by the eye, through a lens, 4 samples", "g.lens.eye:render", "g.lens.4:render", bar = 3 },
+  { "slopes", "by the lamp's place", "g.lamp:render", "g.frame:render", bar = 3 },
+  { "slopes", "by the shininess", "g.shininess:render", "g.frame:render", bar = 3 },
+  { "slopes", "by the lamp's place, Phong as a program", "g.phong.lamp:render", "g.phong:render", bar = 3 },
+  { "slopes", "by the eye, Phong as a program", "g.phong.eye:render", "g.phong:render", bar = 3 },
 
   { "60 frames to 60 PNG files, two threads" },
   { "jobs", "moving light", "g.light.2:job", "h.light.2:job", bar = 3, more = true },

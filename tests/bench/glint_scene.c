@@ -288,11 +288,36 @@ static glint_render_desc frame_desc(const bench_options *options)
     return d;
 }
 
+/// What the derivative changes: a step of the eye or the lamp to the right, or of the exponent of all that shines. Returns how many
+/// fields that are.
+static size_t find_slopes(const side_scene *s, const char *derivative, glint_slope *out)
+{
+    size_t count = 0;
+    if (strcmp(derivative, "eye") == 0)
+        out[count++] = (glint_slope) { .camera = glint_scene_get(s->scene)->camera, .field = "eye", .slope = { 1, 0, 0 } };
+    else if (strcmp(derivative, "lamp") == 0)
+        out[count++] = (glint_slope) { .light = s->lamp, .field = "position", .slope = { 1, 0, 0 } };
+    else if (strcmp(derivative, "shininess") != 0)
+        bench_fail(derivative, "no such derivative");
+    const bool shines = count == 0;
+    for (int m = 0; m < s->plain.material_count && shines; m++)
+        if (glint_material_get(s->materials[m])->specular[0] > 0)
+            out[count++] = (glint_slope) { .material = s->materials[m], .field = "shininess", .slope = { 1 } };
+    return count;
+}
+
 glint_plan *side_plan_create(const side_scene *s, const bench_options *options)
 {
     glint_error error;
     glint_plan *plan;
-    const glint_render_desc d = frame_desc(options);
+    glint_render_desc d = frame_desc(options);
+    glint_slope slopes[BENCH_MATERIALS] = { { .field = NULL } };
+    glint_derivative derivative = { .name = options->derivative, .slopes = slopes };
+    if (strcmp(options->derivative, "none") != 0) {
+        derivative.slope_count = find_slopes(s, options->derivative, slopes);
+        d.derivatives = &derivative;
+        d.derivative_count = 1;
+    }
     side_must(glint_plan_create(s->scene, &d, &plan, &error), &error);
     return plan;
 }

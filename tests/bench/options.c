@@ -31,6 +31,8 @@ static void read_word(bench_options *o, const char *word)
         o->change = value;
     else if (strcmp(name, "pattern") == 0)
         o->pattern = value;
+    else if (strcmp(name, "derivative") == 0)
+        o->derivative = value;
     else if (strcmp(name, "threads") == 0)
         o->threads = atoi(value);
     else if (strcmp(name, "samples") == 0)
@@ -59,7 +61,8 @@ static void read_word(bench_options *o, const char *word)
 
 bench_options bench_options_read(int argc, char **argv)
 {
-    bench_options o = { .scene = "workshop", .change = "none", .pattern = "none", .threads = 1, .samples = 1, .lamps = 1, .shadows = true };
+    bench_options o = { .scene = "workshop", .change = "none", .pattern = "none", .derivative = "none", .threads = 1, .samples = 1,
+                        .lamps = 1, .shadows = true };
     if (argc < 2)
         bench_fail(argv[0], "a mode expected");
     o.mode = argv[1];

@@ -14,6 +14,7 @@ typedef struct bench_options {
     const char *change; ///< of a job: "light", "sphere", "shininess", "number" (of the pattern) or "none" (default)
     const char *pattern; ///< "checker", "octaves" or "marble" of the first material, or "phong": a shader in place of the model
         ///< of all; for POV-Ray "checker" and "marble", or "checker-function" and "marble-function". "none" (default)
+    const char *derivative; ///< a pass by it: "eye", "lamp" or "shininess"; glint alone. "none" (default)
     int threads; ///< default 1
     int samples; ///< a pixel; default 1
     int indirect; ///< ways of indirect light a pixel, of one bounce; default 0
