@@ -274,22 +274,26 @@ bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
     return any;
 }
 
-/// One light, or those samples of one that follow each other in a chunk; returns how many rows of the plan they are.
+/// One light, those samples of one that follow each other in a chunk, or lights that are alike; returns how many rows of the plan they
+/// are.
 static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot, uint32_t end)
 {
     const glint_plan_light *lights = &frame->plan->lights[first];
-    uint32_t slots[GLINT_LIGHT_CHUNK], count = 0;
+    uint32_t slots[GLINT_LIGHT_CHUNK], shadowed[GLINT_LIGHT_CHUNK], count = 0, shadows = 0;
     do {
         slots[count] = slot + count;
+        if (lights[slot + count].shadows)
+            shadowed[shadows++] = slot + count;
         count++;
-    } while (slot + count < end && lights[slot + count].joined);
+    } while (slot + count < end && (lights[slot + count].joined || lights[slot + count].alike));
     if (glint_tile_sum_light(tile, frame, first, slot, count))
         return count;
     glint_tile_shine(tile, frame, first, slots, count);
-    if (frame->plan->runs[GLINT_STAGE_FACET])
-        glint_tile_facet(tile, frame, first, slots, count);
-    if (lights[slot].shadows)
-        glint_tile_occlude(tile, frame, first, slots, count);
+    const uint32_t together = lights[slot].light_samples ? count : 1;
+    for (uint32_t i = 0; frame->plan->runs[GLINT_STAGE_FACET] && i < count; i += together)
+        glint_tile_facet(tile, frame, first, slots + i, together);
+    if (shadows)
+        glint_tile_occlude(tile, frame, first, shadowed, shadows);
     return count;
 }
 

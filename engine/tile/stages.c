@@ -415,31 +415,37 @@ static const glint_light_grid *grid_of(const glint_tile_frame *frame, const glin
     return NULL;
 }
 
+/// Sets what in the arguments is of one light, or of samples of one.
+static void aim_occlude(const glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                        glint_occlude_args *args)
+{
+    const glint_plan_light *lights = &frame->plan->lights[first], *light = &lights[slot[0]];
+    args->directional = light->directional;
+    args->scale = light->scale;
+    args->grid = grid_of(frame, light);
+    vec_copy(args->position, light->position);
+    for (uint32_t i = 0; i < args->sample_count; i++) {
+        args->light_sample[i] = glint_tile_light_sample_of(tile, &lights[slot[i]]);
+        args->lit[i] = tile->at.light[slot[i]].lit;
+        args->open[i] = tile->at.light[slot[i]].open;
+    }
+}
+
 glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
                                            const uint32_t *slot, uint32_t count)
 {
-    const glint_plan *plan = frame->plan;
-    const glint_plan_light *light = &plan->lights[first + slot[0]];
     glint_occlude_args args = { .group_count = tile->group_count,
                                 .sample_count = count,
                                 .prim = tile->owner ? tile->owner : tile->at.prim,
                                 .back = tile->hit.back,
-                                .directional = light->directional,
-                                .scale = light->scale,
                                 .geometry = &frame->geometry,
-                                .grid = grid_of(frame, light),
                                 .stop = frame->cancelled,
                                 .camera = glint_tile_rays_of(tile),
                                 .slack = tile->surface.slack,
                                 .box = tile->at.box,
                                 .rays = &tile->counts.shadow,
                                 .tests = glint_tile_tests_of(tile, frame) };
-    vec_copy(args.position, light->position);
-    for (uint32_t i = 0; i < count; i++) {
-        args.light_sample[i] = glint_tile_light_sample_of(tile, &plan->lights[first + slot[i]]);
-        args.lit[i] = tile->at.light[slot[i]].lit;
-        args.open[i] = tile->at.light[slot[i]].open;
-    }
+    aim_occlude(tile, frame, first, slot, &args);
     for (int c = 0; c < 3; c++) {
         args.point[c] = tile->surface.point[c];
         args.normal[c] = tile->surface.normal[c];
@@ -448,25 +454,38 @@ glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_fr
     return args;
 }
 
-void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
-                        uint32_t count)
+/// What one light, or samples of one, reach. The arguments are aimed at it.
+static void occlude_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                          glint_occlude_args *args)
 {
     const glint_plan *plan = frame->plan;
     const glint_plan_light *light = &plan->lights[first + slot[0]];
-    glint_occlude_args args = glint_tile_occlude_args(tile, frame, first, slot, count);
+    const uint32_t count = args->sample_count;
+    args->visible = light->cap ? tile->at.light[slot[0]].visible : NULL;
     if (light->cap) {
-        args.light_sample[0] = light->cap;
-        args.visible = tile->at.light[slot[0]].visible;
-        args.overlaps = &tile->counts.work.overlaps;
+        args->light_sample[0] = light->cap;
+        args->overlaps = &tile->counts.work.overlaps;
     }
     if (light->hard)
-        occlude_middle(tile, frame, light, &args);
+        occlude_middle(tile, frame, light, args);
     else
-        frame->stages->geometry[plan->desc.precision].occlude(&args);
+        frame->stages->geometry[plan->desc.precision].occlude(args);
     for (uint32_t i = 0; i < count && !light->hard && glint_plan_cuts(plan); i++)
-        glint_tile_open_holes(tile, frame, &plan->lights[first + slot[i]], false, args.lit[i], args.open[i]);
+        glint_tile_open_holes(tile, frame, &plan->lights[first + slot[i]], false, args->lit[i], args->open[i]);
     if (light->cap)
         weaken(tile, frame, light, slot[0]);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_OCCLUDE, false);
     tile->counts.runs[GLINT_STAGE_OCCLUDE] += count - 1;
+}
+
+void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                        uint32_t count)
+{
+    const uint32_t together = frame->plan->lights[first + slot[0]].light_samples ? count : 1;
+    glint_occlude_args args = glint_tile_occlude_args(tile, frame, first, slot, together);
+    occlude_light(tile, frame, first, slot, &args);
+    for (uint32_t i = together; i < count; i++) {
+        aim_occlude(tile, frame, first, slot + i, &args);
+        occlude_light(tile, frame, first, slot + i, &args);
+    }
 }

@@ -266,7 +266,7 @@ void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *fram
 bool glint_tile_is_past_spot(const glint_tile *tile, const glint_plan_light *light);
 
 /// One light, samples of one, or lights that are alike: light `first + slot[i]` of the plan, for each of `count` slots of the
-/// chunk. Shadows are those of one light, or of its samples.
+/// chunk.
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                       uint32_t count);
 void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,

@@ -231,14 +231,6 @@ static light_work find_light_work(glint_tile *tile, const glint_tile_frame *fram
     return work;
 }
 
-/// What is in the way of one light, of its samples together, or of lights that are alike.
-static void find_shadows(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const light_work *work)
-{
-    const uint32_t together = frame->plan->lights[first + work->occlude[0]].light_samples ? work->occluding : 1;
-    for (uint32_t i = 0; i < work->occluding; i += together)
-        glint_tile_occlude(tile, frame, first, work->occlude + i, together);
-}
-
 /// What one light, or lights that are alike, do to this sample: `count` rows of the plan from `first + slot` on.
 static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t slot,
                        uint32_t count)
@@ -260,7 +252,7 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
             glint_tile_shine(tile, frame, first, work.shine, work.shining);
     }
     if (work.occluding)
-        find_shadows(tile, frame, first, &work);
+        glint_tile_occlude(tile, frame, first, work.occlude, work.occluding);
     const uint32_t together = lights[slot].light_samples ? count : 1;
     for (uint32_t i = slot; frame->plan->runs[GLINT_STAGE_FACET] && i < slot + count; i += together)
         find_facets(tile, frame, w, first, i, together);

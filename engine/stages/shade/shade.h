@@ -265,10 +265,11 @@ static inline const glint_shade_material *material_of(const glint_shade_args *ar
     return &args->materials[index];
 }
 
+#include "engine/stages/shade/matt.h"
 #include "engine/stages/shade/planes.h"
 
-/// A group of one sample, added to sums.
-static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, uint32_t g, light_colors *colors,
+/// A group of one sample, added to sums. plain: has_plain_lights(args), or false.
+static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, bool plain, uint32_t g, light_colors *colors,
                                                  const group_sums *to)
 {
     const unsigned hits = args->hits[g], empty = args->active[g] & ~hits;
@@ -283,6 +284,10 @@ static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, u
         if (GLINT_WITH_PROGRAM && material->planes) {
             add_planes(args, material, specular, g, to, lanes);
             continue;
+        }
+        if (plain && !specular && lanes == 0xffff) {
+            add_matt(args, material, g, colors, to);
+            return;
         }
         find_factors(args, material, specular, g, &factors);
         if (lanes == 0xffff)
@@ -353,52 +358,6 @@ static __attribute__((noinline)) void shade_lit(const glint_shade_args *args, co
             light_material(material, factors, colors, k, i, light[k]);
         for (int c = 0; c < 3; c++) // as finish_terms adds them
             f_store(args->beauty[c] + at + i, (f_set(0 + (float)material->ambient[c]) + light[0][c]) + light[1][c]);
-    }
-}
-
-/// A light's factor of diffuse light, of one vector of a group.
-INNER vf diffuse_factor(const glint_shade_light *light, size_t at, int i)
-{
-    vf w = f_set(1);
-    if (light->attenuation)
-        w = w * f_load(light->attenuation + at + i);
-    const fm lit = fm_from_bits(light->lit[at / GLINT_GROUP] >> i & ((1u << VF) - 1));
-    return f_select(lit, w * f_load(light->cosine + at + i), f_set(0));
-}
-
-/// Whether there are several lights, none of which is a sample or the sum of samples.
-static inline bool has_plain_lights(const glint_shade_args *args)
-{
-    bool plain = args->light_count > 1;
-    for (uint32_t k = 0; plain && k < args->light_count; k++)
-        plain = !args->lights[k].joined && !args->lights[k].summed;
-    return plain;
-}
-
-/// The same of a material without highlights and of plain lights, in registers.
-static __attribute__((noinline)) void shade_matt(const glint_shade_args *args, const glint_shade_material *material,
-                                                 light_colors *colors, size_t at)
-{
-    color_lights(args, material, false, colors);
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vd total[3][VF / VD];
-        for (int c = 0; c < 3; c++)
-            for (int h = 0; h < VF / VD; h++)
-                total[c][h] = d_set(0);
-        for (uint32_t k = 0; k < args->light_count; k++) {
-            const glint_shade_light *light = &args->lights[k];
-            if (!light->lit[at / GLINT_GROUP])
-                continue;
-            const vf factor = diffuse_factor(light, at, i);
-            for (int c = 0; c < 3; c++) {
-                vd share[VF / VD];
-                f_split(factor * f_set(colors->color[0][k][c]), share);
-                for (int h = 0; h < VF / VD; h++)
-                    total[c][h] = total[c][h] + share[h];
-            }
-        }
-        for (int c = 0; c < 3; c++)
-            f_store(args->beauty[c] + at + i, f_set(0 + (float)material->ambient[c]) + f_join(total[c][0], total[c][1]));
     }
 }
 
@@ -486,7 +445,7 @@ static void shade(const glint_shade_args *args)
     if (GLINT_WITH_SAMPLES && args->sum[0][0]) {
         for (uint32_t g = 0; g < args->group_count; g++) {
             const group_sums sums = { args->sum, (size_t)g * GLINT_GROUP };
-            shade_sums(args, g, &colors, &sums);
+            shade_sums(args, plain, g, &colors, &sums);
         }
     } else if (simple) {
         for (uint32_t g = 0; g < args->group_count; g++)
