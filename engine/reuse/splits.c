@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define COST_OF_POINTS 20u ///< tenths of a nanosecond: of what programs read
+// Tenths of a nanosecond a sample: of what programs read.
+#define COST_OF_POINTS 20u ///< of spheres and planes
+#define COST_OF_SURFACES 40u ///< where there are others: normals are found with their points
 
 static const glint_key none;
 
@@ -80,10 +82,10 @@ static bool is_joined(const glint_plan_pattern *own)
     return own->made >> GLINT_FIELD_AMBIENT & 1 || own->desc.normalized;
 }
 
-/// Splits a material's programs. Returns false without memory.
-static bool split(glint_split_material *m, const glint_plan_pattern *own)
+/// Splits a material's programs. saved: what need not be found where no program is run as a whole. Returns false without memory.
+static bool split(glint_split_material *m, const glint_plan_pattern *own, uint32_t saved)
 {
-    uint32_t cost = 0, saved = COST_OF_POINTS;
+    uint32_t cost = 0;
     m->again = 0;
     m->whole = false;
     for (int field = 0; field < GLINT_FIELD_PLANES; field++)
@@ -108,23 +110,23 @@ static bool split(glint_split_material *m, const glint_plan_pattern *own)
 
 /// Sees to a material's splits; `more`: numbers have changed that had not. Where keeping for all that ever did does not pay, it is for those
 /// that have just changed. Returns false without memory.
-static bool split_again(glint_split_material *m, const glint_plan_pattern *own)
+static bool split_again(glint_split_material *m, const glint_plan_pattern *own, uint32_t saved)
 {
     for (int field = 0; field < GLINT_FIELD_PLANES; field++)
         for (uint32_t i = 0; i < m->of[field].number_count; i++)
             m->of[field].changed[i] = m->of[field].changed[i] || m->of[field].now[i];
-    if (!split(m, own))
+    if (!split(m, own, saved))
         return false;
     if (!m->whole)
         return true;
     for (int field = 0; field < GLINT_FIELD_PLANES; field++)
         if (m->of[field].number_count)
             memcpy(m->of[field].changed, m->of[field].now, m->of[field].number_count * sizeof *m->of[field].now);
-    return split(m, own);
+    return split(m, own, saved);
 }
 
 /// Compares a material's programs with the last frame's, and splits them as they have changed. Returns false without memory.
-static bool follow(glint_split_material *m, const glint_plan_pattern *own)
+static bool follow(glint_split_material *m, const glint_plan_pattern *own, uint32_t saved)
 {
     bool more = false, other = false;
     for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
@@ -136,7 +138,7 @@ static bool follow(glint_split_material *m, const glint_plan_pattern *own)
         }
         more = find_changes(&m->of[field], own->program[field]) || more;
     }
-    return more ? split_again(m, own) : !other || split(m, own);
+    return more ? split_again(m, own, saved) : !other || split(m, own, saved);
 }
 
 // ---- What is kept -------------------------------------------------------------------------------------------------
@@ -190,9 +192,11 @@ static bool begin(glint_splits *splits, const glint_plan *plan)
 void glint_splits_begin(glint_splits *splits, const glint_plan *plan)
 {
     const glint_plan_patterns *patterns = plan->patterns;
+    const glint_geometry_table *table = &plan->geometry->table;
+    const uint32_t saved = table->triangles || table->solids ? COST_OF_SURFACES : COST_OF_POINTS;
     bool good = patterns && patterns->any && begin(splits, plan), any = false;
     for (uint32_t i = 0; good && i < plan->material_count; i++) {
-        good = follow(&splits->of[i], &patterns->of[i]);
+        good = follow(&splits->of[i], &patterns->of[i], saved);
         any = any || (splits->of[i].again && !splits->of[i].whole);
     }
     if (!good) {

@@ -483,9 +483,9 @@ static void test_frames(void **state)
     assert_true(kept > 2000 / (long)case_step());
 }
 
-enum { SCALE = 3, COLOR = 8 }; // steps of a board's recipe
+enum { SCALE = 6, COLOR = 11 }; // steps of a board's recipe
 
-/// A world in which the floor alone has a program: a board.
+/// A world in which the floor alone has a program: a board of world + scale p.
 static recipe *board_world(world *w)
 {
     random_state = 5;
@@ -495,14 +495,14 @@ static recipe *board_world(world *w)
     for (int i = 0; i < MATERIALS * FIELDS; i++)
         w->of[i / FIELDS].field[i % FIELDS] = (recipe) { .step_count = 0 };
     recipe *r = &w->of[0].field[0];
-    for (uint32_t i = 0; i < 3; i++)
+    for (uint32_t i = 0; i < 6; i++)
         recipe_add(r, (recipe_step) { .op = (glint_op)GLINT_SSA_INPUT, .operand = { GLINT_INPUT_P_X + i } }, 1);
     add_number(r, 2);
     for (uint32_t i = 0; i < 3; i++)
-        add_op(r, GLINT_OP_MUL, i, SCALE, 0);
-    add_op(r, GLINT_OP_PARITY, 4, 5, 6);
+        add_op(r, GLINT_OP_MULADD, i, SCALE, 3 + i);
+    add_op(r, GLINT_OP_PARITY, 7, 8, 9);
     add_number(r, 0.5);
-    add_op(r, GLINT_OP_SELECT, 7, COLOR, add_number(r, 0.75));
+    add_op(r, GLINT_OP_SELECT, 10, COLOR, add_number(r, 0.75));
     r->output[r->output_count++] = r->value_count - 1;
     set_programs(&w->of[1]);
     set_programs(&w->of[2]);
