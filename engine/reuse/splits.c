@@ -82,7 +82,7 @@ static bool is_joined(const glint_plan_pattern *own)
     return own->made >> GLINT_FIELD_AMBIENT & 1 || own->desc.normalized;
 }
 
-/// Splits a material's programs. saved: what need not be found where no program is run as a whole. Returns false without memory.
+/// Splits a material's programs. saved: what need not be found where none is run as a whole. Returns false without memory.
 static bool split(glint_split_material *m, const glint_plan_pattern *own, uint32_t saved)
 {
     uint32_t cost = 0;
@@ -108,8 +108,8 @@ static bool split(glint_split_material *m, const glint_plan_pattern *own, uint32
     return true;
 }
 
-/// Sees to a material's splits; `more`: numbers have changed that had not. Where keeping for all that ever did does not pay, it is for those
-/// that have just changed. Returns false without memory.
+/// The same where numbers have changed that had not. Where keeping for all that ever did does not pay, it is for those that
+/// have just changed.
 static bool split_again(glint_split_material *m, const glint_plan_pattern *own, uint32_t saved)
 {
     for (int field = 0; field < GLINT_FIELD_PLANES; field++)

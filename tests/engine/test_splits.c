@@ -509,8 +509,8 @@ static recipe *board_world(world *w)
     return r;
 }
 
-/// Numbers of a board in turn. What its scale changes, all of it, is too much to keep; and when it is the colour that changes again, what
-/// was kept is of another scale. A colour that becomes less than nothing is reported as ever.
+/// Numbers of a board in turn. What its scale changes is too much to keep; and when it is the colour that changes again,
+/// what was kept is of another scale. A colour that becomes less than nothing is reported as ever.
 static void test_turns(void **state)
 {
     (void)state;
@@ -576,7 +576,8 @@ int main(void)
     print_skipped();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_splits), cmocka_unit_test(test_board),  cmocka_unit_test(test_marble),
-        cmocka_unit_test(test_scale),         cmocka_unit_test(test_frames), cmocka_unit_test(test_turns), cmocka_unit_test(test_normalized),
+        cmocka_unit_test(test_scale),         cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_turns),         cmocka_unit_test(test_normalized),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -130,7 +130,7 @@ static void read_value(struct glint_pattern *pattern, glint_pattern_batch *batch
     batch->args.input[k] = in_place ? numbers + (size_t)groups[0] * GLINT_GROUP : row;
     for (uint32_t e = 0; e < batch->count && !in_place; e++, row += GLINT_GROUP) {
         if (truth)
-            unpack(from->truths[place * GLINT_TILE_GROUPS + groups[e]], row);
+            unpack(from->truths[place * GLINT_TILE_GROUPS + groups[e]] & batch->called.wanted[e], row);
         else
             memcpy(row, numbers + (size_t)groups[e] * GLINT_GROUP, GLINT_GROUP * sizeof *row);
     }
@@ -144,8 +144,8 @@ static bool any_odd(const glint_pattern_batch *batch)
     return any;
 }
 
-/// The second parts of a batch's programs, and what follows from them. Returns false where one gave what is no reflectance, which has to
-/// be reported with its point.
+/// The second parts of a batch's programs, and what follows from them. Returns false where one gave what is no reflectance,
+/// which has to be reported with its point.
 static bool run_second(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_pattern_batch *batch, const kept_sample *from)
 {
