@@ -121,6 +121,25 @@ void glint_combined_roles(glint_combined *combined)
     combined->alone = stack[0].alone;
 }
 
+static bool is_convex(const glint_geometry *geometry, const glint_prim *part)
+{
+    if (part->kind != GLINT_PRIM_SOLID)
+        return false;
+    const uint32_t form = geometry->solids[part->item].form;
+    return form == GLINT_FORM_BOX || form == GLINT_FORM_BALL || form == GLINT_FORM_CYLINDER;
+}
+
+bool glint_combined_simple(const glint_geometry *geometry, const glint_combined *combined)
+{
+    bool simple = combined->count > 1 && combined->count <= GLINT_SIMPLE_PARTS && combined->length == 2 * combined->count - 1;
+    for (uint32_t j = 0; j < combined->count && simple; j++) {
+        const uint8_t *next = combined->program + 2 * j;
+        simple = is_convex(geometry, &geometry->members[combined->first + j]) &&
+                 (j == 0 || (next[-1] == j && next[0] == combined->program[2]));
+    }
+    return simple;
+}
+
 /// Along any way as good as along another; this one is along no face or edge that is likely.
 static bool hull_holds(const glint_geometry *geometry, const glint_prim *part, const double place[3])
 {

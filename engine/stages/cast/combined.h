@@ -376,18 +376,20 @@ static void R(keep_part)(const glint_cast_args *args, const glint_combined *whol
     }
 }
 
-/// Decides a pair where that is simple. Returns the lanes that are left; *any: a hit was kept.
-static unsigned R(cast_pair)(const glint_cast_args *args, const glint_combined *whole, size_t at, const R(whole_rays) * w,
-                             unsigned *any)
+/// Decides a simple whole where that takes little. Returns the lanes that are left; *any: those that met it.
+static unsigned R(cast_simple)(const glint_cast_args *args, const glint_combined *whole, size_t at, const R(whole_rays) * w,
+                               unsigned *any)
 {
     const uint32_t first = args->geometry->prim_count + whole->first;
-    R(pair_hits) hits;
-    const unsigned told = R(meet_pair)(args->geometry, whole, w->o, w->d, &hits) & w->lanes;
-    const rm lanes = rm_from_bits(w->lanes), by[2] = { rm_and(hits.first, lanes), rm_and(hits.second, lanes) };
-    for (uint32_t j = 0; j < 2; j++)
-        if (rm_bits(by[j]))
-            R(keep_nearest)(args, at, first + j, by[j], hits.t);
-    *any = rm_bits(rm_or(by[0], by[1]));
+    R(simple_hits) hits;
+    const unsigned told = R(meet_simple)(args->geometry, whole, w->o, w->d, &hits) & w->lanes;
+    const rm hit = rm_and(hits.hit, rm_from_bits(w->lanes));
+    *any = rm_bits(hit);
+    for (uint32_t j = 0; j < whole->count && *any; j++) {
+        const rm mine = rm_and(hit, r_eq(hits.part, r_set(j)));
+        if (rm_bits(mine))
+            R(keep_nearest)(args, at, first + j, mine, hits.t);
+    }
     return w->lanes & ~told;
 }
 
@@ -399,8 +401,9 @@ static bool R(cast_combined)(const glint_cast_args *args, const glint_prim *prim
     R(stretches) s;
     vr from = r_set(0), t;
     unsigned any = 0, hit, left = w->lanes;
-    if (R(is_pair)(args->geometry, whole) && !R(starts_on)(w->on, args->geometry->prim_count + whole->first, whole->count))
-        left = R(cast_pair)(args, whole, at, w, &any);
+    const bool simple = GLINT_REAL == 64 && whole->simple;
+    if (simple && !R(starts_on)(w->on, args->geometry->prim_count + whole->first, whole->count))
+        left = R(cast_simple)(args, whole, at, w, &any);
     while (left) {
         left = R(next_change)(args->geometry, whole, w, left, &from, &s, &t, &hit);
         any |= hit;

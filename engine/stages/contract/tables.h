@@ -152,6 +152,7 @@ typedef struct glint_solid {
 } glint_solid;
 
 #define GLINT_PARTS_MAX 64 ///< of a combined solid
+#define GLINT_SIMPLE_PARTS 8 ///< of one whose program is simple, at most
 #define GLINT_HULL_PARTS 4 ///< of these a closed mesh is as many: the stretches of a ray within it that are held at a time
 
 /// What the program of a combined solid has beside numbers of parts.
@@ -169,6 +170,7 @@ typedef struct glint_combined {
     uint32_t count; ///< of parts
     uint32_t length; ///< of the program
     float lower[3], upper[3]; ///< a box around it, as of a solid
+    bool simple; ///< it has two parts or a few more, each a box, ball or cylinder, and one operation joins each to those before it
     // sets of parts, a bit each:
     uint64_t all; ///< every part, where the program has no empty set; else 0
     uint64_t needs; ///< those without any of which the whole is nothing

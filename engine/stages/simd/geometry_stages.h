@@ -9,7 +9,7 @@
 #include "engine/stages/cast/solid.h"
 #include "engine/stages/cast/meet.h"
 #include "engine/stages/cast/hull.h"
-#include "engine/stages/cast/pair.h"
+#include "engine/stages/cast/simple.h"
 #include "engine/stages/cast/combined.h"
 #include "engine/stages/index/candidate.h"
 #include "engine/stages/index/cover.h"

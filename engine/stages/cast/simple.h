@@ -1,9 +1,10 @@
-// pair: combined solids of two parts that are convex, before rays that start outside of both. Where a ray goes into a part, the place
-// says whether it is in the other: that takes neither a root nor a division, and most hits need no other end. What is within rounding
-// of a face is left to combined.h; ends are made as there, to the last bit. Contract: stages.h, cast.
+// simple: combined solids of a few parts that are convex, all united, all met or all but the first taken away, before rays that start
+// outside. Where a ray goes into a part, the place says whether it is in the others: that takes neither a root nor a division, and
+// most hits need no other end. What is within rounding of a face is left to combined.h; ends are made as there, to the last bit.
+// Contract: stages.h, cast.
 
-#define PAIR_SLACK 0x1p-40 ///< a share of what heights and squares are made of; their rounding is far below it
-#define PAIR_CHORD 0x1p-30 ///< half of what is within a curved side, over the way there: above it its two ends are in order
+#define SIMPLE_SLACK 0x1p-40 ///< a share of what heights and squares are made of; their rounding is far below it
+#define SIMPLE_CHORD 0x1p-30 ///< half of what is within a curved side, over the way there: above it its two ends are in order
 
 /// A box, ball or cylinder before a vector of rays.
 typedef struct R(convex) {
@@ -11,14 +12,6 @@ typedef struct R(convex) {
     vr rise[3], low[3], high[3]; ///< over each slab; heights of the start over its faces
     vr f[3], e[3]; ///< start and direction, where the shape is the unit one; of a box not used
 } R(convex);
-
-static inline bool R(is_convex)(const glint_geometry_table *table, const glint_prim *part)
-{
-    if (part->kind != GLINT_PRIM_SOLID)
-        return false;
-    const uint32_t form = table->solids[part->item].form;
-    return form == GLINT_FORM_BOX || form == GLINT_FORM_BALL || form == GLINT_FORM_CYLINDER;
-}
 
 INNER void R(begin_convex)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
                            R(convex) * x)
@@ -38,7 +31,7 @@ INNER void R(begin_convex)(const glint_geometry_table *table, const glint_prim *
 
 INNER vr R(slab_slack)(const R(convex) * x, int i)
 {
-    return r_set(PAIR_SLACK) * (R(abs)(x->low[i]) + R(abs)(x->high[i]));
+    return r_set(SIMPLE_SLACK) * (R(abs)(x->low[i]) + R(abs)(x->high[i]));
 }
 
 /// Where rays are at t: `in` and `out` of the curved side for certain.
@@ -50,7 +43,7 @@ INNER void R(side_at)(const R(convex) * x, vr t, rm *in, rm *out)
     vr over = k[0] * k[0] + k[1] * k[1] - r_set(1);
     if (ball)
         over = over + k[2] * k[2];
-    const vr slack = r_set(PAIR_SLACK) * (size + r_set(1 + x->solid->places));
+    const vr slack = r_set(SIMPLE_SLACK) * (size + r_set(1 + x->solid->places));
     *in = r_lt(over, -slack);
     *out = r_lt(slack, over);
 }
@@ -81,7 +74,7 @@ INNER void R(way_into)(const R(convex) * x, vr *t, rm *hit, rm *missed)
         const R(quadratic) round = R(quadratic_of)(x->f, x->e, solid->form == GLINT_FORM_BALL, solid->places);
         side = r_select(round.ahead, round.c, round.q) / r_select(round.ahead, round.q, round.a);
         past = rm_andnot(r_lt(round.disc, zero), round.along);
-        before = r_lt(r_set(PAIR_CHORD) * R(abs)(round.b), round.s);
+        before = r_lt(r_set(SIMPLE_CHORD) * R(abs)(round.b), round.s);
         told = rm_andnot(told, round.along);
     }
     *t = side;
@@ -119,7 +112,7 @@ INNER rm R(way_out_of)(const R(convex) * x, vr *t)
     if (solid->form != GLINT_FORM_BOX) {
         const R(quadratic) round = R(quadratic_of)(x->f, x->e, solid->form == GLINT_FORM_BALL, solid->places);
         *t = r_select(round.ahead, round.q, round.c) / r_select(round.ahead, round.a, round.q);
-        told = rm_andnot(r_lt(r_set(PAIR_CHORD) * R(abs)(round.b), round.s), round.along);
+        told = rm_andnot(r_lt(r_set(SIMPLE_CHORD) * R(abs)(round.b), round.s), round.along);
     }
     for (int i = 0; i < glint_slab_count(solid->form); i++) {
         const rm rising = r_lt(r_set(0), x->rise[i]);
@@ -129,86 +122,99 @@ INNER rm R(way_out_of)(const R(convex) * x, vr *t)
     return told;
 }
 
-/// What a vector of rays meets of a pair.
-typedef struct R(pair_hits) {
-    vr t;
-    rm first, second; ///< by which part
-    rm missed;
-} R(pair_hits);
+/// What a vector of rays meets of a whole.
+typedef struct R(simple_hits) {
+    vr t, part; ///< part: its number
+    rm hit, missed; ///< for certain
+} R(simple_hits);
 
-INNER void R(meet_difference)(const R(convex) x[2], R(pair_hits) * hits)
+/// The first part without the others. A ray that is in a cutter where it goes into the first may meet what is left where it goes out of
+/// that cutter, if that is the only one.
+INNER void R(meet_difference)(R(convex) x[], uint32_t count, R(simple_hits) * hits)
 {
-    rm hit, in, out;
+    rm hit, held, in = rm_from_bits(0), out;
     R(way_into)(&x[0], &hits->t, &hit, &hits->missed);
-    hits->first = hits->second = rm_from_bits(0);
+    hits->part = r_set(0);
+    hits->hit = hit;
     if (!rm_bits(hit))
         return;
-    R(convex_at)(&x[1], hits->t, &in, &out);
-    hits->first = rm_and(hit, out);
+    for (uint32_t j = 1; j < count; j++) {
+        R(convex_at)(&x[j], hits->t, &in, &out);
+        hits->hit = rm_and(hits->hit, out);
+    }
     in = rm_and(hit, in);
-    if (!rm_bits(in))
+    if (count > 2 || !rm_bits(in))
         return;
     vr end;
-    rm held, gone;
+    rm gone;
     const rm told = rm_and(in, R(way_out_of)(&x[1], &end));
     R(convex_at)(&x[0], end, &held, &gone);
-    hits->second = rm_and(told, held);
+    const rm second = rm_and(told, held);
     hits->missed = rm_or(hits->missed, rm_and(told, gone));
-    hits->t = r_select(hits->second, end, hits->t);
+    hits->hit = rm_or(hits->hit, second);
+    hits->t = r_select(second, end, hits->t);
+    hits->part = r_select(second, r_set(1), hits->part);
 }
 
-INNER void R(meet_intersection)(const R(convex) x[2], R(pair_hits) * hits)
+/// What all parts have in common begins where the last of them does, if the others have not ended there.
+INNER void R(meet_intersection)(R(convex) x[], uint32_t count, R(simple_hits) * hits)
 {
-    vr t[2];
-    rm hit[2], missed[2], in[2], out[2];
-    for (int i = 0; i < 2; i++)
-        R(way_into)(&x[i], &t[i], &hit[i], &missed[i]);
-    const rm both = rm_and(hit[0], hit[1]), later = r_lt(t[0], t[1]);
-    hits->t = r_max(t[0], t[1]);
-    for (int i = 0; i < 2; i++)
-        R(convex_at)(&x[i], hits->t, &in[i], &out[i]);
-    hits->first = rm_andnot(rm_and(both, in[1]), later);
-    hits->second = rm_and(rm_and(both, in[0]), later);
-    hits->missed = rm_or(rm_or(missed[0], missed[1]), rm_and(both, rm_or(rm_andnot(out[1], later), rm_and(out[0], later))));
+    rm all = rm_from_bits((1u << VR) - 1), hit, missed, in, out;
+    hits->t = r_set(-HUGE_VAL);
+    hits->part = r_set(0);
+    hits->missed = rm_from_bits(0);
+    for (uint32_t j = 0; j < count; j++) {
+        vr t;
+        R(way_into)(&x[j], &t, &hit, &missed);
+        const rm later = r_lt(hits->t, t);
+        all = rm_and(all, hit);
+        hits->missed = rm_or(hits->missed, missed);
+        hits->t = r_select(later, t, hits->t);
+        hits->part = r_select(later, r_set(j), hits->part);
+    }
+    hits->hit = all;
+    for (uint32_t j = 0; j < count; j++) {
+        const rm own = r_eq(hits->part, r_set(j));
+        R(convex_at)(&x[j], hits->t, &in, &out);
+        hits->hit = rm_and(hits->hit, rm_or(own, in));
+        hits->missed = rm_or(hits->missed, rm_andnot(rm_and(all, out), own));
+    }
 }
 
-INNER void R(meet_union)(const R(convex) x[2], R(pair_hits) * hits)
+/// All parts together begin where the first of them does.
+INNER void R(meet_union)(R(convex) x[], uint32_t count, R(simple_hits) * hits)
 {
     const vr none = r_set(HUGE_VAL);
-    vr t[2];
-    rm hit[2], missed[2];
-    for (int i = 0; i < 2; i++) {
-        R(way_into)(&x[i], &t[i], &hit[i], &missed[i]);
-        t[i] = r_select(hit[i], t[i], none);
+    rm told = rm_from_bits((1u << VR) - 1), hit, missed;
+    vr next = none;
+    hits->t = none;
+    hits->part = r_set(0);
+    hits->missed = told;
+    for (uint32_t j = 0; j < count; j++) {
+        vr t;
+        R(way_into)(&x[j], &t, &hit, &missed);
+        t = r_select(hit, t, none);
+        told = rm_and(told, rm_or(hit, missed));
+        hits->missed = rm_and(hits->missed, missed);
+        hits->part = r_select(r_lt(t, hits->t), r_set(j), hits->part);
+        next = r_min(r_max(t, hits->t), next);
+        hits->t = r_min(t, hits->t);
     }
-    const rm told = rm_and(rm_or(hit[0], missed[0]), rm_or(hit[1], missed[1]));
-    hits->t = r_min(t[0], t[1]);
-    const vr apart = hits->t * r_set(1 + PAIR_SLACK);
-    hits->first = rm_and(told, r_lt(apart, t[1]));
-    hits->second = rm_and(told, r_lt(apart, t[0]));
-    hits->missed = rm_and(missed[0], missed[1]);
+    hits->hit = rm_and(told, r_lt(hits->t * r_set(1 + SIMPLE_SLACK), next));
 }
 
-/// Whether a whole is a pair.
-static inline bool R(is_pair)(const glint_geometry_table *table, const glint_combined *whole)
+/// What rays that start on no part of a simple whole meet. Returns the lanes that are decided.
+static unsigned R(meet_simple)(const glint_geometry_table *table, const glint_combined *whole, const vr o[3], const vr d[3],
+                               R(simple_hits) * hits)
 {
-    const glint_prim *parts = &table->prims[table->prim_count + whole->first];
-    return GLINT_REAL == 64 && whole->length == 3 && whole->count == 2 && R(is_convex)(table, &parts[0]) &&
-           R(is_convex)(table, &parts[1]);
-}
-
-/// What rays that start on neither part meet. Returns the lanes that are decided.
-static unsigned R(meet_pair)(const glint_geometry_table *table, const glint_combined *whole, const vr o[3], const vr d[3],
-                             R(pair_hits) * hits)
-{
-    R(convex) x[2];
-    for (uint32_t j = 0; j < 2; j++)
+    R(convex) x[GLINT_SIMPLE_PARTS];
+    for (uint32_t j = 0; j < whole->count; j++)
         R(begin_convex)(table, &table->prims[table->prim_count + whole->first + j], o, d, &x[j]);
     if (whole->program[2] == GLINT_COMBINE_DIFFERENCE)
-        R(meet_difference)(x, hits);
+        R(meet_difference)(x, whole->count, hits);
     else if (whole->program[2] == GLINT_COMBINE_INTERSECTION)
-        R(meet_intersection)(x, hits);
+        R(meet_intersection)(x, whole->count, hits);
     else
-        R(meet_union)(x, hits);
-    return rm_bits(rm_or(hits->missed, rm_or(hits->first, hits->second)));
+        R(meet_union)(x, whole->count, hits);
+    return rm_bits(rm_or(hits->missed, hits->hit));
 }
