@@ -286,11 +286,22 @@ static void tone16(glint_tile *tile, const glint_tile_frame *frame)
     }
 }
 
-void glint_tile_prefetch_codes(const glint_tile *tile, const glint_image *image)
+/// Prefetches the tile's rows of a picture; memory NULL: there is none.
+static void prefetch_rows(const glint_tile *tile, const void *memory, int width, size_t pixel)
 {
-    const size_t pixel = glint_image_pixel_bytes(image), stride = (size_t)image->width * pixel;
-    for (size_t y = 0; y < tile->height; y++)
-        glint_prefetch((const char *)image->codes + (tile->y0 + y) * stride + tile->x0 * pixel, tile->width * pixel);
+    const size_t stride = (size_t)width * pixel;
+    for (size_t y = 0; memory && y < tile->height; y++)
+        glint_prefetch((const char *)memory + (tile->y0 + y) * stride + tile->x0 * pixel, tile->width * pixel);
+}
+
+void glint_tile_prefetch_output(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_image *image = frame->image;
+    prefetch_rows(tile, image->codes, image->width, glint_image_pixel_bytes(image));
+    for (uint32_t left = frame->plan->desc.passes; left; left &= left - 1)
+        for (int c = 0; c < 3; c++)
+            prefetch_rows(tile, image->plane[__builtin_ctz(left)][c], image->width, sizeof(float));
+    prefetch_rows(tile, image->shadows, image->width, sizeof *image->shadows);
 }
 
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame)

@@ -451,8 +451,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
         frame->image->film[tile->index] = (glint_film_stamp) { 0 };
         glint_tile_prefetch(tile, frame);
     }
-    if (plan->runs[GLINT_STAGE_TONE])
-        glint_tile_prefetch_codes(tile, frame->image);
+    glint_tile_prefetch_output(tile, frame);
     tile->direct = false;
     if (plan->lens && !plan->is_base && glint_tile_wants_geometry(plan))
         find_geometry(tile, frame);
