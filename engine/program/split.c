@@ -246,7 +246,7 @@ static void place_results(values *v, uint32_t i, glint_instruction *to, bool *ta
             taken[to->out[k]] = false;
 }
 
-/// The part that runs what is `wanted`, whose inputs are placed. Returns false without memory, or where rows do not suffice.
+/// The part that runs what is `wanted`, whose inputs are placed. It may need too many rows. Returns false without memory.
 static bool write_part(values *v, bool *wanted, const uint32_t *outputs, uint32_t count, glint_program_code *part)
 {
     bool taken[GLINT_PROGRAM_ROWS_MAX] = { false };
@@ -270,7 +270,7 @@ static bool write_part(values *v, bool *wanted, const uint32_t *outputs, uint32_
     for (uint32_t k = 0; k < count; k++)
         if (outputs[k] != NO_VALUE)
             part->outputs[k] = v->place[outputs[k]];
-    return part->row_count <= GLINT_PROGRAM_ROWS_MAX;
+    return true;
 }
 
 static bool write_parts(values *v, const uint32_t *outputs, glint_split *split)
@@ -314,6 +314,8 @@ bool glint_split_create(const glint_program *program, const bool *changed, glint
         split->cost = glint_flow_fill(&v.flow, COST_MAX);
         found = split->cost <= COST_MAX && find_sides(&v);
         good = !found || write_parts(&v, outputs, split);
+        found = found && split->first.row_count <= GLINT_PROGRAM_ROWS_MAX &&
+                split->second.row_count <= GLINT_PROGRAM_ROWS_MAX;
     }
     destroy(&v);
     if (good && found)

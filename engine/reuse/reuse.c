@@ -256,11 +256,15 @@ bool glint_reuse_hold_planes(glint_reuse *reuse, glint_cached_tile *tile)
 bool glint_reuse_hold_values(glint_reuse *reuse, glint_cached_tile *tile)
 {
     const size_t bytes = reuse->samples * glint_splits_bytes(&reuse->splits);
-    if (bytes > tile->value_bytes) { // other programs, as a rule: what was there is of no more use
-        tile->values = hold(reuse, bytes);
-        tile->value_bytes = tile->values ? bytes : 0;
-    }
-    return tile->values != NULL;
+    if (bytes <= tile->value_bytes)
+        return true;
+    void *values = hold(reuse, bytes);
+    if (!values) // what is there stays, and what is known of it
+        return false;
+    tile->values = values;
+    tile->value_bytes = bytes;
+    tile->split = (glint_key) { 0 };
+    return true;
 }
 
 bool glint_reuse_hold_view(glint_reuse *reuse, glint_cached_tile *tile)

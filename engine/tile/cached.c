@@ -169,8 +169,10 @@ void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame)
         if (reuse->keep_light[i] && plan->lights[i].shadows && has_occlude(&cached->lights[i], &plan->lights[i]))
             cached->lights[i].occlude = plan->lights[i].key;
     }
-    if (plan->runs[GLINT_STAGE_PATTERN])
-        glint_tile_sign_pattern(tile, frame), glint_tile_sign_values(tile, frame);
+    if (plan->runs[GLINT_STAGE_PATTERN]) {
+        glint_tile_sign_pattern(tile, frame);
+        glint_tile_sign_values(tile, frame);
+    }
     if (plan->runs[GLINT_STAGE_FACET])
         glint_tile_sign_facets(tile, frame);
 }

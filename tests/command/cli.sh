@@ -754,6 +754,35 @@ comparing() {
     clean
 }
 
+# Numbers of a pattern that change one by one and together, and a camera that goes and comes back: what was kept for fewer
+# numbers is met again after there was no room for what more of them need.
+little_memory() {
+    script knobs 'local glint = require "glint"
+local a, b = { x = 0.5 }, { x = 0.3 }
+local camera = glint.camera { eye = { 0, 2, 6 }, at = { 0, 0.5, 0 } }
+local stone = glint.material { diffuse = glint.pattern(function(p)
+  return (glint.noise(p * 3) * 0.4 + 0.5 + (glint.noise(p * 7 + 2) * 0.4 + 0.5) * b.x) * a.x
+end) }
+local scene = glint.scene { camera = camera, glint.point_light { position = { 3, 5, 4 } },
+  glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = stone },
+  glint.sphere { center = { 0, 1, 0 }, radius = 1, material = stone } }
+return glint.animation { scene = scene, width = 256, height = 192, frames = 16, frame = function(_, n)
+  camera.eye = { n == 10 and 0.5 or 0, 2, 6 }
+  a.x, b.x = 0.5 + 0.02 * (n < 10 and n or n - 1), n > 5 and n < 10 and 0.2 + 0.02 * n or 0.3
+end }'
+    mkdir -p base
+    run knobs.lua -o 'base/%04d.png' -t 1 --no-reuse
+    local want memory
+    want=$(sums base)
+    for memory in 300K 700K 1100K 1500K 1900K 2300K 4M; do
+        mkdir -p other
+        run knobs.lua -o 'other/%04d.png' -t 1 --reuse-memory $memory
+        check "$memory for what is kept" test "$status $(sums other)" = "0 $want"
+        rm -rf other
+    done
+    rm -rf base
+}
+
 plain_lua() {
     local module=${GLINT%/*}/glint.so
     [ -e "$module" ] || { echo "skip: no glint.so beside the command"; return; }
@@ -774,7 +803,7 @@ assert(a.frames == 10 and a.cyclic and a.width == 40)'
     clean
 }
 
-for part in names selection parameters options events errors whole small_disk signals same_bits comparing plain_lua; do
+for part in names selection parameters options events errors whole small_disk signals same_bits little_memory comparing plain_lua; do
     $part
     clean
 done

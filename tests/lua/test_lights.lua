@@ -306,6 +306,30 @@ function tests.penumbra()
 end
 
 -- By radiance a radius is squared: the least and the largest give finite light, others are refused.
+-- A lamp so far away that float has no number for where it is throws the shadows of a parallel light.
+function tests.beyond_float()
+  local function picture(light)
+    return render(above(light, 12, {
+      glint.sphere { center = { 0, 1, 0 }, radius = 0.7, material = WHITE },
+      glint.sphere { center = { 1.5, 0.5, 2 }, radius = 0.4, material = WHITE },
+      glint.box { min = { -3, 0, -1 }, max = { -2.2, 1.4, 0 }, material = WHITE },
+    }), 120)
+  end
+  for _, far in ipairs { 1e20, 1e39, 1e150 } do
+    local way = { far, 0.8731 * far, 0.2317 * far }
+    local lamp = picture(glint.point_light { position = way })
+    local sun = picture(glint.directional_light { direction = { -1, -0.8731, -0.2317 } })
+    local wrong, dark = 0, 0
+    for y = 0, 119 do
+      for x = 0, 119 do
+        if math.abs(lamp:pixel(x, y) - sun:pixel(x, y)) > 1e-5 then wrong = wrong + 1 end
+        if sun:pixel(x, y) == 0 then dark = dark + 1 end
+      end
+    end
+    check(wrong == 0 and dark > 300, far .. ": " .. wrong .. " pixels of another light, " .. dark .. " in shadow")
+  end
+end
+
 function tests.extreme_radii()
   for _, radius in ipairs { 0, 1e-150, 1e150 } do
     local r = render(above(glint.sphere_light { position = { 0, 3, 0 }, radius = radius, radiance = 1, samples = 4 }, 8), 8)

@@ -4,7 +4,7 @@
 // Contract: stages.h, cast.
 
 #define SIMPLE_SLACK 0x1p-40 ///< a share of what heights and squares are made of; their rounding is far below it
-#define SIMPLE_CHORD 0x1p-30 ///< half of what is within a curved side, over the way there: above it its two ends are in order
+#define SIMPLE_CHORD 0x1p-30 ///< half the chord through a curved side, over the way to its middle: above it the two ends are in order
 
 /// A box, ball or cylinder before a vector of rays.
 typedef struct R(convex) {

@@ -1,8 +1,9 @@
-// blocked: whether a surface is between a point and a light. Always decided from the point towards the light, without a
-// root or a division: the segment meets a sphere when one end is inside and the other outside, or when both are outside,
+// blocked: whether a surface is between a point and a light. Float says what is certain of spheres, and which solids are near. The rest is
+// decided from the point towards the light, of spheres without a root or a division: the segment meets a sphere when one end is inside and the other outside, or when both are outside,
 // the foot of the perpendicular lies between them and the discriminant is not negative. Contract: stages.h, occlude.
 
 #define GLINT_OCCLUDERS 12 ///< what a tile's list holds
+#define FAR_LIGHT 0x1p60 ///< in the index's units; from there on squares of the way to it may overflow float
 #define GLINT_SHAFTS_TRIED 3 ///< groups in a row that may give up their shaft before no more is tried in the tile
 #define GLINT_SHAFT_NODES 16 ///< what a group's shaft may see of the index before each lane walks by itself
 
@@ -23,6 +24,7 @@ typedef struct R(shadow_tile) {
     light_place light; ///< of an area light, all of it
     _Alignas(64) real position[3][GLINT_GROUP]; ///< of the light, or of its sample at hand, for each lane
     _Alignas(64) float local_light[3][GLINT_GROUP]; ///< the same in the index's frame
+    bool far; ///< that may overflow, or what is made of it
     R(occluder) occluders[GLINT_OCCLUDERS];
     int count; ///< more than GLINT_OCCLUDERS: too many, groups walk by themselves
     float lower[3], upper[3]; ///< a box around the lit points, in the index's frame
@@ -97,10 +99,13 @@ static inline void R(aim_at)(R(shadow_tile) * tile, const double (*place)[GLINT_
             else
                 r_store(tile->position[k] + i, r_set(args->position[k]));
         }
+    tile->far = false;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < GLINT_GROUP; i++) {
             const double x = place ? place[k][i] : args->position[k];
-            tile->local_light[k][i] = (float)(args->directional ? x : (x - geometry->reference[k]) * geometry->scale);
+            const double local = args->directional ? x : (x - geometry->reference[k]) * geometry->scale;
+            tile->local_light[k][i] = (float)local;
+            tile->far = tile->far || !(fabs(local) < FAR_LIGHT);
         }
 }
 
@@ -128,27 +133,43 @@ static inline void R(place_group)(const R(shadow_tile) * tile, R(shadow_group) *
     group->placed = true;
 }
 
+/// Directions in the light's units: of a far light, along a part of the way alone; and where float decides, whose filter must see what
+/// it sees.
+static inline void R(aim_in_units)(const R(shadow_tile) * tile, R(shadow_group) * group)
+{
+    _Alignas(64) real to_light[3][GLINT_GROUP];
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        vr d[3];
+        R(directions_to)(tile->args, tile->position, group->at, i, d);
+        for (int k = 0; k < 3; k++)
+            r_store(to_light[k] + i, d[k]);
+    }
+    for (int k = 0; k < 3; k++)
+        R(narrow)(to_light[k], group->rays.direction[k]);
+}
+
 /// A direction is the difference of what float knows of both ends. What that is off counts by how far along the segment a primitive
 /// is, and is within GLINT_FILTER_SLACK of its centre and the point.
+static inline void R(aim_in_index)(const R(shadow_tile) * tile, R(shadow_group) * group)
+{
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            vf d = f_load(tile->local_light[k] + i);
+            if (!tile->args->directional)
+                d = d - f_load(group->local[k] + i);
+            f_store(group->rays.direction[k] + i, d);
+        }
+}
+
 static inline void R(make_shadow_rays)(const R(shadow_tile) * tile, R(shadow_group) * group)
 {
     const glint_occlude_args *args = tile->args;
     R(place_group)(tile, group);
     R(set_origins)(args->point, group->at, (const float(*)[GLINT_GROUP])group->local, &group->rays);
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vf d[3];
-#if GLINT_REAL == 64
-        for (int k = 0; k < 3; k++) {
-            d[k] = f_load(tile->local_light[k] + i);
-            if (!args->directional)
-                d[k] = d[k] - f_load(group->local[k] + i);
-        }
-#else // where float decides, the filter must see what it sees
-        R(directions_to)(args, tile->position, group->at, i, d);
-#endif
-        for (int k = 0; k < 3; k++)
-            f_store(group->rays.direction[k] + i, d[k]);
-    }
+    if (GLINT_REAL == 32 || tile->far)
+        R(aim_in_units)(tile, group);
+    else
+        R(aim_in_index)(tile, group);
     for (int k = 0; args->geometry->solids && k < 3; k++)
         for (int i = 0; i < GLINT_GROUP; i += VF)
             f_store(group->inverse[k] + i, f_set(1) / f_load(group->rays.direction[k] + i));
