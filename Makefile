@@ -260,10 +260,9 @@ SANITIZED := $(filter-out tests/command/povray.sh tests/command/gallery.sh tests
 THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image reuse reuse_turns soft) \
                hard/hard_limits) tests/lua/test_patterned.lua tests/command/watch.sh
 
-# GCC 12 stops at a vector comparison of the generic kernels that forwprop has folded, under these sanitizers.
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
 	@tests/deps.sh build test
-	@$(MAKE) --no-print-directory san-run BUILD=build-asan CFLAGS="-O1 -g" KERNEL_CFLAGS="-O1 -fno-tree-forwprop" \
+	@$(MAKE) --no-print-directory san-run BUILD=build-asan CFLAGS="-O1 -g" KERNEL_CFLAGS=-O1 \
 	    SANITIZE=address,undefined,float-cast-overflow PRELOAD=libasan.so ITEMS='$$(TEST_BIN) $$(HARD_BIN) $$(SANITIZED)'
 
 tsan: ## the tests with threads under ThreadSanitizer, in build-tsan/

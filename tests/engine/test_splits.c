@@ -4,15 +4,9 @@
 #include "engine/frame/renderer.h"
 #include "tests/engine/cases/program_case.h"
 
+#include "tests/engine/cases/builder_case.h"
+
 enum { CASES = 1500 };
-
-static glint_error error;
-
-#define OK(call) \
-    do { \
-        if ((call) != GLINT_OK) \
-            fail_msg("%s: %s", #call, error.message); \
-    } while (0)
 
 // ---- Two parts ------------------------------------------------------------------------------------------------------
 
@@ -105,30 +99,6 @@ static void test_random_splits(void **state)
     assert_true(splits_seen > CASES / 4 / case_step() && refused_seen > 0);
 }
 
-static glint_builder *builder;
-
-static glint_value num(double x)
-{
-    glint_value out;
-    OK(glint_builder_number(builder, x, &out, &error));
-    return out;
-}
-
-static glint_value in(glint_input which)
-{
-    glint_value out;
-    OK(glint_builder_input(builder, which, &out, &error));
-    return out;
-}
-
-static glint_value op(glint_op which, glint_value a, glint_value b, glint_value c)
-{
-    const glint_value operands[GLINT_OPERANDS_MAX] = { a, b, c };
-    glint_value out[GLINT_RESULTS_MAX];
-    OK(glint_builder_op(builder, which, operands, out, &error));
-    return out[0];
-}
-
 static glint_value of_point(glint_op which) { return op(which, in(GLINT_INPUT_P_X), in(GLINT_INPUT_P_Y), in(GLINT_INPUT_P_Z)); }
 
 /// Splits a program where the number `which` changes. Returns NULL where it is not.
@@ -136,8 +106,7 @@ static glint_split *split_by(const glint_value *outputs, size_t count, double wh
 {
     bool changed[32] = { false };
     glint_split *split;
-    OK(glint_builder_finish(builder, outputs, count, program, &error));
-    glint_builder_destroy(builder);
+    *program = end_program(outputs, count);
     for (uint32_t i = 0; i < (*program)->number_count; i++)
         changed[i] = (*program)->code.numbers[i][0] == which;
     assert_true(glint_split_create(*program, changed, &split));
@@ -150,7 +119,7 @@ static void test_board(void **state)
     (void)state;
     glint_value out[3];
     glint_program *program;
-    OK(glint_builder_create(GLINT_PROGRAM_PATTERN, &builder, &error));
+    begin_program(GLINT_PROGRAM_PATTERN);
     const glint_value odd = of_point(GLINT_OP_PARITY);
     for (int c = 0; c < 3; c++)
         out[c] = op(GLINT_OP_SELECT, odd, num(0.1 * c), num(0.9));
@@ -169,7 +138,7 @@ static void test_marble(void **state)
     (void)state;
     glint_value out[3];
     glint_program *program;
-    OK(glint_builder_create(GLINT_PROGRAM_PATTERN, &builder, &error));
+    begin_program(GLINT_PROGRAM_PATTERN);
     const glint_value share = op(GLINT_OP_SIN, op(GLINT_OP_MUL, of_point(GLINT_OP_NOISE), num(5), 0), 0, 0);
     for (int c = 0; c < 3; c++)
         out[c] = op(GLINT_OP_MIX, num(0.25 * c), num(0.9), share);
@@ -189,7 +158,7 @@ static void test_scale(void **state)
     (void)state;
     glint_value p[3], out[1];
     glint_program *program;
-    OK(glint_builder_create(GLINT_PROGRAM_PATTERN, &builder, &error));
+    begin_program(GLINT_PROGRAM_PATTERN);
     for (int c = 0; c < 3; c++)
         p[c] = op(GLINT_OP_MUL, in((glint_input)(GLINT_INPUT_P_X + c)), num(3), 0);
     out[0] = op(GLINT_OP_PARITY, p[0], p[1], p[2]);
@@ -198,7 +167,7 @@ static void test_scale(void **state)
     assert_int_equal(split->saved, 0);
     glint_split_destroy(split);
     glint_program_release(program);
-    OK(glint_builder_create(GLINT_PROGRAM_PATTERN, &builder, &error));
+    begin_program(GLINT_PROGRAM_PATTERN);
     out[0] = num(3);
     assert_null(split_by(out, 1, 3, &program));
     glint_program_release(program);

@@ -75,7 +75,8 @@ function tests.spots_on_tiles()
   local pixels, width, height = 160, 12, 3
   local wrong, lit, unlit = 0, 0, 0
   for i = 1, 24 do
-    local x, z, outer = 7 * glint.sin(2.4 * i), 7 * glint.cos(2.4 * i), 2 + 3 * (i % 16)
+    local x, z = 7 * glint.sin(2.4 * i), 7 * glint.cos(2.4 * i)
+    local outer = i % 6 == 0 and 80 + 4 * i or 2 + 3 * (i % 16) -- beyond 90 degrees, too
     local axis = { 0.7 * glint.sin(5 * i), -1, 0.7 * glint.cos(3 * i) }
     local length = math.sqrt(axis[1] ^ 2 + 1 + axis[3] ^ 2)
     local image = render(above(glint.spot_light { position = { x, height, z }, direction = axis, inner = outer,

@@ -164,7 +164,7 @@ static unsigned R(rays_to_box)(const R(ray_group) * rays, float (*inverse)[GLINT
         for (int k = 0; k < 3; k++) {
             const vf from = f_load(rays->local[k] + i), over = f_load(inverse[k] + i);
             const vf x = ((f_set(lower[k]) - from) - bound) * over, y = ((f_set(upper[k]) - from) + bound) * over;
-            enter = f_max(f_min(x, y), enter); // NaN, 0 times infinity, keeps what there was
+            enter = f_max(f_min(x, y), enter); // NaN, 0 times infinity, is on the border: either answer will do
             leave = f_min(f_max(x, y), leave);
         }
         inside |= (~fm_bits(f_lt(leave * f_set(1 + WALK_SLACK), enter)) & ((1u << VF) - 1)) << i;

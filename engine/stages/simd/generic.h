@@ -144,7 +144,13 @@ static inline vd d_sqrt(vd x) { return (vd) { sqrt(x[0]), sqrt(x[1]) }; }
 static inline dm d_lt(vd a, vd b) { return a < b; }
 static inline dm d_le(vd a, vd b) { return a <= b; }
 static inline dm d_eq(vd a, vd b) { return a == b; }
-static inline vd d_select(dm m, vd a, vd b) { return (vd)(((dm)a & m) | ((dm)b & ~m)); }
+static inline vd d_select(dm m, vd a, vd b)
+{
+#ifdef __SSE2__ // GCC 12 stops at a choice whose mask comes from several branches, for which SSE2 alone has no instruction
+    __asm__("" : "+x"(m));
+#endif
+    return (vd)(((dm)a & m) | ((dm)b & ~m));
+}
 static inline vd d_min(vd a, vd b) { return d_select(a < b, a, b); }
 static inline vd d_max(vd a, vd b) { return d_select(a > b, a, b); }
 static inline dm dm_and(dm a, dm b) { return a & b; }

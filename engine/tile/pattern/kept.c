@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/// Where what is kept of a sample is.
+/// Where what is kept of a sample is; of a tile whose key says that it is.
 typedef struct kept_sample {
     double *numbers;
     float *planes;

@@ -15,7 +15,8 @@ static glint_pattern_room room_for(const glint_plan *plan)
     const glint_plan_patterns *patterns = plan->patterns;
     return (glint_pattern_room) { .planes = (size_t)patterns->plane_count * GLINT_TILE_SAMPLES,
                                   .samples = plan->together ? (size_t)plan->desc.samples : 1,
-                                  .rows = patterns->row_count + GLINT_PROGRAM_OUTPUTS_MAX, // of split programs
+                                  // a first part's kept values may all live to its end
+                                  .rows = patterns->row_count + GLINT_PROGRAM_OUTPUTS_MAX,
                                   .bumps = patterns->bumps,
                                   .cut_outs = patterns->cut_outs };
 }
