@@ -298,10 +298,31 @@ void glint_tile_prefetch_output(const glint_tile *tile, const glint_tile_frame *
 {
     const glint_image *image = frame->image;
     prefetch_rows(tile, image->codes, image->width, glint_image_pixel_bytes(image));
-    for (uint32_t left = frame->plan->desc.passes; left; left &= left - 1)
+    for (uint32_t left = frame->plan->desc.passes & ((1u << GLINT_PASS_COUNT) - 1); left; left &= left - 1)
         for (int c = 0; c < 3; c++)
             prefetch_rows(tile, image->plane[__builtin_ctz(left)][c], image->width, sizeof(float));
-    prefetch_rows(tile, image->shadows, image->width, sizeof *image->shadows);
+}
+
+/// The line of a plane that number `at` is in.
+static void prefetch_number(const void *plane, size_t at)
+{
+    if (plane)
+        glint_prefetch((const uint32_t *)plane + at, sizeof(uint32_t));
+}
+
+/// Four groups side by side have lines of sixteen pixels in common: each group takes one of their four.
+void glint_tile_prefetch_derivatives(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
+{
+    const glint_image *image = frame->image;
+    const uint32_t x = g % tile->groups_across / 4 * 16, y = g / tile->groups_across * 4 + g % 4;
+    const size_t at = (tile->y0 + y) * (size_t)image->width + tile->x0 + x;
+    if (y >= tile->height)
+        return;
+    for (size_t k = 0; k < frame->plan->derivatives->count; k++)
+        for (int c = 0; c < 3; c++)
+            prefetch_number(image->plane[GLINT_PASS_DERIVATIVE + k][c], at);
+    if (frame->plan->derivatives->moves)
+        prefetch_number(image->shadows, at);
 }
 
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame)

@@ -538,8 +538,10 @@ bool glint_tile_wants_coverage(const glint_plan *plan);
 /// Counts the hits of sample k, from 0.
 void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k);
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame);
-/// Prefetches the tile's codes and planes, which are written at its end.
+/// Prefetches the tile's codes and planes, which are written at its end; of derivatives' planes those of group g, some lines at a
+/// time, since a core waits for more at once than it has room for.
 void glint_tile_prefetch_output(const glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_prefetch_derivatives(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g);
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether two pictures of one format have the same codes, if any, in the tile's pixels.
 bool glint_tile_has_codes_of(const glint_tile *tile, const glint_image *a, const glint_image *b);

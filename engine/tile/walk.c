@@ -111,7 +111,7 @@ static bool shows_geometry(const glint_tile *tile, const glint_tile_frame *frame
 static bool is_plain(const glint_tile_frame *frame, const walk *w)
 {
     const glint_plan *plan = frame->plan;
-    return !w->points && !frame->time_stages && !plan->derivatives && !glint_plan_bumps(plan) && plan->light_count == 1 &&
+    return !w->points && !frame->time_stages && !glint_plan_bumps(plan) && plan->light_count == 1 &&
            !plan->lights[0].light_samples && !plan->lights[0].is_spot;
 }
 
@@ -200,7 +200,7 @@ static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 static bool wants_normals(const glint_tile_frame *frame, const walk *w)
 {
     const glint_plan *plan = frame->plan;
-    return w->shows || glint_pattern_needs_normals(plan) || plan->runs[GLINT_STAGE_INDIRECT] ||
+    return w->shows || plan->derivatives || glint_pattern_needs_normals(plan) || plan->runs[GLINT_STAGE_INDIRECT] ||
            plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || plan->dims || frame->geometry.triangles ||
            frame->geometry.solids;
 }

@@ -26,8 +26,8 @@ INNER bent_rays see_from_point(const glint_bend_args *args, int i)
         out.way[c] = d_either(view->moves, d_load(points->point[c] + i) - d_set(camera->eye[c]), -d_load(points->eye[c] + i));
         out.moved[c] = d_set(view->eye[c]);
     }
-    const vd along = DOT(out.way, forward), across = DOT(out.way, right) / d_set(DOT(camera->right, camera->right)),
-             down = DOT(out.way, up) / d_set(DOT(camera->up, camera->up));
+    const vd along = DOT(out.way, forward), across = DOT(out.way, right) * d_set(1 / DOT(camera->right, camera->right)),
+             down = DOT(out.way, up) * d_set(1 / DOT(camera->up, camera->up));
     for (int c = 0; c < 3; c++)
         out.turned[c] = (along * d_set(view->forward[c]) + across * d_set(view->right[c])) + down * d_set(view->up[c]);
     return out;
@@ -74,8 +74,8 @@ INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const 
     }
     const vd further = rest / DOT(gradient, rays->way);
     const vd side = d_select(d_lt(DOT(gradient, normal), d_set(0)), d_set(-1), d_set(1));
-    const vd shorter = d_set(1) / d_sqrt(DOT(rays->way, rays->way)), away = DOT(rays->turned, eye);
-    const vd curved = side / d_set(round ? prim->radius : 1);
+    const vd shorter = d_set(-1) / DOT(rays->way, eye), away = DOT(rays->turned, eye); // the eye lies against the way
+    const vd curved = side * d_set(round ? 1 / prim->radius : 1);
     for (int c = 0; c < 3; c++) {
         const vd moved = carried[c] + further * rays->way[c];
         const vd left = (moved - d_set(part->place[c])) - off[c] * d_set(part->growth);

@@ -85,10 +85,11 @@ INNER shine_lanes find_shine(const glint_derivative_light *light, const glint_de
     }
     if (!light->directional) {
         const vs length2 = s_dot(s.way, s.way);
-        s.distance = s_keep(moving, s_sqrt(length2));
+        const vs_length length = s_length(length2);
+        const vs inverse = s_keep(moving, length.inverse);
+        s.distance = s_keep(moving, length.whole);
         if (source->radiant)
             s.weight = s_keep(any, s_mul(s.weight, surface_weight(source, s.way, length2, s.distance, i)));
-        const vs inverse = s_div(s_set(1), s.distance);
         for (int c = 0; c < 3; c++)
             s.way[c] = s_keep(moving, s_mul(s.way[c], inverse));
     }

@@ -46,6 +46,21 @@ INNER vs s_sqrt(vs a)
     const vd r = d_sqrt(a.v), zero = d_set(0);
     return a.level ? s_level(r) : s_make(r, d_select(d_lt(zero, r), (d_set(0.5) * a.d) / r, zero));
 }
+
+/// The root and one over it, of which the slopes need no division of their own.
+typedef struct vs_length {
+    vs whole, inverse;
+} vs_length;
+
+INNER vs_length s_length(vs square)
+{
+    const vd r = d_sqrt(square.v), q = d_set(1) / r, zero = d_set(0);
+    if (square.level)
+        return (vs_length) { s_level(r), s_level(q) };
+    const vd slope = d_select(d_lt(zero, r), (d_set(0.5) * square.d) * q, zero);
+    return (vs_length) { s_make(r, slope), s_make(q, (zero - q * slope) * q) };
+}
+
 INNER vs s_select(dm mask, vs a, vs b)
 {
     return (vs) { d_select(mask, a.v, b.v), a.level && b.level ? d_set(0) : d_select(mask, a.d, b.d), a.level && b.level };
@@ -63,6 +78,8 @@ INNER vs s_pow(vs x, vs s)
 {
     const vd zero = d_set(0), one = d_set(1), ln_2 = d_set(0x1.62e42fefa39efp-1);
     const dm there = d_lt(zero, x.v);
+    if (!dm_bits(there)) // as far from a highlight as many groups are
+        return (vs) { zero, zero, x.level && s.level };
     const vd base = d_select(there, d_min(x.v, one), one), log2 = d_log2(base), y = d_exp2(s.v * log2);
     const vd value = d_select(there, y, zero);
     if (x.level && s.level)

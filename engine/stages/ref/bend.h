@@ -13,8 +13,8 @@ static bent_ray seen_from_point(const glint_bend_args *args, int i)
     for (int c = 0; c < 3; c++)
         out.way[c] = view->moves ? args->points->point[c][i] - camera->eye[c] : -args->points->eye[c][i];
     const double along = dot_of(out.way, camera->forward);
-    const double across = dot_of(out.way, camera->right) / dot_of(camera->right, camera->right);
-    const double down = dot_of(out.way, camera->up) / dot_of(camera->up, camera->up);
+    const double across = dot_of(out.way, camera->right) * (1 / dot_of(camera->right, camera->right));
+    const double down = dot_of(out.way, camera->up) * (1 / dot_of(camera->up, camera->up));
     for (int c = 0; c < 3; c++) {
         out.moved[c] = view->eye[c];
         out.turned[c] = (along * view->forward[c] + across * view->right[c]) + down * view->up[c];
@@ -60,7 +60,7 @@ static void bend_lane(const glint_bend_args *args, int i)
         rest -= round ? 0 : part->normal[c] * (point - part->pivot[c]);
     }
     const double further = rest / dot_of(gradient, ray.way), side = dot_of(gradient, normal) < 0 ? -1 : 1;
-    const double shorter = 1 / sqrt(dot_of(ray.way, ray.way)), away = dot_of(ray.turned, eye);
+    const double shorter = -1 / dot_of(ray.way, eye), away = dot_of(ray.turned, eye);
     for (int c = 0; c < 3; c++) {
         const double moved = carried[c] + further * ray.way[c];
         args->slope[0][c][i] = moved;

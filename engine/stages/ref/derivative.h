@@ -43,7 +43,8 @@ static glint_dual dual_cone(const glint_derivative_light *light, const glint_dua
 static void come_near(const glint_derivative_source *source, dual_shine *s, int i)
 {
     const glint_dual length2 = dual_dot(s->way, s->way);
-    s->distance = dual_sqrt(length2);
+    const double length = sqrt(length2.value), over = 1 / length;
+    s->distance = dual(length, length > 0 ? (0.5 * length2.slope) * over : 0);
     if (source->radiant) {
         const glint_dual normal[3] = { dual(source->normal[0][i], 0), dual(source->normal[1][i], 0),
                                        dual(source->normal[2][i], 0) };
@@ -52,7 +53,7 @@ static void come_near(const glint_derivative_source *source, dual_shine *s, int 
             m = dual_sub(dual(0, 0), m);
         s->weight = dual_mul(s->weight, dual_div(m, dual_mul(length2, s->distance)));
     }
-    const glint_dual inverse = dual_div(dual(1, 0), s->distance);
+    const glint_dual inverse = dual(over, -(over * s->distance.slope) * over);
     for (int c = 0; c < 3; c++)
         s->way[c] = dual_mul(s->way[c], inverse);
 }

@@ -29,7 +29,8 @@ static turning find_turning(const glint_batch *batch, const glint_tile *tile, co
 {
     const glint_plan *plan = frame->plan;
     const glint_plan_derivative *d = &plan->derivatives->of[index];
-    const glint_derivative_points points = glint_derivative_points_of(tile, frame, i / GLINT_GROUP);
+    glint_derivative_points points;
+    glint_derivative_find_points(tile, frame, i / GLINT_GROUP, &points);
     const bool later = tile == &batch->tile;
     const uint32_t ray = later ? batch->ray_of[i] : 0;
     glint_bend bend = { .point = { 0 } };
@@ -139,7 +140,8 @@ void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *f
             glint_batch_has_sample(batch, ray) ? glint_real_at(batch->tile.at.t, plan->desc.precision, i) : HUGE_VAL;
         for (size_t k = 0; k < count; k++) {
             const glint_plan_derivative *d = &plan->derivatives->of[k];
-            const glint_derivative_points points = glint_derivative_points_of(&batch->tile, frame, i / GLINT_GROUP);
+            glint_derivative_points points;
+            glint_derivative_find_points(&batch->tile, frame, i / GLINT_GROUP, &points);
             glint_ray_slope *slope = &rays->slopes[ray * count + k];
             glint_bend bend;
             double longer = 0;

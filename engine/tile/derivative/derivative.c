@@ -95,18 +95,18 @@ static void gather_points(glint_tile *tile, const glint_tile_frame *frame, uint3
     }
 }
 
-glint_derivative_points glint_derivative_points_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
+void glint_derivative_find_points(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, glint_derivative_points *out)
 {
     const glint_derivative_work *work = tile->derivative;
     const bool is_float = frame->plan->desc.precision == GLINT_FLOAT;
     const size_t at = (size_t)g * GLINT_GROUP;
-    glint_derivative_points out = { .slope = { { NULL } } };
     for (int c = 0; c < 3; c++) {
-        out.point[c] = (is_float ? work->point[c] : tile->surface.point[c]) + at;
-        out.normal[c] = (is_float ? work->normal[c] : tile->surface.normal[c]) + at;
-        out.eye[c] = work->eye[c] + at;
+        out->point[c] = (is_float ? work->point[c] : tile->surface.point[c]) + at;
+        out->normal[c] = (is_float ? work->normal[c] : tile->surface.normal[c]) + at;
+        out->eye[c] = work->eye[c] + at;
+        for (int what = 0; what < 3; what++)
+            out->slope[what][c] = NULL;
     }
-    return out;
 }
 
 // ---- Lights -------------------------------------------------------------------------------------------------------
@@ -227,12 +227,15 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
     glint_derivative_work *work = tile->derivative;
     const glint_plan_derivatives *all = frame->plan->derivatives;
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
-    const glint_derivative_points points = glint_derivative_points_of(tile, frame, g);
     const size_t at = (size_t)g * GLINT_GROUP;
     const bool weighs = glint_derivatives_read_light(tile, frame->plan);
-    glint_derivative_points bent_points = points;
-    for (int i = 0; i < 9; i++)
-        bent_points.slope[i / 3][i % 3] = work->bend[i / 3][i % 3];
+    glint_derivative_points points, bent_points;
+    glint_derivative_find_points(tile, frame, g, &points);
+    if (all->bends) {
+        glint_derivative_find_points(tile, frame, g, &bent_points);
+        for (int i = 0; i < 9; i++)
+            bent_points.slope[i / 3][i % 3] = work->bend[i / 3][i % 3];
+    }
     if (sample && sample->emission == GLINT_EMIT_CONE)
         glint_derivative_take_cone(tile, frame, light, &points, &source);
     for (int i = 0; i < GLINT_GROUP && light->cap && light->shadows; i++) {
@@ -301,7 +304,7 @@ static void derive_light(glint_tile *tile, const glint_tile_frame *frame, uint32
     const uint16_t *open = light->shadows ? tile->at.light[slot].open : lit;
     const bool shift = light->shadows && moves(frame->plan->derivatives, light->source);
     const glint_derivative_source source = source_of(tile, light);
-    uint16_t lanes[GLINT_TILE_GROUPS] = { 0 };
+    uint16_t lanes[GLINT_TILE_GROUPS];
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const unsigned hits = sampled[g] & tile->active[g], above = hits ? lit[g] & hits : 0;
         const unsigned reached = above ? open[g] & above : 0;
@@ -348,7 +351,7 @@ void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, c
                               const uint16_t *reached)
 {
     const glint_derivative_source source = source_of(tile, light);
-    uint16_t lanes[GLINT_TILE_GROUPS] = { 0 };
+    uint16_t lanes[GLINT_TILE_GROUPS];
     for (uint32_t g = 0; g < tile->group_count; g++) {
         lanes[g] = reached[g] & tile->active[g];
         if (lanes[g])
@@ -425,11 +428,11 @@ static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
     glint_derivative_work *work = tile->derivative;
     const size_t count = tile->group_count * (size_t)GLINT_GROUP;
     if (tile->sample == 0 || tile->batch) {
-        memset(work->mixed, 0, sizeof work->mixed);
+        memset(work->mixed, 0, tile->group_count * sizeof *work->mixed);
         for (size_t k = 0; k < frame->plan->derivatives->count; k++)
             for (int c = 0; c < 3; c++)
                 memset(work->sum[k][c], 0, count * sizeof **work->sum[k]);
-        for (size_t i = 0; i < count; i++)
+        for (size_t i = 0; frame->plan->derivatives->moves && i < count; i++)
             work->shadows[i] = NO_SHADOWS;
     } else if (frame->plan->derivatives->moves) {
         turn_sample(tile, tile->sample == 1);
@@ -437,6 +440,8 @@ static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
     if (frame->plan->derivatives->repaints)
         glint_derivative_repaint(tile, frame);
     for (uint32_t g = 0; g < tile->group_count; g++) {
+        if (tile->sample == 0 && !tile->batch && !glint_derives_sites(tile))
+            glint_tile_prefetch_derivatives(tile, frame, g);
         if (frame->plan->derivatives->everywhere && !glint_derives_sites(tile))
             begin_group(tile, frame, g);
         if (tile->at.hits[g])
@@ -476,15 +481,16 @@ void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *fram
     const glint_plan *plan = frame->plan;
     const double share = 1 / plan->desc.samples;
     double (*sum)[3][GLINT_TILE_SAMPLES] = plan->runs[GLINT_STAGE_DEPTH_CUE] ? work->faded : work->sum;
-    for (size_t k = 0; k < plan->derivatives->count; k++) {
+    for (size_t k = 0; k < plan->derivatives->count; k++)
         for (int c = 0; c < 3; c++) {
+            float *plane = frame->image->plane[GLINT_PASS_DERIVATIVE + k][c];
             for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
-                work->plane[c][i] = (float)(sum[k][c][i] * share);
+                work->plane[i] = (float)(sum[k][c][i] * share);
             if (frame->base)
-                glint_tile_take_plane(tile, frame, frame->base->plane[GLINT_PASS_DERIVATIVE + k][c], work->plane[c]);
+                glint_tile_take_plane(tile, frame, frame->base->plane[GLINT_PASS_DERIVATIVE + k][c], work->plane);
+            if (plane)
+                glint_tile_store_plane(tile, work->plane, plane, frame->image->width);
         }
-        glint_tile_store_pass(tile, frame, (glint_pass)(GLINT_PASS_DERIVATIVE + k), work->plane[0]);
-    }
     if (plan->derivatives->moves)
         store_shadows(tile, frame);
 }

@@ -20,7 +20,8 @@ bool glint_derive_fade_fits(glint_derivative_work *work, const glint_plan *plan)
 /// How far what the eye sees in lane i is, which is something.
 static glint_dual way_of(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i, double way)
 {
-    const glint_derivative_points points = glint_derivative_points_of(tile, frame, i / GLINT_GROUP);
+    glint_derivative_points points;
+    glint_derivative_find_points(tile, frame, i / GLINT_GROUP, &points);
     glint_dual out = dual(way, 0);
     glint_bend bend;
     if (frame->plan->derivatives->of[index].bends && glint_has_lane(tile->at.hits, i) &&

@@ -124,7 +124,8 @@ static void find_entry(const shading *s, size_t index, uint32_t e, bool arrives)
     double (*bend)[3][GLINT_GROUP] = s->tile->derivative->bend;
     const uint32_t g = s->entries[e].group;
     const bool bends = s->frame->plan->derivatives->of[index].bends;
-    glint_derivative_points points = glint_derivative_points_of(s->tile, s->frame, g);
+    glint_derivative_points points;
+    glint_derivative_find_points(s->tile, s->frame, g, &points);
     if (bends) {
         const unsigned wanted = s->slopes->wanted[e];
         const unsigned bent = wanted ? glint_bend_points(s->tile, s->frame, index, g, wanted, &points, bend) : 0;

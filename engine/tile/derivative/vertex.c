@@ -52,7 +52,8 @@ static void derive_sample(const glint_tile *tile, const glint_tile_frame *frame,
     static const double whole[3] = { 1, 0, 0 };
     const glint_prim *prim = &frame->geometry.prims[tile->at.prim[i]];
     const uint32_t *number = frame->geometry.shading_points[prim->shading_points].at;
-    const glint_derivative_points points = glint_derivative_points_of(tile, frame, i / GLINT_GROUP);
+    glint_derivative_points points;
+    glint_derivative_find_points(tile, frame, i / GLINT_GROUP, &points);
     const bool flat = number[0] == number[1] && number[0] == number[2];
     double *at[3], share[3];
     for (int j = 0; j < 3; j++)

@@ -27,7 +27,7 @@ typedef struct glint_derivative_work {
     double *painted; ///< slopes of what programs give: as many planes as the tile has, for each derivative; NULL: none changes
     struct glint_shader_slopes *shader; ///< memory of shader.c; NULL: there are no shaders
     size_t painted_count; ///< numbers that it has room for
-    float plane[3][GLINT_TILE_SAMPLES];
+    float plane[GLINT_TILE_SAMPLES];
     uint32_t shadows[GLINT_TILE_SAMPLES]; ///< a hash of what is kept from each sample; in the first, and in this one
     uint32_t first[GLINT_TILE_SAMPLES];
     uint16_t kept[GLINT_TILE_GROUPS], given[GLINT_TILE_GROUPS]; ///< lanes that samples of the current light do not reach, do
@@ -54,8 +54,9 @@ static inline bool glint_derivatives_read_light(const glint_tile *tile, const gl
     return (tile->batch || plan->runs[GLINT_STAGE_DEPTH_CUE]) && glint_derivatives_weigh(plan->derivatives);
 }
 
-/// derivative.c: the group that sample i is in, after glint_tile_derive.
-glint_derivative_points glint_derivative_points_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g);
+/// derivative.c: points `out` at the samples of group g, after glint_tile_derive; their slopes are 0. In place, since a copy of so many
+/// pointers that were just written waits for them.
+void glint_derivative_find_points(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, glint_derivative_points *out);
 
 /// The sample that each lane of a group has of a ball, in the cone in which it sees that.
 void glint_derivative_take_cone(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
