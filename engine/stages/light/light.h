@@ -167,6 +167,20 @@ INNER void R(say_brightest)(const glint_light_args *args, uint32_t s, vf brighte
         *args->brightest[s] = f_max_all(brightest);
 }
 
+/// Notes the highlight of lanes that show one material.
+INNER void R(sort_lanes)(const glint_light_args *args, const glint_shade_material *material, unsigned lanes,
+                         R(lit_point) * surface)
+{
+    if (material->highlight == GLINT_HIGHLIGHT_PHONG)
+        surface->phong |= lanes;
+    else if (GLINT_WITH_BLINN && material->highlight == GLINT_HIGHLIGHT_BLINN)
+        surface->blinn |= lanes;
+    const vf least = f_set(args->sparing ? material->least : 0);
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        f_store(surface->least + i,
+                f_select(fm_from_bits(lanes >> i & ((1u << VF) - 1)), least, f_load(surface->least + i)));
+}
+
 /// Lanes by the highlight of their material.
 INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned left, R(lit_point) * surface)
 {
@@ -174,14 +188,7 @@ INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned 
     while (args->highlights && left) {
         const uint32_t material = args->material[at + (unsigned)__builtin_ctz(left)];
         const unsigned lanes = lanes_equal(args->material + at, material);
-        if (args->materials[material].highlight == GLINT_HIGHLIGHT_PHONG)
-            surface->phong |= lanes;
-        else if (GLINT_WITH_BLINN && args->materials[material].highlight == GLINT_HIGHLIGHT_BLINN)
-            surface->blinn |= lanes;
-        const vf least = f_set(args->sparing ? args->materials[material].least : 0);
-        for (int i = 0; i < GLINT_GROUP; i += VF)
-            f_store(surface->least + i,
-                    f_select(fm_from_bits(lanes >> i & ((1u << VF) - 1)), least, f_load(surface->least + i)));
+        R(sort_lanes)(args, &args->materials[material], lanes, surface);
         left &= ~lanes;
     }
 }

@@ -159,6 +159,22 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     return true;
 }
 
+/// A group that shows spheres alone, see lit_balls.h. Returns whether it is one; else all that it wrote is written anew.
+static bool R(light_balls)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
+                           bool normals, R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest);
+
+/// The same, by copies: what groups after each other gather stays in registers.
+INNER bool R(try_balls)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
+                        bool normals, R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest)
+{
+    R(point_box) around = *box;
+    vf most = *brightest;
+    const bool done = R(light_balls)(surface, light, walk, normals, place, &around, point, &most);
+    *box = around;
+    *brightest = most;
+    return done;
+}
+
 /// mixed, normals: constants.
 INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_args *light, const bool mixed,
                            const bool normals)
@@ -180,7 +196,9 @@ INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_
         if (!surface->hits[g]) {
             surface->back[g] = surface->dark[g] = 0;
             light->lit[0][g] = 0;
-        } else if (!R(light_whole)(surface, light, &call, mixed, normals, place, &box, &group.brightest)) {
+        } else if (!R(light_whole)(surface, light, &call, mixed, normals, place, &box, &group.brightest) &&
+                   (mixed ||
+                    !R(try_balls)(surface, light, &call.walk, normals, place, &box, &point, &group.brightest))) {
             R(surface_group)(surface, &call.walk, &box, place, mixed ? R(MIXED) : R(BALLS_AND_PLANES));
             R(light_group)(light, LIGHT_PLAIN, 1, NULL, place, &point, &group);
             light->lit[0][g] = (uint16_t)group.lit;

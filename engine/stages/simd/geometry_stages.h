@@ -28,6 +28,7 @@
 #include "engine/stages/light/light.h"
 #include "engine/stages/light/lit_surface.h"
 #include "engine/stages/light/plain.h"
+#include "engine/stages/light/lit_balls.h"
 #include "engine/stages/shade/microfacets.h"
 #include "engine/stages/occlude/blocked.h"
 #include "engine/stages/occlude/occlude.h"
