@@ -208,6 +208,59 @@ static inline unsigned R(lanes_near_shape)(const R(tile_cast) * tile, const shap
     return lanes;
 }
 
+/// A sphere as parallel rays meet it; `a`: |direction|^2.
+typedef struct R(parallel_ball) {
+    const glint_prim *prim; ///< NULL: what is met is not one, or by other rays
+    R(ball) ball;
+    vr direction[3], a;
+} R(parallel_ball);
+
+static inline void R(place_parallel_ball)(const R(tile_cast) * tile, uint32_t id, R(parallel_ball) * out)
+{
+    const glint_camera_args *camera = tile->args->camera;
+    const glint_prim *prim = &tile->args->geometry->prims[id];
+    out->prim = NULL;
+    if (!tile->parallel || tile->lens || prim->kind != GLINT_PRIM_SPHERE)
+        return;
+    out->prim = prim;
+    out->ball = R(ball_of)(prim);
+    for (int k = 0; k < 3; k++)
+        out->direction[k] = r_set(camera->forward[k]);
+    out->a = DOT(out->direction, out->direction);
+}
+
+/// Decides it for the lanes of a group in `near`. Returns whether any hit was kept.
+INNER bool R(decide_parallel_ball)(const glint_cast_args *args, const R(parallel_ball) * ball, size_t at, uint32_t id,
+                                   unsigned near)
+{
+    const vr scale = ball->ball.scale, r2 = ball->ball.r2;
+    bool any = false;
+    count_tests(args->tests, near);
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        if (!(near >> i & ((1u << VR) - 1)))
+            continue;
+        vr f[3], t;
+        for (int k = 0; k < 3; k++)
+            f[k] = (r_load((const real *)args->origin[k] + at + i) - r_set(ball->prim->center[k])) * scale;
+        const vr c = R(exact_power)(f, r2, ball->ball.r2_low);
+        const rm hit = R(meet_ball)(f, ball->direction, ball->a, c, r2, scale, &t);
+        if (!rm_bits(hit))
+            continue;
+        R(keep_nearest)(args, at + (size_t)i, id, hit, t);
+        any = true;
+    }
+    return any;
+}
+
+/// Decides a primitive of parallel rays, or of those of a lens.
+INNER bool R(decide_parallel)(const glint_cast_args *args, const R(parallel_ball) * ball, uint32_t g, uint32_t id,
+                              unsigned near)
+{
+    if (ball->prim)
+        return R(decide_parallel_ball)(args, ball, (size_t)g * GLINT_GROUP, id, near);
+    return R(decide_rays)(args, g, id, near);
+}
+
 /// Tests a primitive of a node against the groups it may show in. What it is to all rays is worked out when the first of
 /// them needs it.
 static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot)
@@ -220,6 +273,7 @@ static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node
     bool shaped = false, placed = false;
     shape_on_screen shape;
     R(candidate) candidate;
+    R(parallel_ball) ball;
     for (int y = first_row(cells); y <= last_row(cells); y++)
         for (unsigned left = behind_in_row((const float(*)[SCREEN_ACROSS])tile->far, y, depth, columns); left;
              left &= left - 1) {
@@ -234,8 +288,10 @@ static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node
                 continue;
             if (!placed && !tile->parallel)
                 R(place_candidate)(tile->args, id, &candidate);
+            else if (!placed)
+                R(place_parallel_ball)(tile, id, &ball);
             placed = true;
-            if (tile->parallel ? R(decide_rays)(tile->args, (uint32_t)(y * tile->across + x), id, near)
+            if (tile->parallel ? R(decide_parallel)(tile->args, &ball, (uint32_t)(y * tile->across + x), id, near)
                                : R(decide_pixels)(tile, &candidate, x, y, near))
                 R(note_depth)(tile, x, y);
         }

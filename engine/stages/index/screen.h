@@ -89,8 +89,8 @@ INNER vf lens_share(const lens_on_screen *lens, vf w, vf per_k)
 
 /// Which boxes may be met before `far`. NaN, of boxes as wide as float reaches, gives every cell. `lens`: NULL, a constant: all
 /// rays start at the eye. What it does is between what it does at both ends of a box.
-INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const lens_on_screen *lens,
-                          node_on_screen *out)
+INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const bool parallel,
+                          const lens_on_screen *lens, node_on_screen *out)
 {
     unsigned inside = 0;
     for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
@@ -114,9 +114,10 @@ INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const
             vf margin = f_set(view->margin);
             if (lens)
                 margin = margin + f_set(lens->reach[j]) * beside;
-            places_of_boxes(low[j], high[j], nearest, farthest, &least, &most);
-            least = least - margin;
-            most = most + margin;
+            if (!parallel)
+                places_of_boxes(low[j], high[j], nearest, farthest, &low[j], &high[j]);
+            least = low[j] - margin;
+            most = high[j] + margin;
             away = fm_or(away, fm_or(f_lt(most, start), f_lt(end, least)));
             cells = i_or(i_shl(cells, 16), i_or(cell_of_place(view, j, f_max(least, start)),
                                                 i_shl(cell_of_place(view, j, f_min(most, end)), 8)));
@@ -129,13 +130,15 @@ INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const
 
 static unsigned boxes_on_screen(const glint_node *node, const screen_view *view, node_on_screen *out)
 {
-    return find_boxes(node, view, NULL, out);
+    if (view->inverse == 0 && view->base == 1)
+        return find_boxes(node, view, true, NULL, out);
+    return find_boxes(node, view, false, NULL, out);
 }
 
 static unsigned boxes_through_lens(const glint_node *node, const screen_view *view, const lens_on_screen *lens,
                                    node_on_screen *out)
 {
-    return find_boxes(node, view, lens, out);
+    return find_boxes(node, view, false, lens, out);
 }
 
 /// A node to be looked into, and where it is.
