@@ -266,6 +266,7 @@ static inline const glint_shade_material *material_of(const glint_shade_args *ar
 }
 
 #include "engine/stages/shade/matt.h"
+#include "engine/stages/shade/mixed.h"
 #include "engine/stages/shade/planes.h"
 
 /// A group of one sample, added to sums. plain: has_plain_lights(args), or false.
@@ -379,7 +380,7 @@ static inline bool wants_terms(const glint_shade_args *args)
 
 /// A group whose terms are final; `simple` is a constant. plain: has_plain_lights(args).
 INNER void shade_group(const glint_shade_args *args, const bool simple, bool plain, uint32_t g, plane_numbers *numbers,
-                       light_colors *colors)
+                       light_colors *colors, mixed_table *mixed)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
     unsigned left = args->hits[g];
@@ -395,6 +396,8 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, bool pla
     for (unsigned lanes; left; left &= ~lanes) {
         lanes = left;
         const glint_shade_material *material = material_of(args, at, &lanes);
+        if (simple && lanes != 0xffff && !begun && shade_mixed(args, g, mixed))
+            return;
         const bool specular = args->highlights && material->highlight;
         const bool planes = GLINT_WITH_PROGRAM && material->planes;
         const bool shaded = planes && material->planes & GLINT_PLANE_SHADED && args->planes->shaded[0][0];
@@ -441,7 +444,9 @@ static void shade(const glint_shade_args *args)
     const bool simple = !wants_terms(args), plain = has_plain_lights(args);
     plane_numbers numbers = { 0 };
     light_colors colors;
+    mixed_table mixed;
     colors.of = NULL;
+    begin_mixed(args, &mixed);
     if (GLINT_WITH_SAMPLES && args->sum[0][0]) {
         for (uint32_t g = 0; g < args->group_count; g++) {
             const group_sums sums = { args->sum, (size_t)g * GLINT_GROUP };
@@ -449,9 +454,9 @@ static void shade(const glint_shade_args *args)
         }
     } else if (simple) {
         for (uint32_t g = 0; g < args->group_count; g++)
-            shade_group(args, true, plain, g, &numbers, &colors);
+            shade_group(args, true, plain, g, &numbers, &colors, &mixed);
     } else {
         for (uint32_t g = 0; g < args->group_count; g++)
-            shade_group(args, false, plain, g, &numbers, &colors);
+            shade_group(args, false, plain, g, &numbers, &colors, &mixed);
     }
 }
