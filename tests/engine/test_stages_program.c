@@ -9,6 +9,16 @@
 
 static uint32_t damaged[2]; ///< programs that were refused, that were run
 
+/// Makes an operand one number: a power of two, as `mod` and `div` often have it, or none.
+static void put_power(double *x, glint_program_args *args, uint32_t input)
+{
+    const double power = ldexp(one_in(8) ? 3 : 1, (int)below(12) - 6) * (one_in(8) ? 0x1p600 : 1);
+    const double number = one_in(8) ? -power : power;
+    for (uint32_t i = 0; i < GLINT_GROUP; i++)
+        x[i] = number;
+    args->same |= 1u << input;
+}
+
 /// One operation on numbers of every kind.
 static void operation_case(glint_op op, bool odd)
 {
@@ -37,7 +47,11 @@ static void operation_case(glint_op op, bool odd)
                 *x = odd && one_in(3) ? either_sign(power_of_ten(-308, 308)) : either_sign(power_of_ten(-3, 3));
             if (one_in(3))
                 *x = between(-1.1, 1.1);
+            if (one_in(4))
+                *x = either_sign(below(5));
         }
+    for (uint32_t k = 1; k < info->operands && one_in(2); k++)
+        put_power((double *)(uintptr_t)args.input[k], &args, k);
     args.wanted = masks(groups);
     FOR_EACH_TESTED
     {

@@ -9,8 +9,9 @@ enum { CASES = 300 };
 
 static void random_color(double color[3])
 {
+    const double grey = one_in(3) ? 1 : one_in(3) ? between(0, 2) : -1;
     for (int c = 0; c < 3; c++)
-        color[c] = one_in(6) ? 0 : one_in(10) ? power_of_ten(-40, 40) : between(0, 2);
+        color[c] = grey >= 0 ? grey : one_in(6) ? 0 : one_in(10) ? power_of_ten(-40, 40) : between(0, 2);
 }
 
 /// What light and occlude hand over: numbers only in the groups that were lit, before shadows.
@@ -65,10 +66,15 @@ static const glint_shade_planes *make_planes(glint_shade_material *material, uin
 {
     if (one_in(2))
         return NULL;
-    for (uint32_t i = 0; i < count; i++)
+    const bool shaded = one_in(2), grey = one_in(2), level = one_in(2);
+    for (uint32_t i = 0; i < count; i++) {
         material[i].planes = one_in(3) ? 0 : below(128);
+        if (!grey || one_in(2))
+            continue;
+        material[i].planes = GLINT_PLANE_DIFFUSE | GLINT_PLANE_AMBIENT_IS_DIFFUSE; // the common case
+        material[i].diffuse[1] = material[i].diffuse[2] = material[i].diffuse[0] = 1;
+    }
     float *shininess = input(KIND_FLOAT, n), *alpha = input(KIND_FLOAT, n);
-    const bool shaded = one_in(2);
     for (int c = 0; c < 3; c++) {
         float *diffuse = input(KIND_FLOAT, n), *ambient = input(KIND_FLOAT, n), *specular = input(KIND_FLOAT, n);
         for (uint32_t i = 0; i < n; i++) {
@@ -76,10 +82,10 @@ static const glint_shade_planes *make_planes(glint_shade_material *material, uin
             ambient[i] = (float)between(0, 2);
             specular[i] = (float)(one_in(6) ? 0 : power_of_ten(-4, 1));
         }
-        planes->diffuse[c] = diffuse;
+        planes->diffuse[c] = grey && c > 0 ? planes->diffuse[0] : diffuse;
         planes->ambient[c] = ambient;
         planes->specular[c] = specular;
-        planes->ambient_light[c] = between(0, 2);
+        planes->ambient_light[c] = level && c > 0 ? planes->ambient_light[0] : between(0, 2);
         planes->shaded[0][c] = shaded ? specular : NULL; // as good as any
         planes->shaded[1][c] = shaded ? ambient : NULL;
     }
@@ -219,7 +225,7 @@ static void resolve_samples_case(int precision, bool odd)
 static void test_shade(void **state)
 {
     (void)state;
-    run_cases(2 * CASES, 10000, shade_case);
+    run_cases(8 * CASES, 10000, shade_case);
 }
 
 static void test_resolve_samples(void **state)

@@ -22,11 +22,22 @@ static inline vd d_fmod(vd a, vd b)
     return hard ? d_each(rest, hard, a, b, scalar_fmod) : rest;
 }
 
+static inline dm d_is_between(double low, vd x, double high) { return dm_and(d_le(d_set(low), x), d_le(x, d_set(high))); }
+
 static inline vd d_mod(vd a, vd b)
 {
     const vd zero = d_set(0), m = d_fmod(a, b);
     const dm apart = dm_or(dm_and(d_lt(zero, m), d_lt(b, zero)), dm_and(d_lt(m, zero), d_lt(zero, b)));
     return d_select(apart, m + b, m);
+}
+
+/// The same where b is a power of two and `inverse` is 1 / b: but for lanes that hardly occur, one product is rounded.
+static inline vd d_mod_power(vd a, vd b, vd inverse)
+{
+    const vd size = d_abs(a), rest = a - d_floor(a * inverse) * b;
+    const dm easy = dm_or(d_is_between(0x1p-500, size, 0x1p500), d_eq(size, d_set(0)));
+    const vd m = d_select(d_eq(rest, d_set(0)), d_copysign(d_set(0), a), rest);
+    return dm_bits(easy) == D_ALL ? m : d_select(easy, m, d_mod(a, b));
 }
 
 static inline vd d_clamp(vd x, vd low, vd high) { return d_min(d_max(x, low), high); }
@@ -40,7 +51,7 @@ static inline vd d_smoothstep(vd a, vd b, vd x)
 OP_KERNEL(add, OP_AB, a + b)
 OP_KERNEL(sub, OP_AB, a - b)
 OP_KERNEL(mul, OP_AB, (a * b))
-OP_KERNEL(div, OP_AB, a / b)
+OP_KERNEL(div_any, OP_AB, a / b)
 OP_KERNEL(neg, OP_A, -a)
 OP_KERNEL(abs, OP_A, d_abs(a))
 OP_KERNEL(sqrt, OP_A, d_sqrt(a))
@@ -50,7 +61,8 @@ OP_KERNEL(floor, OP_A, d_floor(a))
 OP_KERNEL(ceil, OP_A, d_ceil(a))
 OP_KERNEL(round, OP_A, d_round(a))
 OP_KERNEL(fract, OP_A, a - d_floor(a))
-OP_KERNEL(mod, OP_AB, d_mod(a, b))
+OP_KERNEL(mod_any, OP_AB, d_mod(a, b))
+OP_KERNEL(mod_power, OP_ABC, d_mod_power(a, b, c))
 OP_KERNEL(sign, OP_A, d_truth(d_lt(d_set(0), a)) - d_truth(d_lt(a, d_set(0))))
 OP_KERNEL(muladd, OP_ABC, (a * b) + c)
 OP_KERNEL(submul, OP_ABC, a - b * c)
@@ -67,3 +79,43 @@ OP_KERNEL(select, OP_ABC, d_select(d_eq(a, d_set(0)), c, b))
 OP_KERNEL(step, OP_AB, d_select(d_lt(b, a), d_set(0), d_set(1)))
 OP_KERNEL(smoothstep, OP_ABC, d_smoothstep(a, b, c))
 OP_KERNEL(clamp, OP_ABC, d_clamp(a, b, c))
+
+// ---- Divisors that are powers of two ----
+
+/// A group of 1 / x of an operand that is one number, 2^-500 .. 2^500 and a power of two. Returns whether it is.
+static bool invert_power_of_2(const op_call *call, int k, double inverse[GLINT_GROUP])
+{
+    const double x = call->in[k][0];
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    if (call->step[k] || bits & 0x000fffffffffffff || !(x >= 0x1p-500 && x <= 0x1p500))
+        return false;
+    for (int i = 0; i < GLINT_GROUP; i++)
+        inverse[i] = 1 / x;
+    return true;
+}
+
+static void op_div(const op_call *call)
+{
+    _Alignas(64) double inverse[GLINT_GROUP];
+    op_call at = *call;
+    if (!invert_power_of_2(call, 1, inverse)) {
+        op_div_any(call);
+        return;
+    }
+    at.in[1] = inverse;
+    op_mul(&at);
+}
+
+static void op_mod(const op_call *call)
+{
+    _Alignas(64) double inverse[GLINT_GROUP];
+    op_call at = *call;
+    if (!invert_power_of_2(call, 1, inverse)) {
+        op_mod_any(call);
+        return;
+    }
+    at.in[2] = inverse;
+    at.step[2] = 0;
+    op_mod_power(&at);
+}

@@ -35,7 +35,19 @@ static inline vd d_hash(vd x, vd y, vd z)
 static inline vd d_odd(vd whole) { return whole - d_set(2) * d_floor(d_set(0.5) * whole); }
 
 OP_KERNEL(hash, OP_ABC, d_hash(a, b, c))
-OP_KERNEL(parity, OP_ABC, d_odd((d_odd(d_floor(a)) + d_odd(d_floor(b))) + d_odd(d_floor(c))))
+static inline dm d_below(vd x, double limit) { return d_lt(d_abs(x), d_set(limit)); }
+
+/// Of whole parts that have a last bit of 1, it is that bit of their sum.
+static inline vd d_parity(vd a, vd b, vd c)
+{
+    if (dm_bits(dm_and(d_below(a, 0x1p51), dm_and(d_below(b, 0x1p51), d_below(c, 0x1p51)))) != D_ALL)
+        return d_odd((d_odd(d_floor(a)) + d_odd(d_floor(b))) + d_odd(d_floor(c)));
+    const vq bit = q_and(q_xor(d_floor_bits(a), q_xor(d_floor_bits(b), d_floor_bits(c))), q_set(1));
+    const vd rounder = d_set(GLINT_ROUNDER_DOUBLE);
+    return d_of_bits(q_or(d_bits(rounder), bit)) - rounder;
+}
+
+OP_KERNEL(parity, OP_ABC, d_parity(a, b, c))
 
 /// Where a point is among the corners of its cube.
 typedef struct noise_place {

@@ -184,6 +184,7 @@ typedef struct plane_numbers {
     const glint_shade_material *material; ///< NULL: none yet
     const glint_shade_light *light; ///< NULL: none reaches it
     bool grey; ///< its diffuse reflectance and the light's colour are the same in all channels, which share a plane
+    bool level; ///< of a grey one: so is ambient light
     channel_numbers channel[3];
 } plane_numbers;
 
@@ -195,10 +196,12 @@ static void read_numbers(const glint_shade_args *args, const glint_shade_materia
     numbers->light = light;
     for (int c = 0; c < 3; c++)
         numbers->channel[c] = numbers_of(args, material, light, c);
-    numbers->grey = true;
-    for (int c = 1; c < 3; c++)
+    numbers->grey = numbers->level = true;
+    for (int c = 1; c < 3; c++) {
         numbers->grey = numbers->grey && diffuse[c] == diffuse[0] &&
                         numbers->channel[c].diffuse == numbers->channel[0].diffuse;
+        numbers->level = numbers->level && numbers->channel[c].ambient == numbers->channel[0].ambient;
+    }
 }
 
 /// All channels of a group whose diffuse light is grey; the ambient reflectance is the diffuse one.
@@ -207,14 +210,18 @@ INNER void whole_grey(const glint_shade_args *args, const plane_numbers *numbers
 {
     const float *diffuse = args->planes->diffuse[0] + at;
     float *const beauty[3] = { args->beauty[0] + at, args->beauty[1] + at, args->beauty[2] + at };
-    const bool lit = factors->count;
+    const bool lit = factors->count, white = numbers->channel[0].diffuse == 1;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const wide_lanes kd = wide_of(diffuse + i);
-        vf light = f_set(0);
-        if (lit)
+        vf light = f_set(0), ambient = narrow(&kd, numbers->channel[0].ambient);
+        if (lit && white) // a reflectance, and so finite
+            light = f_load(factors->diffuse[0] + i) * f_load(diffuse + i);
+        else if (lit)
             light = f_load(factors->diffuse[0] + i) * f_min(narrow(&kd, numbers->channel[0].diffuse), f_set(FLT_MAX));
         for (int c = 0; c < 3; c++) {
-            vf sum = narrow(&kd, numbers->channel[c].ambient);
+            if (c > 0 && !numbers->level)
+                ambient = narrow(&kd, numbers->channel[c].ambient);
+            vf sum = ambient;
             if (lit)
                 sum = sum + light;
             if (lit && shines)

@@ -167,6 +167,11 @@ static inline vd d_ceil(vd x) { return _mm512_roundscale_pd(x, _MM_FROUND_TO_POS
 
 static inline vq d_bits(vd x) { return _mm512_castpd_si512(x); }
 static inline vd d_of_bits(vq x) { return _mm512_castsi512_pd(x); }
+/// Those of floor(x) + 0x1.8p52: where |x| < 2^51, their lowest are those of the whole part.
+static inline vq d_floor_bits(vd x)
+{
+    return d_bits(_mm512_add_round_pd(x, d_set(0x1.8p52), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
+}
 static inline vq q_set(uint64_t x) { return _mm512_set1_epi64((long long)x); }
 static inline vq q_add(vq a, vq b) { return _mm512_add_epi64(a, b); }
 static inline vq q_and(vq a, vq b) { return _mm512_and_si512(a, b); }

@@ -177,6 +177,8 @@ static inline vd d_ceil(vd x) { return (vd) { ceil(x[0]), ceil(x[1]) }; }
 
 static inline vq d_bits(vd x) { return (vq)x; }
 static inline vd d_of_bits(vq x) { return (vd)x; }
+/// Those of floor(x) + 0x1.8p52: where |x| < 2^51, their lowest are those of the whole part.
+static inline vq d_floor_bits(vd x) { return d_bits(d_floor(x) + d_set(0x1.8p52)); }
 static inline vq q_set(uint64_t x) { return (vq) { x, x }; }
 static inline vq q_add(vq a, vq b) { return a + b; }
 static inline vq q_and(vq a, vq b) { return a & b; }

@@ -160,6 +160,8 @@ static inline vd d_ceil(vd x) { return -d_floor(-x); }
 
 static inline vq d_bits(vd x) { return _mm_castpd_si128(x); }
 static inline vd d_of_bits(vq x) { return _mm_castsi128_pd(x); }
+/// Those of floor(x) + 0x1.8p52: where |x| < 2^51, their lowest are those of the whole part.
+static inline vq d_floor_bits(vd x) { return d_bits(d_floor(x) + d_set(0x1.8p52)); }
 static inline vq q_set(uint64_t x) { return _mm_set1_epi64x((long long)x); }
 static inline vq q_add(vq a, vq b) { return _mm_add_epi64(a, b); }
 static inline vq q_and(vq a, vq b) { return _mm_and_si128(a, b); }
