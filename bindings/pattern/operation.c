@@ -17,6 +17,12 @@ static void check_count(lua_State *L, const glint_op_info *info, int least, int 
     glintL_error(L, "%s: %d or %d arguments expected, got %d", info->name, least, most, count);
 }
 
+// Whether it gives 0 or 1.
+static bool is_choice(glint_op op)
+{
+    return (op >= GLINT_OP_LESS && op <= GLINT_OP_NOT) || op == GLINT_OP_STEP || op == GLINT_OP_PARITY;
+}
+
 // Operations that know nothing of places: each component of vectors for itself, a scalar with each of them.
 static int apply_each(lua_State *L)
 {
@@ -39,7 +45,10 @@ static int apply_each(lua_State *L)
             operands[i] = in[i].at[c];
         glintL_apply(L, op, operands, &out.at[c]);
     }
-    glintL_push_operand(L, &out);
+    if (is_choice(op) && !out.is_vector)
+        glintL_push_choice(L, out.at[0]);
+    else
+        glintL_push_operand(L, &out);
     return 1;
 }
 
@@ -59,7 +68,7 @@ static int apply_place(lua_State *L)
         return 1;
     }
     for (uint32_t i = 0; i < info->results; i++)
-        glintL_push_term(L, results[i]);
+        (is_choice(op) ? glintL_push_choice : glintL_push_term)(L, results[i]);
     return (int)info->results;
 }
 

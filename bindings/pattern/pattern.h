@@ -37,12 +37,23 @@ typedef struct glintL_operand {
     glintL_term at[3];
 } glintL_operand;
 
+#define GLINTL_CHOICES_MAX 4096 ///< of a call that are told apart
+
+/// The symbols of a call that came from choices: glint.less, glint.checker and such, in their order.
+typedef struct glintL_choices {
+    uint32_t count;
+    uint64_t used[GLINTL_CHOICES_MAX / 64]; ///< a bit each: something was made of it
+    char place[96]; ///< where the first of those came about that were not: "scene.lua:12: "; "": no second call looked
+} glintL_choices;
+
 /// A function that is running: with symbols, or (builder NULL) with the numbers of one point.
 typedef struct glintL_trace {
     glint_builder *builder;
     const double *point; ///< GLINT_INPUT_COUNT numbers; NULL: symbols
     bool is_shader;
     bool has_power; ///< `^` was met whose bits are not those of C's pow
+    glintL_choices choices;
+    glintL_choices *before; ///< of the same function: a choice that was not used there is false; NULL: none is
     uint64_t serial; ///< no two of a Lua state have the same
     struct glintL_trace *outer; ///< the function within which this one was called, or NULL
     char place[96]; ///< where the function begins: "scene.lua:12: "
@@ -72,6 +83,7 @@ glintL_term glintL_read_term(lua_State *L, int index, const char *path);
 /// A vector in one argument, or three numbers; returns the index after it.
 int glintL_read_place(lua_State *L, int index, const char *path, glintL_term out[3]);
 void glintL_push_term(lua_State *L, glintL_term term);
+void glintL_push_choice(lua_State *L, glintL_term term); ///< as glintL_push_term, of what is 0 or 1; see glintL_trace.before
 void glintL_push_operand(lua_State *L, const glintL_operand *operand);
 
 // ---- symbol.c, triple.c ----

@@ -3,11 +3,13 @@
 
 #include <ctype.h>
 #include <float.h>
+#include <stdio.h>
 #include <string.h>
 
 typedef struct symbol {
     uint64_t serial; // of its trace
     glint_value value;
+    uint32_t choice; // its number among them, from 1 on; 0: it is none
 } symbol;
 
 typedef struct traces {
@@ -143,7 +145,7 @@ static bool to_term(lua_State *L, int index, glintL_term *out)
         return true;
     }
     const glintL_dual *d = glintL_to_dual(L, index);
-    const glintL_trace *trace = glintL_current_trace(L);
+    glintL_trace *trace = glintL_current_trace(L);
     if (d && trace) {
         *out = dual_term(L, trace, d);
         return true;
@@ -154,6 +156,8 @@ static bool to_term(lua_State *L, int index, glintL_term *out)
     if (!trace || trace->serial != found->serial)
         glintL_error(L, "a symbol of another call of a pattern's function: what is made of p or s lasts for that call "
                         "only; keep none of it in variables outside");
+    if (found->choice)
+        trace->choices.used[(found->choice - 1) / 64] |= (uint64_t)1 << (found->choice - 1) % 64;
     *out = (glintL_term) { .is_symbol = true, .value = found->value };
     return true;
 }
@@ -259,7 +263,7 @@ int glintL_read_place(lua_State *L, int index, const char *path, glintL_term out
 
 // ---- To Lua ----
 
-void glintL_push_term(lua_State *L, glintL_term term)
+static void push_symbol(lua_State *L, glintL_term term, uint32_t choice)
 {
     luaL_checkstack(L, 3, "symbol");
     if (!term.is_symbol) {
@@ -267,8 +271,29 @@ void glintL_push_term(lua_State *L, glintL_term term)
         return;
     }
     symbol *made = lua_newuserdatauv(L, sizeof *made, 0);
-    *made = (symbol) { glintL_current_trace(L)->serial, term.value };
+    *made = (symbol) { glintL_current_trace(L)->serial, term.value, choice };
     luaL_setmetatable(L, GLINTL_SYMBOL);
+}
+
+void glintL_push_term(lua_State *L, glintL_term term) { push_symbol(L, term, 0); }
+
+void glintL_push_choice(lua_State *L, glintL_term term)
+{
+    glintL_trace *trace = glintL_current_trace(L);
+    if (!term.is_symbol || trace->choices.count == GLINTL_CHOICES_MAX) {
+        glintL_push_term(L, term);
+        return;
+    }
+    const uint32_t number = trace->choices.count++;
+    if (!trace->before || trace->before->used[number / 64] >> number % 64 & 1) {
+        push_symbol(L, term, number + 1);
+        return;
+    }
+    luaL_where(L, 1);
+    if (!trace->before->place[0])
+        snprintf(trace->before->place, sizeof trace->before->place, "%s", lua_tostring(L, -1));
+    lua_pop(L, 1);
+    lua_pushboolean(L, false);
 }
 
 void glintL_push_operand(lua_State *L, const glintL_operand *operand)

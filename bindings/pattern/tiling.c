@@ -67,7 +67,7 @@ static int checker(lua_State *L)
     if (lua_gettop(L) > end)
         return glintL_error(L, "checker: a vector and a footprint expected, got more");
     if (lua_isnoneornil(L, end)) {
-        glintL_push_term(L, parity_of(L, p[0], p[1], p[2]));
+        glintL_push_choice(L, parity_of(L, p[0], p[1], p[2]));
         return 1;
     }
     glintL_read_operand(L, end, "checker: footprint", &width);
@@ -90,7 +90,7 @@ static int stripe(lua_State *L)
         const glintL_term mean = mul(L, number(0.5), sub(L, number(1), mean_sign(L, x, width)));
         parity = choose(L, width, mean, parity);
     }
-    glintL_push_term(L, parity);
+    glintL_push_choice(L, parity);
     return 1;
 }
 
@@ -121,7 +121,7 @@ static int brick(lua_State *L)
         const glintL_term mean = mul(L, mean_of_wave(L, x, share, width), mean_of_wave(L, y, share, width));
         inside = choose(L, width, mean, inside);
     }
-    glintL_push_term(L, inside);
+    glintL_push_choice(L, inside);
     return 1;
 }
 

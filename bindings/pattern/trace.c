@@ -2,6 +2,7 @@
 #include "bindings/pattern/pattern.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define TRACED "glint.traced"
@@ -24,6 +25,14 @@ static int close_session(lua_State *L)
 {
     close_builder(lua_touserdata(L, 1));
     return 0;
+}
+
+static glintL_traced *push_traced(lua_State *L)
+{
+    glintL_traced *traced = lua_newuserdatauv(L, sizeof *traced, 0);
+    *traced = (glintL_traced) { NULL, false };
+    luaL_setmetatable(L, TRACED);
+    return traced;
 }
 
 static int close_traced(lua_State *L)
@@ -209,8 +218,68 @@ static glint_status finish_texture(glint_builder *builder, const glint_texture *
     return status;
 }
 
-// New structures are compared with plain Lua once; the table of those that were is the pattern's user value 2.
-static void compare_once(lua_State *L, int index, const glintL_traced *traced)
+// ---- Branches ----
+
+static bool has_unused(const glintL_choices *choices)
+{
+    for (uint32_t i = 0; i < choices->count; i++)
+        if (!(choices->used[i / 64] >> i % 64 & 1))
+            return true;
+    return false;
+}
+
+static void push_listing(lua_State *L, const glint_program *program)
+{
+    char *text = glint_program_listing(program);
+    lua_pushstring(L, text);
+    free(text);
+}
+
+// 1: the pattern, 2: the session of its call. Calls its function again, with choices that it made nothing of as false, and gives
+// the program as text.
+static int list_again(lua_State *L)
+{
+    const glintL_pattern *pattern = lua_touserdata(L, 1);
+    session *first = lua_touserdata(L, 2);
+    glint_error error;
+    glintL_traced *traced = push_traced(L);
+    session *s = push_session(L, 1);
+    s->trace.before = &first->trace.choices;
+    glintL_check_status(L, "", &error, glint_builder_create(pattern->kind, &s->trace.builder, &error));
+    call(L, 1, 4);
+    glintL_check_status(L, "", &error, finish(s, &traced->program, &error));
+    push_listing(L, traced->program);
+    return 1;
+}
+
+// To Lua a choice is true, be it 0 or 1: an `if` on it always goes one way, which neither plain Lua nor the program shows. So where a
+// choice was made and not used, false in its place must change nothing.
+static void refuse_branches(lua_State *L, int index, int held, const glintL_traced *traced)
+{
+    const session *s = lua_touserdata(L, held);
+    const int top = lua_gettop(L);
+    if (!has_unused(&s->trace.choices))
+        return;
+    push_listing(L, traced->program);
+    lua_pushcfunction(L, list_again);
+    lua_pushvalue(L, index);
+    lua_pushvalue(L, held);
+    const int status = lua_pcall(L, 2, 1, 0);
+    if (status == LUA_ERRMEM)
+        lua_error(L);
+    if (status || !lua_rawequal(L, -1, -2)) {
+        lua_pushfstring(L,
+                        "%san `if`, `and` or `or` on what this gives: a symbol is true, even one whose number is 0; use "
+                        "glint.select",
+                        s->trace.choices.place);
+        lua_error(L);
+    }
+    lua_settop(L, top);
+}
+
+// New structures are compared with plain Lua once; the table of those that were is the pattern's user value 2. The session of the
+// call is a userdata at `held`.
+static void compare_once(lua_State *L, int index, int held, const glintL_traced *traced)
 {
     uint64_t key[2];
     glint_program_structure(traced->program, key);
@@ -219,6 +288,7 @@ static void compare_once(lua_State *L, int index, const glintL_traced *traced)
     lua_pushvalue(L, -1);
     if (lua_rawget(L, -3) == LUA_TNIL) {
         glintL_compare_points(L, index, traced);
+        refuse_branches(L, index, held, traced);
         lua_pushvalue(L, -2);
         lua_pushboolean(L, true);
         lua_rawset(L, -5);
@@ -233,10 +303,8 @@ glintL_traced *glintL_make_program(lua_State *L, int index, bool is_background)
     glint_error error;
     index = lua_absindex(L, index);
     luaL_checkstack(L, 12, "pattern");
-    glintL_traced *traced = lua_newuserdatauv(L, sizeof *traced, 0);
+    glintL_traced *traced = push_traced(L);
     const int top = lua_gettop(L);
-    *traced = (glintL_traced) { NULL, false };
-    luaL_setmetatable(L, TRACED);
     session *s = push_session(L, index);
     status = glint_builder_create(pattern->kind, &s->trace.builder, &error);
     if (!status && pattern->texture) {
@@ -253,7 +321,7 @@ glintL_traced *glintL_make_program(lua_State *L, int index, bool is_background)
     traced->has_power = s->trace.has_power;
     close_builder(s);
     if (!pattern->texture)
-        compare_once(L, index, traced);
+        compare_once(L, index, top + 1, traced);
     lua_settop(L, top);
     return traced;
 }

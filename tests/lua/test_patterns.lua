@@ -261,6 +261,46 @@ function tests.the_64_points_find_branches()
   is_found(function(p) calls = calls + 1 return p.x + calls end)
 end
 
+-- To Lua 0 is true, as symbols are: none of the 64 points shows these.
+local function is_refused(f)
+  raises("an `if`, `and` or `or` on what this gives", f)
+end
+
+function tests.branches_on_choices_are_refused()
+  local less, select = glint.less, glint.select
+  is_refused(function(p) if less(p.x, 0) then return 1 end return 0 end)
+  is_refused(function(p) if less(p.x, 0) then return 1 end end)
+  is_refused(function(p) return glint.checker(p) and p.y or p.z end)
+  is_refused(function(p) if not glint.stripe(p.x) then return 1 end return p.y end)
+  is_refused(function(p) return glint.brick(p) and 1 end)
+  is_refused(function(p) if glint.parity(p) then return 1 end return 0 end)
+  is_refused(function(p) if select(less(p.x, 1), 1, 0) and glint.step(p.x, 0) then return 1 end return 0 end)
+  is_refused(function(p)
+    local used = less(p.y, 2)
+    if used and glint["or"](less(p.x, 0), used) then return used end
+    return p.x
+  end)
+  is_refused(function(p) local n = 0 while less(p.x, n) and n < 3 do n = n + 1 end return n end)
+  local good, message = pcall(function()
+    return #glint.shader(function(s) if less(0.4, s.n:dot(s.l)) then return s.light end return s.light * 0.3 end)
+  end)
+  check(not good and tostring(message):find("on what this gives", 1, true), "%s", message)
+end
+
+function tests.choices_that_nothing_hangs_on_are_let_pass()
+  local less, select, masked = glint.less, glint.select, true
+  check(#glint.pattern(function(p) local _ = less(p.x, 0) return p.x end) == 0, "one that nothing uses")
+  check(#glint.pattern(function(p) local _ = less(p.x, 0) * 2 + 1 return p.x end) == 0, "what is made of one, either")
+  check(#glint.pattern(function(p) return select(masked and less(p.x, 0) or 1, p.y, p.z) end) == 2, "a default")
+  check(#glint.pattern(function(p) return { less(p.x, 0), 0, glint.checker(p) } end) == 2, "in a vector")
+  check(#glint.pattern(function(p) if less(1, 2) == 1 then return p.x end return p.y end) == 0, "of numbers")
+  check(#glint.pattern(function(p)
+    local sum = 0
+    for i = 1, 1500 do sum = sum + less(p.x, i) end
+    return sum
+  end) > 1500, "many")
+end
+
 function tests.the_64_points_are_looked_at_once_a_structure()
   local calls, factor, extra = 0, 2, false
   local pattern = glint.pattern(function(p)
