@@ -2,7 +2,8 @@
 // decided from the point towards the light, of spheres without a root or a division: the segment meets a sphere when one end is inside and the other outside, or when both are outside,
 // the foot of the perpendicular lies between them and the discriminant is not negative. Contract: stages.h, occlude.
 
-#define GLINT_OCCLUDERS 12 ///< what a tile's list holds
+#define GLINT_OCCLUDERS 32 ///< what a tile's list holds; of area lights, and where float decides, GLINT_OCCLUDERS_FEW
+#define GLINT_OCCLUDERS_FEW 12
 #define FAR_LIGHT 0x1p60 ///< in the index's units; from there on squares of the way to it may overflow float
 #define GLINT_SHAFTS_TRIED 3 ///< groups in a row that may give up their shaft before no more is tried in the tile
 #define GLINT_SHAFT_NODES 16 ///< what a group's shaft may see of the index before each lane walks by itself
@@ -26,7 +27,7 @@ typedef struct R(shadow_tile) {
     _Alignas(64) float local_light[3][GLINT_GROUP]; ///< the same in the index's frame
     bool far; ///< that may overflow, or what is made of it
     R(occluder) occluders[GLINT_OCCLUDERS];
-    int count; ///< more than GLINT_OCCLUDERS: too many, groups walk by themselves
+    int count; ///< more than GLINT_OCCLUDERS: too many for a list
     float lower[3], upper[3]; ///< a box around the lit points, in the index's frame
 } R(shadow_tile);
 

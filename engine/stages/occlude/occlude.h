@@ -40,11 +40,15 @@ static bool R(sphere_apart)(const glint_prim *prim, const float lower[3], const 
 static inline bool R(note_occluder)(R(shadow_tile) * tile, uint32_t id)
 {
     const glint_occlude_args *args = tile->args;
-    if (tile->count++ >= GLINT_OCCLUDERS)
+    const int most = GLINT_REAL == 32 || args->light_sample[0] ? GLINT_OCCLUDERS_FEW : GLINT_OCCLUDERS;
+    if (tile->count >= most) {
+        tile->count = GLINT_OCCLUDERS + 1;
         return false;
-    tile->occluders[tile->count - 1].id = id;
+    }
+    tile->occluders[tile->count].id = id;
     if (!args->light_sample[0]) // the sides of samples are found for each
-        tile->occluders[tile->count - 1].sides = R(sides_of)(args, NULL, &args->geometry->prims[id]);
+        tile->occluders[tile->count].sides = R(sides_of)(args, NULL, &args->geometry->prims[id]);
+    tile->count++;
     return true;
 }
 

@@ -218,11 +218,15 @@ static void R(occlude_point)(const glint_occlude_args *args)
         R(occlude_many)(&tile, &group);
         return;
     }
+    uint32_t near[GLINT_TILE_GROUPS];
+    R(find_near)(&tile, &group, near);
     for (uint32_t g = 0; g < args->group_count; g++) {
         unsigned open = out[g];
+        if (!near[g])
+            continue;
         R(begin_group)(g, &group);
-        for (int k = 0; k < tile.count && open; k++)
-            open &= ~R(blocked_by)(&tile, tile.occluders[k], &group, open);
+        for (unsigned left = near[g]; left && open; left &= left - 1)
+            open &= ~R(blocked_by)(&tile, tile.occluders[__builtin_ctz(left)], &group, open);
         out[g] = (uint16_t)open;
     }
 }

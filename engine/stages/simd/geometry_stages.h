@@ -31,6 +31,7 @@
 #include "engine/stages/light/lit_balls.h"
 #include "engine/stages/shade/microfacets.h"
 #include "engine/stages/occlude/blocked.h"
+#include "engine/stages/occlude/near.h"
 #include "engine/stages/occlude/occlude.h"
 #include "engine/stages/occlude/beam_points.h"
 #include "engine/stages/occlude/beam_leaf.h"

@@ -1,0 +1,115 @@
+// near: which occluders of a tile's list may be between the points of a group and the light, a vector of occluders at a time. All segments
+// of the group are within its reach of that of one of its points: they begin so near, and end in one place or run side by side. Float,
+// and conservative: what is left out blocks nothing. Contract: stages.h, occlude.
+
+#define NEAR_MIDDLE 0x0660u ///< the lanes in the middle of a group
+#define NEAR_LEAST 2 ///< occluders; fewer are as quickly tested
+#define NEAR_MOST 0x1p80f ///< squared reach from which on nothing is said
+
+/// A list's occluders by the balls around them, in the index's frame; a lane each.
+typedef struct R(near_list) {
+    _Alignas(64) float center[3][GLINT_OCCLUDERS], bound[GLINT_OCCLUDERS];
+    _Alignas(64) uint32_t id[GLINT_OCCLUDERS];
+    unsigned spheres; ///< lanes
+} R(near_list);
+
+static void R(list_balls)(const R(shadow_tile) * tile, R(near_list) * list)
+{
+    memset(list, 0, sizeof *list);
+    for (int n = 0; n < tile->count; n++) {
+        const glint_prim *prim = &tile->args->geometry->prims[tile->occluders[n].id];
+        for (int k = 0; k < 3; k++)
+            list->center[k][n] = prim->filter_center[k];
+        list->bound[n] = prim->filter_bound;
+        list->id[n] = tile->occluders[n].id;
+        list->spheres |= (unsigned)(prim->kind == GLINT_PRIM_SPHERE) << n;
+    }
+}
+
+static inline unsigned R(all_occluders)(const R(shadow_tile) * tile)
+{
+    return UINT32_MAX >> (GLINT_OCCLUDERS - tile->count);
+}
+
+/// Where an occluder is in the list: a bit, or none.
+static inline unsigned R(places_of)(const R(shadow_tile) * tile, const R(near_list) * list, uint32_t id)
+{
+    unsigned places = 0;
+    for (int i = 0; i < GLINT_OCCLUDERS; i += GLINT_GROUP)
+        places |= lanes_equal(list->id + i, id) << i;
+    return places & R(all_occluders)(tile);
+}
+
+/// How far from one point of a group the others of `lanes` are, rounded up; infinite where float does not know.
+static inline float R(reach_of_group)(const R(shadow_group) * group, const float from[3], unsigned lanes)
+{
+    vf most = f_set(0);
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const vf e[3] = { f_load(group->local[0] + i) - f_set(from[0]), f_load(group->local[1] + i) - f_set(from[1]),
+                          f_load(group->local[2] + i) - f_set(from[2]) };
+        const vf away2 = DOT(e, e), known = f_select(f_lt(away2, f_set(NEAR_MOST)), away2, f_set(HUGE_VALF));
+        most = f_max(most, f_select(fm_from_bits(lanes >> i & ((1u << VF) - 1)), known, f_set(0)));
+    }
+    return sqrtf(f_max_all(most)) * (1 + 0x1p-18f);
+}
+
+/// The occluders whose balls come near the segments from points within `reach` of `from`. As sort_by_sphere has it.
+static inline unsigned R(balls_near)(const R(shadow_tile) * tile, const R(near_list) * list, const float from[3],
+                                     float reach)
+{
+    const float slack = 2 * GLINT_FILTER_SLACK * ((fabsf(from[0]) + fabsf(from[1])) + fabsf(from[2]));
+    unsigned near = 0;
+    vf d[3];
+    for (int k = 0; k < 3; k++)
+        d[k] = f_set(tile->args->directional ? tile->local_light[k][0] : tile->local_light[k][0] - from[k]);
+    for (int i = 0; i < tile->count; i += VF) {
+        vf f[3];
+        for (int k = 0; k < 3; k++)
+            f[k] = f_set(from[k]) - f_load(list->center[k] + i);
+        const vf limit = f_load(list->bound + i) + f_set(reach + slack), limit2 = limit * limit;
+        const unsigned behind = fm_bits(fm_and(f_lt(f_set(0), DOT(f, d)), f_lt(limit2, DOT(f, f))));
+        near |= (R(near_lanes)((const vf *)f, (const vf *)d, limit2) & ~behind) << i;
+    }
+    return near & R(all_occluders)(tile);
+}
+
+/// The occluders, a bit each, that `lanes` of a group are tested against. A sphere that all of them are on, seen from outside, is none.
+static unsigned R(near_occluders)(const R(shadow_tile) * tile, const R(near_list) * list, R(shadow_group) * group,
+                                  unsigned lanes)
+{
+    const unsigned middle = lanes & NEAR_MIDDLE;
+    const uint32_t *prim = tile->args->prim + group->at;
+    unsigned own = 0, left = lanes;
+    float from[3];
+    R(place_group)(tile, group);
+    for (int k = 0; k < 3; k++)
+        from[k] = group->local[k][__builtin_ctz(middle ? middle : lanes)];
+    const unsigned near = R(balls_near)(tile, list, from, R(reach_of_group)(group, from, lanes));
+    for (int count = 0; left; count++) {
+        const uint32_t id = prim[__builtin_ctz(left)];
+        own |= R(places_of)(tile, list, id);
+        left &= ~lanes_equal(prim, id);
+        if (!left && !count && !(lanes & tile->args->back[group->at / GLINT_GROUP]))
+            return near & ~(own & list->spheres);
+    }
+    return near | own;
+}
+
+/// The occluders that each group's open lanes are tested against, a bit each; 0 for groups without such lanes.
+static void R(find_near)(const R(shadow_tile) * tile, R(shadow_group) * group, uint32_t near[GLINT_TILE_GROUPS])
+{
+    const glint_occlude_args *args = tile->args;
+    const uint16_t *open = args->open[0];
+    R(near_list) list;
+    if (GLINT_REAL == 32 || tile->far ||
+        tile->count < NEAR_LEAST) { // where float decides, the filter must see what it sees
+        for (uint32_t g = 0; g < args->group_count; g++)
+            near[g] = open[g] ? R(all_occluders)(tile) : 0;
+        return;
+    }
+    R(list_balls)(tile, &list);
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        R(begin_group)(g, group);
+        near[g] = open[g] ? R(near_occluders)(tile, &list, group, open[g]) : 0;
+    }
+}
