@@ -2,7 +2,7 @@
 // decided from the point towards the light, of spheres without a root or a division: the segment meets a sphere when one end is inside and the other outside, or when both are outside,
 // the foot of the perpendicular lies between them and the discriminant is not negative. Contract: stages.h, occlude.
 
-#define GLINT_OCCLUDERS 32 ///< what a tile's list holds; of area lights, and where float decides, GLINT_OCCLUDERS_FEW
+#define GLINT_OCCLUDERS 32 ///< what a tile's list holds; of area lights, of triangles, and where float decides, GLINT_OCCLUDERS_FEW
 #define GLINT_OCCLUDERS_FEW 12
 #define FAR_LIGHT 0x1p60 ///< in the index's units; from there on squares of the way to it may overflow float
 #define GLINT_SHAFTS_TRIED 3 ///< groups in a row that may give up their shaft before no more is tried in the tile

@@ -40,7 +40,8 @@ static bool R(sphere_apart)(const glint_prim *prim, const float lower[3], const 
 static inline bool R(note_occluder)(R(shadow_tile) * tile, uint32_t id)
 {
     const glint_occlude_args *args = tile->args;
-    const int most = GLINT_REAL == 32 || args->light_sample[0] ? GLINT_OCCLUDERS_FEW : GLINT_OCCLUDERS;
+    const bool few = GLINT_REAL == 32 || args->light_sample[0] || args->geometry->prims[id].kind == GLINT_PRIM_TRIANGLE;
+    const int most = few ? GLINT_OCCLUDERS_FEW : GLINT_OCCLUDERS;
     if (tile->count >= most) {
         tile->count = GLINT_OCCLUDERS + 1;
         return false;
