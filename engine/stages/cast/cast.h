@@ -22,7 +22,7 @@ INNER void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candida
             if (sphere)
                 hit = R(meet_ball)(f, d, DOT(d, d), r_set(candidate->c), r_set(candidate->r2), r_set(candidate->scale), &t);
             else
-                hit = R(meet_candidate)(args, candidate, f, d, &t);
+                hit = R(meet_candidate)(args, candidate, f, d, lanes, &t);
             hit = rm_and(rm_from_bits(lanes), hit);
             hit = rm_and(hit, r_lt(t, r_set(HUGE_VAL)));
         }
@@ -261,9 +261,19 @@ INNER bool R(decide_parallel)(const glint_cast_args *args, const R(parallel_ball
     return R(decide_rays)(args, g, id, near);
 }
 
+/// Of the lanes in `near` those that may come into the box of a solid.
+static inline unsigned R(lanes_near_box)(const R(tile_cast) * tile, const eye_box *box, unsigned near, int x, int y)
+{
+    unsigned lanes = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        lanes |= lanes_in_box(box, f_load(tile->s[x] + i), f_load(tile->t[y] + i)) << i;
+    return lanes & near;
+}
+
 /// Tests a primitive of a node against the groups it may show in. What it is to all rays is worked out when the first of
-/// them needs it.
-static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot)
+/// them needs it. boxed, a constant: a solid, before rays from one eye; parts, box: room for what they know of it.
+INNER void R(cast_slot_as)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot, const bool boxed,
+                           R(eye_parts) * parts, eye_box *box)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     const screen_cells cells = seen->cells[slot];
@@ -280,21 +290,46 @@ static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node
             const int x = __builtin_ctz(left);
             if (!shaped)
                 shape = shape_of(node, seen, slot, &geometry->prims[id], &tile->view);
+            if (boxed && !shaped)
+                *box = see_box(tile->args->camera, &tile->view, node, slot);
             shaped = true;
-            const unsigned near = GLINT_WITH_LENS && tile->lens
-                                      ? R(lanes_through_lens)(tile, &shape, seen->middle[2][slot], depth, x, y)
-                                      : R(lanes_near_shape)(tile, &shape, depth, x, y);
+            unsigned near = !boxed && GLINT_WITH_LENS && tile->lens
+                                ? R(lanes_through_lens)(tile, &shape, seen->middle[2][slot], depth, x, y)
+                                : R(lanes_near_shape)(tile, &shape, depth, x, y);
+            if (boxed && near)
+                near = R(lanes_near_box)(tile, box, near, x, y);
             if (!near)
                 continue;
             if (!placed && !tile->parallel)
                 R(place_candidate)(tile->args, id, &candidate);
             else if (!placed)
                 R(place_parallel_ball)(tile, id, &ball);
+            if (boxed && !placed)
+                R(see_candidate)(tile->args, &candidate, parts);
             placed = true;
-            if (tile->parallel ? R(decide_parallel)(tile->args, &ball, (uint32_t)(y * tile->across + x), id, near)
-                               : R(decide_pixels)(tile, &candidate, x, y, near))
+            if (!boxed && tile->parallel ? R(decide_parallel)(tile->args, &ball, (uint32_t)(y * tile->across + x), id, near)
+                                         : R(decide_pixels)(tile, &candidate, x, y, near))
                 R(note_depth)(tile, x, y);
         }
+}
+
+/// Apart, so that it takes no registers from what all other surfaces do.
+static __attribute__((noinline)) void R(cast_boxed_slot)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen,
+                                                         int slot)
+{
+    R(eye_parts) parts;
+    eye_box box;
+    R(cast_slot_as)(tile, node, seen, slot, true, &parts, &box);
+}
+
+/// Where float decides, no box keeps anything from it.
+static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot)
+{
+    const uint32_t kind = tile->args->geometry->prims[node->child[slot] & ~GLINT_NODE_PRIM].kind;
+    if (GLINT_REAL == 64 && !tile->parallel && (kind == GLINT_PRIM_SOLID || kind == GLINT_PRIM_COMBINED))
+        R(cast_boxed_slot)(tile, node, seen, slot);
+    else
+        R(cast_slot_as)(tile, node, seen, slot, false, NULL, NULL);
 }
 
 /// Casts the primitives in the slots of `mask`.

@@ -136,6 +136,7 @@ static inline void R(make_program)(const glint_combined *whole, uint64_t live, R
 
 /// A vector of rays before a combined solid.
 typedef struct R(whole_rays) {
+    const R(eye_parts) *eye; ///< of a simple whole, where they start at one eye; else NULL
     const vr *o, *d;
     const uint32_t *on; ///< the primitive that each starts on; NULL: on none
     unsigned inward, lanes; ///< those that go into it there; those that are wanted
@@ -382,7 +383,8 @@ static unsigned R(cast_simple)(const glint_cast_args *args, const glint_combined
 {
     const uint32_t first = args->geometry->prim_count + whole->first;
     R(simple_hits) hits;
-    const unsigned told = R(meet_simple)(args->geometry, whole, w->o, w->d, &hits) & w->lanes;
+    const unsigned met = w->eye ? R(meet_from_eye)(args->geometry, whole, w->eye, w->d, &hits)
+                                : R(meet_from_anywhere)(args->geometry, whole, w->o, w->d, &hits);
     const rm hit = rm_and(hits.hit, rm_from_bits(w->lanes));
     *any = rm_bits(hit);
     for (uint32_t j = 0; j < whole->count && *any; j++) {
@@ -390,7 +392,7 @@ static unsigned R(cast_simple)(const glint_cast_args *args, const glint_combined
         if (rm_bits(mine))
             R(keep_nearest)(args, at, first + j, mine, hits.t);
     }
-    return w->lanes & ~told;
+    return w->lanes & ~met;
 }
 
 /// Decides the whole for a vector of rays, from lane `at` of the call on, and keeps the nearest: a part of it. Returns whether any hit
@@ -441,7 +443,7 @@ static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const
         R(load3)(args->origin, at + (size_t)i, o);
         R(load3)(args->direction, at + (size_t)i, d);
         const uint32_t *on = args->leaving ? args->leaving + at + i : NULL;
-        const R(whole_rays) rays = { o, d, on, on ? args->inward[g] >> i : 0, near >> i & ((1u << VR) - 1) };
+        const R(whole_rays) rays = { NULL, o, d, on, on ? args->inward[g] >> i : 0, near >> i & ((1u << VR) - 1) };
         if (R(cast_combined)(args, prim, at + (size_t)i, &rays))
             any = true;
     }
@@ -450,7 +452,8 @@ static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const
 
 /// The same of the eye's rays, in group (x, y) of a tile.
 static __attribute__((noinline)) bool R(cast_combined_pixels)(const glint_cast_args *args, const glint_prim *prim,
-                                                              int x, int y, size_t at, unsigned near)
+                                                              const R(eye_parts) * eye_parts, int x, int y, size_t at,
+                                                              unsigned near)
 {
     const double *eye = args->camera->eye;
     const vr o[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
@@ -462,7 +465,7 @@ static __attribute__((noinline)) bool R(cast_combined_pixels)(const glint_cast_a
         if (!(near >> i & ((1u << VR) - 1)))
             continue;
         R(load_direction)(directions, args->direction, 0, i, d);
-        const R(whole_rays) rays = { o, d, NULL, 0, near >> i & ((1u << VR) - 1) };
+        const R(whole_rays) rays = { eye_parts, o, d, NULL, 0, near >> i & ((1u << VR) - 1) };
         if (R(cast_combined)(args, prim, at + (size_t)i, &rays))
             any = true;
     }

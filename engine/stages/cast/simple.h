@@ -3,99 +3,156 @@
 // most hits need no other end. What is within rounding of a face is left to combined.h; ends are made as there, to the last bit.
 // Contract: stages.h, cast.
 
-#define SIMPLE_SLACK 0x1p-40 ///< a share of what heights and squares are made of; their rounding is far below it
+#define SIMPLE_SLACK BOX_SLACK ///< of what squares are made of, too
 #define SIMPLE_CHORD 0x1p-30 ///< half the chord through a curved side, over the way to its middle: above it the two ends are in order
 
-/// A box, ball or cylinder before a vector of rays.
+/// A part as all rays of one eye see it.
+typedef struct R(eye_part) {
+    real f[3], height[6]; ///< see solid_start
+    real slack; ///< see side_at
+    R(eye_slabs) slabs; ///< of a box
+    bool level; ///< the map to the unit shape is along the axes
+} R(eye_part);
+
+/// Those of a simple whole, in its order; or a box.
+typedef struct R(eye_parts) {
+    R(eye_part) part[GLINT_SIMPLE_PARTS];
+} R(eye_parts);
+
+static inline void R(see_part)(const glint_solid *solid, const glint_prim *prim, const double eye[3], R(eye_part) * part)
+{
+    R(start_at_eye)(solid, prim, eye, part->f, part->height);
+    if (solid->form == GLINT_FORM_BOX)
+        R(see_slabs)(part->height, &part->slabs);
+    const real away = (R(size)(part->f[0]) + R(size)(part->f[1])) + R(size)(part->f[2]);
+    part->slack = (real)SIMPLE_SLACK * (away + (real)(1 + solid->places));
+    part->level = true;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            part->level = part->level && (i == k || solid->inverse[i][k] == 0);
+}
+
+/// A box, ball or cylinder before a vector of rays. Below, `at_eye`, a constant: these start at one eye.
 typedef struct R(convex) {
+    const R(eye_part) *eye; ///< what is here holds instead of the start and the heights below
     const glint_solid *solid;
-    vr rise[3], low[3], high[3]; ///< over each slab; heights of the start over its faces
+    R(box_slabs) slabs; ///< of a cylinder the first
     vr f[3], e[3]; ///< start and direction, where the shape is the unit one; of a box not used
 } R(convex);
 
 INNER void R(begin_convex)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
-                           R(convex) * x)
+                           const bool at_eye, R(convex) * x)
 {
     const glint_solid *solid = x->solid = &table->solids[part->item];
-    for (int i = 0; i < glint_slab_count(solid->form); i++) {
-        vr height[2] = { r_set(0), r_set(0) };
-        x->rise[i] = R(over_slab)(solid->faces + 2 * i, o, d, height);
-        x->low[i] = height[0];
-        x->high[i] = height[1];
-    }
+    for (int i = 0; i < glint_slab_count(solid->form) && at_eye; i++)
+        x->slabs.rise[i] = R(face_rise)(solid->faces + 2 * i, d);
+    for (int i = 0; i < glint_slab_count(solid->form) && !at_eye; i++)
+        R(begin_slab)(solid->faces, o, d, i, &x->slabs);
     if (solid->form == GLINT_FORM_BOX)
         return;
-    R(unit_offset)(solid, part, o, x->f);
-    R(to_unit)(solid, d, x->e);
+    if (!at_eye)
+        R(unit_offset)(solid, part, o, x->f);
+    if (!at_eye || !x->eye->level)
+        R(to_unit)(solid, d, x->e);
+    for (int k = 0; at_eye && x->eye->level && k < 3; k++) // what the other columns add is 0
+        x->e[k] = r_set(solid->inverse[k][k]) * d[k];
 }
 
-INNER vr R(slab_slack)(const R(convex) * x, int i)
+/// The start, where the shape is the unit one.
+INNER void R(start_of)(const R(convex) * x, const bool at_eye, vr f[3])
 {
-    return r_set(SIMPLE_SLACK) * (R(abs)(x->low[i]) + R(abs)(x->high[i]));
+    for (int k = 0; k < 3; k++)
+        f[k] = at_eye ? r_set(x->eye->f[k]) : x->f[k];
+}
+
+/// Its heights over the faces of slab i.
+INNER vr R(over_low)(const R(convex) * x, const bool at_eye, int i)
+{
+    return at_eye ? r_set(x->eye->height[2 * i]) : x->slabs.low[i];
+}
+
+INNER vr R(over_high)(const R(convex) * x, const bool at_eye, int i)
+{
+    return at_eye ? r_set(x->eye->height[2 * i + 1]) : x->slabs.high[i];
 }
 
 /// Where rays are at t: `in` and `out` of the curved side for certain.
-INNER void R(side_at)(const R(convex) * x, vr t, rm *in, rm *out)
+INNER void R(side_at)(const R(convex) * x, const bool at_eye, vr t, rm *in, rm *out)
 {
-    const bool ball = x->solid->form == GLINT_FORM_BALL;
-    const vr k[3] = { x->f[0] + t * x->e[0], x->f[1] + t * x->e[1], x->f[2] + t * x->e[2] };
-    const vr size = (R(abs)(x->f[0]) + R(abs)(x->f[1])) + R(abs)(x->f[2]);
-    vr over = k[0] * k[0] + k[1] * k[1] - r_set(1);
-    if (ball)
+    vr f[3];
+    R(start_of)(x, at_eye, f);
+    const vr k[3] = { f[0] + t * x->e[0], f[1] + t * x->e[1], f[2] + t * x->e[2] };
+    vr over = k[0] * k[0] + k[1] * k[1] - r_set(1), slack;
+    if (x->solid->form == GLINT_FORM_BALL)
         over = over + k[2] * k[2];
-    const vr slack = r_set(SIMPLE_SLACK) * (size + r_set(1 + x->solid->places));
+    if (at_eye)
+        slack = r_set(x->eye->slack);
+    else
+        slack = r_set(SIMPLE_SLACK) * (((R(abs)(f[0]) + R(abs)(f[1])) + R(abs)(f[2])) + r_set(1 + x->solid->places));
     *in = r_lt(over, -slack);
     *out = r_lt(slack, over);
 }
 
 /// The same of the whole part.
-INNER void R(convex_at)(const R(convex) * x, vr t, rm *in, rm *out)
+INNER void R(convex_at)(const R(convex) * x, const bool at_eye, vr t, rm *in, rm *out)
 {
     *in = rm_from_bits((1u << VR) - 1);
     *out = rm_from_bits(0);
     if (x->solid->form != GLINT_FORM_BOX)
-        R(side_at)(x, t, in, out);
+        R(side_at)(x, at_eye, t, in, out);
     for (int i = 0; i < glint_slab_count(x->solid->form); i++) {
-        const vr moved = t * x->rise[i], above = x->low[i] + moved, below = -(x->high[i] + moved);
-        const vr slack = R(slab_slack)(x, i), least = r_min(above, below);
+        const vr low = R(over_low)(x, at_eye, i), high = R(over_high)(x, at_eye, i), moved = t * x->slabs.rise[i];
+        const vr slack = R(slab_slack)(low, high), least = r_min(low + moved, -(high + moved));
         *in = rm_and(*in, r_lt(slack, least));
         *out = rm_or(*out, r_lt(least, -slack));
     }
 }
 
+/// way_into of a box.
+INNER void R(way_into_box)(const R(convex) * x, const bool at_eye, vr *t, rm *hit, rm *missed)
+{
+    if (!at_eye) {
+        R(into_box)(&x->slabs, t, hit, missed);
+        return;
+    }
+    if (x->eye->slabs.before) {
+        R(into_eye_box)(&x->eye->slabs, x->slabs.rise, t, hit, missed);
+        return;
+    }
+    *t = r_set(0);
+    *hit = *missed = rm_from_bits(0); // the eye is within
+}
+
 /// Where rays go into a part ahead; hit and missed: those that do so or pass it for certain.
-INNER void R(way_into)(const R(convex) * x, vr *t, rm *hit, rm *missed)
+INNER void R(way_into)(const R(convex) * x, const bool at_eye, vr *t, rm *hit, rm *missed)
 {
     const glint_solid *solid = x->solid;
+    if (solid->form == GLINT_FORM_BOX) {
+        R(way_into_box)(x, at_eye, t, hit, missed);
+        return;
+    }
     const vr zero = r_set(0);
-    rm told = rm_from_bits((1u << VR) - 1), before = told, past = rm_from_bits(0);
-    vr side = r_set(-HUGE_VAL);
-    if (solid->form != GLINT_FORM_BOX) {
-        const R(quadratic) round = R(quadratic_of)(x->f, x->e, solid->form == GLINT_FORM_BALL, solid->places);
-        side = r_select(round.ahead, round.c, round.q) / r_select(round.ahead, round.q, round.a);
-        past = rm_andnot(r_lt(round.disc, zero), round.along);
-        before = r_lt(r_set(SIMPLE_CHORD) * R(abs)(round.b), round.s);
-        told = rm_andnot(told, round.along);
-    }
+    vr f[3];
+    R(start_of)(x, at_eye, f);
+    const R(quadratic) round = R(quadratic_of)(f, x->e, solid->form == GLINT_FORM_BALL, solid->places);
+    const vr side = r_select(round.ahead, round.c, round.q) / r_select(round.ahead, round.q, round.a);
+    rm past = rm_andnot(r_lt(round.disc, zero), round.along);
+    rm before = r_lt(r_set(SIMPLE_CHORD) * R(abs)(round.b), round.s);
+    rm told = rm_andnot(rm_from_bits((1u << VR) - 1), round.along);
     *t = side;
-    for (int i = 0; i < glint_slab_count(solid->form); i++) {
-        const rm within = rm_and(r_lt(zero, x->low[i]), r_lt(x->high[i], zero)), rising = r_lt(zero, x->rise[i]);
-        if (rm_bits(within) == (1u << VR) - 1)
-            continue;
-        told = rm_andnot(told, r_eq(x->rise[i], zero));
-        *t = r_max(r_select(rising, x->low[i], x->high[i]) / -x->rise[i], *t);
-    }
-    for (int i = 0; i < glint_slab_count(solid->form); i++) {
-        const vr moved = *t * x->rise[i];
-        const vr left = r_select(r_lt(zero, x->rise[i]), -(x->high[i] + moved), x->low[i] + moved);
-        const vr slack = R(slab_slack)(x, i);
-        before = rm_and(before, r_lt(slack, left));
-        past = rm_or(past, r_lt(left, -slack));
-    }
     if (solid->form == GLINT_FORM_CYLINDER) { // by an end: within the side or not
         rm in, out;
+        const vr rise = x->slabs.rise[0], low = R(over_low)(x, at_eye, 0), high = R(over_high)(x, at_eye, 0);
+        const rm within = rm_and(r_lt(zero, low), r_lt(high, zero)), rising = r_lt(zero, rise);
+        if (rm_bits(within) != (1u << VR) - 1) {
+            told = rm_andnot(told, r_eq(rise, zero));
+            *t = r_max(r_select(rising, low, high) / -rise, side);
+        }
+        const vr moved = *t * rise, left = r_select(rising, -(high + moved), low + moved), slack = R(slab_slack)(low, high);
+        before = rm_and(before, r_lt(slack, left));
+        past = rm_or(past, r_lt(left, -slack));
         const rm flat = r_lt(side, *t);
-        R(side_at)(x, *t, &in, &out);
+        R(side_at)(x, at_eye, *t, &in, &out);
         before = rm_andnot(before, rm_andnot(flat, in));
         past = rm_or(past, rm_and(flat, out));
     }
@@ -104,20 +161,22 @@ INNER void R(way_into)(const R(convex) * x, vr *t, rm *hit, rm *missed)
 }
 
 /// Where rays that are in a part go out of it. Returns those for which that is certain.
-INNER rm R(way_out_of)(const R(convex) * x, vr *t)
+INNER rm R(way_out_of)(const R(convex) * x, const bool at_eye, vr *t)
 {
     const glint_solid *solid = x->solid;
     rm told = rm_from_bits((1u << VR) - 1);
     *t = r_set(HUGE_VAL);
     if (solid->form != GLINT_FORM_BOX) {
-        const R(quadratic) round = R(quadratic_of)(x->f, x->e, solid->form == GLINT_FORM_BALL, solid->places);
+        vr f[3];
+        R(start_of)(x, at_eye, f);
+        const R(quadratic) round = R(quadratic_of)(f, x->e, solid->form == GLINT_FORM_BALL, solid->places);
         *t = r_select(round.ahead, round.q, round.c) / r_select(round.ahead, round.a, round.q);
         told = rm_andnot(r_lt(r_set(SIMPLE_CHORD) * R(abs)(round.b), round.s), round.along);
     }
     for (int i = 0; i < glint_slab_count(solid->form); i++) {
-        const rm rising = r_lt(r_set(0), x->rise[i]);
-        told = rm_andnot(told, r_eq(x->rise[i], r_set(0)));
-        *t = r_min(r_select(rising, x->high[i], x->low[i]) / -x->rise[i], *t);
+        const vr rise = x->slabs.rise[i];
+        told = rm_andnot(told, r_eq(rise, r_set(0)));
+        *t = r_min(r_select(r_lt(r_set(0), rise), R(over_high)(x, at_eye, i), R(over_low)(x, at_eye, i)) / -rise, *t);
     }
     return told;
 }
@@ -130,16 +189,16 @@ typedef struct R(simple_hits) {
 
 /// The first part without the others. A ray that is in a cutter where it goes into the first may meet what is left where it goes out of
 /// that cutter, if that is the only one.
-INNER void R(meet_difference)(R(convex) x[], uint32_t count, R(simple_hits) * hits)
+INNER void R(meet_difference)(R(convex) x[], uint32_t count, const bool at_eye, R(simple_hits) * hits)
 {
     rm hit, held, in = rm_from_bits(0), out;
-    R(way_into)(&x[0], &hits->t, &hit, &hits->missed);
+    R(way_into)(&x[0], at_eye, &hits->t, &hit, &hits->missed);
     hits->part = r_set(0);
     hits->hit = hit;
     if (!rm_bits(hit))
         return;
     for (uint32_t j = 1; j < count; j++) {
-        R(convex_at)(&x[j], hits->t, &in, &out);
+        R(convex_at)(&x[j], at_eye, hits->t, &in, &out);
         hits->hit = rm_and(hits->hit, out);
     }
     in = rm_and(hit, in);
@@ -147,8 +206,8 @@ INNER void R(meet_difference)(R(convex) x[], uint32_t count, R(simple_hits) * hi
         return;
     vr end;
     rm gone;
-    const rm told = rm_and(in, R(way_out_of)(&x[1], &end));
-    R(convex_at)(&x[0], end, &held, &gone);
+    const rm told = rm_and(in, R(way_out_of)(&x[1], at_eye, &end));
+    R(convex_at)(&x[0], at_eye, end, &held, &gone);
     const rm second = rm_and(told, held);
     hits->missed = rm_or(hits->missed, rm_and(told, gone));
     hits->hit = rm_or(hits->hit, second);
@@ -157,7 +216,7 @@ INNER void R(meet_difference)(R(convex) x[], uint32_t count, R(simple_hits) * hi
 }
 
 /// What all parts have in common begins where the last of them does, if the others have not ended there.
-INNER void R(meet_intersection)(R(convex) x[], uint32_t count, R(simple_hits) * hits)
+INNER void R(meet_intersection)(R(convex) x[], uint32_t count, const bool at_eye, R(simple_hits) * hits)
 {
     rm all = rm_from_bits((1u << VR) - 1), hit, missed, in, out;
     hits->t = r_set(-HUGE_VAL);
@@ -165,7 +224,7 @@ INNER void R(meet_intersection)(R(convex) x[], uint32_t count, R(simple_hits) * 
     hits->missed = rm_from_bits(0);
     for (uint32_t j = 0; j < count; j++) {
         vr t;
-        R(way_into)(&x[j], &t, &hit, &missed);
+        R(way_into)(&x[j], at_eye, &t, &hit, &missed);
         const rm later = r_lt(hits->t, t);
         all = rm_and(all, hit);
         hits->missed = rm_or(hits->missed, missed);
@@ -175,14 +234,14 @@ INNER void R(meet_intersection)(R(convex) x[], uint32_t count, R(simple_hits) * 
     hits->hit = all;
     for (uint32_t j = 0; j < count; j++) {
         const rm own = r_eq(hits->part, r_set(j));
-        R(convex_at)(&x[j], hits->t, &in, &out);
+        R(convex_at)(&x[j], at_eye, hits->t, &in, &out);
         hits->hit = rm_and(hits->hit, rm_or(own, in));
         hits->missed = rm_or(hits->missed, rm_andnot(rm_and(all, out), own));
     }
 }
 
 /// All parts together begin where the first of them does.
-INNER void R(meet_union)(R(convex) x[], uint32_t count, R(simple_hits) * hits)
+INNER void R(meet_union)(R(convex) x[], uint32_t count, const bool at_eye, R(simple_hits) * hits)
 {
     const vr none = r_set(HUGE_VAL);
     rm told = rm_from_bits((1u << VR) - 1), hit, missed;
@@ -192,7 +251,7 @@ INNER void R(meet_union)(R(convex) x[], uint32_t count, R(simple_hits) * hits)
     hits->missed = told;
     for (uint32_t j = 0; j < count; j++) {
         vr t;
-        R(way_into)(&x[j], &t, &hit, &missed);
+        R(way_into)(&x[j], at_eye, &t, &hit, &missed);
         t = r_select(hit, t, none);
         told = rm_and(told, rm_or(hit, missed));
         hits->missed = rm_and(hits->missed, missed);
@@ -203,18 +262,33 @@ INNER void R(meet_union)(R(convex) x[], uint32_t count, R(simple_hits) * hits)
     hits->hit = rm_and(told, r_lt(hits->t * r_set(1 + SIMPLE_SLACK), next));
 }
 
-/// What rays that start on no part of a simple whole meet. Returns the lanes that are decided.
-static unsigned R(meet_simple)(const glint_geometry_table *table, const glint_combined *whole, const vr o[3], const vr d[3],
-                               R(simple_hits) * hits)
+/// What rays that start on no part of a simple whole meet. eye: of those that start at one eye. Returns the lanes that are
+/// decided.
+INNER unsigned R(meet_simple)(const glint_geometry_table *table, const glint_combined *whole, const vr o[3], const vr d[3],
+                              const bool at_eye, const R(eye_parts) * eye, R(simple_hits) * hits)
 {
     R(convex) x[GLINT_SIMPLE_PARTS];
-    for (uint32_t j = 0; j < whole->count; j++)
-        R(begin_convex)(table, &table->prims[table->prim_count + whole->first + j], o, d, &x[j]);
+    for (uint32_t j = 0; j < whole->count; j++) {
+        x[j].eye = at_eye ? &eye->part[j] : NULL;
+        R(begin_convex)(table, &table->prims[table->prim_count + whole->first + j], o, d, at_eye, &x[j]);
+    }
     if (whole->program[2] == GLINT_COMBINE_DIFFERENCE)
-        R(meet_difference)(x, whole->count, hits);
+        R(meet_difference)(x, whole->count, at_eye, hits);
     else if (whole->program[2] == GLINT_COMBINE_INTERSECTION)
-        R(meet_intersection)(x, whole->count, hits);
+        R(meet_intersection)(x, whole->count, at_eye, hits);
     else
-        R(meet_union)(x, whole->count, hits);
+        R(meet_union)(x, whole->count, at_eye, hits);
     return rm_bits(rm_or(hits->missed, hits->hit));
+}
+
+static unsigned R(meet_from_anywhere)(const glint_geometry_table *table, const glint_combined *whole, const vr o[3],
+                                      const vr d[3], R(simple_hits) * hits)
+{
+    return R(meet_simple)(table, whole, o, d, false, NULL, hits);
+}
+
+static unsigned R(meet_from_eye)(const glint_geometry_table *table, const glint_combined *whole, const R(eye_parts) * eye,
+                                 const vr d[3], R(simple_hits) * hits)
+{
+    return R(meet_simple)(table, whole, NULL, d, true, eye, hits);
 }

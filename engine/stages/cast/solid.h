@@ -256,6 +256,32 @@ INNER R(span) R(span_along)(const glint_solid *solid, const R(solid_start) * sta
     return R(span_of)(solid, start, d, e, false, whole);
 }
 
+/// Decides a box before rays that start anywhere, where that takes little. Returns whether it is decided for all of `lanes`.
+INNER bool R(meet_box)(const glint_solid *solid, const vr place[3], const vr d[3], unsigned lanes, vr *t, rm *hit)
+{
+    R(box_slabs) slabs;
+    rm missed;
+    if (GLINT_REAL == 32 || solid->form != GLINT_FORM_BOX)
+        return false;
+    for (int i = 0; i < 3; i++)
+        R(begin_slab)(solid->faces, place, d, i, &slabs);
+    R(into_box)(&slabs, t, hit, &missed);
+    return (lanes & ~rm_bits(rm_or(*hit, missed))) == 0;
+}
+
+/// The same of rays from one eye.
+INNER bool R(meet_eye_box)(const glint_solid *solid, const R(eye_slabs) * eye, const vr d[3], unsigned lanes, vr *t, rm *hit)
+{
+    vr rise[3];
+    rm missed;
+    if (!eye->before)
+        return false;
+    for (int i = 0; i < 3; i++)
+        rise[i] = R(face_rise)(solid->faces + 2 * i, d);
+    R(into_eye_box)(eye, rise, t, hit, &missed);
+    return (lanes & ~rm_bits(rm_or(*hit, missed))) == 0;
+}
+
 static rm R(meet_solid)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], vr *t)
 {
     if (solid->form == GLINT_FORM_TORUS) {
@@ -438,14 +464,18 @@ static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, c
 }
 
 /// Whether the surface is crossed by segments from `point` along d, which end at 1 / scale; directional: nowhere. In lanes
-/// of `own` they begin on it, within: what they can meet is the other side of an open form.
+/// of `own` they begin on it, within: what they can meet is the other side of an open form. lanes: those whose answer matters.
 static rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, const vr point[3], const vr d[3],
-                                 double scale, bool directional, rm own)
+                                 double scale, bool directional, rm own, unsigned lanes)
 {
+    const vr zero = r_set(0), end = r_set(directional ? HUGE_VAL : 1), unit = r_set(directional ? 1 : scale);
     R(solid_start) start;
+    vr t;
+    rm hit;
+    if (R(meet_box)(solid, point, d, lanes, &t, &hit))
+        return rm_and(hit, r_lt(t * unit, end));
     R(start_at)(solid, prim, point, &start);
     const R(span) span = R(span_along)(solid, &start, d, false);
-    const vr zero = r_set(0), end = r_set(directional ? HUGE_VAL : 1), unit = r_set(directional ? 1 : scale);
     const rm first = rm_andnot(rm_and(r_lt(zero, span.t[0]), r_lt(span.t[0] * unit, end)), own);
     const rm second = rm_and(r_lt(zero, span.t[1]), r_lt(span.t[1] * unit, end));
     return rm_and(span.hit, rm_or(first, rm_andnot(second, rm_andnot(own, span.second))));

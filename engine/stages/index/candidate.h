@@ -35,6 +35,7 @@ typedef struct R(candidate) {
     uint32_t id;
     real f[3], c; ///< see R(offset) and R(offset_constant)
     real scale, r2; ///< of a sphere
+    const R(eye_parts) *parts; ///< of a box and of a simple combined solid; NULL: not known
     float base[3], along_s[3],
         along_t[3]; ///< the filter: linear in s and t are f x d of a sphere, e of a triangle, how
     ///< fast a ray nears a plane
@@ -225,6 +226,7 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
     const vr origin[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
     vr f[3];
     candidate->id = id;
+    candidate->parts = NULL;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++)
@@ -245,6 +247,20 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
     for (int k = 0; k < 3; k++)
         candidate->f[k] = R(first_lane)(f[k]);
     candidate->c = R(first_lane)(R(offset_constant)(f, prim));
+}
+
+/// Works out what helps to decide a solid for many groups. out: to keep it in.
+static void R(see_candidate)(const glint_cast_args *args, R(candidate) * candidate, R(eye_parts) * out)
+{
+    const glint_geometry_table *table = args->geometry;
+    const glint_prim *prim = candidate->prim;
+    const glint_combined *whole = prim->kind == GLINT_PRIM_COMBINED ? &table->combined[prim->item] : NULL;
+    if (GLINT_REAL == 32 || (whole ? !whole->simple : table->solids[prim->item].form != GLINT_FORM_BOX))
+        return;
+    const glint_prim *first = whole ? &table->prims[table->prim_count + whole->first] : prim;
+    for (uint32_t j = 0; j < (whole ? whole->count : 1); j++)
+        R(see_part)(&table->solids[first[j].item], &first[j], args->camera->eye, &out->part[j]);
+    candidate->parts = out;
 }
 
 /// That, and the filter.
@@ -285,9 +301,9 @@ INNER unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * ca
     return near;
 }
 
-/// f: the candidate's, in every lane.
+/// f: the candidate's, in every lane; lanes: those whose answer matters.
 INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * candidate, const vr f[3], const vr d[3],
-                           vr *t)
+                           unsigned lanes, vr *t)
 {
     const glint_geometry_table *table = args->geometry;
     const double *eye = args->camera->eye;
@@ -295,6 +311,9 @@ INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * can
     if (candidate->prim->kind == GLINT_PRIM_SOLID) {
         const glint_solid *solid = &table->solids[candidate->prim->item];
         const R(solid_start) start = { .f = { f[0], f[1], f[2] }, .height = candidate->height };
+        rm hit;
+        if (candidate->parts && R(meet_eye_box)(solid, &candidate->parts->part[0].slabs, d, lanes, t, &hit))
+            return hit;
         return R(meet_solid)(solid, &start, d, t);
     }
     if (candidate->prim->kind == GLINT_PRIM_SPHERE)
@@ -353,14 +372,15 @@ INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * cand
     const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
     bool any = false;
     if (candidate->prim->kind == GLINT_PRIM_COMBINED)
-        return R(cast_combined_pixels)(args, candidate->prim, x, y, at, near);
+        return R(cast_combined_pixels)(args, candidate->prim, candidate->parts, x, y, at, near);
     count_tests(args->tests, near);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
-        if (!(near >> i & ((1u << VR) - 1)))
+        const unsigned lanes = near >> i & ((1u << VR) - 1);
+        if (!lanes)
             continue;
         vr d[3], t;
         R(load_direction)(directions, args->direction, 0, i, d);
-        const rm hit = R(meet_candidate)(args, candidate, f, d, &t);
+        const rm hit = R(meet_candidate)(args, candidate, f, d, lanes, &t);
         if (!rm_bits(hit))
             continue;
         R(keep_nearest)(args, at + i, candidate->id, hit, t);

@@ -17,15 +17,14 @@ typedef struct R(lit_call) {
     bool scaled;
 } R(lit_call);
 
-/// VR lanes of it, of a sphere near the eye or of a plane; `sphere`, `normals` and `slack` are constants.
-INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args *light, const R(lit_call) * call,
-                       const bool sphere, const bool normals, const bool slack, const glint_shade_material *material,
+/// VR lanes of it, of a sphere near the eye, a plane or a solid; `kind`, `normals` and `slack` are constants.
+INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
+                       const glint_prim_kind kind, const bool normals, const bool slack, const glint_shade_material *material,
                        R(group_directions) directions, size_t at, int j, R(point_box) * box, R(lit_whole) * whole)
 {
-    const R(seen_prim) *seen = &call->walk.seen;
     const int i = j * VR;
     vr d[3], n[3], p[3], l[3];
-    R(find_whole)(surface, seen, sphere, directions, at, i, d, n, p);
+    R(find_whole)(surface, &call->walk, kind, directions, at, i, d, n, p);
     for (int k = 0; k < 3; k++) {
         r_store((real *)surface->point[k] + at + i, p[k]);
         l[k] = r_set(call->position[k]);
@@ -117,7 +116,7 @@ INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * w
     }
 }
 
-/// A group that shows one sphere or plane in every lane, and that from where it is not dark: the common case. Returns whether
+/// A group that shows one sphere, plane or solid in every lane, and that from where it is not dark: the common case. Returns whether
 /// it is one. mixed: surface->mixed; normals: whether all are wanted; both constants.
 INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
                           const bool mixed, const bool normals, R(group_place) place, R(point_box) * box,
@@ -131,8 +130,8 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
         return false;
     R(look_at)(surface, &call->walk, id);
     const glint_prim *prim = call->walk.seen.prim;
-    const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
-    if (!prim->two_sided || !R(is_near_or_plane)(&call->walk.seen))
+    const bool sphere = prim->kind == GLINT_PRIM_SPHERE, solid = mixed && prim->kind == GLINT_PRIM_SOLID;
+    if (!prim->two_sided || !(solid || R(is_near_or_plane)(&call->walk.seen)))
         return false;
     const glint_shade_material *material = &light->materials[prim->material];
     if (!light->highlights || (material->highlight != GLINT_HIGHLIGHT_PHONG &&
@@ -145,9 +144,11 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
 #pragma GCC unroll 8
     for (int j = 0; j < LIT_PARTS; j++) {
         if (sphere)
-            R(lit_part)(surface, light, call, true, normals, slack, material, directions, at, j, box, &whole);
+            R(lit_part)(surface, light, call, GLINT_PRIM_SPHERE, normals, slack, material, directions, at, j, box, &whole);
+        else if (solid)
+            R(lit_part)(surface, light, call, GLINT_PRIM_SOLID, normals, slack, material, directions, at, j, box, &whole);
         else
-            R(lit_part)(surface, light, call, false, normals, slack, material, directions, at, j, box, &whole);
+            R(lit_part)(surface, light, call, GLINT_PRIM_PLANE, normals, slack, material, directions, at, j, box, &whole);
     }
     lanes_put(surface->material + at, 0xffff, prim->material);
     surface->back[place.g] = (uint16_t)whole.back;

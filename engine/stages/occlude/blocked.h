@@ -300,7 +300,7 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
         R(load3)(args->point, at + i, p);
         R(directions_to)(args, position, at, i, d);
         const rm mine = rm_from_bits(within >> i & ((1u << VR) - 1));
-        blocked |= (rm_bits(R(solid_blocks)(solid, prim, p, d, args->scale, args->directional, mine)) & lanes) << i;
+        blocked |= (rm_bits(R(solid_blocks)(solid, prim, p, d, args->scale, args->directional, mine, lanes)) & lanes) << i;
     }
     return blocked;
 }
@@ -336,7 +336,7 @@ static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const gli
             continue;
         R(load3)(args->point, at + i, p);
         R(directions_to)(args, position, at, i, d);
-        const R(whole_rays) rays = { p, d, args->prim + at + i, back >> i, lanes };
+        const R(whole_rays) rays = { NULL, p, d, args->prim + at + i, back >> i, lanes };
         for (unsigned left = lanes, hit; left;) {
             left = R(next_change)(args->geometry, whole, &rays, left, &from, &s, &t, &hit);
             if (!args->directional)

@@ -11,6 +11,7 @@
 
 #include "engine/stages/index/walk.h"
 #include "engine/stages/index/screen.h"
+#include "engine/stages/index/eye_box.h"
 #include "engine/stages/index/leaf.h"
 #include "engine/stages/occlude/beam.h"
 #include "engine/stages/shade/sequence.h"

@@ -1,58 +1,6 @@
 // surface: the point, the normal and the material of each hit. A group is worked off object by object: most groups
 // show one, whose numbers are then the same in every lane. Contract: stages.h.
 
-/// The normal as seen from so far that origin and sphere have no digits in common but the foot of the perpendicular.
-static inline void R(far_normal)(const vr f[3], const vr d[3], vr r2, vr n[3])
-{
-    const vr zero = r_set(0);
-    vr a = DOT(d, d), b = -DOT(f, d), w = b / a;
-    vr l[3] = { f[0] + w * d[0], f[1] + w * d[1], f[2] + w * d[2] };
-    vr c = DOT(f, f) - r2;
-    vr h = r_sqrt(r_max(r2 - DOT(l, l), zero) / a);
-    rm entering = rm_and(r_le(zero, b), r_le(zero, c));
-    for (int k = 0; k < 3; k++)
-        n[k] = r_select(entering, l[k] - h * d[k], l[k] + h * d[k]);
-    vr m = DOT(n, n), length = r_sqrt(m), ray = r_sqrt(a);
-    rm defined = r_lt(zero, m);
-    for (int k = 0; k < 3; k++)
-        n[k] = r_select(defined, n[k] / length, -d[k] / ray);
-}
-
-/// Where the origin is known to be in every lane.
-typedef enum R(sphere_range) { R(RANGE_ANY), R(RANGE_NEAR), R(RANGE_CLOSE) } R(sphere_range);
-
-/// f: of a camera.
-static R(sphere_range) R(range_of)(const real f[3])
-{
-    const real ff = DOT(f, f);
-    return ff < GLINT_SPHERE_CLOSE ? R(RANGE_CLOSE) : ff < (real)GLINT_SPHERE_NEAR ? R(RANGE_NEAR) : R(RANGE_ANY);
-}
-
-INNER void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_prim *prim, real scale, real inverse_radius,
-                             R(sphere_range) range, vr n[3], vr p[3])
-{
-    const vr radius = r_set(prim->radius);
-    vr ts = t * r_set(scale);
-    for (int k = 0; k < 3; k++)
-        n[k] = (f[k] + ts * d[k]) * r_set(inverse_radius);
-    if (range != R(RANGE_CLOSE)) {
-        const vr newton = r_set(1.5) - r_set(0.5) * DOT(n, n);
-        const rm close = range == R(RANGE_NEAR) ? rm_from_bits(0) : r_lt(DOT(f, f), r_set(GLINT_SPHERE_CLOSE));
-        for (int k = 0; k < 3; k++)
-            n[k] = r_select(close, n[k], n[k] * newton);
-    }
-    if (range == R(RANGE_ANY)) {
-        const rm near = r_lt(DOT(f, f), r_set(GLINT_SPHERE_NEAR));
-        vr far[3];
-        if (rm_bits(near) != (1u << VR) - 1)
-            R(far_normal)(f, d, r_set(glint_sphere_r2(prim)), far);
-        for (int k = 0; k < 3 && rm_bits(near) != (1u << VR) - 1; k++)
-            n[k] = r_select(near, n[k], far[k]);
-    }
-    for (int k = 0; k < 3; k++)
-        p[k] = r_set(prim->center[k]) + radius * n[k];
-}
-
 /// Brings points next to a plane of any normal onto it: what is left of their heights is a rounding of themselves, wherever the
 /// rays came from.
 INNER void R(onto_plane_of)(const glint_prim *prim, const vr n[3], vr p[3])
@@ -79,13 +27,13 @@ typedef struct R(seen_prim) {
     real scale, inverse_radius; ///< of a sphere, in its own units
     R(sphere_range) range; ///< of the eye from a sphere
     real f[3]; ///< of a sphere, scaled; of a solid, where it is the unit one
-    real height[6]; ///< of the eye over a solid's faces
     real normal[3]; ///< of a plane or triangle
     int level; ///< of a plane: the axis that it is square to; 3: none
     real from[3], way[3]; ///< of a plane: points are at from + way (t direction): on that axis the plane's own place
 } R(seen_prim);
 
-static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id)
+/// view: where the heights of the eye over a solid's faces go.
+static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id, R(box_view) * view)
 {
     const glint_prim *prim = &args->prims[id];
     R(seen_prim) seen = { .id = id, .prim = prim };
@@ -103,7 +51,7 @@ static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id)
             seen.way[k] = k != seen.level;
         }
         if (prim->kind == GLINT_PRIM_SOLID && args->camera)
-            R(start_at_eye)(&args->solids[prim->item], prim, args->camera->eye, seen.f, seen.height);
+            R(start_at_eye)(&args->solids[prim->item], prim, args->camera->eye, seen.f, view->height);
         return seen;
     }
     seen.scale = (real)glint_sphere_scale(prim);
@@ -115,6 +63,15 @@ static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id)
     seen.range = R(range_of)(seen.f);
     return seen;
 }
+
+/// What is known while the groups of a tile are gone through.
+typedef struct R(surface_walk) {
+    R(seen_prim) seen; ///< the last primitive
+    R(box_view) view; ///< of it, where it is a box; of another solid the heights
+    R(box_faces) faces; ///< likewise
+    uint32_t only; ///< the only primitive so far, GLINT_MISS: none
+    bool several, turned; ///< there are others; some lane is seen from behind
+} R(surface_walk);
 
 /// One vector of lanes of one primitive.
 typedef struct R(found) {
@@ -132,24 +89,28 @@ INNER void R(face_viewer)(const vr n[3], R(found) * found)
         found->normal[k] = r_select(found->back, -n[k], n[k]);
 }
 
-INNER void R(find_on_solid)(const glint_surface_args *args, const R(seen_prim) * seen, const vr from[3], const vr d[3],
-                            vr t, unsigned lanes, R(box_faces) * faces, vr n[3], vr p[3])
+INNER void R(find_on_solid)(const glint_surface_args *args, R(surface_walk) * walk, const vr from[3], const vr d[3], vr t,
+                            unsigned lanes, vr n[3], vr p[3])
 {
+    const R(seen_prim) *seen = &walk->seen;
     const glint_solid *solid = &args->solids[seen->prim->item];
-    R(solid_start) start = { .place = from, .height = args->camera ? seen->height : NULL };
+    R(solid_start) start = { .place = from, .height = args->camera ? walk->view.height : NULL };
     for (int k = 0; k < 3; k++)
         start.f[k] = r_set(seen->f[k]);
     if (!args->camera)
         R(unit_offset)(solid, seen->prim, from, start.f);
-    R(solid_surface)(solid, seen->prim, &start, d, t, lanes, faces, n, p);
+    const bool box = args->camera && solid->form == GLINT_FORM_BOX;
+    if (!box || !R(box_surface)(solid, seen->prim, seen->f, &walk->view, d, t, lanes, &walk->faces, n, p))
+        R(solid_surface)(solid, seen->prim, &start, d, t, lanes, &walk->faces, n, p);
     for (int k = 0; seen->prim->turned && k < 3; k++)
         n[k] = -n[k];
 }
 
 /// Of lanes from i on those in `lanes`; what the others get is of no use.
-INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * seen, R(group_directions) directions,
-                         size_t at, int i, unsigned lanes, bool mixed, R(box_faces) * faces, R(found) * found)
+INNER void R(find_lanes)(const glint_surface_args *args, R(surface_walk) * walk, R(group_directions) directions, size_t at,
+                         int i, unsigned lanes, bool mixed, R(found) * found)
 {
+    const R(seen_prim) *seen = &walk->seen;
     const glint_prim *prim = seen->prim;
     const bool smooth = mixed && prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS;
     vr *d = found->direction, *p = found->point, n[3], from[3], f[3], w[3] = { r_set(0), r_set(0), r_set(0) };
@@ -176,7 +137,7 @@ INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * se
             R(corners_of)(prim, corner);
             R(triangle_point)(corner, args->scale, from, d, w, p, &found->slack);
         } else if (mixed && prim->kind == GLINT_PRIM_SOLID)
-            R(find_on_solid)(args, seen, from, d, t, lanes, faces, n, p);
+            R(find_on_solid)(args, walk, from, d, t, lanes, n, p);
     }
     if (prim->kind == GLINT_PRIM_PLANE && seen->level == 3)
         R(onto_plane_of)(prim, n, p);
@@ -292,14 +253,6 @@ static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
         lanes_put(args->material + at, 0xffff, 0);
 }
 
-/// What is known while the groups of a tile are gone through.
-typedef struct R(surface_walk) {
-    R(seen_prim) seen; ///< the last primitive
-    R(box_faces) faces; ///< of it, where it is a box
-    uint32_t only; ///< the only primitive so far, GLINT_MISS: none
-    bool several, turned; ///< there are others; some lane is seen from behind
-} R(surface_walk);
-
 INNER void R(begin_walk)(R(surface_walk) * walk)
 {
     walk->seen = (R(seen_prim)) { .id = GLINT_MISS };
@@ -311,8 +264,10 @@ INNER void R(begin_walk)(R(surface_walk) * walk)
 static __attribute__((noinline)) void R(look_at_other)(const glint_surface_args *args, R(surface_walk) * walk,
                                                        uint32_t id)
 {
-    walk->seen = R(see_prim)(args, id);
+    walk->seen = R(see_prim)(args, id, &walk->view);
     walk->faces.known = 0;
+    if (walk->seen.prim->kind == GLINT_PRIM_SOLID && args->camera)
+        R(view_box)(&args->solids[walk->seen.prim->item], &walk->view);
     walk->several = walk->several || (walk->only != GLINT_MISS && walk->only != id);
     walk->only = id;
 }
@@ -358,24 +313,31 @@ static inline bool R(is_near_or_plane)(const R(seen_prim) * seen)
 }
 
 /// Directions, outward normals and points of lanes i .. of a group that shows one plane, or one sphere that the camera is not far
-/// from, in every lane; `sphere` is a constant.
-INNER void R(find_whole)(const glint_surface_args *args, const R(seen_prim) * seen, const bool sphere,
+/// from, or one solid, in every lane; `kind`, of these, is a constant.
+INNER void R(find_whole)(const glint_surface_args *args, R(surface_walk) * walk, const glint_prim_kind kind,
                          R(group_directions) directions, size_t at, int i, vr d[3], vr n[3], vr p[3])
 {
+    const R(seen_prim) *seen = &walk->seen;
     R(load_direction)(directions, args->direction, at, i, d);
     const vr t = r_load((const real *)args->t + at + i);
-    if (sphere) {
+    if (kind == GLINT_PRIM_SOLID) {
+        const double *eye = args->camera->eye;
+        const vr from[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
+        R(find_on_solid)(args, walk, from, d, t, (1u << VR) - 1, n, p);
+        return;
+    }
+    if (kind == GLINT_PRIM_SPHERE) {
         const vr f[3] = { r_set(seen->f[0]), r_set(seen->f[1]), r_set(seen->f[2]) };
         if (seen->range == R(RANGE_CLOSE))
             R(sphere_surface)(f, d, t, seen->prim, seen->scale, seen->inverse_radius, R(RANGE_CLOSE), n, p);
         else
             R(sphere_surface)(f, d, t, seen->prim, seen->scale, seen->inverse_radius, R(RANGE_NEAR), n, p);
     }
-    for (int k = 0; k < 3 && !sphere; k++) {
+    for (int k = 0; k < 3 && kind == GLINT_PRIM_PLANE; k++) {
         n[k] = r_set(seen->normal[k]);
         p[k] = r_set(seen->from[k]) + r_set(seen->way[k]) * (t * d[k]);
     }
-    if (!sphere && seen->level == 3)
+    if (kind == GLINT_PRIM_PLANE && seen->level == 3)
         R(onto_plane_of)(seen->prim, n, p);
 }
 
@@ -395,24 +357,24 @@ INNER void R(place_level)(const glint_surface_args *args, const R(seen_prim) * s
     }
 }
 
-/// The points alone of such a group of another plane or of a sphere; `sphere` is a constant.
-INNER void R(place_lanes)(const glint_surface_args *args, const R(seen_prim) * seen, const bool sphere,
+/// The points alone of such a group of another plane or of a sphere; `kind` is a constant.
+INNER void R(place_lanes)(const glint_surface_args *args, R(surface_walk) * walk, const glint_prim_kind kind,
                           R(group_directions) directions, size_t at)
 {
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         vr d[3], n[3], p[3];
-        R(find_whole)(args, seen, sphere, directions, at, i, d, n, p);
+        R(find_whole)(args, walk, kind, directions, at, i, d, n, p);
         for (int k = 0; k < 3; k++)
             r_store((real *)args->point[k] + at + i, p[k]);
     }
 }
 
 /// The points alone of such a group.
-INNER void R(place_whole)(const glint_surface_args *args, const R(seen_prim) * seen, R(group_directions) directions,
-                          size_t at)
+INNER void R(place_whole)(const glint_surface_args *args, R(surface_walk) * walk, R(group_directions) directions, size_t at)
 {
+    const R(seen_prim) *seen = &walk->seen;
     if (seen->prim->kind == GLINT_PRIM_SPHERE)
-        R(place_lanes)(args, seen, true, directions, at);
+        R(place_lanes)(args, walk, GLINT_PRIM_SPHERE, directions, at);
     else if (seen->level == 0)
         R(place_level)(args, seen, directions, at, 0);
     else if (seen->level == 1)
@@ -420,7 +382,7 @@ INNER void R(place_whole)(const glint_surface_args *args, const R(seen_prim) * s
     else if (seen->level == 2)
         R(place_level)(args, seen, directions, at, 2);
     else
-        R(place_lanes)(args, seen, false, directions, at);
+        R(place_lanes)(args, walk, GLINT_PRIM_PLANE, directions, at);
 }
 
 /// One group that is hit: its triangles together, where there are several, and the rest primitive by primitive.
@@ -447,13 +409,13 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
         const bool placed =
             way == R(POINTS_ALONE) && args->camera && lanes == 0xffff && R(is_near_or_plane)(&walk->seen);
         if (placed)
-            R(place_whole)(args, &walk->seen, directions, at);
+            R(place_whole)(args, walk, directions, at);
         for (int i = placed ? GLINT_GROUP : 0; i < GLINT_GROUP; i += VR) {
             const unsigned here = lanes >> i & ((1u << VR) - 1);
             if (!here)
                 continue;
             R(found) found;
-            R(find_lanes)(args, &walk->seen, directions, at, i, here, way == R(MIXED), &walk->faces, &found);
+            R(find_lanes)(args, walk, directions, at, i, here, way == R(MIXED), &found);
             behind |= R(put_found)(args, &found, at + (size_t)i, here, way, box) << i;
         }
         if (way != R(POINTS_ALONE))
