@@ -215,7 +215,8 @@ typedef struct R(parallel_ball) {
     vr direction[3], a;
 } R(parallel_ball);
 
-static inline void R(place_parallel_ball)(const R(tile_cast) * tile, uint32_t id, R(parallel_ball) * out)
+/// Apart: GCC 12 does not see that what it fills is read only after it.
+static __attribute__((noinline)) void R(place_parallel_ball)(const R(tile_cast) * tile, uint32_t id, R(parallel_ball) * out)
 {
     const glint_camera_args *camera = tile->args->camera;
     const glint_prim *prim = &tile->args->geometry->prims[id];
