@@ -31,6 +31,7 @@ struct glint_apng {
     size_t pixel_bytes;
     uint8_t *before; ///< codes of the frame before
     uint8_t *chunk; ///< room for an fdAT
+    glint_bands *bands; ///< deflates frames
 };
 
 // ---- libpng -------------------------------------------------------------------------------------------------------
@@ -165,7 +166,9 @@ static glint_status open_apng(glint_apng *apng, const char *path, glint_error *e
     if (!apng->before || !apng->chunk || !apng->info)
         return glint_fail_nomem(error);
     set_delay(apng);
-    glint_status status = glint_draft_create(path, &apng->draft, error);
+    glint_status status = glint_bands_create(1, &apng->bands, error);
+    if (!status)
+        status = glint_draft_create(path, &apng->draft, error);
     if (!status && !write_head(apng))
         status = give_error(apng, error);
     return status;
@@ -204,6 +207,7 @@ void glint_apng_destroy(glint_apng *apng)
         return;
     png_destroy_write_struct(&apng->png, &apng->info);
     glint_draft_destroy(apng->draft);
+    glint_bands_destroy(apng->bands);
     free(apng->before);
     free(apng->chunk);
     free(apng);
@@ -272,7 +276,7 @@ glint_status glint_apng_add(glint_apng *apng, const glint_picture *picture, glin
     const glint_apng_desc *desc = &apng->desc;
     size_t row_bytes = (size_t)desc->width * apng->pixel_bytes;
     const uint8_t *codes = glint_picture_codes(picture);
-    glint_bytes stream = { 0 };
+    const glint_bytes *stream;
     box b = { 0, 0, desc->width, desc->height };
     if (apng->frames > 0)
         b = find_changed(apng, codes);
@@ -281,10 +285,9 @@ glint_status glint_apng_add(glint_apng *apng, const glint_picture *picture, glin
     source.alpha = desc->alpha;
     source.tone = glint_tone_desc_default();
     source.tone.bits = desc->bits;
-    status = glint_bands_deflate(NULL, &source, desc->encode, &stream, NULL, error);
-    if (!status && !write_frame(apng, &b, &stream))
+    status = glint_bands_deflate(apng->bands, &source, desc->encode, &stream, NULL, error);
+    if (!status && !write_frame(apng, &b, stream))
         status = give_error(apng, error);
-    free(stream.data);
     if (!status) {
         memcpy(apng->before, codes, row_bytes * (size_t)desc->height);
         apng->frames++;

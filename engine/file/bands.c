@@ -44,12 +44,14 @@ typedef struct picture {
 /// One thread's memory for one band.
 typedef struct worker {
     glint_bytes rows, swapped, raw, deflated; ///< used up to their capacity
+    struct glint_deflate_memory *encoder; ///< owned; NULL until the first band
 } worker;
 
 struct glint_bands {
     int threads;
     glint_pool *pool; ///< NULL: one thread, the caller's
     picture last;
+    glint_bytes stream; ///< of the last picture
     worker worker[];
 };
 
@@ -116,7 +118,8 @@ static bool make_room(worker *memory, const layout *l, size_t rows)
 {
     return glint_bytes_reserve(&memory->rows, l->row_bytes) &&
            (l->tone.bits == 8 || glint_bytes_reserve(&memory->swapped, l->row_bytes)) &&
-           glint_bytes_reserve(&memory->raw, (l->row_bytes + 1) * rows);
+           glint_bytes_reserve(&memory->raw, (l->row_bytes + 1) * rows) &&
+           (memory->encoder || (memory->encoder = glint_deflate_memory_create()));
 }
 
 /// Puts a copy of the bytes in the band, in memory of just their size.
@@ -144,8 +147,8 @@ static bool make_band(task *t, size_t index, worker *memory)
         return false;
     filter_rows(t->source, l->row_bytes, first, rows, memory);
     memory->deflated.size = 0;
-    return glint_deflate_band(l->encode, memory->raw.data, (l->row_bytes + 1) * rows, index + 1 == l->band_count,
-                              &memory->deflated, &b->adler, NULL) == GLINT_OK &&
+    return glint_deflate_band(memory->encoder, l->encode, memory->raw.data, (l->row_bytes + 1) * rows,
+                              index + 1 == l->band_count, &memory->deflated, &b->adler, NULL) == GLINT_OK &&
            keep(b, &memory->deflated);
 }
 
@@ -156,13 +159,20 @@ static void make_item(void *context, size_t index, int number)
         atomic_store(&t->failed, true);
 }
 
+static void free_bytes(glint_bytes *bytes)
+{
+    free(bytes->data);
+    *bytes = (glint_bytes) { 0 };
+}
+
 static void free_worker(worker *memory)
 {
-    free(memory->rows.data);
-    free(memory->swapped.data);
-    free(memory->raw.data);
-    free(memory->deflated.data);
-    *memory = (worker) { 0 };
+    free_bytes(&memory->rows);
+    free_bytes(&memory->swapped);
+    free_bytes(&memory->raw);
+    free_bytes(&memory->deflated);
+    glint_deflate_memory_destroy(memory->encoder);
+    memory->encoder = NULL;
 }
 
 // ---- A picture ----------------------------------------------------------------------------------------------------
@@ -233,10 +243,11 @@ static size_t list_missing(picture *p, const uint64_t *stamp)
     return count;
 }
 
-static bool append_stream(const picture *p, glint_bytes *stream)
+static bool make_stream(const picture *p, glint_bytes *stream)
 {
     const layout *l = &p->layout;
     uint32_t sum = 1;
+    stream->size = 0;
     bool done = glint_deflate_begin(stream);
     for (size_t i = 0; i < l->band_count && done; i++) {
         const size_t left = (size_t)l->height - i * l->band_rows;
@@ -247,8 +258,7 @@ static bool append_stream(const picture *p, glint_bytes *stream)
     return done && glint_deflate_end(stream, sum);
 }
 
-static bool deflate_picture(glint_bands *bands, picture *p, const glint_png_source *source, glint_bytes *stream,
-                            double *reused)
+static bool deflate_picture(glint_bands *bands, picture *p, const glint_png_source *source, double *reused)
 {
     const size_t count = list_missing(p, source->stamp);
     task t = { .source = source, .picture = p, .worker = bands->worker };
@@ -260,13 +270,15 @@ static bool deflate_picture(glint_bands *bands, picture *p, const glint_png_sour
     for (int i = 0; i < bands->threads; i++)
         if (bands->worker[i].raw.capacity > KEPT_WORK_BYTES)
             free_worker(&bands->worker[i]);
+    if (bands->stream.capacity > KEPT_WORK_BYTES)
+        free_bytes(&bands->stream);
     if (atomic_load(&t.failed))
         return false;
     if (source->stamp)
         memcpy(p->stamp, source->stamp, p->layout.stamp_count * sizeof *p->stamp);
     if (reused)
         *reused = 1 - (double)count / (double)p->layout.band_count;
-    return append_stream(p, stream);
+    return make_stream(p, &bands->stream);
 }
 
 // ---- The interface ------------------------------------------------------------------------------------------------
@@ -298,22 +310,18 @@ void glint_bands_destroy(glint_bands *bands)
     for (int i = 0; i < bands->threads; i++)
         free_worker(&bands->worker[i]);
     free_picture(&bands->last);
+    free_bytes(&bands->stream);
     free(bands);
 }
 
 glint_status glint_bands_deflate(glint_bands *bands, const glint_png_source *source, glint_encode encode,
-                                 glint_bytes *stream, double *reused, glint_error *error)
+                                 const glint_bytes **stream, double *reused, glint_error *error)
 {
-    glint_bands *own = NULL;
     picture passing = { 0 }; // what has no stamps is not worth keeping, nor losing what is kept
-    glint_status status = bands ? GLINT_OK : glint_bands_create(1, &own, error);
-    if (status)
-        return status;
-    picture *p = bands && source->stamp ? &bands->last : &passing;
+    picture *p = source->stamp ? &bands->last : &passing;
     const layout l = layout_of(source, encode);
-    if (!lay_out(p, &l) || !deflate_picture(bands ? bands : own, p, source, stream, reused))
-        status = glint_fail_nomem(error);
+    const bool done = lay_out(p, &l) && deflate_picture(bands, p, source, reused);
     free_picture(&passing);
-    glint_bands_destroy(own);
-    return status;
+    *stream = &bands->stream;
+    return done ? GLINT_OK : glint_fail_nomem(error);
 }

@@ -13,13 +13,13 @@
 glint_status glint_bands_create(int threads, glint_bands **out, glint_error *error);
 void glint_bands_destroy(glint_bands *bands);
 
-/// Appends the stream of the filtered rows to `stream`, in `bands` (one caller at a time; NULL: as if new, on one
-/// thread). The bytes are the same whatever `bands` remembers. Where a band begins depends on width, bits and `encode`
-/// alone.
+/// The stream of the filtered rows, by `bands` (one caller at a time). The bytes are the same whatever it remembers. Where a band
+/// begins depends on width, bits and `encode` alone.
 ///
+/// stream  out: owned by `bands`, until the next call.
 /// reused  out, may be NULL: the share of bands that were not deflated again, 0 .. 1.
-/// GLINT_ERR_NOMEM; `stream` may have grown then.
+/// GLINT_ERR_NOMEM.
 glint_status glint_bands_deflate(glint_bands *bands, const glint_png_source *source, glint_encode encode,
-                                 glint_bytes *stream, double *reused, glint_error *error);
+                                 const glint_bytes **stream, double *reused, glint_error *error);
 
 #endif

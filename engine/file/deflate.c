@@ -61,11 +61,12 @@ static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool las
 #define TEXT(x) TEXT_OF(x)
 #define NAME_OF_FAST "isal " TEXT(ISAL_MAJOR_VERSION) "." TEXT(ISAL_MINOR_VERSION) "." TEXT(ISAL_PATCH_VERSION)
 
-#define STREAM_BYTES (sizeof(struct isal_zstream) + ISAL_DEF_LVL1_DEFAULT)
+#define STREAM_BYTES sizeof(struct isal_zstream)
 
 // Level 1 files the third position of its input in the bucket of its hash table that its own stream's address gives, instead of
 // the bucket of the bytes there (ISA-L 2.30 on x86, icf body without history): the bytes written would depend on where the
-// stream lies. So it lies where the address gives the right bucket.
+// stream lies. So it lies where the address gives the right bucket. Streams stay mapped for bands to come: a mapping takes longer
+// than a band, and few buckets come in a picture, whose bands begin at its left edge.
 #ifdef __x86_64__
 #ifdef MAP_FIXED_NOREPLACE
 #define MAP_THERE (MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE)
@@ -76,7 +77,8 @@ static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool las
 #define PLACE_SHIFT 16 // of an address, to what is hashed
 #define FIRST_PLACE UINT32_C(0x20000000) // shifted; from here on, 2^29 places lie where programs have nothing
 #define PLACE_BITS 29
-#define PLACES_TRIED 64 // each thread of each writer has one
+#define PLACES_TRIED 64 // each thread of each writer has one for each of its buckets
+#define STREAMS 256 // of one memory
 
 /// CRC-32C of four bytes from 0, as the crc32 instruction has it: linear over the bits. Its last bits are the bucket.
 static uint32_t bucket_of(uint32_t bytes)
@@ -124,11 +126,11 @@ static places find_places(void)
     return p;
 }
 
-/// Memory for a stream whose address gives the bucket of these bytes; NULL where the system has no such place.
-static void *map_stream(uint32_t bytes)
+/// Memory for a stream whose address gives this bucket; NULL where the system has no such place.
+static void *map_stream(uint32_t bucket)
 {
     const places p = find_places();
-    uint32_t bucket = bucket_of(bytes) ^ bucket_of(FIRST_PLACE);
+    bucket ^= bucket_of(FIRST_PLACE);
     uint32_t place = FIRST_PLACE ^ place_for(&p, &bucket);
     for (int i = 1; bucket == 0 && i <= PLACES_TRIED; i++) {
         void *want = (void *)((uintptr_t)place << PLACE_SHIFT);
@@ -142,31 +144,92 @@ static void *map_stream(uint32_t bytes)
     return NULL;
 }
 
-static void *make_stream(const uint8_t *data, size_t size, bool *mapped)
+/// Streams that lie where their bucket wants them.
+typedef struct streams {
+    void *stream[STREAMS];
+    uint16_t bucket[STREAMS];
+    uint32_t count, oldest;
+} streams;
+
+static void free_streams(streams *kept)
+{
+    for (uint32_t i = 0; i < kept->count; i++)
+        munmap(kept->stream[i], STREAM_BYTES);
+}
+
+/// Keeps a stream, in the place of the oldest where there are too many.
+static void keep_stream(streams *kept, void *stream, uint32_t bucket)
+{
+    uint32_t at = kept->count;
+    if (at < STREAMS) {
+        kept->count++;
+    } else {
+        at = kept->oldest;
+        munmap(kept->stream[at], STREAM_BYTES);
+        kept->oldest = (at + 1) % STREAMS;
+    }
+    kept->stream[at] = stream;
+    kept->bucket[at] = (uint16_t)bucket;
+}
+
+/// The stream for a band that begins with these bytes; NULL: there is no place for it.
+static void *find_stream(streams *kept, const uint8_t *data, size_t size)
 {
     uint32_t third = 0;
     if (size >= 2 + sizeof third)
         memcpy(&third, data + 2, sizeof third);
-    void *memory = map_stream(third);
-    *mapped = memory != NULL;
-    return memory ? memory : malloc(STREAM_BYTES);
+    const uint32_t bucket = bucket_of(third);
+    for (uint32_t i = 0; i < kept->count; i++)
+        if (kept->bucket[i] == bucket)
+            return kept->stream[i];
+    void *stream = map_stream(bucket);
+    if (stream)
+        keep_stream(kept, stream, bucket);
+    return stream;
 }
 #else
-static void *make_stream(const uint8_t *data, size_t size, bool *mapped)
+typedef struct streams {
+    char none; ///< where a stream lies does not matter
+} streams;
+
+static void free_streams(streams *kept) { (void)kept; }
+
+static void *find_stream(streams *kept, const uint8_t *data, size_t size)
 {
-    (void)data;
-    (void)size;
-    *mapped = false;
-    return malloc(STREAM_BYTES);
+    (void)kept, (void)data, (void)size;
+    return NULL;
 }
 #endif
 
-static size_t fast_band_at(struct isal_zstream *stream, const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+struct glint_deflate_memory {
+    uint8_t *level; ///< ISA-L's for the level; owned
+    void *anywhere; ///< a stream from malloc, for bands that have no place; owned
+    streams placed;
+};
+
+static void free_memory(struct glint_deflate_memory *memory)
+{
+    free_streams(&memory->placed);
+    free(memory->anywhere);
+    free(memory->level);
+}
+
+/// NULL: out of memory.
+static void *stream_for(struct glint_deflate_memory *memory, const uint8_t *data, size_t size)
+{
+    void *stream = find_stream(&memory->placed, data, size);
+    if (!stream && !memory->anywhere)
+        memory->anywhere = malloc(STREAM_BYTES);
+    return stream ? stream : memory->anywhere;
+}
+
+static size_t fast_band_at(struct isal_zstream *stream, uint8_t *level, const uint8_t *data, size_t size, bool last,
+                           uint8_t *out, size_t room)
 {
     isal_deflate_stateless_init(stream);
     stream->hist_bits = 0; // the whole window: init leaves what was in memory
     stream->level = 1;
-    stream->level_buf = (uint8_t *)(stream + 1);
+    stream->level_buf = level;
     stream->level_buf_size = ISAL_DEF_LVL1_DEFAULT;
     stream->gzip_flag = IGZIP_DEFLATE;
     stream->flush = last ? NO_FLUSH : FULL_FLUSH;
@@ -178,24 +241,27 @@ static size_t fast_band_at(struct isal_zstream *stream, const uint8_t *data, siz
     return isal_deflate_stateless(stream) == COMP_OK ? stream->total_out : 0;
 }
 
-static size_t fast_band(const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+static size_t fast_band(struct glint_deflate_memory *memory, const uint8_t *data, size_t size, bool last, uint8_t *out,
+                        size_t room)
 {
-    bool mapped;
-    void *stream = make_stream(data, size, &mapped);
-    if (!stream)
-        return 0;
-    const size_t written = fast_band_at(stream, data, size, last, out, room);
-    if (mapped)
-        munmap(stream, STREAM_BYTES);
-    else
-        free(stream);
-    return written;
+    if (!memory->level)
+        memory->level = malloc(ISAL_DEF_LVL1_DEFAULT);
+    void *stream = memory->level ? stream_for(memory, data, size) : NULL;
+    return stream ? fast_band_at(stream, memory->level, data, size, last, out, room) : 0;
 }
 #else
 #define NAME_OF_FAST name_of_zlib()
 
-static size_t fast_band(const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+struct glint_deflate_memory {
+    char none; ///< zlib's memory does not outlive a band
+};
+
+static void free_memory(struct glint_deflate_memory *memory) { (void)memory; }
+
+static size_t fast_band(struct glint_deflate_memory *memory, const uint8_t *data, size_t size, bool last, uint8_t *out,
+                        size_t room)
 {
+    (void)memory;
     return band_by_zlib(FAST_LEVEL_ZLIB, data, size, last, out, room);
 }
 #endif
@@ -245,8 +311,17 @@ static uint32_t checksum(const uint8_t *data, size_t size)
 #endif
 }
 
-glint_status glint_deflate_band(glint_encode encode, const uint8_t *data, size_t size, bool last, glint_bytes *out,
-                                uint32_t *adler, glint_error *error)
+struct glint_deflate_memory *glint_deflate_memory_create(void) { return calloc(1, sizeof(struct glint_deflate_memory)); }
+
+void glint_deflate_memory_destroy(struct glint_deflate_memory *memory)
+{
+    if (memory)
+        free_memory(memory);
+    free(memory);
+}
+
+glint_status glint_deflate_band(struct glint_deflate_memory *memory, glint_encode encode, const uint8_t *data, size_t size,
+                                bool last, glint_bytes *out, uint32_t *adler, glint_error *error)
 {
     bool bands = glint_deflate_has_bands(encode);
     if (bands ? size > BAND_SIZE_MAX : !last)
@@ -255,7 +330,8 @@ glint_status glint_deflate_band(glint_encode encode, const uint8_t *data, size_t
     if (!glint_bytes_reserve(out, room))
         return glint_fail_nomem(error);
     uint8_t *end = out->data + out->size;
-    size_t written = (encode == GLINT_ENCODE_SMALL ? small_band : fast_band)(data, size, last, end, room);
+    size_t written = encode == GLINT_ENCODE_SMALL ? small_band(data, size, last, end, room)
+                                                  : fast_band(memory, data, size, last, end, room);
     if (!written) // the room is enough, so that memory is all an encoder can lack
         return glint_fail_nomem(error);
     out->size += written;

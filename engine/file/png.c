@@ -132,23 +132,23 @@ static glint_status put_in_container(container *c, glint_error *error)
     return done ? GLINT_OK : glint_fail_nomem(error);
 }
 
+static glint_status encode(glint_bands *bands, const glint_png_source *source, const glint_png_desc *desc, glint_bytes *out,
+                           double *reused, glint_error *error)
+{
+    container c = { .source = source, .text = desc->text, .text_count = desc->text_count, .dpi = desc->dpi, .out = out };
+    const glint_status status = glint_bands_deflate(bands, source, desc->encode, &c.stream, reused, error);
+    return status ? status : put_in_container(&c, error);
+}
+
 glint_status glint_png_encode(glint_bands *bands, const glint_png_source *source, const glint_png_desc *desc,
                               glint_bytes *out, double *reused, glint_error *error)
 {
+    glint_bands *own = NULL;
     glint_status status = check_text(desc->text, desc->text_count, error);
-    if (status)
-        return status;
-    glint_bytes stream = { 0 };
-    status = glint_bands_deflate(bands, source, desc->encode, &stream, reused, error);
-    if (!status) {
-        container c = { .source = source,
-                        .text = desc->text,
-                        .text_count = desc->text_count,
-                        .dpi = desc->dpi,
-                        .stream = &stream,
-                        .out = out };
-        status = put_in_container(&c, error);
-    }
-    free(stream.data);
+    if (!status && !bands)
+        status = glint_bands_create(1, &own, error);
+    if (!status)
+        status = encode(bands ? bands : own, source, desc, out, reused, error);
+    glint_bands_destroy(own);
     return status;
 }

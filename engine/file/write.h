@@ -15,7 +15,7 @@ glint_status glint_file_kind_of(const char *path, glint_file_kind *kind, glint_e
 glint_status glint_file_kind_read(const char *path, glint_file_kind *kind, glint_error *error);
 
 /// Appends the bytes glint_image_write would write to `out`, which may have grown on failure. bands and reused are
-/// those of glint_bands_deflate; *reused is written for PNG alone.
+/// those of glint_png_encode; *reused is written for PNG alone.
 glint_status glint_image_encode(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
                                 glint_bytes *out, double *reused, glint_error *error);
 

@@ -13,6 +13,8 @@
 #include <time.h>
 
 #define FILERS 4 ///< threads that bring files to disk, at most
+#define SPARES 4 ///< buffers that are kept for files to come
+#define SPARE_BYTES ((size_t)1 << 24) ///< larger ones are not
 
 typedef enum job_state { JOB_QUEUED, JOB_ENCODING, JOB_ENCODED, JOB_FILING, JOB_DONE } job_state;
 
@@ -32,10 +34,13 @@ struct glint_writer {
     glint_bands *bands; ///< the encoder's
     pthread_mutex_t
         lock; ///< over all below; what is being encoded or filed is the thread's meanwhile, but for `next`, `state`
-    pthread_cond_t changed;
+    pthread_cond_t to_encode, to_file; ///< there may be something for the encoder; for one of the filers
+    pthread_cond_t moved; ///< a job has left the queue, or is done
     job *first, **end; ///< submitted and not collected
     int waiting[JOB_DONE]; ///< jobs that are queued, and that are encoded
     int queue_depth; ///< the most of either
+    glint_bytes spare[SPARES]; ///< of files that are written: fresh memory costs more than what is put into it
+    int spare_count;
     bool closing; ///< no more are submitted
     bool encoded_all; ///< and none of them is left to the encoder
 };
@@ -92,6 +97,18 @@ static bool is_behind(const glint_writer *writer, const job *j)
     return false;
 }
 
+/// Keeps a job's buffer for another, or frees it.
+static void give_back(glint_writer *writer, job *j)
+{
+    if (j->bytes.data && j->bytes.capacity <= SPARE_BYTES && writer->spare_count < SPARES) {
+        writer->spare[writer->spare_count] = j->bytes;
+        writer->spare[writer->spare_count++].size = 0;
+    } else {
+        free(j->bytes.data);
+    }
+    j->bytes = (glint_bytes) { 0 };
+}
+
 /// The first job that waits for its next step, which begins; NULL: none does.
 static job *take(glint_writer *writer, job_state waiting)
 {
@@ -101,21 +118,22 @@ static job *take(glint_writer *writer, job_state waiting)
     if (j) {
         j->state = waiting + 1;
         writer->waiting[waiting]--;
-        pthread_cond_broadcast(&writer->changed);
+        pthread_cond_broadcast(waiting == JOB_QUEUED ? &writer->moved : &writer->to_encode); // there is room for one more
     }
     return j;
 }
 
 static void move_on(glint_writer *writer, job *j, job_state state)
 {
-    if (state != JOB_ENCODED) {
-        free(j->bytes.data);
-        j->bytes = (glint_bytes) { 0 };
-    } else {
-        writer->waiting[state]++;
-    }
     j->state = state;
-    pthread_cond_broadcast(&writer->changed);
+    if (state == JOB_ENCODED) {
+        writer->waiting[state]++;
+    } else {
+        give_back(writer, j);
+        pthread_cond_broadcast(&writer->moved);
+    }
+    if (writer->waiting[JOB_ENCODED] > 0) // this one, or one that was behind it
+        pthread_cond_signal(&writer->to_file);
 }
 
 static void *run_encoder(void *user)
@@ -127,16 +145,18 @@ static void *run_encoder(void *user)
         if (!j && writer->closing && !writer->waiting[JOB_QUEUED])
             break;
         if (!j) {
-            pthread_cond_wait(&writer->changed, &writer->lock);
+            pthread_cond_wait(&writer->to_encode, &writer->lock);
             continue;
         }
+        if (writer->spare_count > 0)
+            j->bytes = writer->spare[--writer->spare_count];
         pthread_mutex_unlock(&writer->lock);
         const bool encoded = encode(j, writer->bands);
         pthread_mutex_lock(&writer->lock);
         move_on(writer, j, encoded ? JOB_ENCODED : JOB_DONE);
     }
     writer->encoded_all = true;
-    pthread_cond_broadcast(&writer->changed);
+    pthread_cond_broadcast(&writer->to_file);
     pthread_mutex_unlock(&writer->lock);
     return NULL;
 }
@@ -150,7 +170,7 @@ static void *run_filer(void *user)
         if (!j && writer->encoded_all && !writer->waiting[JOB_ENCODED])
             break;
         if (!j) {
-            pthread_cond_wait(&writer->changed, &writer->lock);
+            pthread_cond_wait(&writer->to_file, &writer->lock);
             continue;
         }
         pthread_mutex_unlock(&writer->lock);
@@ -158,6 +178,7 @@ static void *run_filer(void *user)
         pthread_mutex_lock(&writer->lock);
         move_on(writer, j, JOB_DONE);
     }
+    pthread_cond_signal(&writer->to_file); // another that waits ends, too
     pthread_mutex_unlock(&writer->lock);
     return NULL;
 }
@@ -180,7 +201,7 @@ static void close_encoder(glint_writer *writer)
 {
     pthread_mutex_lock(&writer->lock);
     writer->closing = true;
-    pthread_cond_broadcast(&writer->changed);
+    pthread_cond_signal(&writer->to_encode);
     pthread_mutex_unlock(&writer->lock);
     pthread_join(writer->encoder, NULL);
 }
@@ -199,9 +220,13 @@ static bool start_threads(glint_writer *writer)
 
 static void free_writer(glint_writer *writer)
 {
-    pthread_cond_destroy(&writer->changed);
+    pthread_cond_destroy(&writer->to_encode);
+    pthread_cond_destroy(&writer->to_file);
+    pthread_cond_destroy(&writer->moved);
     pthread_mutex_destroy(&writer->lock);
     glint_bands_destroy(writer->bands);
+    for (int i = 0; i < writer->spare_count; i++)
+        free(writer->spare[i].data);
     free(writer);
 }
 
@@ -218,7 +243,9 @@ glint_status glint_writer_create(int queue_depth, int threads, glint_writer **ou
     writer->queue_depth = queue_depth;
     writer->end = &writer->first;
     pthread_mutex_init(&writer->lock, NULL);
-    pthread_cond_init(&writer->changed, NULL);
+    pthread_cond_init(&writer->to_encode, NULL);
+    pthread_cond_init(&writer->to_file, NULL);
+    pthread_cond_init(&writer->moved, NULL);
     status = glint_bands_create(threads ? threads : glint_pool_processors(), &writer->bands, error);
     if (!status && !start_threads(writer))
         status = glint_fail(error, GLINT_ERR_NOMEM, "no thread for the writer: memory is short, or there are as many as there may be");
@@ -295,11 +322,11 @@ glint_status glint_writer_submit(glint_writer *writer, glint_image *image, const
     j->result.user = user;
     pthread_mutex_lock(&writer->lock);
     while (writer->waiting[JOB_QUEUED] >= writer->queue_depth)
-        pthread_cond_wait(&writer->changed, &writer->lock);
+        pthread_cond_wait(&writer->moved, &writer->lock);
     *writer->end = j;
     writer->end = &j->next;
     writer->waiting[JOB_QUEUED]++;
-    pthread_cond_broadcast(&writer->changed);
+    pthread_cond_signal(&writer->to_encode);
     pthread_mutex_unlock(&writer->lock);
     return GLINT_OK;
 }
@@ -308,7 +335,7 @@ bool glint_writer_collect(glint_writer *writer, bool wait, glint_write_result *r
 {
     pthread_mutex_lock(&writer->lock);
     while (wait && writer->first && writer->first->state != JOB_DONE)
-        pthread_cond_wait(&writer->changed, &writer->lock);
+        pthread_cond_wait(&writer->moved, &writer->lock);
     job *j = writer->first && writer->first->state == JOB_DONE ? writer->first : NULL;
     if (j) {
         writer->first = j->next;
@@ -335,6 +362,6 @@ void glint_writer_cancel(glint_writer *writer)
         j->state = JOB_DONE;
     }
     writer->waiting[JOB_QUEUED] = 0;
-    pthread_cond_broadcast(&writer->changed);
+    pthread_cond_broadcast(&writer->moved);
     pthread_mutex_unlock(&writer->lock);
 }

@@ -42,9 +42,10 @@ static void *stream_at(uint64_t number)
 /// The bytes that a band gives with its stream here.
 static glint_bytes band_at(const uint8_t *data, void *stream)
 {
+    static uint8_t level[ISAL_DEF_LVL1_DEFAULT];
     glint_bytes out = { 0 };
     assert_true(glint_bytes_reserve(&out, room_for(BAND_BYTES)));
-    out.size = fast_band_at(stream, data, BAND_BYTES, false, out.data, room_for(BAND_BYTES));
+    out.size = fast_band_at(stream, level, data, BAND_BYTES, false, out.data, room_for(BAND_BYTES));
     assert_true(out.size > 0);
     return out;
 }
@@ -62,10 +63,11 @@ static void test_fast_places(void **state)
     (void)state;
     uint8_t *data = make_band();
     void *stream[PLACES_TRIED];
-    bool mapped;
+    uint32_t third;
+    memcpy(&third, data + 2, sizeof third);
     for (int i = 0; i < PLACES_TRIED; i++) { // each has a place of its own
-        stream[i] = make_stream(data, BAND_BYTES, &mapped);
-        assert_true(mapped);
+        stream[i] = map_stream(bucket_of(third));
+        assert_non_null(stream[i]);
     }
     glint_bytes want = band_at(data, stream[0]);
     for (int i = 1; i < PLACES_TRIED; i++)
@@ -92,16 +94,47 @@ static void test_buckets(void **state)
     (void)state;
     for (uint32_t i = 0; i < 1000; i++) {
         const uint32_t bytes = i * 0x9e3779b1;
-        void *stream = map_stream(bytes);
+        void *stream = map_stream(bucket_of(bytes));
         assert_non_null(stream);
         assert_int_equal(bucket_of((uint32_t)((uintptr_t)stream >> PLACE_SHIFT)), bucket_of(bytes));
         munmap(stream, STREAM_BYTES);
     }
 }
 
+/// What is kept from band to band shows in none of them, with more buckets than there are streams to keep.
+static void test_memory(void **state)
+{
+    (void)state;
+    struct glint_deflate_memory *kept = glint_deflate_memory_create();
+    uint8_t *data = make_band();
+    assert_non_null(kept);
+    for (uint32_t i = 0; i < 3 * STREAMS; i++) {
+        const uint32_t bytes = i % (STREAMS + STREAMS / 2) * 0x9e3779b1;
+        struct glint_deflate_memory *fresh = glint_deflate_memory_create();
+        glint_bytes want = { 0 }, got = { 0 };
+        uint32_t sum[2];
+        assert_non_null(fresh);
+        memcpy(data + 2, &bytes, sizeof bytes);
+        memcpy(data + 20002, &bytes, sizeof bytes);
+        assert_int_equal(glint_deflate_band(kept, GLINT_ENCODE_FAST, data, BAND_BYTES, false, &got, &sum[0], NULL), GLINT_OK);
+        assert_int_equal(glint_deflate_band(fresh, GLINT_ENCODE_FAST, data, BAND_BYTES, false, &want, &sum[1], NULL), GLINT_OK);
+        assert_int_equal(got.size, want.size);
+        assert_memory_equal(got.data, want.data, want.size);
+        assert_int_equal(sum[0], sum[1]);
+        glint_deflate_memory_destroy(fresh);
+        free(got.data);
+        free(want.data);
+    }
+    assert_int_equal(kept->placed.count, STREAMS);
+    assert_null(kept->anywhere); // each had its place
+    glint_deflate_memory_destroy(kept);
+    free(data);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_fast_places), cmocka_unit_test(test_buckets) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_fast_places), cmocka_unit_test(test_buckets),
+                                        cmocka_unit_test(test_memory) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
 #else
