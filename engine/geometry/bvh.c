@@ -11,10 +11,13 @@
 #define TASK_SHARE 12
 #define TASK_MIN 2048
 
+#define RECORDS_A_NODE 12 ///< fewer than most trees have
+
 /// Nodes in a row that grows. A child index counts from the row's start.
 typedef struct node_list {
-    glint_node *nodes; ///< owned
+    glint_node *nodes; ///< owned, unless `lent`
     uint32_t count, capacity;
+    bool lent; ///< of the builder's room
 } node_list;
 
 /// A subtree that a worker builds. Its first node has a place in the top, the others follow all that came before.
@@ -33,6 +36,8 @@ typedef struct builder {
     task *tasks; ///< owned
     size_t task_count, task_capacity;
     uint32_t task_max; ///< boxes in a task; larger sets are split by all workers together
+    glint_node *room; ///< owned; where the tasks' lists begin, which few outgrow
+    size_t room_bytes;
     glint_node *nodes; ///< the finished tree
 } builder;
 
@@ -53,7 +58,8 @@ typedef struct node_slots {
 
 static void nodes_free(node_list *list)
 {
-    glint_scratch_free(list->nodes, list->capacity * sizeof *list->nodes);
+    if (!list->lent)
+        glint_scratch_free(list->nodes, list->capacity * sizeof *list->nodes);
     *list = (node_list) { .count = list->count };
 }
 
@@ -62,11 +68,13 @@ static uint32_t nodes_add(node_list *list, uint32_t count)
 {
     if (count > list->capacity - list->count) {
         const uint32_t capacity = list->capacity + list->capacity / 2 + 16;
-        glint_node *nodes = glint_scratch_resize(list->nodes, list->capacity * sizeof *nodes, (size_t)capacity * sizeof *nodes);
+        const size_t held = list->lent ? 0 : list->capacity * sizeof *list->nodes;
+        glint_node *nodes = glint_scratch_resize(held ? list->nodes : NULL, held, (size_t)capacity * sizeof *nodes);
         if (!nodes)
             return UINT32_MAX;
-        list->nodes = nodes;
-        list->capacity = capacity;
+        if (list->lent)
+            memcpy(nodes, list->nodes, list->count * sizeof *nodes);
+        *list = (node_list) { nodes, list->count, capacity, false };
     }
     list->count += count;
     return list->count - count;
@@ -285,9 +293,29 @@ static void join_task(void *context, size_t index, int worker)
     nodes_free(&t->list);
 }
 
+static uint32_t nodes_of(const task *t) { return t->set.count / RECORDS_A_NODE + GLINT_NODE_WIDTH; }
+
+/// Lends each task the nodes that it needs, most likely: one piece of memory, whose pages are large.
+static bool make_room(builder *b)
+{
+    size_t total = 0, next = 0;
+    for (size_t i = 0; i < b->task_count; i++)
+        total += nodes_of(&b->tasks[i]);
+    b->room = glint_scratch_resize(NULL, 0, total * sizeof *b->room);
+    if (!b->room)
+        return false;
+    b->room_bytes = total * sizeof *b->room;
+    for (size_t i = 0; i < b->task_count; i++) {
+        const uint32_t count = nodes_of(&b->tasks[i]);
+        b->tasks[i].list = (node_list) { b->room + next, 0, count, true };
+        next += count;
+    }
+    return true;
+}
+
 static bool build_lists(builder *b, const glint_record_set *root)
 {
-    if (nodes_add(&b->top, 1) == UINT32_MAX || !build_node(b, &b->top, 0, root, GLINT_BVH_DEPTH))
+    if (nodes_add(&b->top, 1) == UINT32_MAX || !build_node(b, &b->top, 0, root, GLINT_BVH_DEPTH) || !make_room(b))
         return false;
     glint_run_items(b->records.pool, b->task_count, build_task, b);
     for (size_t i = 0; i < b->task_count; i++)
@@ -321,6 +349,7 @@ static void builder_free(builder *b)
         nodes_free(&b->tasks[i].list);
     free(b->tasks);
     nodes_free(&b->top);
+    glint_scratch_free(b->room, b->room_bytes);
 }
 
 glint_box *glint_boxes_alloc(uint32_t count)

@@ -252,15 +252,15 @@ static void swap_wrong(void *context, size_t index, int worker)
     }
 }
 
-/// The chunks' bins together, in the first one's place, which keeps its counts.
-static bins add_bins(const chunk *chunks, size_t count)
+/// Adds the other chunks' bins to those of the first.
+static const bins *add_bins(chunk *chunks, size_t count)
 {
-    bins sum = chunks[0].bins;
+    bins *sum = &chunks[0].bins;
     for (size_t i = 1; i < count; i++)
         for (int axis = 0; axis < 3; axis++)
             for (int bin = 0; bin < BINS; bin++) {
-                bounds_add(&sum.box[axis][bin], &chunks[i].bins.box[axis][bin]);
-                sum.count[axis][bin] += chunks[i].bins.count[axis][bin];
+                bounds_add(&sum->box[axis][bin], &chunks[i].bins.box[axis][bin]);
+                sum->count[axis][bin] += chunks[i].bins.count[axis][bin];
             }
     return sum;
 }
@@ -339,13 +339,13 @@ static void split_chunks(const glint_records *records, chunk *chunks, size_t cou
     work.count = cut_chunks(chunks, count, set->count);
     work.grid = grid_of(set);
     glint_run_items(work.pool, count, bin_chunk, &work);
-    const bins sum = add_bins(chunks, count);
-    work.cut = find_cut(&sum, set);
+    const bins *sum = add_bins(chunks, count);
+    work.cut = find_cut(sum, set);
     if (work.cut.axis < 0) {
         glint_records_halve(records, set, above);
         return;
     }
-    part(&sum, work.cut, set, above);
+    part(sum, work.cut, set, above);
     move_records(&work, set, above);
 }
 
