@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROWS_THAT_FIT 32u ///< of 1 KB, into the first level of the caches; beyond it another order is tried
+#define ROWS_THAT_FIT 32u ///< of 2 KB, almost into the first level of the caches; beyond it another order is tried
 #define UNUSED UINT32_MAX
 
 typedef struct maker {

@@ -158,13 +158,13 @@ static void run(const named *of)
     glint_program *program = create(of, 0.05);
     program_points_fill(&points);
     runner r = { .stages = glint_stages_select(NULL, &asked, &unknown) };
-    r.args = (glint_program_args) { .code = &program->code, .group_count = GLINT_PROGRAM_GROUPS, .wanted = all };
+    r.args = (glint_program_args) { .code = &program->code, .group_count = PROGRAM_POINTS / GLINT_GROUP, .wanted = all };
     r.args.rows = rows[0];
     for (int i = 0; i < GLINT_INPUT_COUNT; i++)
         r.args.input[i] = points.input[i];
     for (size_t k = 0; k < glint_program_output_count(program); k++)
         r.args.plane[k] = points.plane[k];
-    bench_say(of->name, "ns", bench_median(time_points, &r) * 1e6 / ((double)PROGRAM_REPEATS * GLINT_PROGRAM_LANES));
+    bench_say(of->name, "ns", bench_median(time_points, &r) * 1e6 / ((double)PROGRAM_REPEATS * PROGRAM_POINTS));
     glint_program_release(program);
 }
 

@@ -1,4 +1,4 @@
-/// The contract of the stage `program`: the instructions of a pattern or a shader, for up to 128 points. Begin with
+/// The contract of the stage `program`: the instructions of a pattern or a shader, for up to 256 points. Begin with
 /// stages.h.
 #ifndef GLINT_CONTRACT_PROGRAM_H
 #define GLINT_CONTRACT_PROGRAM_H
@@ -6,8 +6,8 @@
 #include "engine/base/math.h" // operations and inputs are those of glint.h
 #include "engine/stages/contract/hits.h"
 
-#define GLINT_PROGRAM_GROUPS 8 ///< groups at a time
-#define GLINT_PROGRAM_LANES 128 ///< a row: one double a lane, 1 KB
+#define GLINT_PROGRAM_GROUPS 16 ///< groups at a time
+#define GLINT_PROGRAM_LANES 256 ///< a row: one double a lane, 2 KB
 #define GLINT_CODE_OUTPUTS_MAX 96 ///< of gradients; what is stored has at most GLINT_PROGRAM_OUTPUTS_MAX
 #define GLINT_NUMBER_LANES 16 ///< how often a number stands in memory: a group
 
