@@ -192,10 +192,12 @@ static inline dm q_is(vq x, uint32_t bits, uint32_t value)
 }
 static inline dm q_test(vq x, uint32_t bit) { return q_is(x, bit, bit); }
 
-#define GLINT_D_FUSED 1 ///< there are the two that follow
+#define GLINT_D_FUSED 1 ///< there are the three that follow
 /// a * b + c and c - a * b, rounded once.
 static inline vd d_fma(vd a, vd b, vd c) { return _mm256_fmadd_pd(a, b, c); }
 static inline vd d_fnma(vd a, vd b, vd c) { return _mm256_fnmadd_pd(a, b, c); }
+/// min(|a|, |b|), of NaN anything.
+static inline vd d_least_size(vd a, vd b) { return d_min(d_abs(a), d_abs(b)); }
 
 static inline vd d_two_prod(vd a, vd b, vd *error)
 {

@@ -192,13 +192,16 @@ static inline dm q_is(vq x, uint32_t bits, uint32_t value)
 /// Lanes where the bit, one of the lower 32, is set.
 static inline dm q_test(vq x, uint32_t bit) { return _mm512_test_epi64_mask(x, q_set(bit)); }
 
-#define GLINT_D_FUSED 1 ///< there are the two that follow
+#define GLINT_D_FUSED 1 ///< there are the three that follow
 /// a * b + c and c - a * b, rounded once.
 static inline vd d_fma(vd a, vd b, vd c) { return _mm512_fmadd_pd(a, b, c); }
 static inline vd d_fnma(vd a, vd b, vd c) { return _mm512_fnmadd_pd(a, b, c); }
 
-#define GLINT_D_INVERSE 1 ///< there is the next: 1 / x within 2^-14 of itself, no two processors need agree
-static inline vd d_inverse(vd x) { return _mm512_rcp14_pd(x); }
+/// min(|a|, |b|), of NaN anything.
+static inline vd d_least_size(vd a, vd b) { return _mm512_range_pd(a, b, 10); }
+
+#define GLINT_D_INVERSE_ROOT 1 ///< there is the next: 1 / sqrt(x) within 2^-14 of itself, no two processors need agree
+static inline vd d_inverse_root(vd x) { return _mm512_rsqrt14_pd(x); }
 
 static inline vd d_two_prod(vd a, vd b, vd *error)
 {
