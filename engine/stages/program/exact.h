@@ -67,7 +67,7 @@ OP_KERNEL(sign, OP_A, d_truth(d_lt(d_set(0), a)) - d_truth(d_lt(a, d_set(0))))
 OP_KERNEL(muladd, OP_ABC, (a * b) + c)
 OP_KERNEL(submul, OP_ABC, a - b * c)
 OP_KERNEL(mulsub, OP_ABC, (a * b) - c)
-OP_KERNEL(mulmul, OP_ABC, (a * b) * c)
+OP_KERNEL(mulmul_any, OP_ABC, (a * b) * c)
 OP_KERNEL(mix, OP_ABC, a + c * (b - a))
 OP_KERNEL(less, OP_AB, d_truth(d_lt(a, b)))
 OP_KERNEL(lesseq, OP_AB, d_truth(d_le(a, b)))
@@ -79,6 +79,32 @@ OP_KERNEL(select, OP_ABC, d_select(d_eq(a, d_set(0)), c, b))
 OP_KERNEL(step, OP_AB, d_select(d_lt(b, a), d_set(0), d_set(1)))
 OP_KERNEL(smoothstep, OP_ABC, d_smoothstep(a, b, c))
 OP_KERNEL(clamp, OP_ABC, d_clamp(a, b, c))
+
+/// Of (a b) c, where a and b are one number each: makes it a product of two. product: a b, a group of it.
+static inline void begin_mulmul(const op_call *call, double product[GLINT_GROUP], op_call *two)
+{
+    for (int i = 0; i < GLINT_GROUP; i += VD)
+        d_store(product + i, d_load(call->in[0] + i) * d_load(call->in[1] + i));
+    two->in[0] = product;
+    two->in[1] = call->in[2];
+    two->step[0] = 0;
+    two->step[1] = call->step[2];
+}
+
+/// a and b are often what a material and a light have everywhere.
+static void op_mulmul(const op_call *call)
+{
+    _Alignas(64) double product[GLINT_GROUP];
+    op_call two;
+    if (call->step[0] | call->step[1]) {
+        op_mulmul_any(call);
+        return;
+    }
+    begin_mulmul(call, product, &two);
+    two.out[0] = call->out[0];
+    two.lanes = call->lanes;
+    op_mul(&two);
+}
 
 // ---- Divisors that are powers of two ----
 
