@@ -145,9 +145,23 @@ static inline channel_numbers numbers_of(const glint_shade_args *args, const gli
                                share_color(material->specular[c], specular) };
 }
 
+/// What reaches a group that shows one material in every lane, of one light at most. NULL, a constant: no factors are stored, as there
+/// are no highlights.
+typedef struct group_light {
+    const light_factors *factors;
+    const glint_shade_light *light; ///< NULL: none reaches it
+    bool shines; ///< there are highlights
+} group_light;
+
+/// One vector of the light's diffuse factor.
+INNER vf group_diffuse(const group_light *by, size_t at, int i)
+{
+    return by->factors ? f_load(by->factors->diffuse[0] + i) : diffuse_factor(by->light, at, i);
+}
+
 /// One channel of a group. `has`: the material's planes.
-INNER void whole_channel(const glint_shade_args *args, const channel_numbers *by, unsigned has, bool shines,
-                         const light_factors *factors, int c, size_t at)
+INNER void whole_channel(const glint_shade_args *args, const channel_numbers *by, unsigned has, const group_light *from, int c,
+                         size_t at)
 {
     const glint_shade_planes *planes = args->planes;
     const bool follows = has & GLINT_PLANE_AMBIENT_IS_DIFFUSE, painted = follows || has & GLINT_PLANE_DIFFUSE;
@@ -155,7 +169,7 @@ INNER void whole_channel(const glint_shade_args *args, const channel_numbers *by
                 *ambient = has & GLINT_PLANE_AMBIENT ? planes->ambient[c] + at : NULL,
                 *specular = has & GLINT_PLANE_SPECULAR ? planes->specular[c] + at : NULL;
     float *beauty = args->beauty[c] + at;
-    const bool lit = factors->count;
+    const bool lit = from->light, shines = lit && from->shines;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         wide_lanes kd, other;
         vf sum = f_set(by->ambient_color), color = f_set(by->diffuse_color), shine = f_set(by->specular_color);
@@ -170,11 +184,11 @@ INNER void whole_channel(const glint_shade_args *args, const channel_numbers *by
         if (has & GLINT_PLANE_DIFFUSE)
             color = f_min(narrow(&kd, by->diffuse), f_set(FLT_MAX));
         if (lit)
-            sum = sum + f_load(factors->diffuse[0] + i) * color;
-        if (lit && shines && specular)
+            sum = sum + group_diffuse(from, at, i) * color;
+        if (shines && specular)
             shine = plane_color(specular + i, by->specular);
-        if (lit && shines)
-            sum = sum + f_load(factors->specular[0] + i) * shine;
+        if (shines)
+            sum = sum + f_load(from->factors->specular[0] + i) * shine;
         f_store(beauty + i, sum);
     }
 }
@@ -185,6 +199,7 @@ typedef struct plane_numbers {
     const glint_shade_light *light; ///< NULL: none reaches it
     bool grey; ///< its diffuse reflectance and the light's colour are the same in all channels, which share a plane
     bool level; ///< of a grey one: so is ambient light
+    bool white; ///< of a grey one: it is the plane
     channel_numbers channel[3];
 } plane_numbers;
 
@@ -202,55 +217,84 @@ static void read_numbers(const glint_shade_args *args, const glint_shade_materia
                         numbers->channel[c].diffuse == numbers->channel[0].diffuse;
         numbers->level = numbers->level && numbers->channel[c].ambient == numbers->channel[0].ambient;
     }
+    numbers->white = numbers->channel[0].diffuse == 1;
 }
 
 /// All channels of a group whose diffuse light is grey; the ambient reflectance is the diffuse one.
-INNER void whole_grey(const glint_shade_args *args, const plane_numbers *numbers, bool shines,
-                      const light_factors *factors, size_t at)
+INNER void whole_grey(const glint_shade_args *args, const plane_numbers *numbers, const group_light *from, size_t at)
 {
     const float *diffuse = args->planes->diffuse[0] + at;
     float *const beauty[3] = { args->beauty[0] + at, args->beauty[1] + at, args->beauty[2] + at };
-    const bool lit = factors->count, white = numbers->channel[0].diffuse == 1;
+    const bool lit = from->light, shines = lit && from->shines;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const vf plane = f_load(diffuse + i);
         const wide_lanes kd = wide_of(diffuse + i);
         vf light = f_set(0), ambient = narrow(&kd, numbers->channel[0].ambient);
-        if (lit && white) // a reflectance, and so finite
-            light = f_load(factors->diffuse[0] + i) * f_load(diffuse + i);
+        if (lit && numbers->white) // a reflectance, and so finite
+            light = group_diffuse(from, at, i) * plane;
         else if (lit)
-            light = f_load(factors->diffuse[0] + i) * f_min(narrow(&kd, numbers->channel[0].diffuse), f_set(FLT_MAX));
+            light = group_diffuse(from, at, i) * f_min(narrow(&kd, numbers->channel[0].diffuse), f_set(FLT_MAX));
+        if (numbers->level && !shines) {
+            if (lit)
+                ambient = ambient + light;
+            for (int c = 0; c < 3; c++)
+                f_store(beauty[c] + i, ambient);
+            continue;
+        }
         for (int c = 0; c < 3; c++) {
             if (c > 0 && !numbers->level)
                 ambient = narrow(&kd, numbers->channel[c].ambient);
             vf sum = ambient;
             if (lit)
                 sum = sum + light;
-            if (lit && shines)
-                sum = sum + f_load(factors->specular[0] + i) * f_set(numbers->channel[c].specular_color);
+            if (shines)
+                sum = sum + f_load(from->factors->specular[0] + i) * f_set(numbers->channel[c].specular_color);
             f_store(beauty[c] + i, sum);
         }
     }
 }
 
-/// As shade_whole. Diffuse reflectances that are the ambient ones, too, are the common case.
-static __attribute__((noinline)) void whole_planes(const glint_shade_args *args, const glint_shade_material *material,
-                                                   bool shines, const light_factors *factors, size_t at,
-                                                   plane_numbers *numbers)
+/// All of it. Diffuse reflectances that are the ambient ones, too, are the common case.
+INNER void whole_painted(const glint_shade_args *args, const glint_shade_material *material, const group_light *from, size_t at,
+                         plane_numbers *numbers)
 {
     const unsigned painted = GLINT_PLANE_DIFFUSE | GLINT_PLANE_AMBIENT_IS_DIFFUSE, has = material->planes;
-    const glint_shade_light *light = factors->count ? factors->light[0] : NULL;
     const bool usual = (has & ~(unsigned)GLINT_PLANE_SHININESS) == painted;
-    if (numbers->material != material || numbers->light != light)
-        read_numbers(args, material, light, numbers);
+    if (numbers->material != material || numbers->light != from->light)
+        read_numbers(args, material, from->light, numbers);
     if (usual && numbers->grey) {
-        whole_grey(args, numbers, shines, factors, at);
+        whole_grey(args, numbers, from, at);
         return;
     }
     for (int c = 0; c < 3; c++) {
         if (usual)
-            whole_channel(args, &numbers->channel[c], painted, shines, factors, c, at);
+            whole_channel(args, &numbers->channel[c], painted, from, c, at);
         else
-            whole_channel(args, &numbers->channel[c], has, shines, factors, c, at);
+            whole_channel(args, &numbers->channel[c], has, from, c, at);
     }
+}
+
+/// As shade_whole.
+static __attribute__((noinline)) void whole_planes(const glint_shade_args *args, const glint_shade_material *material,
+                                                   bool shines, const light_factors *factors, size_t at,
+                                                   plane_numbers *numbers)
+{
+    const group_light from = { factors, factors->count ? factors->light[0] : NULL, shines };
+    whole_painted(args, material, &from, at, numbers);
+}
+
+/// Whether whole_matt_planes can shade it.
+static inline bool is_matt_painted(const glint_shade_args *args, const glint_shade_material *material, bool specular)
+{
+    return has_only_factors(args, specular) && !(material->planes & GLINT_PLANE_SHADED) && !has_facets(material);
+}
+
+/// The same of a material without highlights.
+static __attribute__((noinline)) void whole_matt_planes(const glint_shade_args *args, const glint_shade_material *material,
+                                                        size_t at, plane_numbers *numbers)
+{
+    const group_light from = { NULL, args->lights->lit[at / GLINT_GROUP] ? args->lights : NULL, false };
+    whole_painted(args, material, &from, at, numbers);
 }
 
 /// As shade_direct.

@@ -409,6 +409,10 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, bool pla
             shade_matt(args, material, colors, at);
             return;
         }
+        if (planes && simple && lanes == 0xffff && is_matt_painted(args, material, specular)) {
+            whole_matt_planes(args, material, at, numbers);
+            return;
+        }
         if (planes)
             find_plane_factors(args, material, specular, g, &factors);
         else
