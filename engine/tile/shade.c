@@ -129,7 +129,7 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         for (int c = 0; c < 3; c++)
             args.sum[k][c] = plan->accumulate && !tile->direct ? tile->film.sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
-    if (count > 0 && glint_tile_shows_shader(tile, plan))
+    if (count > 0 && plan->runs[GLINT_STAGE_SHADER])
         run_shaders(tile, frame, from, count, lights);
     frame->stages->shade(&args);
     if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && args.first)

@@ -11,6 +11,7 @@
 #define READS_UV_FOOTPRINT BITS(GLINT_INPUT_UV_FOOTPRINT, 1)
 #define READS_UV GLINT_READS_UV
 #define READS_FOOTPRINT (BITS(GLINT_INPUT_FOOTPRINT, 1) | READS_UV_FOOTPRINT)
+#define READS_GATHERED (READS_P | READS_WORLD | READS_N | READS_V | READS_UV | READS_FOOTPRINT)
 
 /// An entry's group: where it is in the tile, and where in the rows.
 typedef struct gathering {
@@ -353,7 +354,7 @@ void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *
     for (uint32_t rest = reads; rest; rest &= rest - 1)
         glint_pattern_row(inputs, (glint_input)__builtin_ctz(rest));
     uint32_t left = read_in_place(inputs, frame, points, reads, entries, count);
-    left &= camera_of(frame, points) ? ~(uint32_t)READS_V : ~0u;
+    left &= camera_of(frame, points) ? READS_GATHERED & ~READS_V : READS_GATHERED;
     for (uint32_t k = 0; left && k < count; k++) {
         const gathering g = { inputs, frame, points, (size_t)entries[k].group * GLINT_GROUP, (size_t)k * GLINT_GROUP };
         gather_group(&g, left, entries[k].lanes);

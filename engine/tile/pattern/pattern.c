@@ -1,4 +1,4 @@
-/// Programs of materials, run for the points that show them: up to eight groups at a time, each with its own lanes.
+/// Programs of materials, run for the points that show them: up to sixteen groups at a time, each with its own lanes.
 #include "engine/tile/pattern/pattern.h"
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
@@ -344,17 +344,20 @@ bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *fr
 
 glint_pattern_points glint_pattern_points_of(const glint_tile *tile)
 {
-    glint_pattern_points points = { .group_count = tile->group_count,
-                                    .hits = tile->at.hits,
-                                    .back = tile->hit.back,
-                                    .prim = tile->at.prim,
-                                    .material = tile->surface.material,
-                                    .only = tile->at.only,
-                                    .t = tile->owner ? NULL : tile->at.t,
-                                    .tile = tile,
-                                    .planes = tile->at.planes,
-                                    .fields = GLINT_FIELDS_PLANES };
+    glint_pattern_points points; // each field by itself: an initializer clears all of it first, which takes longer
+    points.group_count = tile->group_count;
+    points.hits = tile->at.hits;
+    points.back = tile->hit.back;
+    points.prim = tile->at.prim;
+    points.material = tile->surface.material;
+    points.only = tile->at.only;
+    points.t = tile->owner ? NULL : tile->at.t;
+    points.tile = tile;
+    points.planes = tile->at.planes;
+    points.fields = GLINT_FIELDS_PLANES;
+    points.shading = false;
     for (int c = 0; c < 3; c++) {
+        points.direction[c] = NULL;
         points.point[c] = tile->surface.point[c];
         points.normal[c] = tile->unbumped[c] ? (const void *)tile->unbumped[c] : tile->surface.normal[c];
     }

@@ -1,7 +1,7 @@
 /// The stage shader: programs that say what one light leaves of a material, in place of the built-in models.
 ///
-/// The groups that show a material are taken eight at a time. What they are is gathered once, what each light does there follows,
-/// and the program's results are added up in double before the next eight come.
+/// The groups that show a material are taken sixteen at a time. What they are is gathered once, what each light does there follows,
+/// and the program's results are added up in double before the next sixteen come.
 #include "engine/program/program.h"
 #include "engine/tile/pattern/work.h"
 
@@ -111,8 +111,8 @@ static void gather_way(glint_tile *tile, const glint_tile_frame *frame, const ba
 {
     glint_pattern_inputs *inputs = &tile->pattern->inputs;
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
-    const size_t at = (size_t)lit->first * GLINT_GROUP;
-    glint_unit_args args = { .group_count = lit->count,
+    const size_t at = light->directional ? 0 : (size_t)lit->first * GLINT_GROUP; // one way for all points
+    glint_unit_args args = { .group_count = light->directional ? 1 : lit->count,
                              .place = sample ? NULL : light->position,
                              .length = glint_pattern_row(inputs, GLINT_INPUT_DISTANCE) + at };
     for (int c = 0; c < 3; c++) {
@@ -124,8 +124,11 @@ static void gather_way(glint_tile *tile, const glint_tile_frame *frame, const ba
     if (sample)
         place_sample(tile, frame->plan, b, lit, light, sample);
     frame->stages->unit(&args);
-    if (light->directional)
-        glint_pattern_put_number(inputs, GLINT_INPUT_DISTANCE, HUGE_VAL);
+    inputs->same &= ~(7u << GLINT_INPUT_L_X);
+    if (!light->directional)
+        return;
+    inputs->same |= 7u << GLINT_INPUT_L_X;
+    glint_pattern_put_number(inputs, GLINT_INPUT_DISTANCE, HUGE_VAL);
 }
 
 /// What arrives of a light's colour.
@@ -214,8 +217,8 @@ static void shade_batch(glint_tile *tile, const glint_tile_frame *frame, const g
 {
     const result to = frame->plan->accumulate ? TO_SUMS : light_count > 1 || lights->visible ? TO_TOTALS : TO_PLANES;
     bool gathered = false;
-    if (to == TO_TOTALS)
-        memset(tile->pattern->total, 0, sizeof tile->pattern->total);
+    for (int term = 0; to == TO_TOTALS && term < GLINT_SHADER_TERMS; term++)
+        memset(tile->pattern->total[term], 0, (size_t)b->count * GLINT_GROUP * sizeof(double));
     for (uint32_t i = 0; i < light_count; i++) {
         const reached lit = find_reached(b, lights[i].lit);
         if (!lit.count)
@@ -251,6 +254,8 @@ void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const gl
 {
     const glint_pattern_points points = glint_shader_find_lanes(tile, frame->plan);
     const glint_pattern_lanes *entries;
+    if (!tile->pattern->count)
+        return;
     for (uint32_t taken; (taken = glint_pattern_take(tile->pattern, &entries));) {
         batch b = { .entries = entries, .count = taken };
         b.program = frame->plan->patterns->of[entries[0].material].program[GLINT_FIELD_SHADER];
