@@ -56,6 +56,13 @@ void glint_tile_note_way(const glint_tile *tile)
 
 // ---- Where results are ----
 
+/// The first row of the tile's codes in the last picture.
+static void prefetch_last_codes(const glint_tile *tile, const glint_image *last)
+{
+    const size_t pixel = glint_image_pixel_bytes(last);
+    glint_prefetch((const char *)last->codes + (tile->y0 * (size_t)last->width + tile->x0) * pixel, tile->width * pixel);
+}
+
 void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
@@ -79,8 +86,12 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
     }
     if (points)
         glint_prefetch(cached->t, GLINT_TILE_SAMPLES * reuse->real_size);
-    if (points && cached->only == GLINT_MISS)
+    if (cached->only == GLINT_MISS) // materials are named by it
         glint_prefetch(cached->prim, GLINT_TILE_SAMPLES * sizeof *cached->prim);
+    if (glint_splits_are_on(&reuse->splits) && glint_key_equal(cached->split, reuse->splits.key))
+        glint_prefetch(cached->values, glint_splits_bytes(&reuse->splits));
+    if (frame->last && frame->last->codes) // of which the first row often differs: see glint_tile_has_codes_of
+        prefetch_last_codes(tile, frame->last);
 }
 
 /// Points the sample's results at kept memory where this frame keeps them or has them, else at the tile's own. Memory is
