@@ -7,17 +7,30 @@
 
 #define BITS(first, count) (((1u << (count)) - 1) << (first))
 #define PLACE (BITS(GLINT_INPUT_P_X, 12) | BITS(GLINT_INPUT_UV_U, 4)) ///< where a point is, how it lies, what sees it
-#define ARRIVAL BITS(GLINT_INPUT_L_X, 7) ///< ways to lights, what of their colours arrives, how far they are
+#define WAYS (BITS(GLINT_INPUT_L_X, 3) | 1u << GLINT_INPUT_DISTANCE) ///< to lights
+#define COLORS BITS(GLINT_INPUT_LIGHT_R, 3) ///< what of theirs arrives
 #define REFLECTANCES BITS(GLINT_INPUT_KD_R, 7) ///< with the exponent
+
+/// Whether how much of some light arrives depends on the way it comes.
+static bool ways_weigh(const glint_plan *plan, const glint_plan_derivative *d)
+{
+    bool any = false;
+    for (size_t i = 0; i < plan->derivatives->light_count; i++)
+        any = any || d->lights[i].attenuated || d->lights[i].is_spot;
+    for (size_t i = 0; i < plan->light_count; i++)
+        any = any || plan->lights[i].light_samples;
+    return any;
+}
 
 /// What of a shader's inputs a derivative changes, a bit each.
 static uint32_t find_inputs(const glint_plan *plan, const glint_plan_derivative *d, uint32_t material)
 {
-    uint32_t inputs = d->bends ? PLACE | ARRIVAL : 0;
+    const uint32_t arrival = WAYS | (ways_weigh(plan, d) ? COLORS : 0);
+    uint32_t inputs = d->bends ? PLACE | arrival : 0;
     for (size_t i = 0; i < plan->derivatives->light_count; i++)
-        inputs |= d->lights[i].varies ? ARRIVAL : 0;
+        inputs |= d->lights[i].varies ? arrival | (d->lights[i].shines ? COLORS : 0) : 0;
     for (size_t i = 0; i < plan->derivatives->material_count; i++) // through which the light may come
-        inputs |= glint_any_slope(d->bounces[i].transmission) ? ARRIVAL : 0;
+        inputs |= glint_any_slope(d->bounces[i].transmission) ? WAYS | COLORS : 0;
     return inputs | (d->materials[material].varies ? REFLECTANCES : 0);
 }
 
@@ -35,6 +48,22 @@ static glint_status find_gradient(glint_plan *plan, const glint_program *shader,
         plan->patterns->row_count = plan->patterns->row_count < rows ? rows : plan->patterns->row_count;
     }
     return GLINT_OK;
+}
+
+/// The forward programs of a material's shader, where there are few derivatives.
+static glint_status find_forward(glint_plan *plan, const glint_program *shader, uint32_t material, glint_gradient *out,
+                                 glint_error *error)
+{
+    const glint_plan_derivatives *all = plan->derivatives;
+    glint_status status = GLINT_OK;
+    for (size_t k = 0; k < all->count && all->count <= GLINT_FORWARD_MAX && !status; k++) {
+        const uint32_t inputs = shader->inputs & find_inputs(plan, &all->of[k], material);
+        if (inputs)
+            status = glint_shader_forward(shader, inputs, &out->forward[k], error);
+        const uint32_t rows = out->forward[k] ? out->forward[k]->code.row_count : 0;
+        plan->patterns->row_count = plan->patterns->row_count < rows ? rows : plan->patterns->row_count;
+    }
+    return status;
 }
 
 glint_status glint_derivative_find_gradients(glint_plan *plan, glint_error *error)
@@ -56,6 +85,8 @@ glint_status glint_derivative_find_gradients(glint_plan *plan, glint_error *erro
         }
         if (inputs)
             status = find_gradient(plan, shader, inputs, name, &all->gradients[i], error);
+        if (inputs && !status)
+            status = find_forward(plan, shader, i, &all->gradients[i], error);
     }
     return status;
 }

@@ -266,7 +266,10 @@ static uint16_t place_of(maker *m, glint_program *program, glint_value value)
     if (glint_ssa_is_op(node))
         return m->row[value];
     if (node->op == GLINT_SSA_INPUT) {
-        program->inputs |= 1u << node->operand[0];
+        if (node->operand[0] < GLINT_INPUT_COUNT)
+            program->inputs |= 1u << node->operand[0];
+        else
+            program->slopes |= 1u << (node->operand[0] - GLINT_INPUT_COUNT);
         return (uint16_t)(GLINT_ROW_INPUT + node->operand[0]);
     }
     if (!m->row[value]) {
@@ -362,7 +365,8 @@ static glint_status make(maker *m, const glint_builder *builder, const glint_val
         return glint_fail_nomem(error);
     write_code(m, builder, program, outputs, count);
     make_keys(program);
-    return glint_code_check(&program->code, program->number_count, program->texture_count, program->inputs, error);
+    return glint_code_check(&program->code, program->number_count, program->texture_count,
+                            program->inputs | (uint64_t)program->slopes << GLINT_INPUT_COUNT, error);
 }
 
 glint_status glint_program_make(const glint_builder *builder, const glint_value *outputs, size_t count,

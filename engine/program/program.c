@@ -62,7 +62,8 @@ bool glint_program_constant(const glint_program *program, double *outputs)
 
 typedef struct known {
     uint64_t written[GLINT_PROGRAM_ROWS_MAX / 64];
-    uint32_t rows, numbers, inputs;
+    uint32_t rows, numbers;
+    uint64_t inputs;
 } known;
 
 static bool can_be_read(const known *k, uint32_t row)
@@ -70,7 +71,7 @@ static bool can_be_read(const known *k, uint32_t row)
     if (row >= GLINT_ROW_NUMBER)
         return row - GLINT_ROW_NUMBER < k->numbers;
     if (row >= GLINT_ROW_INPUT)
-        return row - GLINT_ROW_INPUT < GLINT_INPUT_COUNT && (k->inputs >> (row - GLINT_ROW_INPUT) & 1);
+        return row - GLINT_ROW_INPUT < GLINT_CODE_INPUTS && (k->inputs >> (row - GLINT_ROW_INPUT) & 1);
     return row < k->rows && (k->written[row / 64] >> row % 64 & 1);
 }
 
@@ -98,7 +99,7 @@ static glint_status check_instruction(known *k, const glint_program_code *code, 
 }
 
 glint_status glint_code_check(const glint_program_code *code, uint32_t number_count, uint32_t texture_count,
-                              uint32_t inputs, glint_error *error)
+                              uint64_t inputs, glint_error *error)
 {
     known k = { .rows = code->row_count, .numbers = number_count, .inputs = inputs };
     glint_status status = GLINT_OK;

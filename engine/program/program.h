@@ -12,6 +12,7 @@ struct glint_program {
     glint_program_code code; ///< its arrays belong to the program
     uint32_t number_count, texture_count;
     uint32_t inputs; ///< a bit a glint_input that is read
+    uint32_t slopes; ///< a bit a glint_input whose slope is read
     glint_key structure; ///< of the operations, what they read and the textures
     glint_key numbers; ///< of the numbers alone
     glint_texture **textures; ///< retained
@@ -36,6 +37,7 @@ typedef struct glint_gradient_place {
 
 #define GLINT_GRADIENT_MAX (3 * GLINT_INPUT_COUNT)
 #define GLINT_GRADIENT_PART 8
+#define GLINT_FORWARD_MAX 2 ///< derivatives; of more a gradient is quicker, which is run once for all
 _Static_assert(GLINT_GRADIENT_MAX <= GLINT_CODE_OUTPUTS_MAX, "a program may give all slopes");
 
 /// How fast the light that a shader gives, diffuse and specular, changes with its inputs; what is 0 everywhere is not listed.
@@ -44,7 +46,14 @@ typedef struct glint_gradient {
     glint_gradient_place of[GLINT_GRADIENT_MAX];
     uint32_t each; ///< slopes that a program gives: all, or where that is too much for one GLINT_GRADIENT_PART
     glint_program *programs[(GLINT_GRADIENT_MAX + GLINT_GRADIENT_PART - 1) / GLINT_GRADIENT_PART]; ///< owned; NULL beyond
+    /// By each derivative, see glint_shader_forward; owned. NULL: by the gradient. The frame's, not glint_shader_gradient's
+    glint_program *forward[GLINT_FORWARD_MAX];
 } glint_gradient;
+
+/// A program of how fast the channels of a shader's light change, of the slopes of `inputs`, a bit each: forward, in one sweep for all
+/// channels. Where a slope of 0 meets what has none, as a root of 0, it may not be finite; then the gradient says what it is. *out is
+/// NULL where a program has no room for it.
+glint_status glint_shader_forward(const glint_program *shader, uint32_t inputs, glint_program **out, glint_error *error);
 
 /// inputs  those that count, a bit each.
 ///
@@ -55,6 +64,6 @@ void glint_gradient_release(glint_gradient *gradient);
 
 /// Whether a kernel may run the code: operations, rows and textures that exist, and no row read before it is written.
 glint_status glint_code_check(const glint_program_code *code, uint32_t number_count, uint32_t texture_count,
-                              uint32_t inputs, glint_error *error);
+                              uint64_t inputs, glint_error *error);
 
 #endif

@@ -115,6 +115,56 @@ static void drop_signs(double *row)
         row[i] += 0.0;
 }
 
+static void any_three(bool sloped, double out[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = sloped && !one_in(4) ? between(-2, 2) : 0;
+}
+
+/// Hits on a sphere or a plane that moves, or that an eye sees which does.
+typedef struct any_bend_room {
+    glint_prim prim;
+    glint_derivative_part part;
+    glint_derivative_view view;
+    glint_bend_camera camera;
+    double normal[4];
+} any_bend_room;
+
+static glint_bend_args any_bend(const glint_derivative_points *points, any_bend_room *room)
+{
+    const bool along = one_in(2), sees = along || !one_in(3), moves = !sees || one_in(2), round = one_in(2);
+    room->prim = (glint_prim) { .kind = round ? GLINT_PRIM_SPHERE : GLINT_PRIM_PLANE, .center = { between(-1, 1), 2, between(-1, 1) } };
+    if (round) {
+        room->prim.radius = between(0.1, 3);
+    } else {
+        random_unit(room->normal);
+        room->prim.normal = room->normal;
+    }
+    room->part = (glint_derivative_part) { .moves = moves, .growth = moves && round ? between(-1, 1) : 0 };
+    any_three(moves, room->part.place);
+    any_three(moves && !round, room->part.normal);
+    any_three(!round, room->part.pivot);
+    room->view = (glint_derivative_view) { .moves = sees, .nearer = along ? between(-1, 1) : 0 };
+    room->camera = (glint_bend_camera) { .near = along && one_in(2) ? between(0, 1) : 0, .orthographic = along && one_in(2) };
+    any_three(true, room->camera.eye);
+    random_unit(room->camera.forward);
+    random_across(room->camera.forward, room->camera.right);
+    cross3(room->camera.right, room->camera.forward, room->camera.up);
+    any_three(sees, room->view.eye);
+    any_three(sees, room->view.forward);
+    any_three(sees, room->view.right);
+    any_three(sees, room->view.up);
+    for (int c = 0; c < 3; c++)
+        any_three(sees, room->camera.turn[c]);
+    glint_bend_args args = { .points = points, .prim = &room->prim, .part = &room->part, .view = &room->view, .camera = &room->camera };
+    for (int c = 0; c < 3 && along; c++) {
+        args.place[c % 2] = sixteen(-4, 4);
+        args.shift[c] = sixteen(-1, 1);
+        args.shift_slope[c] = sixteen(-1, 1);
+    }
+    return args;
+}
+
 static void slope_case(int precision, bool odd)
 {
     (void)precision;
@@ -127,8 +177,11 @@ static void slope_case(int precision, bool odd)
     const glint_derivative_material material = any_material(other && one_in(2));
     any_source(&points, &light, &source);
     any_planes(&planes);
+    any_bend_room room = { .normal = { 0 } };
+    const glint_bend_args bend = any_bend(&points, &room);
     const double *before = sixteen(-1, 1);
     glint_slope_args args = { &light, &material, painted ? &planes : NULL, &points, &source, .lanes = random_mask() };
+    args.bend = bent && one_in(2) ? &bend : NULL;
     FOR_EACH_TESTED
     {
         for (int c = 0; c < 3; c++) {
@@ -202,51 +255,19 @@ static void test_eyes(void **state)
     run_cases(CASES / 10, 73000, eyes_case);
 }
 
-static void any_three(bool sloped, double out[3])
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = sloped && !one_in(4) ? between(-2, 2) : 0;
-}
-
 static void bend_case(int precision, bool odd)
 {
     (void)precision;
     (void)odd;
-    const bool along = one_in(2), sees = along || !one_in(3), moves = !sees || one_in(2), round = one_in(2);
-    double normal[4] = { 0 };
+    any_bend_room room = { .normal = { 0 } };
     glint_derivative_points points;
     any_points(false, &points);
-    glint_prim prim = { .kind = round ? GLINT_PRIM_SPHERE : GLINT_PRIM_PLANE, .center = { between(-1, 1), 2, between(-1, 1) } };
-    if (round) {
-        prim.radius = between(0.1, 3);
-    } else {
-        random_unit(normal);
-        prim.normal = normal;
-    }
-    glint_derivative_part part = { .moves = moves, .growth = moves && round ? between(-1, 1) : 0 };
-    any_three(moves, part.place);
-    any_three(moves && !round, part.normal);
-    any_three(!round, part.pivot);
-    glint_derivative_view view = { .moves = sees, .nearer = along ? between(-1, 1) : 0 };
-    glint_bend_camera camera = { .near = along && one_in(2) ? between(0, 1) : 0, .orthographic = along && one_in(2) };
-    any_three(true, camera.eye);
-    random_unit(camera.forward);
-    random_across(camera.forward, camera.right);
-    cross3(camera.right, camera.forward, camera.up);
-    any_three(sees, view.eye);
-    any_three(sees, view.forward);
-    any_three(sees, view.right);
-    any_three(sees, view.up);
-    glint_bend_args args = { .points = &points, .prim = &prim, .part = &part, .view = &view, .camera = &camera };
-    for (int c = 0; c < 3 && along; c++) {
-        args.place[c % 2] = sixteen(-4, 4);
-        args.shift[c] = sixteen(-1, 1);
-        args.shift_slope[c] = sixteen(-1, 1);
-    }
+    glint_bend_args args = any_bend(&points, &room);
     FOR_EACH_TESTED
     {
         double *rows = output("slope", KIND_DOUBLE, 9 * GLINT_GROUP);
-        args.slope = (double (*)[3][GLINT_GROUP])rows;
+        for (int k = 0; k < 9; k++)
+            args.slope[k / 3][k % 3] = rows + k * GLINT_GROUP;
         running->bend(&args);
         for (int k = 0; k < 9; k++)
             drop_signs(rows + (size_t)k * GLINT_GROUP);

@@ -154,10 +154,47 @@ static void random_gradient(int precision, bool odd)
     glint_program_release(program);
 }
 
+/// A program whose outputs are added where they are finite.
+static void random_slopes(int precision, bool odd)
+{
+    (void)precision;
+    const recipe r = random_recipe(odd);
+    glint_program *program = recipe_build(&r, false);
+    const uint32_t groups = 1 + below(GLINT_PROGRAM_GROUPS), n = groups * GLINT_GROUP, places = groups + below(5);
+    uint32_t *place = input(KIND_U32, groups);
+    glint_program_args args = program_inputs(program, groups, odd);
+    glint_program_code code = program->code;
+    float *share = input(KIND_FLOAT, n);
+    double *before = input(KIND_DOUBLE, places * GLINT_GROUP);
+    while (code.output_count < 3)
+        code.outputs[code.output_count++] = code.outputs[0];
+    for (uint32_t i = 0; i < n; i++)
+        share[i] = (float)(one_in(6) ? 0 : between(0, 1));
+    for (uint32_t i = 0; i < places * GLINT_GROUP; i++)
+        before[i] = one_in(6) ? -0.0 : between(-1, 1);
+    for (uint32_t g = 0; g < groups; g++)
+        place[g] = g + places - groups;
+    args.code = &code;
+    args.wanted = masks(groups);
+    args.groups = one_in(2) ? place : NULL;
+    args.share = one_in(2) ? share : NULL;
+    args.sums_alone = true;
+    FOR_EACH_TESTED
+    {
+        for (int c = 0; c < 3; c++)
+            args.added[c] = memcpy(output("added", KIND_DOUBLE, places * GLINT_GROUP), before, places * GLINT_GROUP * sizeof *before);
+        args.odd = output("odd", KIND_U16, groups);
+        running->program(&args);
+        compare_outputs("slopes");
+    }
+    glint_program_release(program);
+}
+
 static void test_gradients(void **state)
 {
     (void)state;
     run_cases(CASES / 10, 47000, random_gradient);
+    run_cases(CASES / 10, 48000, random_slopes);
 }
 
 /// Stored as they are, as reflectances and as totals of these, in groups that lie anywhere.

@@ -81,18 +81,6 @@ typedef struct glint_derivative_source {
     bool both; ///< radiant: to both sides
 } glint_derivative_source;
 
-/// Adds how fast what a light leaves on some lanes changes, which show one material.
-typedef struct glint_slope_args {
-    const glint_derivative_light *light;
-    const glint_derivative_material *material;
-    const glint_derivative_planes *planes; ///< of what programs give; NULL: they give nothing
-    const glint_derivative_points *points;
-    const glint_derivative_source *source;
-    unsigned lanes; ///< a bit each
-    double *sum[3]; ///< in and out: slopes
-    double *whole[3]; ///< in and out: what the light leaves; whole[0] NULL: not wanted
-} glint_slope_args;
-
 /// How a light comes to points: the unit way to it, what of its colour arrives, and how far it is, as the inputs from
 /// GLINT_INPUT_L_X on.
 #define GLINT_ARRIVAL_COUNT 7
@@ -100,7 +88,7 @@ typedef struct glint_arrival_args {
     const glint_derivative_light *light;
     const glint_derivative_points *points;
     const glint_derivative_source *source;
-    double *value[GLINT_ARRIVAL_COUNT], *slope[GLINT_ARRIVAL_COUNT]; ///< out: of every lane; value[0], slope[0] NULL: not wanted
+    double *value[GLINT_ARRIVAL_COUNT], *slope[GLINT_ARRIVAL_COUNT]; ///< out: of every lane; NULL: not wanted
 } glint_arrival_args;
 
 /// Unit vectors against the directions of a group's rays.
@@ -110,9 +98,10 @@ typedef struct glint_eyes_args {
     double *eye[3]; ///< out
 } glint_eyes_args;
 
-/// The camera that some hits are seen by.
+/// The camera that some hits are seen by, as one derivative changes it.
 typedef struct glint_bend_camera {
     double eye[3], forward[3], right[3], up[3];
+    double turn[3][3]; ///< how fast a way from the eye turns, of a pinhole: rows, by that way
     double near; ///< one over the distance of its lens' focus; without a lens 0
     bool orthographic;
 } glint_bend_camera;
@@ -127,7 +116,20 @@ typedef struct glint_bend_args {
     /// A sample's place in the picture, in pixels' halves from the middle, to the right and up; NULL: seen from a point
     const double *place[2];
     const double *shift[3], *shift_slope[3]; ///< its place on the lens
-    double (*slope)[3][GLINT_GROUP]; ///< out: three, of points, of normals, of eyes; in every lane
+    double *slope[3][3]; ///< out: of points, of normals, of eyes; in every lane
 } glint_bend_args;
+
+/// Adds how fast what a light leaves on some lanes changes, which show one material.
+typedef struct glint_slope_args {
+    const glint_derivative_light *light;
+    const glint_derivative_material *material;
+    const glint_derivative_planes *planes; ///< of what programs give; NULL: they give nothing
+    const glint_derivative_points *points;
+    const glint_derivative_source *source;
+    const struct glint_bend_args *bend; ///< how the points of the lanes move, which are those; NULL: as they have slopes
+    unsigned lanes; ///< a bit each
+    double *sum[3]; ///< in and out: slopes
+    double *whole[3]; ///< in and out: what the light leaves; whole[0] NULL: not wanted
+} glint_slope_args;
 
 #endif

@@ -9,10 +9,11 @@
 #define GLINT_PROGRAM_GROUPS 16 ///< groups at a time
 #define GLINT_PROGRAM_LANES 256 ///< a row: one double a lane, 2 KB
 #define GLINT_CODE_OUTPUTS_MAX 96 ///< of gradients; what is stored has at most GLINT_PROGRAM_OUTPUTS_MAX
+#define GLINT_CODE_INPUTS (2 * GLINT_INPUT_COUNT) ///< each, and from GLINT_INPUT_COUNT on the slope of each
 #define GLINT_NUMBER_LANES 16 ///< how often a number stands in memory: a group
 
 // Where an operand is, and where a result goes.
-#define GLINT_ROW_INPUT 256u ///< + glint_input; below it: the rows of a program's own
+#define GLINT_ROW_INPUT 256u ///< + one of GLINT_CODE_INPUTS; below it: the rows of a program's own
 #define GLINT_ROW_NUMBER 512u ///< + index into the numbers
 
 typedef struct glint_instruction { ///< no padding: its bytes are hashed
@@ -57,8 +58,8 @@ typedef struct glint_program_args {
     const glint_program_code *code;
     uint32_t group_count; ///< 1 .. GLINT_PROGRAM_GROUPS
     const uint16_t *wanted; ///< a bit a lane; elsewhere nothing is stored
-    const double *input[GLINT_INPUT_COUNT]; ///< those that the program reads: 16 numbers a group
-    uint32_t same; ///< a bit an input: it is one number, which stands there GLINT_NUMBER_LANES times
+    const double *input[GLINT_CODE_INPUTS]; ///< those that the program reads: 16 numbers a group
+    uint64_t same; ///< a bit an input: it is one number, which stands there GLINT_NUMBER_LANES times
     double *rows; ///< scratch: row_count * GLINT_PROGRAM_LANES
     const uint32_t *groups; ///< where each group is stored in the arrays below; NULL: 0, 1, 2 ...
     const glint_program_sums *sums; ///< where a factor is 0 nothing is added, whatever the output is
@@ -69,7 +70,10 @@ typedef struct glint_program_args {
     float *plane[GLINT_PROGRAM_OUTPUTS_MAX];
     double *total[GLINT_PROGRAM_OUTPUTS_MAX]; ///< in and out: share times what a plane would get is added; NULL: not wanted
     const float *share; ///< 16 numbers a group, in the order of `wanted`; NULL: 1
-    /// out, a bit a wanted lane: an output stored as a plane is NaN, below 0 or above 2^100; NULL: not wanted
+    /// in and out: share times the first three outputs is added, in lanes where all of them are finite; added[0] NULL: not wanted
+    double *added[3];
+    /// out, a bit a wanted lane: an output stored as a plane is NaN, below 0 or above 2^100, or one that is added is not finite;
+    /// NULL: not wanted, where nothing is added
     uint16_t *odd;
 } glint_program_args;
 

@@ -6,30 +6,20 @@ typedef struct bent_rays {
     vd way[3], moved[3], turned[3], far;
 } bent_rays;
 
-INNER void d_set_3(const double from[3], vd out[3])
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = d_set(from[c]);
-}
-
 INNER bent_rays see_from_point(const glint_bend_args *args, int i)
 {
     const glint_derivative_view *view = args->view;
     const glint_bend_camera *camera = args->camera;
     const glint_derivative_points *points = args->points;
     bent_rays out = { .far = d_set(1) };
-    vd forward[3], right[3], up[3];
-    d_set_3(camera->forward, forward);
-    d_set_3(camera->right, right);
-    d_set_3(camera->up, up);
     for (int c = 0; c < 3; c++) {
         out.way[c] = d_either(view->moves, d_load(points->point[c] + i) - d_set(camera->eye[c]), -d_load(points->eye[c] + i));
         out.moved[c] = d_set(view->eye[c]);
     }
-    const vd along = DOT(out.way, forward), across = DOT(out.way, right) * d_set(1 / DOT(camera->right, camera->right)),
-             down = DOT(out.way, up) * d_set(1 / DOT(camera->up, camera->up));
-    for (int c = 0; c < 3; c++)
-        out.turned[c] = (along * d_set(view->forward[c]) + across * d_set(view->right[c])) + down * d_set(view->up[c]);
+    for (int c = 0; c < 3; c++) {
+        const vd turn[3] = { d_set(camera->turn[c][0]), d_set(camera->turn[c][1]), d_set(camera->turn[c][2]) };
+        out.turned[c] = DOT(turn, out.way);
+    }
     return out;
 }
 
@@ -54,8 +44,8 @@ INNER bent_rays see_along(const glint_bend_args *args, const bool parallel, int 
     return out;
 }
 
-/// The point stays on the tangent plane, which moves as the surface does there.
-INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const bool round, int i)
+/// The point stays on the tangent plane, which moves as the surface does there. out: slopes of points, of normals, of eyes.
+INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const bool round, int i, vd out[3][3])
 {
     const glint_prim *prim = args->prim;
     const glint_derivative_part *part = args->part;
@@ -79,9 +69,9 @@ INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const 
     for (int c = 0; c < 3; c++) {
         const vd moved = carried[c] + further * rays->way[c];
         const vd left = (moved - d_set(part->place[c])) - off[c] * d_set(part->growth);
-        d_store(args->slope[0][c] + i, moved);
-        d_store(args->slope[1][c] + i, d_either(round, left * curved, side * d_set(part->normal[c])));
-        d_store(args->slope[2][c] + i, (away * eye[c] - rays->turned[c]) * shorter);
+        out[0][c] = moved;
+        out[1][c] = d_either(round, left * curved, side * d_set(part->normal[c]));
+        out[2][c] = (away * eye[c] - rays->turned[c]) * shorter;
     }
 }
 
@@ -90,7 +80,10 @@ INNER void bend_group(const glint_bend_args *args, const bool along, const bool 
     const glint_bend_args call = *args; // stores may not change it
     for (int i = 0; i < GLINT_GROUP; i += VD) {
         const bent_rays rays = along ? see_along(&call, parallel, i) : see_from_point(&call, i);
-        hold_lanes(&call, &rays, round, i);
+        vd slope[3][3];
+        hold_lanes(&call, &rays, round, i, slope);
+        for (int k = 0; k < 9; k++)
+            d_store(call.slope[k / 3][k % 3] + i, slope[k / 3][k % 3]);
     }
 }
 

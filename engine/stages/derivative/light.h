@@ -9,6 +9,14 @@ enum {
     SLOPES_ALL = 7
 };
 
+/// Where slopes of points come from.
+typedef enum bent_by { BENT_BY_SLOPES, BENT_BY_SPHERE, BENT_BY_PLANE } bent_by;
+
+/// VD points with their slopes.
+typedef struct seen_lanes {
+    vs point[3], normal[3], eye[3];
+} seen_lanes;
+
 /// What a group knows of a light at VD of its lanes.
 typedef struct shine_lanes {
     vs way[3]; ///< unit, towards the light
@@ -23,6 +31,30 @@ INNER void load_points(const glint_derivative_points *points, int what, const un
     const double *const *from = what == 0 ? points->point : what == 1 ? points->normal : points->eye;
     for (int c = 0; c < 3; c++)
         out[c] = s_load(from[c], points->slope[what][c], slopes & SLOPES_BENT, i);
+}
+
+INNER seen_lanes seen_points(const glint_derivative_points *points, const unsigned slopes, int i)
+{
+    seen_lanes out;
+    load_points(points, 0, slopes, i, out.point);
+    load_points(points, 1, slopes, i, out.normal);
+    load_points(points, 2, slopes, i, out.eye);
+    return out;
+}
+
+/// Of points on a sphere or a plane that a pinhole sees.
+INNER seen_lanes bent_points(const glint_bend_args *bend, const bool round, int i)
+{
+    const bent_rays rays = see_from_point(bend, i);
+    seen_lanes out = seen_points(bend->points, 0, i);
+    vd slope[3][3];
+    hold_lanes(bend, &rays, round, i, slope);
+    for (int c = 0; c < 3; c++) {
+        out.point[c] = s_make(out.point[c].v, slope[0][c]);
+        out.normal[c] = s_make(out.normal[c].v, slope[1][c]);
+        out.eye[c] = s_make(out.eye[c].v, slope[2][c]);
+    }
+    return out;
 }
 
 /// A spot's cone; see spot_x and cone of stages/ref/light.h.
@@ -68,14 +100,12 @@ INNER vs weaken(const glint_derivative_light *light, const shine_lanes *s, const
     return weight;
 }
 
-INNER shine_lanes find_shine(const glint_derivative_light *light, const glint_derivative_points *points,
-                             const glint_derivative_source *source, const vs normal[3], const unsigned slopes, int i)
+INNER shine_lanes find_shine(const glint_derivative_light *light, const glint_derivative_source *source, const vs point[3],
+                             const vs normal[3], const unsigned slopes, int i)
 {
     const bool turned = slopes & SLOPES_TURNED, moving = slopes & (SLOPES_BENT | SLOPES_TURNED);
     const bool any = slopes;
     shine_lanes s = { .distance = s_keep(moving, s_set(HUGE_VAL)), .weight = s_keep(any, s_set(1)) };
-    vs point[3];
-    load_points(points, 0, slopes, i, point);
     s.weighs = source->weight || source->radiant || light->attenuated || light->is_spot;
     if (source->weight)
         s.weight = s_keep(any, s_level(d_load(source->weight + i)));
@@ -222,21 +252,21 @@ INNER vs left_of(const glint_slope_args *args, const shared_colors *k, const shi
     return left;
 }
 
-INNER void slope_lanes(const glint_slope_args *args, const shared_colors *k, const unsigned slopes, int i)
+INNER void slope_lanes(const glint_slope_args *args, const shared_colors *k, const unsigned slopes, const bent_by by, int i)
 {
     const glint_derivative_material *m = args->material;
     const bool other = slopes & SLOPES_OTHER;
     const dm reached = dm_from_bits(args->lanes >> i & D_ALL);
-    vs specular = s_keep(true, s_set(0)), grazing = s_keep(true, s_set(0)), normal[3], eye[3];
-    load_points(args->points, 1, slopes, i, normal);
-    load_points(args->points, 2, slopes, i, eye);
-    const shine_lanes s = find_shine(args->light, args->points, args->source, normal, slopes, i);
+    vs specular = s_keep(true, s_set(0)), grazing = s_keep(true, s_set(0));
+    const seen_lanes seen =
+        by == BENT_BY_SLOPES ? seen_points(args->points, slopes, i) : bent_points(args->bend, by == BENT_BY_SPHERE, i);
+    const shine_lanes s = find_shine(args->light, args->source, seen.point, seen.normal, slopes, i);
     if (m->highlight == GLINT_HIGHLIGHT_FACETS) {
         const vs alpha = take_plane(args->planes, GLINT_DERIVED_ALPHA, slopes, i, s_of(other, m->alpha));
-        lobe_lanes(m, alpha, &s, normal, eye, &specular, &grazing);
+        lobe_lanes(m, alpha, &s, seen.normal, seen.eye, &specular, &grazing);
     } else if (m->highlight != GLINT_HIGHLIGHT_NONE) {
         const vs power = take_plane(args->planes, GLINT_DERIVED_SHININESS, slopes, i, s_of(other, m->shininess));
-        specular = power_lanes(m, power, &s, normal, eye);
+        specular = power_lanes(m, power, &s, seen.normal, seen.eye);
     }
     for (int c = 0; c < 3; c++) {
         const vs left = left_of(args, k, &s, specular, grazing, slopes, c, i);
@@ -246,29 +276,58 @@ INNER void slope_lanes(const glint_slope_args *args, const shared_colors *k, con
     }
 }
 
-INNER void slope_group(const glint_slope_args *args, const unsigned slopes)
+INNER void slope_group(const glint_slope_args *args, const unsigned slopes, const bent_by by)
 {
-    const glint_slope_args call = *args; // stores may not change it
+    glint_slope_args call = *args; // stores may not change it
+    const glint_bend_args bend_call = by == BENT_BY_SLOPES ? (glint_bend_args) { .points = NULL } : *args->bend;
+    call.bend = &bend_call;
     const shared_colors k = share_colors(&call, slopes);
     for (int i = 0; i < GLINT_GROUP; i += VD)
         if (call.lanes >> i & D_ALL)
-            slope_lanes(&call, &k, slopes, i);
+            slope_lanes(&call, &k, slopes, by, i);
 }
 
-static void slope(const glint_slope_args *args)
+static void slope_memory(const glint_slope_args *args)
 {
     const bool bent = args->points->slope[0][0], turned = args->light->turns;
     const bool other = args->light->shines || args->material->varies || args->planes || args->source->tint[0];
     if (bent && (turned || other))
-        slope_group(args, SLOPES_ALL);
+        slope_group(args, SLOPES_ALL, BENT_BY_SLOPES);
     else if (bent)
-        slope_group(args, SLOPES_BENT);
+        slope_group(args, SLOPES_BENT, BENT_BY_SLOPES);
     else if (turned && other)
-        slope_group(args, SLOPES_TURNED | SLOPES_OTHER);
+        slope_group(args, SLOPES_TURNED | SLOPES_OTHER, BENT_BY_SLOPES);
     else if (turned)
-        slope_group(args, SLOPES_TURNED);
+        slope_group(args, SLOPES_TURNED, BENT_BY_SLOPES);
     else
-        slope_group(args, SLOPES_OTHER);
+        slope_group(args, SLOPES_OTHER, BENT_BY_SLOPES);
+}
+
+/// Where points move and other things do, by way of memory.
+static void slope_bent(const glint_slope_args *args)
+{
+    _Alignas(64) double bent[9][GLINT_GROUP];
+    glint_bend_args bend_call = *args->bend;
+    glint_derivative_points points = *args->bend->points;
+    glint_slope_args call = *args;
+    for (int k = 0; k < 9; k++)
+        points.slope[k / 3][k % 3] = bend_call.slope[k / 3][k % 3] = bent[k];
+    bend(&bend_call);
+    call.points = &points;
+    slope_memory(&call);
+}
+
+static void slope(const glint_slope_args *args)
+{
+    const bool other = args->light->turns || args->light->shines || args->material->varies || args->planes || args->source->tint[0];
+    if (!args->bend)
+        slope_memory(args);
+    else if (other || args->bend->place[0])
+        slope_bent(args);
+    else if (args->bend->prim->kind == GLINT_PRIM_SPHERE)
+        slope_group(args, SLOPES_BENT, BENT_BY_SPHERE);
+    else
+        slope_group(args, SLOPES_BENT, BENT_BY_PLANE);
 }
 
 INNER void arrival_group(const glint_arrival_args *args, const unsigned slopes)
@@ -277,19 +336,20 @@ INNER void arrival_group(const glint_arrival_args *args, const unsigned slopes)
     const glint_derivative_source *source = call.source;
     const bool any = slopes, other = slopes & SLOPES_OTHER;
     for (int i = 0; i < GLINT_GROUP; i += VD) {
-        vs normal[3];
-        load_points(call.points, 1, slopes, i, normal);
-        const shine_lanes s = find_shine(call.light, call.points, source, normal, slopes, i);
+        const seen_lanes seen = seen_points(call.points, slopes, i);
+        const shine_lanes s = find_shine(call.light, source, seen.point, seen.normal, slopes, i);
         vs all[GLINT_ARRIVAL_COUNT] = { s.way[0], s.way[1], s.way[2], s.weight, s.weight, s.weight, s.distance };
         for (int c = 0; c < 3; c++) {
             all[3 + c] = s_keep(any, s_mul(s_of(other, call.light->diffuse[c]), s.weight));
             if (source->tint[0])
                 all[3 + c] = s_keep(any, s_mul(all[3 + c], s_load(source->tint[c], source->tint_slope[c], other, i)));
         }
-        for (int n = 0; n < GLINT_ARRIVAL_COUNT && call.value[0]; n++)
-            d_store(call.value[n] + i, all[n].v);
-        for (int n = 0; n < GLINT_ARRIVAL_COUNT && any; n++)
-            d_store(call.slope[n] + i, all[n].level ? d_set(0) : all[n].d);
+        for (int n = 0; n < GLINT_ARRIVAL_COUNT; n++) {
+            if (call.value[n])
+                d_store(call.value[n] + i, all[n].v);
+            if (any && call.slope[n])
+                d_store(call.slope[n] + i, all[n].level ? d_set(0) : all[n].d);
+        }
     }
 }
 
@@ -297,7 +357,10 @@ static void arrival(const glint_arrival_args *args)
 {
     const bool bent = args->points->slope[0][0], turned = args->light->turns;
     const bool other = args->light->shines || args->source->tint[0];
-    if (!args->slope[0])
+    bool sloped = false;
+    for (int n = 0; n < GLINT_ARRIVAL_COUNT; n++)
+        sloped = sloped || args->slope[n];
+    if (!sloped)
         arrival_group(args, 0);
     else if (bent && !turned && !other)
         arrival_group(args, SLOPES_BENT);

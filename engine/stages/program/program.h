@@ -225,6 +225,41 @@ static void add_sums(const glint_program_args *args)
         }
 }
 
+/// Adds slopes, where all are finite.
+static void add_slopes(const glint_program_args *args)
+{
+    const vd most = d_set(HUGE_VAL);
+    output out[3];
+    for (int k = 0; k < 3; k++) {
+        out[k] = (output) { .args = args };
+        out[k].row = find_operand(args, args->code->outputs[k], &out[k].step);
+    }
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        const float *share = args->share ? args->share + (size_t)g * GLINT_GROUP : NULL;
+        const size_t to = place_of(out, g);
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            vd weight[VF / VD];
+            f_split(share ? f_load(share + i) : f_set(1), weight);
+            for (int n = 0; n < VF / VD; n++) {
+                const int at = i + n * VD;
+                const unsigned wanted = args->wanted[g] >> at & D_ALL;
+                dm finite = dm_from_bits(wanted);
+                vd slope[3];
+                for (int k = 0; k < 3; k++) {
+                    slope[k] = d_load(output_of(&out[k], g) + at) * weight[n];
+                    finite = dm_and(finite, d_lt(d_abs(slope[k]), most));
+                }
+                for (int k = 0; k < 3; k++) {
+                    double *sum = args->added[k] + to + at;
+                    const vd old = d_load(sum);
+                    d_store(sum, d_select(finite, old + slope[k], old));
+                }
+                args->odd[g] |= (uint16_t)((wanted & ~dm_bits(finite)) << at);
+            }
+        }
+    }
+}
+
 static void program(const glint_program_args *args)
 {
     const glint_program_code *code = args->code;
@@ -245,6 +280,8 @@ static void program(const glint_program_args *args)
         args->odd[g] = 0;
     if (args->sums_count)
         add_sums(args);
+    if (args->added[0])
+        add_slopes(args);
     const bool whole = is_whole(args);
     for (uint32_t k = 0; k < code->output_count && !args->sums_alone; k++) {
         output out = { .args = args, .whole = whole };

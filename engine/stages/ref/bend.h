@@ -12,12 +12,9 @@ static bent_ray seen_from_point(const glint_bend_args *args, int i)
     bent_ray out = { .far = 1 };
     for (int c = 0; c < 3; c++)
         out.way[c] = view->moves ? args->points->point[c][i] - camera->eye[c] : -args->points->eye[c][i];
-    const double along = dot_of(out.way, camera->forward);
-    const double across = dot_of(out.way, camera->right) * (1 / dot_of(camera->right, camera->right));
-    const double down = dot_of(out.way, camera->up) * (1 / dot_of(camera->up, camera->up));
     for (int c = 0; c < 3; c++) {
         out.moved[c] = view->eye[c];
-        out.turned[c] = (along * view->forward[c] + across * view->right[c]) + down * view->up[c];
+        out.turned[c] = dot_of(camera->turn[c], out.way);
     }
     return out;
 }

@@ -272,6 +272,22 @@ static void store_outputs(const glint_program_args *args, const double *rows, ui
     }
 }
 
+static void add_slopes(const glint_program_args *args, const double *rows, uint32_t lane)
+{
+    const uint32_t group = lane / GLINT_GROUP;
+    const size_t to = (size_t)(args->groups ? args->groups[group] : group) * GLINT_GROUP + lane % GLINT_GROUP;
+    double slope[3];
+    bool finite = true;
+    for (uint32_t k = 0; k < 3; k++) {
+        slope[k] = row_value(args, rows, args->code->outputs[k], lane) * (double)(args->share ? args->share[lane] : 1);
+        finite = finite && fabs(slope[k]) < HUGE_VAL;
+    }
+    for (uint32_t k = 0; k < 3 && finite; k++)
+        args->added[k][to] += slope[k];
+    if (!finite)
+        args->odd[group] |= (uint16_t)(1u << lane % GLINT_GROUP);
+}
+
 static void program(const glint_program_args *args)
 {
     const glint_program_code *code = args->code;
@@ -291,6 +307,8 @@ static void program(const glint_program_args *args)
         }
         if (args->sums_count)
             add_sums(args, rows, lane);
+        if (args->added[0])
+            add_slopes(args, rows, lane);
         if (!args->sums_alone)
             store_outputs(args, rows, lane);
     }

@@ -259,8 +259,8 @@ static void resolve_samples(const glint_shade_args *sample, uint32_t count)
 }
 
 #include "engine/stages/ref/program.h"
-#include "engine/stages/ref/derivative.h"
 #include "engine/stages/ref/bend.h"
+#include "engine/stages/ref/derivative.h"
 #include "engine/stages/ref/differ.h"
 
 // ---- tone --------------------------------------------------------------------------------------------------------

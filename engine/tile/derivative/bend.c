@@ -293,46 +293,52 @@ bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, si
 
 // ---- Hits of a group on one sphere or plane: as above, lanes side by side ------------------------------------------------
 
-/// Of lanes that show a sphere or a plane, seen by the eye.
-static void bend_lanes(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g,
-                       const glint_prim *prim, const glint_derivative_points *points, double (*out)[3][GLINT_GROUP])
+void glint_bend_aim(const glint_tile *tile, const glint_plan *plan)
 {
-    const glint_plan *plan = frame->plan;
-    const glint_plan_derivative *d = &plan->derivatives->of[index];
-    glint_bend_camera camera = { .near = plan->lens ? 1 / plan->camera.focus : 0, .orthographic = plan->camera.orthographic };
-    _Alignas(64) double place[2][GLINT_GROUP], shift[3][GLINT_GROUP], shift_slope[3][GLINT_GROUP];
-    glint_bend_args args = { .points = points, .prim = prim, .view = &d->view, .camera = &camera, .slope = out };
-    args.part = &d->parts[plan->geometry->prim_part[prim->id]];
-    vec_copy(camera.eye, plan->camera.eye);
-    vec_copy(camera.forward, plan->camera.forward);
-    vec_copy(camera.right, plan->camera.right);
-    vec_copy(camera.up, plan->camera.up);
-    if (d->view.moves && (plan->lens || plan->camera.orthographic)) {
-        for (uint32_t i = 0; i < GLINT_GROUP; i++) {
-            double middle[2], lens[3] = { 0 }, change[3] = { 0 };
-            find_place(tile, g * GLINT_GROUP + i, middle);
-            find_lens(tile, plan, &d->view, i, lens, change);
-            for (int c = 0; c < 3; c++) {
-                place[c % 2][i] = middle[c % 2];
-                shift[c][i] = lens[c];
-                shift_slope[c][i] = change[c];
-            }
-        }
+    const glint_plan_camera *c = &plan->camera;
+    const double across = 1 / vec_dot(c->right, c->right), down = 1 / vec_dot(c->up, c->up);
+    for (size_t k = 0; k < plan->derivatives->count; k++) {
+        const glint_derivative_view *view = &plan->derivatives->of[k].view;
+        glint_bend_camera *out = &tile->derivative->camera[k];
+        out->near = plan->lens ? 1 / c->focus : 0;
+        out->orthographic = c->orthographic;
+        vec_copy(out->eye, c->eye);
+        vec_copy(out->forward, c->forward);
+        vec_copy(out->right, c->right);
+        vec_copy(out->up, c->up);
+        for (int i = 0; i < 9; i++)
+            out->turn[i / 3][i % 3] = (view->forward[i / 3] * c->forward[i % 3] + view->right[i / 3] * (c->right[i % 3] * across)) +
+                                      view->up[i / 3] * (c->up[i % 3] * down);
+    }
+}
+
+/// Where a group's samples are in the picture and on the lens.
+static void find_places(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t g,
+                        glint_bend_room *out)
+{
+    for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+        double middle[2], lens[3] = { 0 }, change[3] = { 0 };
+        find_place(tile, g * GLINT_GROUP + i, middle);
+        find_lens(tile, plan, view, i, lens, change);
         for (int c = 0; c < 3; c++) {
-            args.place[c % 2] = place[c % 2];
-            args.shift[c] = shift[c];
-            args.shift_slope[c] = shift_slope[c];
+            out->place[c % 2][i] = middle[c % 2];
+            out->shift[c][i] = lens[c];
+            out->shift_slope[c][i] = change[c];
         }
     }
-    frame->stages->bend(&args);
+    for (int c = 0; c < 3; c++) {
+        out->args.place[c % 2] = out->place[c % 2];
+        out->args.shift[c] = out->shift[c];
+        out->args.shift_slope[c] = out->shift_slope[c];
+    }
 }
 
 /// Puts some lanes beside others.
-static void put_lanes(unsigned lanes, double (*from)[3][GLINT_GROUP], double (*to)[3][GLINT_GROUP])
+static void put_lanes(unsigned lanes, double (*from)[GLINT_GROUP], double *const to[9])
 {
     for (unsigned left = lanes; left; left &= left - 1)
         for (int k = 0; k < 9; k++)
-            to[k / 3][k % 3][__builtin_ctz(left)] = from[k / 3][k % 3][__builtin_ctz(left)];
+            to[k][__builtin_ctz(left)] = from[k][__builtin_ctz(left)];
 }
 
 /// Those of `lanes` that show the primitive of the first of them.
@@ -349,7 +355,7 @@ static unsigned lanes_of_prim(const uint32_t *prim, unsigned lanes)
 
 /// One by one.
 static unsigned bend_each(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
-                          const glint_derivative_points *points, double (*bend)[3][GLINT_GROUP])
+                          const glint_derivative_points *points, double *const slope[9])
 {
     unsigned bent = 0;
     for (unsigned rest = lanes; rest; rest &= rest - 1) {
@@ -359,35 +365,62 @@ static unsigned bend_each(const glint_tile *tile, const glint_tile_frame *frame,
             continue;
         bent |= 1u << i;
         for (int c = 0; c < 3; c++) {
-            bend[0][c][i] = own.point[c];
-            bend[1][c][i] = own.normal[c];
-            bend[2][c][i] = own.eye[c];
+            slope[c][i] = own.point[c];
+            slope[3 + c][i] = own.normal[c];
+            slope[6 + c][i] = own.eye[c];
         }
     }
     return bent;
 }
 
-unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g,
-                           unsigned lanes, const glint_derivative_points *points, double (*bend)[3][GLINT_GROUP])
+unsigned glint_bend_begin(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
+                          const glint_derivative_points *points, glint_bend_room *out, bool *seen, bool *moves)
 {
-    const glint_plan_derivative *d = &frame->plan->derivatives->of[index];
+    const glint_plan *plan = frame->plan;
+    const glint_plan_derivative *d = &plan->derivatives->of[index];
     const uint32_t *prims = tile->at.prim + (size_t)g * GLINT_GROUP;
-    _Alignas(64) double some[3][3][GLINT_GROUP];
+    *seen = *moves = false;
+    if (tile->batch || glint_derives_sites(tile)) {
+        *moves = true;
+        return lanes;
+    }
+    const glint_prim *prim = &frame->geometry.prims[prims[__builtin_ctz(lanes)]];
+    const glint_derivative_part *part = &d->parts[plan->geometry->prim_part[prim->id]];
+    *moves = d->view.moves || part->moves;
+    *seen = prim->kind == GLINT_PRIM_SPHERE || prim->kind == GLINT_PRIM_PLANE;
+    if (*moves && *seen) {
+        out->args.points = points;
+        out->args.prim = prim;
+        out->args.part = part;
+        out->args.view = &d->view;
+        out->args.camera = &tile->derivative->camera[index];
+        out->args.place[0] = NULL;
+        if (d->view.moves && (plan->lens || plan->camera.orthographic))
+            find_places(tile, plan, &d->view, g, out);
+    }
+    return lanes_of_prim(prims, lanes);
+}
+
+unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g,
+                           unsigned lanes, const glint_derivative_points *points, double *const slope[9])
+{
+    _Alignas(64) double some[9][GLINT_GROUP];
+    glint_bend_room room;
     unsigned bent = 0;
-    if (tile->batch || glint_derives_sites(tile))
-        return bend_each(tile, frame, index, g, lanes, points, bend);
+    bool seen, moves;
     for (unsigned left = lanes, same; left; left &= ~same) {
-        const glint_prim *prim = &frame->geometry.prims[prims[__builtin_ctz(left)]];
-        same = lanes_of_prim(prims, left);
-        if (!d->view.moves && !d->parts[frame->plan->geometry->prim_part[prim->id]].moves)
+        same = glint_bend_begin(tile, frame, index, g, left, points, &room, &seen, &moves);
+        if (!moves)
             continue;
-        if (prim->kind != GLINT_PRIM_SPHERE && prim->kind != GLINT_PRIM_PLANE) {
-            bent |= bend_each(tile, frame, index, g, same, points, bend);
+        if (!seen) {
+            bent |= bend_each(tile, frame, index, g, same, points, slope);
             continue;
         }
-        bend_lanes(tile, frame, index, g, prim, points, same == lanes ? bend : some);
+        for (int k = 0; k < 9; k++)
+            room.args.slope[k / 3][k % 3] = same == lanes ? slope[k] : some[k];
+        frame->stages->bend(&room.args);
         if (same != lanes)
-            put_lanes(same, some, bend);
+            put_lanes(same, some, slope);
         bent |= same;
     }
     return bent;

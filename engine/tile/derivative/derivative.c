@@ -78,6 +78,7 @@ static bool reads_eyes(const glint_tile *tile, const glint_plan *plan, uint32_t 
         lanes = lanes_alike(tile, g, left, &material);
         for (size_t k = 0; k < all->count; k++)
             reads = reads || all->of[k].materials[material].highlight != GLINT_HIGHLIGHT_NONE;
+        reads = reads || plan->materials[material].planes & GLINT_PLANE_SHADED;
     }
     return reads;
 }
@@ -219,6 +220,35 @@ static void add_ambient(const glint_tile *tile, const glint_plan *plan, size_t i
 
 // ---- One light ----------------------------------------------------------------------------------------------------
 
+/// Adds the slopes of the lanes in `args` that some surface or the eye moves, one sphere or plane after the other; `bent` has room for
+/// those of other surfaces. Returns the lanes that stay where they are.
+static unsigned slope_bent(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g,
+                           const glint_derivative_points *bent, const glint_slope_args *args)
+{
+    glint_slope_args call = *args;
+    glint_bend_room room;
+    double *rows[9];
+    unsigned rest = 0;
+    bool seen, moves;
+    for (int k = 0; k < 9; k++)
+        rows[k] = tile->derivative->bend[k / 3][k % 3];
+    for (unsigned left = args->lanes; left; left &= ~call.lanes) {
+        const unsigned lanes = glint_bend_begin(tile, frame, index, g, left, args->points, &room, &seen, &moves);
+        call.lanes = lanes;
+        call.bend = moves && seen ? &room.args : NULL;
+        call.points = call.bend ? args->points : bent;
+        if (!moves)
+            call.lanes = 0;
+        else if (!seen)
+            call.lanes = glint_bend_points(tile, frame, index, g, lanes, args->points, rows);
+        if (call.lanes)
+            frame->stages->slope(&call);
+        rest |= lanes & ~call.lanes;
+        call.lanes = lanes;
+    }
+    return rest;
+}
+
 /// `reached`: lanes that the light reaches; `tinted`: through something, which leaves its tint.
 static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
                          glint_derivative_source source, uint32_t g, unsigned reached,
@@ -248,7 +278,9 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
         for (size_t k = 0; k < all->count && !(frame->plan->materials[material].planes & GLINT_PLANE_SHADED); k++) {
             glint_slope_args args = { .light = &all->of[k].lights[light->source],
                                       .material = &all->of[k].materials[material],
-                                      .source = &source };
+                                      .points = &points,
+                                      .source = &source,
+                                      .lanes = lanes };
             glint_derivative_planes room;
             args.planes = planes_of(tile, frame->plan, k, material, g, &room);
             if (tinted)
@@ -257,17 +289,24 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
                 args.sum[c] = work->sum[k][c] + at;
                 args.whole[c] = weighs && k == 0 ? work->light[c] + at : NULL;
             }
-            args.lanes = all->of[k].bends ? glint_bend_points(tile, frame, k, g, lanes, &points, work->bend) : 0;
-            args.points = &bent_points;
-            const unsigned rest = lanes & ~args.lanes;
-            if (args.lanes)
-                frame->stages->slope(&args);
-            args.points = &points;
-            args.lanes = rest;
-            if (rest && (tinted || args.whole[0] || args.light->varies || args.material->varies))
+            if (all->of[k].bends)
+                args.lanes = slope_bent(tile, frame, k, g, &bent_points, &args);
+            if (args.lanes && (tinted || args.whole[0] || args.light->varies || args.material->varies))
                 frame->stages->slope(&args);
         }
     }
+}
+
+/// Whether shaders say what the light leaves on all of `lanes`.
+static bool are_shaded(const glint_tile *tile, const glint_plan *plan, uint32_t g, unsigned lanes)
+{
+    bool all = plan->patterns && plan->patterns->shaders;
+    for (unsigned left = lanes, alike; left && all; left &= ~alike) {
+        uint32_t material;
+        alike = lanes_alike(tile, g, left, &material);
+        all = plan->materials[material].planes & GLINT_PLANE_SHADED;
+    }
+    return all;
 }
 
 /// Whether a derivative moves the shadows of a light.
@@ -312,7 +351,7 @@ static void derive_light(glint_tile *tile, const glint_tile_frame *frame, uint32
         if (shift)
             note_shadows(tile, light, g, above, reached);
         lanes[g] = (uint16_t)(reached & ~dimmed);
-        if (lanes[g])
+        if (lanes[g] && !are_shaded(tile, frame->plan, g, lanes[g]))
             derive_group(tile, frame, light, slot, source, g, lanes[g], false);
     }
     const glint_derivative_reach reach = { light, slot, &source, lanes, false };
@@ -354,7 +393,7 @@ void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, c
     uint16_t lanes[GLINT_TILE_GROUPS];
     for (uint32_t g = 0; g < tile->group_count; g++) {
         lanes[g] = reached[g] & tile->active[g];
-        if (lanes[g])
+        if (lanes[g] && !are_shaded(tile, frame->plan, g, lanes[g]))
             derive_group(tile, frame, light, slot, source, g, lanes[g], true);
     }
     const glint_derivative_reach reach = { light, slot, &source, lanes, true };
@@ -439,6 +478,8 @@ static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
     }
     if (frame->plan->derivatives->repaints)
         glint_derivative_repaint(tile, frame);
+    if (frame->plan->derivatives->bends)
+        glint_bend_aim(tile, frame->plan);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         if (tile->sample == 0 && !tile->batch && !glint_derives_sites(tile))
             glint_tile_prefetch_derivatives(tile, frame, g);

@@ -12,6 +12,8 @@
 
 #define BITS(first, count) (((1u << (count)) - 1) << (first))
 
+#define VIEWS BITS(GLINT_INPUT_V_X, 3)
+
 /// By one derivative.
 typedef struct input_slopes {
     _Alignas(64) double input[GLINT_INPUT_COUNT][GLINT_PROGRAM_LANES]; ///< slopes of what the shader reads
@@ -23,8 +25,8 @@ typedef struct input_slopes {
 struct glint_shader_slopes {
     _Alignas(64) double value[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< what the shader gives
     _Alignas(64) double tangent[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< how fast that changes with its numbers
-    double share[GLINT_PROGRAM_LANES]; ///< how much is seen of a light that may be partly covered
-    uint16_t wanted[GLINT_PROGRAM_GROUPS];
+    float share[GLINT_PROGRAM_LANES]; ///< how much is seen of a light that may be partly covered
+    uint16_t wanted[GLINT_PROGRAM_GROUPS], odd[GLINT_PROGRAM_GROUPS];
     glint_program_sums sums[GLINT_DERIVATIVES_MAX]; ///< of the derivatives that change something
     size_t room; ///< derivatives that there is memory for
     input_slopes of[];
@@ -71,15 +73,18 @@ static void find_arrival(const shading *s, size_t index, uint32_t e, const glint
         const float seen = s->tile->at.light[slot].visible[at + (size_t)i];
         const float whole = light->attenuated ? s->tile->at.light[slot].attenuation[at + (size_t)i] : 1;
         const float weight = s->reach->tinted ? seen : whole; // as the shader itself has it
-        s->slopes->share[e * GLINT_GROUP + (uint32_t)i] = (double)(weight > 0 ? seen / weight : seen);
+        s->slopes->share[e * GLINT_GROUP + (uint32_t)i] = weight > 0 ? seen / weight : seen;
         work->weight[i] = (double)weight;
         source.weight = work->weight;
     }
     if (s->reach->tinted)
         glint_derivative_take_tint(s->tile, index, s->entries[e].group, &source);
     glint_arrival_args args = { &s->frame->plan->derivatives->of[index].lights[light->source], points, &source, .value = { NULL } };
+    const uint32_t read = s->frame->plan->patterns->of[s->entries->material].program[GLINT_FIELD_SHADER]->inputs;
     for (int k = 0; k < GLINT_ARRIVAL_COUNT; k++) {
         const glint_input input = (glint_input)(GLINT_INPUT_L_X + k);
+        if (!(read >> input & 1))
+            continue;
         if (sloped)
             args.slope[k] = s->slopes->of[index].input[input] + e * GLINT_GROUP;
         if (index == 0)
@@ -121,20 +126,18 @@ static void turn_points(const shading *s, size_t index, uint32_t e)
 static void find_entry(const shading *s, size_t index, uint32_t e, bool arrives)
 {
     static const int first[3] = { GLINT_INPUT_WORLD_X, GLINT_INPUT_N_X, GLINT_INPUT_V_X };
-    double (*bend)[3][GLINT_GROUP] = s->tile->derivative->bend;
     const uint32_t g = s->entries[e].group;
     const bool bends = s->frame->plan->derivatives->of[index].bends;
     glint_derivative_points points;
     glint_derivative_find_points(s->tile, s->frame, g, &points);
     if (bends) {
+        double *row[9];
+        for (int i = 0; i < 9; i++)
+            points.slope[i / 3][i % 3] = row[i] = s->slopes->of[index].input[first[i / 3] + i % 3] + e * GLINT_GROUP;
         const unsigned wanted = s->slopes->wanted[e];
-        const unsigned bent = wanted ? glint_bend_points(s->tile, s->frame, index, g, wanted, &points, bend) : 0;
-        for (int i = 0; i < 9; i++) {
-            points.slope[i / 3][i % 3] = bend[i / 3][i % 3];
-            if (wanted & ~bent)
-                keep_lanes(bent, bend[i / 3][i % 3]);
-            memcpy(s->slopes->of[index].input[first[i / 3] + i % 3] + e * GLINT_GROUP, bend[i / 3][i % 3], sizeof bend[i / 3][i % 3]);
-        }
+        const unsigned bent = wanted ? glint_bend_points(s->tile, s->frame, index, g, wanted, &points, row) : 0;
+        for (int i = 0; i < 9 && wanted & ~bent; i++)
+            keep_lanes(bent, row[i]);
         if (reads_own_space(s))
             turn_points(s, index, e);
     }
@@ -198,15 +201,15 @@ static void add_light(const shading *s, uint32_t terms)
                 const uint32_t lane = (uint32_t)__builtin_ctz(left), i = e * GLINT_GROUP + lane;
                 const double value = s->slopes->value[k][i];
                 work->light[k % 3][s->entries[e].group * GLINT_GROUP + lane] +=
-                    value > 0 ? fmin(value, GLINT_REFLECTANCE_MAX) * s->slopes->share[i] : 0;
+                    value > 0 ? fmin(value, GLINT_REFLECTANCE_MAX) * (double)s->slopes->share[i] : 0;
             }
 }
 
-/// The derivatives that part of a gradient is summed up for: its slopes from `from` on. Returns how many there are.
-static uint32_t list_sums(const shading *s, const glint_gradient *gradient, uint32_t from)
+/// The derivatives, first .. end - 1, that part of a gradient is summed up for: its slopes from `from` on. Returns how many there are.
+static uint32_t list_sums(const shading *s, const glint_gradient *gradient, uint32_t from, size_t first, size_t end)
 {
     uint32_t count = 0;
-    for (size_t k = 0; k < s->frame->plan->derivatives->count; k++) {
+    for (size_t k = first; k < end; k++) {
         input_slopes *own = &s->slopes->of[k];
         glint_program_sums *sums = &s->slopes->sums[count];
         bool any = false;
@@ -225,12 +228,12 @@ static uint32_t list_sums(const shading *s, const glint_gradient *gradient, uint
 }
 
 /// Sums up how fast a shader's light changes with what it reads.
-static void sum_up(const shading *s, const glint_gradient *gradient)
+static void sum_up(const shading *s, const glint_gradient *gradient, size_t first, size_t end)
 {
     for (uint32_t from = 0; from < gradient->count; from += gradient->each) {
         glint_program_args args = { .group_count = s->count, .wanted = s->slopes->wanted, .sums_alone = true };
         args.sums = s->slopes->sums;
-        args.sums_count = list_sums(s, gradient, from);
+        args.sums_count = list_sums(s, gradient, from, first, end);
         if (args.sums_count)
             glint_pattern_call(s->tile->pattern, s->frame, &gradient->programs[from / gradient->each]->code, 0, &args);
     }
@@ -253,15 +256,33 @@ static void add_sums(const shading *s, size_t index)
     double (*to)[GLINT_TILE_SAMPLES] = s->tile->derivative->sum[index];
     for (uint32_t e = 0; e < s->count; e++)
         for (int c = 0; c < 3; c++) {
-            const double *share = s->slopes->share + e * GLINT_GROUP, *from = s->slopes->of[index].sum[c] + e * GLINT_GROUP;
+            const float *share = s->slopes->share + e * GLINT_GROUP;
+            const double *from = s->slopes->of[index].sum[c] + e * GLINT_GROUP;
             double *sum = to[c] + s->entries[e].group * GLINT_GROUP, slope[GLINT_GROUP];
             for (int i = 0; i < GLINT_GROUP; i++)
-                slope[i] = fabs(from[i] * share[i]) < HUGE_VAL ? from[i] * share[i] : 0;
+                slope[i] = fabs(from[i] * (double)share[i]) < HUGE_VAL ? from[i] * (double)share[i] : 0;
             if (s->slopes->wanted[e] != 0xffff)
                 keep_lanes(s->slopes->wanted[e], slope);
             for (int i = 0; i < GLINT_GROUP; i++)
                 sum[i] += slope[i];
         }
+}
+
+/// Points what the shader reads of the ways to the eye at those that are found.
+static void find_views(const shading *s)
+{
+    glint_pattern_inputs *inputs = &s->tile->pattern->inputs;
+    bool in_order = true;
+    for (uint32_t e = 1; e < s->count; e++)
+        in_order = in_order && s->entries[e].group == s->entries[0].group + e;
+    for (int c = 0; c < 3; c++) {
+        const double *eye = s->tile->derivative->eye[c];
+        double *row = glint_pattern_row(inputs, (glint_input)(GLINT_INPUT_V_X + c));
+        if (in_order)
+            inputs->from[GLINT_INPUT_V_X + c] = eye + (size_t)s->entries[0].group * GLINT_GROUP;
+        for (uint32_t e = 0; e < s->count && !in_order; e++)
+            memcpy(row + e * GLINT_GROUP, eye + (size_t)s->entries[e].group * GLINT_GROUP, GLINT_GROUP * sizeof *row);
+    }
 }
 
 /// Finds what the shader reads of points and material. False: the light reaches no group.
@@ -274,8 +295,74 @@ static bool begin(const shading *s, const glint_pattern_points *points)
         return false;
     for (uint32_t i = 0; i < s->count * GLINT_GROUP; i++)
         s->slopes->share[i] = 1;
-    glint_shader_gather(s->tile, s->frame, points, s->entries, s->count);
+    const bool seen = !s->tile->batch && !glint_derives_sites(s->tile) && s->frame->plan->desc.precision == GLINT_DOUBLE;
+    glint_shader_gather(s->tile, s->frame, points, seen ? VIEWS : 0, s->entries, s->count);
+    if (seen)
+        find_views(s);
     return true;
+}
+
+/// Adds how fast the light changes with what the shader reads, in one sweep for derivative number `index`. Returns whether that was all:
+/// of the lanes where it is not, which are the wanted ones left, nothing is added.
+static bool sweep(const shading *s, size_t index, const glint_program *forward)
+{
+    input_slopes *own = &s->slopes->of[index];
+    uint32_t groups[GLINT_PROGRAM_GROUPS];
+    unsigned odd = 0;
+    glint_program_args args = { .group_count = s->count, .wanted = s->slopes->wanted, .groups = groups, .sums_alone = true };
+    for (uint32_t e = 0; e < s->count; e++)
+        groups[e] = s->entries[e].group;
+    for (uint32_t left = forward->slopes; left; left &= left - 1) {
+        const int input = __builtin_ctz(left);
+        if (!(own->found >> input & 1))
+            memset(own->input[input], 0, s->count * GLINT_GROUP * sizeof(double));
+        args.input[GLINT_INPUT_COUNT + input] = own->input[input];
+    }
+    for (int c = 0; c < 3; c++)
+        args.added[c] = s->tile->derivative->sum[index][c];
+    args.share = s->slopes->share;
+    args.odd = s->slopes->odd;
+    glint_pattern_call(s->tile->pattern, s->frame, &forward->code, 0, &args);
+    for (uint32_t e = 0; e < s->count; e++)
+        odd |= args.odd[e];
+    return !odd;
+}
+
+/// The same of one derivative or of all, by the gradient and what depends on the shader's own numbers.
+static void derive_exactly(const shading *s, size_t from, size_t to)
+{
+    const glint_plan_derivatives *all = s->frame->plan->derivatives;
+    const uint32_t material = s->entries->material;
+    for (size_t k = from; k < to; k++)
+        for (int c = 0; c < 3; c++)
+            memset(s->slopes->of[k].sum[c], 0, s->count * GLINT_GROUP * sizeof(double));
+    sum_up(s, &all->gradients[material], from, to);
+    for (size_t k = from; k < to; k++) {
+        const glint_program *tangent = all->of[k].programs[material].of[GLINT_FIELD_SHADER];
+        if (tangent)
+            add_tangent(s, k, tangent);
+        add_sums(s, k);
+    }
+}
+
+/// By derivative number `index`, forward where that does.
+static void derive_one(const shading *s, size_t index)
+{
+    const glint_plan_derivatives *all = s->frame->plan->derivatives;
+    const uint32_t material = s->entries->material;
+    const glint_gradient *gradient = &all->gradients[material];
+    const bool tangent = all->of[index].programs[material].of[GLINT_FIELD_SHADER];
+    const glint_program *forward = index < GLINT_FORWARD_MAX && !tangent ? gradient->forward[index] : NULL;
+    uint16_t wanted[GLINT_PROGRAM_GROUPS];
+    if (forward && !(forward->slopes & s->slopes->of[index].found))
+        return;
+    if (forward && sweep(s, index, forward))
+        return;
+    memcpy(wanted, s->slopes->wanted, sizeof wanted);
+    if (forward)
+        memcpy(s->slopes->wanted, s->slopes->odd, sizeof wanted);
+    derive_exactly(s, index, index + 1);
+    memcpy(s->slopes->wanted, wanted, sizeof wanted);
 }
 
 static void derive(const shading *s, const glint_pattern_points *points)
@@ -291,21 +378,16 @@ static void derive(const shading *s, const glint_pattern_points *points)
     }
     if (!varies || !begin(s, points))
         return;
-    for (size_t k = 0; k < all->count; k++) {
+    for (size_t k = 0; k < all->count; k++)
         s->slopes->of[k].found = find_inputs(s, k);
-        memset(s->slopes->of[k].sum, 0, sizeof s->slopes->of[k].sum);
-    }
     if (weighs || tangents)
         run(s, plan->patterns->of[material].program[GLINT_FIELD_SHADER], s->slopes->value);
     if (weighs)
         add_light(s, plan->patterns->of[material].program[GLINT_FIELD_SHADER]->code.output_count);
-    sum_up(s, &all->gradients[material]);
-    for (size_t k = 0; k < all->count; k++) {
-        const glint_program *tangent = all->of[k].programs[material].of[GLINT_FIELD_SHADER];
-        if (tangent)
-            add_tangent(s, k, tangent);
-        add_sums(s, k);
-    }
+    if (all->count > GLINT_FORWARD_MAX)
+        derive_exactly(s, 0, all->count);
+    for (size_t k = 0; k < all->count && all->count <= GLINT_FORWARD_MAX; k++)
+        derive_one(s, k);
 }
 
 void glint_derive_shaders(glint_tile *tile, const glint_tile_frame *frame, const glint_derivative_reach *reach)

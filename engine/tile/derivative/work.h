@@ -19,6 +19,7 @@ typedef struct glint_derivative_work {
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES], normal[3][GLINT_TILE_SAMPLES]; ///< where the tile's are of float
     _Alignas(64) double position[3][GLINT_GROUP], weight[GLINT_GROUP]; ///< of the current light
     _Alignas(64) double bend[3][3][GLINT_GROUP]; ///< slopes of a group's points, normals and eyes
+    glint_bend_camera camera[GLINT_DERIVATIVES_MAX]; ///< that the eye sees by
     _Alignas(64) double tint[3][GLINT_TILE_SAMPLES]; ///< what is left of a light's colours, and its slopes, for samples and for rays
     _Alignas(64) double tint_slope[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
     _Alignas(64) double ray_tint[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
@@ -99,9 +100,24 @@ bool glint_derive_fade_fits(glint_derivative_work *work, const glint_plan *plan)
 bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
                        const glint_derivative_points *points, glint_bend *out);
 
-/// The slopes of those points of a group, among `lanes`, that derivative number `index` moves; returns which they are.
+/// Of hits on one sphere or plane, what bend reads.
+typedef struct glint_bend_room {
+    glint_bend_args args;
+    _Alignas(64) double place[2][GLINT_GROUP], shift[3][GLINT_GROUP], shift_slope[3][GLINT_GROUP];
+} glint_bend_room;
+
+/// Those of `lanes` that show what the first of them does. seen: by the eye, a sphere or plane; then `out` holds what stages read of
+/// them, but for where slopes go. moves: that moves, or the eye does.
+unsigned glint_bend_begin(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
+                          const glint_derivative_points *points, glint_bend_room *out, bool *seen, bool *moves);
+
+/// The slopes of those points of a group, among `lanes`, that derivative number `index` moves; returns which they are. slope: of
+/// points, of normals, of eyes, sixteen each.
 unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
-                           const glint_derivative_points *points, double (*bend)[3][GLINT_GROUP]);
+                           const glint_derivative_points *points, double *const slope[9]);
+
+/// What of the current sample's camera stays from hit to hit.
+void glint_bend_aim(const glint_tile *tile, const glint_plan *plan);
 
 /// The shares of a triangle's corners at the end of a way `at` from the first of them, less the 1 that the first has at its own
 /// place: of the slope of a point, the slopes of its shares. scale: of the table.

@@ -81,12 +81,12 @@ static void gather_material(glint_tile *tile, const glint_plan *plan, const read
     gather_field(tile, plan, r, GLINT_FIELD_SHININESS, 0, r->own->desc.shininess, GLINT_INPUT_SHININESS);
 }
 
-void glint_shader_gather(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
+void glint_shader_gather(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points, uint32_t known,
                          const glint_pattern_lanes *entries, uint32_t count)
 {
     const glint_plan_pattern *own = &frame->plan->patterns->of[entries->material];
     const reading r = { own, own->program[GLINT_FIELD_SHADER]->inputs, entries, count };
-    const uint32_t reads = (r.inputs & ~NUMBERS) | 7u << GLINT_INPUT_WORLD_X;
+    const uint32_t reads = (r.inputs & ~(NUMBERS | known)) | 7u << GLINT_INPUT_WORLD_X;
     glint_pattern_gather(&tile->pattern->inputs, frame, points, reads, entries, count);
     gather_material(tile, frame->plan, &r);
 }
@@ -224,7 +224,7 @@ static void shade_batch(glint_tile *tile, const glint_tile_frame *frame, const g
         if (!lit.count)
             continue;
         if (!gathered)
-            glint_shader_gather(tile, frame, points, b->entries, b->count);
+            glint_shader_gather(tile, frame, points, 0, b->entries, b->count);
         gathered = true;
         add_light(tile, frame, b, &lit, &lights[i], to);
     }

@@ -74,8 +74,9 @@ void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_pa
 uint32_t glint_pattern_take(struct glint_pattern *pattern, const glint_pattern_lanes **entries);
 /// shader.c: lists the lanes of materials with shaders. Returns the points as shaders see them.
 glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint_plan *plan);
-/// Finds what a shader reads of the points of some entries, and of their material.
-void glint_shader_gather(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
+/// Finds what a shader reads of the points of some entries, and of their material; what is `known`, a bit an input, is put there by
+/// the caller.
+void glint_shader_gather(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points, uint32_t known,
                          const glint_pattern_lanes *entries, uint32_t count);
 /// Runs a program on the inputs that are gathered, from entry `first` on.
 void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_program_code *code,
