@@ -60,12 +60,11 @@ static bool arrangement_init(arrangement *a, const glint_geometry *geometry)
     if (!a->rest || !a->done || !a->first || !corner_room(a))
         return false;
     memcpy(a->rest, geometry->unbounded, at * sizeof *a->rest);
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < count; i += STRIDE)
+        a->first[i / STRIDE] = geometry->prims[i];
+    for (uint32_t i = 0; i < count && at < count - bounded; i++) // until all repeats are found
         if (geometry->prims[i].filter_bound == GLINT_REPEATED)
             a->rest[at++] = i;
-        if (i % STRIDE == 0)
-            a->first[i / STRIDE] = geometry->prims[i];
-    }
     return true;
 }
 

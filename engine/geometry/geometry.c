@@ -9,35 +9,61 @@
 
 // ---- What is equal ----
 
+#define PLACES 32u ///< primitives whose places are looked for together
+
+/// A primitive by the hash of its place.
+typedef struct place_slot {
+    uint32_t number; ///< index + 1; 0: free
+    uint32_t tag; ///< bits of the hash that the slot does not tell
+} place_slot;
+
+static bool is_repeat(const glint_geometry *geometry, uint32_t i, uint32_t other)
+{
+    double place[GLINT_PLACE_MAX], same[GLINT_PLACE_MAX];
+    const size_t bytes = (size_t)glint_prim_place(geometry, &geometry->prims[i], place) * sizeof *place;
+    glint_prim_place(geometry, &geometry->prims[other], same);
+    return memcmp(place, same, bytes) == 0; // the kind comes first: other counts differ there
+}
+
+/// Marks those of `count` primitives that are bit-equal to one before them. Their slots are on their way before the first is looked at.
+static void mark_repeats(glint_geometry *geometry, uint32_t first, uint32_t count, place_slot *slots, size_t mask)
+{
+    glint_key keys[PLACES];
+    for (uint32_t n = 0; n < count; n++) {
+        double place[GLINT_PLACE_MAX];
+        const glint_prim *prim = &geometry->prims[first + n];
+        if (prim->kind == GLINT_PRIM_TRIANGLE)
+            continue; // has a rule for all triangles of its plane
+        keys[n] = glint_key_add((glint_key) { 0 }, place, (size_t)glint_prim_place(geometry, prim, place) * sizeof *place);
+        __builtin_prefetch(&slots[keys[n].low & mask]);
+    }
+    for (uint32_t n = 0; n < count; n++) {
+        const uint32_t i = first + n, tag = (uint32_t)keys[n].high;
+        if (geometry->prims[i].kind == GLINT_PRIM_TRIANGLE)
+            continue;
+        size_t at = keys[n].low & mask;
+        while (slots[at].number && !(slots[at].tag == tag && is_repeat(geometry, i, slots[at].number - 1)))
+            at = (at + 1) & mask;
+        if (slots[at].number)
+            geometry->prims[i].filter_bound = GLINT_REPEATED;
+        else
+            slots[at] = (place_slot) { i + 1, tag };
+    }
+}
+
 /// Finds the primitives that are bit-equal to one before them.
 static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
 {
     const uint32_t count = geometry->table.prim_count;
-    size_t size = 16, unlike = 0;
-    for (uint32_t i = 0; i < count; i++)
-        unlike += geometry->prims[i].kind != GLINT_PRIM_TRIANGLE;
+    size_t size = 16, unlike = count - geometry->triangle_count;
     while (size < 2 * unlike)
         size *= 2;
-    uint32_t *slots = glint_scratch_resize(NULL, 0, size * sizeof *slots); // index + 1
+    place_slot *slots = glint_scratch_resize(NULL, 0, size * sizeof *slots);
     if (!slots)
         return glint_fail_nomem(error);
     memset(slots, 0, size * sizeof *slots);
-    for (uint32_t i = 0; i < count; i++) {
-        double place[GLINT_PLACE_MAX], other[GLINT_PLACE_MAX];
-        if (geometry->prims[i].kind == GLINT_PRIM_TRIANGLE)
-            continue; // has a rule for all triangles of its plane
-        const size_t bytes = (size_t)glint_prim_place(geometry, &geometry->prims[i], place) * sizeof *place;
-        size_t at = glint_key_add((glint_key) { 0 }, place, bytes).low & (size - 1);
-        for (; slots[at]; at = (at + 1) & (size - 1)) {
-            glint_prim_place(geometry, &geometry->prims[slots[at] - 1], other);
-            if (memcmp(place, other, bytes) == 0) // the kind comes first: other counts differ there
-                break;
-        }
-        if (slots[at])
-            geometry->prims[i].filter_bound = GLINT_REPEATED;
-        else
-            slots[at] = i + 1;
-    }
+    for (uint32_t i = 0; i < count && unlike; i += PLACES)
+        mark_repeats(geometry, i, count - i < PLACES ? count - i : PLACES, slots, size - 1);
     glint_scratch_free(slots, size * sizeof *slots);
     return GLINT_OK;
 }
