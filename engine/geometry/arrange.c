@@ -182,6 +182,7 @@ static void move_corners(glint_geometry *geometry, arrangement *a, glint_pool *p
     move_corners_of(geometry->members, geometry->member_count, a->corners + moved, a->chunks, pool);
     free(geometry->corners);
     geometry->corners = a->corners;
+    geometry->table.corners = (const double(*)[3][3])a->corners;
     a->corners = NULL;
 }
 

@@ -192,8 +192,7 @@ static glint_status add_prims(glint_filler *f, glint_shape *shape, const glint_p
     for (size_t i = 0; i < shape->count; i++)
         add_prim(f, shape, i, part, place);
     f->object_count += shape->mesh ? 1 : (uint32_t)shape->count;
-    geometry->table.triangles = geometry->table.triangles || shape->mesh;
-    geometry->triangle_count += shape->mesh ? (uint32_t)shape->count : 0;
+    geometry->table.triangles += shape->mesh ? (uint32_t)shape->count : 0;
     geometry->table.shading_point_count += (uint32_t)count_shading_points(shape);
     return GLINT_OK;
 }

@@ -55,7 +55,7 @@ static void mark_repeats(glint_geometry *geometry, uint32_t first, uint32_t coun
 static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
 {
     const uint32_t count = geometry->table.prim_count;
-    size_t size = 16, unlike = count - geometry->triangle_count;
+    size_t size = 16, unlike = count - geometry->table.triangles;
     while (size < 2 * unlike)
         size *= 2;
     place_slot *slots = glint_scratch_resize(NULL, 0, size * sizeof *slots);
@@ -208,32 +208,42 @@ static void index_release(glint_index *index)
     free(index);
 }
 
-/// Numbers the primitives in the order in which the tree's nodes name them, and has the nodes say so.
-static void order_by_tree(glint_index *index)
+/// Takes the next place of an order, triangles first. next: of those and of the others.
+static inline uint32_t take_place(const glint_geometry *geometry, uint32_t i, uint32_t next[2])
 {
-    uint32_t next = 0;
+    const glint_geometry_table *table = &geometry->table;
+    const bool mixed = table->triangles && table->triangles < geometry->index->box_count;
+    return next[mixed && geometry->prims[i].kind != GLINT_PRIM_TRIANGLE]++;
+}
+
+/// Numbers the primitives in the order in which the tree's nodes name them, and has the nodes say so.
+static void order_by_tree(const glint_geometry *geometry)
+{
+    glint_index *index = geometry->index;
+    uint32_t next[2] = { 0, geometry->table.triangles };
     for (uint32_t n = 0; n < index->bvh.node_count; n++) {
         glint_node *node = &index->bvh.nodes[n];
         for (int i = 0; i < GLINT_NODE_WIDTH; i++) {
             if (!(node->lower[0][i] <= node->upper[0][i]) || !(node->child[i] & GLINT_NODE_PRIM))
                 continue;
-            index->order[next] = node->child[i] & ~GLINT_NODE_PRIM;
-            node->child[i] = GLINT_NODE_PRIM | next++;
+            const uint32_t from = node->child[i] & ~GLINT_NODE_PRIM, place = take_place(geometry, from, next);
+            index->order[place] = from;
+            node->child[i] = GLINT_NODE_PRIM | place;
         }
     }
 }
 
-/// The order of definition.
+/// The order of definition, but for triangles, which come first.
 static glint_status make_order(const glint_geometry *geometry, glint_error *error)
 {
     glint_index *index = geometry->index;
-    uint32_t next = 0;
+    uint32_t next[2] = { 0, geometry->table.triangles };
     index->order = malloc((index->box_count + 1) * sizeof *index->order);
     if (!index->order)
         return glint_fail_nomem(error);
     for (uint32_t i = 0; i < geometry->table.prim_count; i++)
         if (glint_prim_in_tree(&geometry->prims[i]))
-            index->order[next++] = i;
+            index->order[take_place(geometry, i, next)] = i;
     index->plain = true;
     return GLINT_OK;
 }
@@ -252,7 +262,7 @@ static glint_status index_build(glint_geometry *geometry, glint_pool *pool, glin
             glint_bvh_free(&index->bvh);
             return glint_fail_nomem(error);
         }
-        order_by_tree(index);
+        order_by_tree(geometry);
     }
     index->built = !status;
     return status;

@@ -62,7 +62,6 @@ struct glint_geometry {
     glint_index *index;
     glint_bvh others; ///< of what is neither triangle nor plane, built on first use
     bool has_others; ///< `others` is built
-    uint32_t triangle_count;
     double thinnest; ///< least size of what is curved, world units; infinite: nothing is
     uint32_t id_count; ///< primitives that were described, parts of combined solids and repeats included
     glint_geometry_table table; ///< for the kernels; without `nodes` until the index is built

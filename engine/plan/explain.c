@@ -293,7 +293,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
         shapes(e, "triangles", is_mesh);
         one(e, plan->raster, "scan conversion", "%s: %u triangles",
             plan->desc.visibility == GLINT_VISIBILITY_SCAN ? "visibility = scan" : "cheaper here than casting",
-            plan->geometry->triangle_count);
+            plan->geometry->table.triangles);
         shapes(e, "smooth normals", is_smooth);
         if (plan->runs[GLINT_STAGE_VERTEX]) {
             shapes(e, "flat shading", is_flat);

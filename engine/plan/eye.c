@@ -95,7 +95,7 @@ static void add_triangle(hull *part, const glint_plan *plan, const glint_prim *p
 static void find_media(const glint_plan *plan, hull *hulls, around *eye)
 {
     const glint_geometry *geometry = plan->geometry;
-    const uint32_t hull_count = geometry->triangle_count ? geometry->part_count : 0;
+    const uint32_t hull_count = geometry->table.triangles ? geometry->part_count : 0;
     for (uint32_t i = 0; i < hull_count; i++)
         hulls[i] = (hull) { .lower = { HUGE_VAL, HUGE_VAL, HUGE_VAL }, .upper = { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL } };
     pthread_mutex_lock(&geometry->index->lock);
@@ -117,7 +117,7 @@ static void find_media(const glint_plan *plan, hull *hulls, around *eye)
 glint_status glint_plan_eye(glint_plan *plan, glint_error *error)
 {
     around eye = { 0 };
-    const uint32_t triangles = plan->geometry->triangle_count;
+    const uint32_t triangles = plan->geometry->table.triangles;
     hull *hulls = triangles ? glint_alloc(plan->geometry->part_count, sizeof *hulls) : NULL;
     if (triangles && !hulls)
         return glint_fail_nomem(error);

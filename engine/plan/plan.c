@@ -102,7 +102,7 @@ static void choose_visibility(glint_plan *plan)
     bool needs_index = false;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         needs_index = needs_index || (plan->runs[id] && !(1u << id & without_index));
-    plan->raster = plan->geometry->triangle_count > 0 && !plan->lens && requested != GLINT_VISIBILITY_CAST &&
+    plan->raster = plan->geometry->table.triangles > 0 && !plan->lens && requested != GLINT_VISIBILITY_CAST &&
                    (requested == GLINT_VISIBILITY_SCAN || glint_raster_pays(plan, needs_index));
     plan->needs_index = !plan->raster || needs_index || glint_plan_cuts(plan);
 }

@@ -389,7 +389,7 @@ static outlook look_at(const glint_plan *plan)
     }
     if (looked)
         out.in_view = (double)seen / looked;
-    out.alone = geometry->triangle_count == count;
+    out.alone = geometry->table.triangles == count;
     out.indexed = geometry->index->built;
     pthread_mutex_unlock(&geometry->index->lock);
     return out;
@@ -399,7 +399,7 @@ bool glint_raster_pays(const glint_plan *plan, bool needs_index)
 {
     const glint_geometry *geometry = plan->geometry;
     const outlook known = look_at(plan);
-    const double triangles = geometry->triangle_count, samples = plan->desc.samples;
+    const double triangles = geometry->table.triangles, samples = plan->desc.samples;
     const double pixels = plan->desc.width * plan->desc.height * samples;
     const double raster = triangles * PROJECT_NS + (known.alone ? 0 : pixels * MERGE_NS);
     double cast = pixels * (plan->camera.orthographic ? PARALLEL_NS : PIXEL_NS);

@@ -77,7 +77,6 @@ static test_scene *lattice_scene(void)
         else
             set_plane(&scene.prims[i], place, normal);
     }
-    scene.table.triangles = true;
     finish_scene(&plan, &scene);
     return &scene;
 }

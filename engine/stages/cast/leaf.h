@@ -5,18 +5,29 @@
 
 /// The triangles of one node, and pairs that are to be decided.
 typedef struct R(cast_leaf) {
-    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< of each slot's triangle, from the eye, in units of the table; where rays
-        ///< start on a lens, in the world
+    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< of each slot's triangle
     _Alignas(64) real origin[3][GLINT_PAIRS]; ///< there: where the ray starts
     _Alignas(64) real direction[3][GLINT_PAIRS], t[GLINT_PAIRS];
     _Alignas(64) uint32_t slot[GLINT_PAIRS];
-    uint16_t at[GLINT_PAIRS]; ///< the ray
+    _Alignas(64) uint32_t at[GLINT_PAIRS]; ///< the ray
     int count;
     const glint_node *node;
     unsigned faced; ///< slots whose triangle shares its plane with others
     leaf_on_screen shown;
     _Alignas(64) uint32_t pixels[GLINT_NODE_WIDTH]; ///< of the tile, see screen_cells
 } R(cast_leaf);
+
+/// Loads the corners of triangles. Lanes of other slots keep what they had.
+static inline void R(load_node_corners)(const glint_geometry_table *geometry, const glint_node *node, unsigned mask,
+                                        real to[3][3][GLINT_NODE_WIDTH])
+{
+    for (; mask; mask &= mask - 1) {
+        const int slot = __builtin_ctz(mask);
+        const double(*corner)[3] = geometry->corners[node->child[slot] & ~GLINT_NODE_PRIM];
+        for (int j = 0; j < 9; j++)
+            to[j / 3][j % 3][slot] = (real)corner[j / 3][j % 3];
+    }
+}
 
 static inline void R(begin_leaf)(R(cast_leaf) * leaf)
 {
@@ -29,19 +40,18 @@ static inline void R(begin_leaf)(R(cast_leaf) * leaf)
 static inline void R(load_leaf)(const glint_cast_args *args, unsigned mask, R(cast_leaf) * leaf)
 {
     const glint_geometry_table *geometry = args->geometry;
-    const real eye[3] = { (real)args->camera->eye[0], (real)args->camera->eye[1], (real)args->camera->eye[2] };
+    _Alignas(64) real seen[GLINT_NODE_WIDTH];
+    R(load_node_corners)(geometry, leaf->node, mask, leaf->corner);
     leaf->faced = 0;
-    for (; mask; mask &= mask - 1) {
-        const int slot = __builtin_ctz(mask);
-        const glint_prim *prim = &geometry->prims[leaf->node->child[slot] & ~GLINT_NODE_PRIM];
-        leaf->faced |= prim->face ? 1u << slot : 0;
-        for (int j = 0; j < 3; j++)
-            for (int k = 0; k < 3; k++)
-                leaf->corner[j][k][slot] = ((real)prim->corner[j][k] - eye[k]) * (real)geometry->scale;
-    }
+    for (unsigned left = geometry->faces ? mask : 0; left; left &= left - 1)
+        leaf->faced |= geometry->prims[leaf->node->child[__builtin_ctz(left)] & ~GLINT_NODE_PRIM].face ? left & -left : 0;
     for (int j = 0; j < 3; j++)
-        for (int k = 0; k < 3; k++)
-            R(narrow)(leaf->corner[j][k], leaf->shown.corner[j][k]);
+        for (int k = 0; k < 3; k++) {
+            const vr eye = r_set(args->camera->eye[k]), scale = r_set(geometry->scale);
+            for (int i = 0; i < GLINT_NODE_WIDTH; i += VR)
+                r_store(seen + i, (r_load(leaf->corner[j][k] + i) - eye) * scale);
+            R(narrow)(seen, leaf->shown.corner[j][k]);
+        }
 }
 
 /// Which pixels of the tile each triangle may show in: seen edge-on, wherever its box does. Returns the slots of `mask` that
@@ -130,19 +140,19 @@ INNER void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool len
         return;
     *best = t;
     *best_id = id;
+    __builtin_prefetch(&prims[id]); // for surface: its corners alone have been read so far
     tile->depth[at / GLINT_GROUP][at % GLINT_GROUP] = (float)(t * (real)args->geometry->scale) * (1 + 0x1p-22f);
     *moved |= (uint64_t)1 << at / GLINT_GROUP;
 }
 
 /// The corners of VR pairs from their rays' starts, in units of the table.
-INNER void R(corners_of_pairs)(const R(cast_leaf) * leaf, bool lens, int i, vr scale, vr p[3][3])
+INNER void R(corners_of_pairs)(const R(cast_leaf) * leaf, bool lens, const double eye[3], int i, vr scale, vr p[3][3])
 {
-    for (int j = 0; j < 3; j++)
-        for (int k = 0; k < 3; k++) {
-            p[j][k] = r_pick(leaf->corner[j][k], leaf->slot + i);
-            if (lens)
-                p[j][k] = (p[j][k] - r_load(leaf->origin[k] + i)) * scale;
-        }
+    for (int k = 0; k < 3; k++) {
+        const vr from = lens ? r_load(leaf->origin[k] + i) : r_set(eye[k]);
+        for (int j = 0; j < 3; j++)
+            p[j][k] = (r_pick(leaf->corner[j][k], leaf->slot + i) - from) * scale;
+    }
 }
 
 INNER void R(decide_pairs_of)(R(tile_cast) * tile, R(cast_leaf) * leaf, bool lens)
@@ -161,7 +171,7 @@ INNER void R(decide_pairs_of)(R(tile_cast) * tile, R(cast_leaf) * leaf, bool len
     }
     for (int i = 0; i < leaf->count; i += VR) {
         vr p[3][3], d[3], t;
-        R(corners_of_pairs)(leaf, lens, i, r_set(scale), p);
+        R(corners_of_pairs)(leaf, lens, tile->args->camera->eye, i, r_set(scale), p);
         for (int k = 0; k < 3; k++)
             d[k] = r_load(leaf->direction[k] + i);
         const unsigned there = leaf->count - i < VR ? (1u << (leaf->count - i)) - 1 : (1u << VR) - 1;
@@ -189,13 +199,27 @@ static inline void R(add_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, int sl
     const R(group_directions) directions = R(directions_of)(tile->args->camera, (uint32_t)x, (uint32_t)y);
     const uint32_t first = (uint32_t)(y * tile->across + x) * GLINT_GROUP;
     int n = leaf->count;
+#ifdef GLINT_PACKS
+    static const _Alignas(64) uint32_t lane_numbers[GLINT_GROUP] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
+    i_pack(leaf->at + n, i_add(i_load(lane_numbers), i_set(first)), lanes);
+    i_store_any(leaf->slot + n, i_set((uint32_t)slot));
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const unsigned some = lanes >> i & ((1u << VR) - 1);
+        for (int k = 0; k < 3; k++) {
+            const size_t from = (size_t)(k * GLINT_GROUP + i);
+            r_pack(leaf->direction[k] + n, r_load(directions.across + from) + r_load(directions.down + from), some);
+        }
+        n += __builtin_popcount(some);
+    }
+#else
     for (; lanes; lanes &= lanes - 1, n++) {
         const unsigned lane = (unsigned)__builtin_ctz(lanes);
         leaf->slot[n] = (uint32_t)slot;
-        leaf->at[n] = (uint16_t)(first + lane);
+        leaf->at[n] = first + lane;
         for (int k = 0; k < 3; k++)
             leaf->direction[k][n] = directions.across[k * GLINT_GROUP + lane] + directions.down[k * GLINT_GROUP + lane];
     }
+#endif
     leaf->count = n;
     if (n > GLINT_PAIRS - GLINT_GROUP)
         R(decide_pairs)(tile, leaf);
@@ -243,7 +267,7 @@ static inline void R(add_lens_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, i
     for (; lanes; lanes &= lanes - 1, n++) {
         const uint32_t at = g * GLINT_GROUP + (uint32_t)__builtin_ctz(lanes);
         leaf->slot[n] = (uint32_t)slot;
-        leaf->at[n] = (uint16_t)at;
+        leaf->at[n] = at;
         for (int k = 0; k < 3; k++) {
             leaf->origin[k][n] = ((const real *)args->origin[k])[at];
             leaf->direction[k][n] = ((const real *)args->direction[k])[at];
@@ -260,13 +284,6 @@ static void R(load_lens_leaf)(const R(tile_cast) * tile, unsigned mask, R(cast_l
     const glint_cast_args *args = tile->args;
     R(load_leaf)(args, mask, leaf);
     show_through_lens(&leaf->shown, &tile->view, &tile->lens->seen, GLINT_REAL == 32, out);
-    for (; mask; mask &= mask - 1) {
-        const int slot = __builtin_ctz(mask);
-        const glint_prim *prim = &args->geometry->prims[leaf->node->child[slot] & ~GLINT_NODE_PRIM];
-        for (int j = 0; j < 3; j++)
-            for (int k = 0; k < 3; k++)
-                leaf->corner[j][k][slot] = (real)prim->corner[j][k];
-    }
 }
 
 /// Finds the rays that may meet the triangle in a slot.

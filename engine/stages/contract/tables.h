@@ -245,15 +245,16 @@ static inline bool glint_solid_holds(const glint_solid *solid, const double cent
 
 /// What rays meet: the surfaces, of bit-equal ones the first, and the index over those that have an end. Its frame is (x - reference) * scale.
 typedef struct glint_geometry_table {
-    const glint_prim *prims; ///< in the order of the index, so that neighbours in space are neighbours in memory; after them
-        ///< the parts of combined solids and the triangles of those that are meshes, which are not counted
-    uint32_t prim_count;
+    const glint_prim *prims; ///< triangles first, and those and the others in the order of the index, so that neighbours in space are
+        ///< neighbours in memory; after them the parts of combined solids and the triangles of those that are meshes, which are not counted
+    uint32_t prim_count, triangles; ///< triangles: of prims[0 .. triangles)
+    const double (*corners)[3][3]; ///< of these
     const glint_node *nodes; ///< nodes[0] is the root; NULL: nothing has an end
     const uint32_t *unbounded; ///< the primitives that are not in the tree: planes
     uint32_t unbounded_count;
     double reference[3], scale; ///< scale is a power of two
     double extent; ///< bound of every coordinate and radius, world units
-    bool triangles, tori; ///< there are some
+    bool tori; ///< there are some
     const glint_corner_normals *corner_normals;
     const glint_solid *solids; ///< NULL: there are none, nor combined ones
     const glint_combined *combined;

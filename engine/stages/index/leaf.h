@@ -18,18 +18,6 @@ typedef struct leaf_on_screen {
     unsigned certain, turned; ///< slots whose edges are finite; of them, those whose determinant is negative
 } leaf_on_screen;
 
-/// The slots of `mask`, which hold primitives, that hold triangles.
-static inline unsigned triangles_in(const glint_geometry_table *geometry, const glint_node *node, unsigned mask)
-{
-    unsigned found = 0;
-    for (unsigned left = geometry->triangles ? mask : 0; left; left &= left - 1) {
-        const uint32_t child = node->child[__builtin_ctz(left)];
-        if (geometry->prims[child & ~GLINT_NODE_PRIM].kind == GLINT_PRIM_TRIANGLE)
-            found |= left & -left;
-    }
-    return found;
-}
-
 /// VF triangles in the coordinates of the screen.
 typedef struct leaf_lanes {
     vf a[3], b[3], w[3], k[3];

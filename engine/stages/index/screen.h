@@ -227,14 +227,26 @@ static inline unsigned prims_of_node(const glint_node *node)
     return prims;
 }
 
-/// Has the memory of primitives, and of the two nodes to be looked into next, on its way.
+/// The slots of `mask`, which hold primitives, that hold triangles.
+static inline unsigned triangles_in(const glint_geometry_table *geometry, const glint_node *node, unsigned mask)
+{
+    unsigned found = 0;
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) // all are negative numbers
+        found |= fm_bits(i_lt(i_load(node->child + i), i_set(GLINT_NODE_PRIM | geometry->triangles))) << i;
+    return found & mask;
+}
+
+/// Has the memory of primitives, and of the two nodes to be looked into next, on its way; of triangles, that of their corners.
 static inline void prefetch_prims(const glint_geometry_table *geometry, const glint_node *node, unsigned mask)
 {
-    for (; mask; mask &= mask - 1) {
-        const char *prim = (const char *)&geometry->prims[node->child[__builtin_ctz(mask)] & ~GLINT_NODE_PRIM];
-        __builtin_prefetch(prim);
-        __builtin_prefetch(prim + 64);
+    const unsigned triangles = triangles_in(geometry, node, mask);
+    for (unsigned left = triangles; left; left &= left - 1) {
+        const char *corners = (const char *)geometry->corners[node->child[__builtin_ctz(left)] & ~GLINT_NODE_PRIM];
+        __builtin_prefetch(corners);
+        __builtin_prefetch(corners + 64);
     }
+    for (unsigned left = mask & ~triangles; left; left &= left - 1)
+        __builtin_prefetch(&geometry->prims[node->child[__builtin_ctz(left)] & ~GLINT_NODE_PRIM]);
 }
 
 static inline void prefetch_nodes(const glint_geometry_table *geometry, const screen_entry *stack, int height)

@@ -69,13 +69,7 @@ static inline void R(load_beam_leaf)(const R(beam) * beam, unsigned mask, R(beam
 {
     const glint_geometry_table *geometry = beam->tile->args->geometry;
     _Alignas(64) real moved[GLINT_NODE_WIDTH];
-    for (; mask; mask &= mask - 1) {
-        const int slot = __builtin_ctz(mask);
-        const glint_prim *prim = &geometry->prims[leaf->node->child[slot] & ~GLINT_NODE_PRIM];
-        for (int j = 0; j < 3; j++)
-            for (int k = 0; k < 3; k++)
-                leaf->corner[j][k][slot] = (real)prim->corner[j][k];
-    }
+    R(load_node_corners)(geometry, leaf->node, mask, leaf->corner);
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++) {
             const vr reference = r_set(geometry->reference[k]), scale = r_set(geometry->scale);
@@ -155,14 +149,12 @@ static inline void R(add_beam_pair)(R(beam) * beam, int slot, uint32_t i, bool o
 // ---- The filter ----
 
 /// Tests the points from `i` on and before `end`.
-static void R(pair_run)(R(beam) * beam, int slot, own_side mine, uint32_t i, uint32_t end)
+INNER void R(pair_run)(R(beam) * beam, int slot, own_side mine, uint32_t i, uint32_t end)
 {
     const leaf_on_screen *shown = &beam->leaf.shown;
-    for (; i < end; i += VF) {
+    for (; i < end; i += VF) { // what few are behind costs less than to guess whether any is
         const unsigned in_run = end - i < VF ? (1u << (end - i)) - 1 : (1u << VF) - 1;
         const unsigned behind = fm_bits(f_le(f_set(shown->near[slot]), f_load_any(beam->w + i))) & in_run;
-        if (!behind)
-            continue;
         const vi owner = f_bits(f_load_any((const float *)(beam->own + i)));
         const unsigned own = fm_bits(i_eq(i_and(owner, i_set(~BEAM_BACK)), i_set(mine.id)));
         const unsigned dark = mine.any ? own : fm_bits(i_eq(owner, i_set(mine.id | mine.side)));
@@ -187,11 +179,9 @@ static void R(block_triangle)(R(beam) * beam, int slot)
     const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
     const int first = first_column(cells), end = last_column(cells) + 1;
-    if (end - first == SCREEN_ACROSS)
-        R(pair_run)(beam, slot, mine, *top, bottom[SCREEN_ACROSS]);
-    else
-        for (; top <= bottom; top += SCREEN_ACROSS)
-            R(pair_run)(beam, slot, mine, top[first], top[end]);
+    const bool whole = end - first == SCREEN_ACROSS; // the cells of all rows are one run
+    for (; top <= bottom; top = whole ? bottom + 1 : top + SCREEN_ACROSS)
+        R(pair_run)(beam, slot, mine, top[first], whole ? bottom[end] : top[end]);
 }
 
 /// Takes out of args->open what the triangles in the slots of `mask` block.

@@ -58,6 +58,21 @@ static inline vi i_load(const uint32_t *p) { return _mm512_load_si512(p); }
 static inline void i_store(uint32_t *p, vi x) { _mm512_store_si512(p, x); }
 static inline vi i_gather(const uint32_t *table, vi index) { return _mm512_i32gather_epi32(index, table, 4); }
 
+#define GLINT_PACKS 1 ///< there are the four that follow, of which three put some lanes side by side and anything behind them, to the end of a vector
+static inline void i_store_any(uint32_t *to, vi x) { _mm512_storeu_si512(to, x); }
+static inline void i_pack(uint32_t *to, vi x, unsigned lanes)
+{
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32((__mmask16)lanes, x));
+}
+static inline void f_pack(float *to, vf x, unsigned lanes)
+{
+    _mm512_storeu_ps(to, _mm512_maskz_compress_ps((__mmask16)lanes, x));
+}
+static inline void d_pack(double *to, __m512d x, unsigned lanes)
+{
+    _mm512_storeu_pd(to, _mm512_maskz_compress_pd((__mmask8)lanes, x));
+}
+
 static inline vi i_min(vi a, vi b) { return _mm512_min_epi32(a, b); }
 static inline vf f_fma(vf a, vf b, vf c) { return _mm512_fmadd_ps(a, b, c); }
 

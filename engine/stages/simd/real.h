@@ -25,6 +25,7 @@
 #undef r_mantissa
 #undef r_put_index
 #undef r_pick
+#undef r_pack
 #undef GLINT_PARALLEL
 #undef GLINT_POINT_SLACK
 #undef GLINT_ON_FACE
@@ -57,6 +58,7 @@
 #define r_mantissa d_mantissa
 #define r_put_index d_put_index
 #define r_pick d_pick
+#define r_pack d_pack
 #define GLINT_PARALLEL 1e-60 // squared sine below which a ray is parallel to a plane
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_DOUBLE
 #define GLINT_ON_FACE GLINT_ON_FACE_DOUBLE
@@ -87,6 +89,7 @@
 #define r_exponent f_exponent
 #define r_mantissa f_mantissa
 #define r_put_index(p, mask, i) i_store(p, f_bits(f_select(mask, f_from_bits(i_set(i)), f_from_bits(i_load(p)))))
+#define r_pack f_pack
 #define r_pick(table, index) f_from_bits(i_gather((const uint32_t *)(table), i_load(index)))
 #define GLINT_PARALLEL 1e-30
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_FLOAT

@@ -32,9 +32,11 @@ static inline unsigned R(mesh_lanes)(const glint_surface_args *args, size_t at, 
     unsigned found = 0;
     if (!(hits & ~lanes_equal(prim, prim[__builtin_ctz(hits)])))
         return 0;
-    for (; hits; hits &= hits - 1)
-        if (args->prims[prim[__builtin_ctz(hits)]].kind == GLINT_PRIM_TRIANGLE)
-            found |= hits & -hits;
+    for (unsigned same; hits; hits &= ~same) {
+        const uint32_t id = prim[__builtin_ctz(hits)];
+        same = lanes_equal(prim, id) & hits;
+        found |= args->prims[id].kind == GLINT_PRIM_TRIANGLE ? same : 0;
+    }
     return found;
 }
 
@@ -42,11 +44,11 @@ static inline unsigned R(mesh_lanes)(const glint_surface_args *args, size_t at, 
 static inline unsigned R(put_materials)(const glint_surface_args *args, size_t at, unsigned lanes)
 {
     unsigned one_sided = 0;
-    for (; lanes; lanes &= lanes - 1) {
-        const size_t i = at + (size_t)__builtin_ctz(lanes);
-        const glint_prim *prim = &args->prims[args->prim[i]];
-        args->material[i] = prim->material;
-        one_sided |= prim->two_sided ? 0 : lanes & -lanes;
+    for (unsigned same; lanes; lanes &= ~same) {
+        const uint32_t id = args->prim[at + (size_t)__builtin_ctz(lanes)];
+        same = lanes_equal(args->prim + at, id) & lanes;
+        lanes_put(args->material + at, same, args->prims[id].material);
+        one_sided |= args->prims[id].two_sided ? 0 : same;
     }
     return one_sided;
 }

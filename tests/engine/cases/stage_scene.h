@@ -33,6 +33,7 @@ typedef struct test_scene {
     glint_face faces[6 * MOST_PRIMS];
     uint32_t face_count;
     uint32_t unbounded[MOST_PRIMS];
+    double corners[MOST_PRIMS][3][3];
 } test_scene;
 
 // ---- Primitives --------------------------------------------------------------------------------------------------
@@ -446,6 +447,27 @@ static inline void set_faces(test_scene *scene)
     scene->table.faces = scene->faces;
 }
 
+/// Puts triangles first, and their corners in a row.
+static inline void order_prims(test_scene *scene)
+{
+    static glint_prim others[MOST_PRIMS];
+    uint32_t other_count = 0, count = 0;
+    for (uint32_t i = 0; i < scene->table.prim_count; i++) {
+        glint_prim *prim = &scene->prims[i];
+        if (prim->kind != GLINT_PRIM_TRIANGLE) {
+            others[other_count++] = *prim;
+            continue;
+        }
+        memcpy(scene->corners[count], prim->corner, sizeof scene->corners[count]);
+        scene->prims[count] = *prim;
+        scene->prims[count].corner = scene->corners[count];
+        count++;
+    }
+    memcpy(scene->prims + count, others, other_count * sizeof *others);
+    scene->table.triangles = count;
+    scene->table.corners = (const double(*)[3][3])scene->corners;
+}
+
 /// The order of definition: that of the array, or any.
 static inline void number_prims(test_scene *scene)
 {
@@ -460,6 +482,7 @@ static inline void number_prims(test_scene *scene)
 /// Fills what follows from kind, centre, normal and radius of the primitives; prim_count is set.
 static inline void finish_scene(const scene_plan *plan, test_scene *scene)
 {
+    order_prims(scene);
     number_prims(scene);
     set_faces(scene);
     scene->table.tori = false;
@@ -485,7 +508,6 @@ static inline test_scene *random_scene(const scene_plan *plan)
     const uint32_t count = scene.table.prim_count = random_count();
     for (uint32_t i = 0; i < count; i++)
         random_prim(plan, &scene, i, count);
-    scene.table.triangles = plan->triangles;
     if (one_in(6))
         set_ground(plan, &scene.prims[below(count)]);
     finish_scene(plan, &scene);
