@@ -110,6 +110,12 @@ static void tone_store_some(uint8_t *to, size_t stride, vi rgb, unsigned active)
                 to[i / 4 * stride + i % 4 * 3 + c] = (uint8_t)(word[i] >> 8 * c);
 }
 
+static inline bool tone_is_same(const vf a[3], const vf b[3])
+{
+    return fm_bits(fm_and(fm_and(f_eq(a[0], b[0]), f_eq(a[1], b[1])), f_eq(a[2], b[2]))) == (1u << VF) - 1;
+}
+
+/// Light as it was before, as backgrounds and even shadows have it, has the codes that it had then.
 static inline void tone_groups(const glint_tone_args *args, bool exposed)
 {
     const vf gain = f_set(args->gain), top = f_set(args->top);
@@ -117,6 +123,8 @@ static inline void tone_groups(const glint_tone_args *args, bool exposed)
     const tone_fit fit = tone_load_fit(args->fit);
     uint32_t column = 0;
     uint8_t *codes = args->codes;
+    vf seen[3] = { f_set(NAN), f_set(NAN), f_set(NAN) }; // no number where it was clamped, which is counted each time
+    vi rgb = i_set(0);
     for (uint32_t g = 0; g < args->group_count; g++) {
         const bool last = ++column == args->groups_across;
         const bool spill = !last && args->active[g + 1] == 0xffff; // the next group is yet to be written, over it
@@ -128,9 +136,15 @@ static inline void tone_groups(const glint_tone_args *args, bool exposed)
                 if (exposed)
                     x[c] = gain * beauty[c];
             }
-            if (tone_is_outside(x, top))
-                tone_clamp(args, beauty, x, active);
-            vi rgb = tone_codes(args->table, &fit, x);
+            if (!tone_is_same(x, seen)) {
+                for (int c = 0; c < 3; c++)
+                    seen[c] = x[c];
+                if (tone_is_outside(x, top)) {
+                    seen[0] = f_set(NAN);
+                    tone_clamp(args, beauty, x, active);
+                }
+                rgb = tone_codes(args->table, &fit, x);
+            }
             if (active == all)
                 i_store_rgb(codes + (size_t)(i / 4) * args->stride, args->stride, rgb, spill);
             else
