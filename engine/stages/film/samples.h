@@ -145,7 +145,7 @@ static void resolve_samples(const glint_shade_args *sample, uint32_t count)
         if (material)
             resolve_whole(&frame, material, g);
         else if (simple && !any && sample->active[g] == 0xffff)
-            store_background(sample, frame.background, (size_t)g * GLINT_GROUP);
+            store_even(sample, frame.background, (size_t)g * GLINT_GROUP);
         else if (sample->active[g])
             resolve_mixed(&frame, g);
     }

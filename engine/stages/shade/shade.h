@@ -328,21 +328,34 @@ static inline void start_direct(const glint_shade_args *args, uint32_t g, group_
     }
 }
 
-/// A group that shows one material in every lane and is lit by one light at most, with no term kept: the common
-/// case, in registers.
-INNER void shade_whole(const glint_shade_args *args, const glint_shade_material *material, bool specular,
-                       const light_factors *factors, size_t at)
+/// A group of one colour: without any surface, or any light.
+static inline void store_even(const glint_shade_args *args, const float color[3], size_t at)
 {
-    const glint_shade_light *light = factors->count ? factors->light[0] : NULL;
     for (int c = 0; c < 3; c++)
-        for (int i = 0; i < GLINT_GROUP; i += VF) {
-            vf sum = f_set((float)material->ambient[c]);
-            if (light)
-                sum =
-                    sum + f_load(factors->diffuse[0] + i) * f_set(share_color(material->diffuse[c], light->diffuse[c]));
-            if (light && specular && factors->shiny)
-                sum = sum +
-                      f_load(factors->specular[0] + i) * f_set(share_color(material->specular[c], light->specular[c]));
+        for (int i = 0; i < GLINT_GROUP; i += VF)
+            f_store(args->beauty[c] + at + i, f_set(color[c]));
+}
+
+/// A group that shows one material in every lane, whose numbers are given, where there is one light at most and no term is kept:
+/// the common case, in registers.
+INNER void shade_whole(const glint_shade_args *args, const glint_shade_material *material, const float *number, uint32_t g)
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    _Alignas(64) float diffuse[GLINT_GROUP], highlight[GLINT_GROUP] = { 0 };
+    bool shiny = args->highlights && material->highlight;
+    if (!args->light_count || !args->lights->lit[g]) {
+        store_even(args, number + MIXED_AMBIENT, at);
+        return;
+    }
+    if (shiny)
+        shiny = put_factors(args->lights, material, NULL, true, at, false, diffuse, highlight);
+    else
+        put_factors(args->lights, material, NULL, false, at, false, diffuse, NULL);
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        for (int c = 0; c < 3; c++) {
+            vf sum = f_set(number[MIXED_AMBIENT + c]) + f_load(diffuse + i) * f_set(number[MIXED_DIFFUSE + c]);
+            if (shiny)
+                sum = sum + f_load(highlight + i) * f_set(number[MIXED_SPECULAR + c]);
             f_store(args->beauty[c] + at + i, sum);
         }
 }
@@ -360,14 +373,6 @@ static __attribute__((noinline)) void shade_lit(const glint_shade_args *args, co
         for (int c = 0; c < 3; c++) // as finish_terms adds them
             f_store(args->beauty[c] + at + i, (f_set(0 + (float)material->ambient[c]) + light[0][c]) + light[1][c]);
     }
-}
-
-/// A group without any surface.
-static inline void store_background(const glint_shade_args *args, const float background[3], size_t at)
-{
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < GLINT_GROUP; i += VF)
-            f_store(args->beauty[c] + at + i, f_set(background[c]));
 }
 
 static inline bool wants_terms(const glint_shade_args *args)
@@ -389,7 +394,7 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, bool pla
     if (simple && !left && args->active[g] == 0xffff) {
         const float background[3] = { (float)args->background[0], (float)args->background[1],
                                       (float)args->background[2] };
-        store_background(args, background, at);
+        store_even(args, background, at);
         return;
     }
     bool begun = false;
@@ -413,15 +418,16 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, bool pla
             whole_matt_planes(args, material, at, numbers);
             return;
         }
+        if (simple && lanes == 0xffff && mixed->usable && is_plain_material(material)) {
+            shade_whole(args, material, mixed_numbers_of(args, material, mixed), g);
+            return;
+        }
         if (planes)
             find_plane_factors(args, material, specular, g, &factors);
         else
             find_factors(args, material, specular, g, &factors);
-        if (!shaded && simple && lanes == 0xffff && factors.count <= 1 && !has_facets(material)) {
-            if (planes)
-                whole_planes(args, material, specular && factors.shiny, &factors, at, numbers);
-            else
-                shade_whole(args, material, specular, &factors, at);
+        if (planes && !shaded && simple && lanes == 0xffff && factors.count <= 1 && !has_facets(material)) {
+            whole_planes(args, material, specular && factors.shiny, &factors, at, numbers);
             return;
         }
         if (!planes && simple && lanes == 0xffff) {
