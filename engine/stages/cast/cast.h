@@ -111,31 +111,25 @@ INNER void R(cast_mixed)(R(tile_cast) * tile, const R(candidate) *const *candida
         R(finish_group)(tile->args, g);
 }
 
-/// Groups that are inside the image with all their pixels, of those in `groups`.
-static inline uint64_t R(whole_groups)(const R(tile_cast) * tile, uint64_t groups)
-{
-    uint64_t whole = 0;
-    for (uint64_t left = groups; left; left &= left - 1) {
-        const int slot = __builtin_ctzll(left);
-        if (tile->args->active[slot / COVER_ACROSS * tile->across + slot % COVER_ACROSS] == 0xffff)
-            whole |= left & -left;
-    }
-    return whole;
-}
-
-/// Groups that have a ray.
-static inline uint64_t R(live_groups)(const R(tile_cast) * tile)
+/// Groups that have a ray; *whole: those that have one in every lane.
+static inline uint64_t R(live_groups)(const R(tile_cast) * tile, uint64_t *whole)
 {
     uint64_t live = 0;
+    *whole = 0;
     for (int y = 0; y < tile->down; y++) {
         const uint16_t *row = tile->args->active + y * tile->across;
-        uint64_t whole[2] = { 0 };
+        uint64_t halves[2] = { 0 };
         if (tile->across == COVER_ACROSS)
-            memcpy(whole, row, sizeof whole);
-        if ((whole[0] & whole[1]) == UINT64_MAX)
+            memcpy(halves, row, sizeof halves);
+        if ((halves[0] & halves[1]) == UINT64_MAX) {
             live |= (uint64_t)0xff << y * COVER_ACROSS;
-        for (int x = 0; (whole[0] & whole[1]) != UINT64_MAX && x < tile->across; x++)
+            *whole |= (uint64_t)0xff << y * COVER_ACROSS;
+            continue;
+        }
+        for (int x = 0; x < tile->across; x++) {
             live |= (uint64_t)(row[x] != 0) << (y * COVER_ACROSS + x);
+            *whole |= (uint64_t)(row[x] == 0xffff) << (y * COVER_ACROSS + x);
+        }
     }
     return live;
 }
@@ -144,7 +138,8 @@ static inline uint64_t R(live_groups)(const R(tile_cast) * tile)
 static void R(cast_first)(R(tile_cast) * tile, const R(candidate) *const *candidates, int count, uint64_t may[])
 {
     const uint64_t all = R(all_groups)(tile);
-    const uint64_t live = R(live_groups)(tile);
+    uint64_t whole;
+    const uint64_t live = R(live_groups)(tile, &whole);
     uint64_t sure[GLINT_FIRST_CANDIDATES], any = 0, several = 0, filled = 0;
     for (int k = 0; k < count && live != all; k++)
         may[k] &= live;
@@ -153,7 +148,7 @@ static void R(cast_first)(R(tile_cast) * tile, const R(candidate) *const *candid
         several |= any & may[k];
         any |= may[k];
     }
-    const uint64_t alone = R(whole_groups)(tile, any & ~several);
+    const uint64_t alone = any & ~several & whole;
     for (int k = 0; k < count; k++) {
         const uint64_t fills = alone & may[k] & sure[k];
         if (!fills || candidates[k]->prim->kind != GLINT_PRIM_SPHERE)
@@ -406,7 +401,7 @@ static void R(cast_few)(const glint_cast_args *args, const R(cast_view) * view)
     R(tile_cast) tile;
     const R(candidate) * list[GLINT_FIRST_CANDIDATES];
     uint64_t may[GLINT_FIRST_CANDIDATES];
-    const int count = R(candidates_in)(view, args->camera, list);
+    const int count = R(candidates_in)(view, args->camera, list, view->count);
     tile.args = args;
     tile.scaled = tile.deep = tile.parallel = false;
     tile.lens = NULL;
@@ -474,7 +469,7 @@ static bool R(in_sight)(const glint_cast_args *args)
     screen_view view;
     node_on_screen seen;
     if (few->few)
-        return R(candidates_in)(few, args->camera, list) > 0;
+        return R(candidates_in)(few, args->camera, list, 1) > 0;
     R(aim_screen)(args->camera, geometry, &view);
     for (uint32_t i = 0; i < geometry->unbounded_count; i++)
         if (R(plane_ahead)(args->camera, &view, &geometry->prims[geometry->unbounded[i]]))

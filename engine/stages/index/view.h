@@ -85,8 +85,8 @@ static inline bool R(may_show)(const R(candidate) * candidate, const float middl
     return !(reach * reach < DOT(v, v));
 }
 
-/// The candidates that a tile may show. Returns how many.
-static int R(candidates_in)(const R(cast_view) * view, const glint_camera_args *camera, const R(candidate) * *list)
+/// The candidates that a tile may show, `most` of them at most. Returns how many.
+static int R(candidates_in)(const R(cast_view) * view, const glint_camera_args *camera, const R(candidate) * *list, int most)
 {
     const double down = camera->group_count / camera->groups_across;
     const float half[2] = { 4 * (float)camera->groups_across, 4 * (float)down };
@@ -95,7 +95,7 @@ static int R(candidates_in)(const R(cast_view) * view, const glint_camera_args *
     const float length = sqrtf((1 + middle[0] * middle[0] * view->rr) + middle[1] * middle[1] * view->uu);
     const float spread = 1.00001f * sqrtf(half[0] * half[0] * view->rr + half[1] * half[1] * view->uu);
     int found = 0;
-    for (int k = 0; k < view->count; k++)
+    for (int k = 0; k < view->count && found < most; k++)
         if (R(may_show)(&view->candidates[k], middle, half, length, spread))
             list[found++] = &view->candidates[k];
     return found;
