@@ -109,11 +109,27 @@ INNER float R(edge_sway)(const R(candidate) * candidate, int j)
     return 4 * (fabsf(candidate->along_s[j]) + fabsf(candidate->along_t[j]));
 }
 
+/// Groups whose rays all pass a round candidate within `inner`, where f x d is v in the middle. What |f x d|^2 - inner^2 |d|^2 is there
+/// changes by at most its slopes on the way to a corner, and by what it bends. Along a horizon both parts rise alike.
+INNER unsigned R(filled_groups)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at, const vf v[3])
+{
+    const vf inner = f_set(candidate->inner), inner2 = inner * inner, around = f_set(candidate->around);
+    const vf s = inner2 * (at->s * f_set(tile->rr)), t = inner2 * (at->t * f_set(tile->uu));
+    vf by_s = -s, by_t = -t;
+    for (int k = 0; k < 3; k++) {
+        by_s = by_s + v[k] * f_set(candidate->along_s[k]);
+        by_t = by_t + v[k] * f_set(candidate->along_t[k]);
+    }
+    const vf middle = DOT(v, v) - inner2 * (at->length * at->length);
+    const vf most = (middle + f_set(8) * (f_abs(by_s) + f_abs(by_t))) + around * around;
+    return fm_bits(fm_and(f_lt(f_set(0), inner), f_lt(most, f_set(0))));
+}
+
 /// Groups that the candidate may show in; *sure: those that it fills.
 INNER unsigned R(cover_groups)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at,
                                unsigned *sure)
 {
-    const vf zero = f_set(0), inner = f_set(candidate->inner);
+    const vf zero = f_set(0);
     vf v[3];
     R(filter_at)(candidate, at, v);
     if (!R(is_round)(candidate)) {
@@ -121,13 +137,12 @@ INNER unsigned R(cover_groups)(const R(tile_cast) * tile, const R(candidate) * c
         vf most = v[0] + f_set(R(edge_sway)(candidate, 0));
         for (int j = 1; j < 3; j++)
             most = f_min(most, v[j] + f_set(R(edge_sway)(candidate, j)));
-        *sure = fm_bits(fm_and(f_lt(zero, inner), f_lt(limit, v[0] - f_set(R(edge_sway)(candidate, 0)))));
+        *sure = fm_bits(fm_and(f_lt(zero, f_set(candidate->inner)), f_lt(limit, v[0] - f_set(R(edge_sway)(candidate, 0)))));
         return ~fm_bits(f_lt(most, -limit)) & ((1u << VF) - 1);
     }
     const vf spread = f_set(tile->spread), around = f_set(candidate->around), off2 = DOT(v, v);
     const vf reach = f_set(candidate->outer) * (at->length + spread) + around;
-    const vf fill = inner * (at->length - spread) - around;
-    *sure = fm_bits(fm_and(f_lt(zero, fill), f_lt(off2, fill * fill)));
+    *sure = R(filled_groups)(tile, candidate, at, v);
     if (*sure) { // in front, not behind
         const vf b =
             (f_set(candidate->ahead[0]) + at->s * f_set(candidate->ahead[1])) + at->t * f_set(candidate->ahead[2]);
