@@ -255,15 +255,13 @@ static void see_environment(glint_batch *batch, const glint_tile_frame *frame)
 bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
 {
     glint_tile *tile = &batch->tile;
-    unsigned any = 0;
     batch->whole = batch->ordered || needs_all(frame->plan);
     cast(batch, frame);
     if (batch->whole)
         take_all(batch, frame);
     else
         take_hits(batch, frame);
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        any |= tile->at.hits[g];
+    const bool any = glint_has_lanes(tile->at.hits, tile->group_count);
     tile->at.only = NULL;
     if (any && !batch->distances)
         glint_tile_find_surfaces(tile, frame);

@@ -236,9 +236,7 @@ void glint_tile_note_light(const glint_tile *tile, uint32_t index, uint32_t slot
 {
     glint_cached_light *cached = &tile->cached->lights[index];
     const uint16_t *lanes = shadows ? tile->at.light[slot].open : tile->at.light[slot].lit;
-    unsigned any = 0;
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        any |= lanes[g];
+    const bool any = glint_has_lanes(lanes, tile->group_count);
     cached->reaches = (k && cached->reaches) || any;
     cached->brightest = fmaxf(k ? cached->brightest : GLINT_NO_SPECULAR, tile->at.light[slot].brightest);
 }

@@ -65,10 +65,7 @@ void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *
 /// Whether no ray has met anything.
 static bool shows_nothing(const glint_tile *tile, const glint_tile_frame *frame)
 {
-    unsigned any = frame->plan->visible_light_count > 0;
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        any |= tile->at.hits[g];
-    return !any;
+    return frame->plan->visible_light_count == 0 && !glint_has_lanes(tile->at.hits, tile->group_count);
 }
 
 /// The values of a tile, in the order of groups.

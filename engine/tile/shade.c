@@ -83,15 +83,12 @@ static bool is_direct(const glint_tile *tile, const glint_tile_frame *frame)
     const glint_plan *plan = frame->plan;
     static const glint_stage_id adding[] = { GLINT_STAGE_VISIBLE_LIGHT, GLINT_STAGE_DEPTH_CUE, GLINT_STAGE_SHADER,
                                              GLINT_STAGE_ENVIRONMENT };
-    unsigned any = 0;
     for (size_t i = 0; i < sizeof adding / sizeof *adding; i++)
         if (plan->runs[adding[i]])
             return false;
     if (!plan->accumulate || plan->desc.samples > 1 || plan->light_count > GLINT_LIGHT_CHUNK || plan->derivatives)
         return false;
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        any |= tile->at.hits[g];
-    return !any || !(plan->dims || plan->runs[GLINT_STAGE_INDIRECT] || plan->runs[GLINT_STAGE_VERTEX] ||
+    return !glint_has_lanes(tile->at.hits, tile->group_count) || !(plan->dims || plan->runs[GLINT_STAGE_INDIRECT] || plan->runs[GLINT_STAGE_VERTEX] ||
                      (plan->runs[GLINT_STAGE_BOUNCE] && glint_tile_sends_on(tile, frame)) ||
                      (plan->tints && glint_tile_is_shadowed(tile, plan, 0, plan->light_count)));
 }

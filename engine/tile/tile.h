@@ -10,6 +10,8 @@
 #include "engine/tile/refine.h"
 #include "engine/tile/shading_points.h"
 
+#include <string.h>
+
 /// Results of patterns that are no reflectances.
 typedef struct glint_odd_pattern {
     uint64_t count;
@@ -191,6 +193,20 @@ typedef struct glint_tile {
 static inline bool glint_has_lane(const uint16_t *mask, uint32_t i)
 {
     return mask[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+}
+
+/// Whether any of the groups, GLINT_TILE_GROUPS at most, has a lane.
+static inline bool glint_has_lanes(const uint16_t *mask, uint32_t group_count)
+{
+    uint64_t any = 0, four;
+    uint32_t g = 0;
+    for (; g + 4 <= group_count; g += 4) {
+        memcpy(&four, mask + g, sizeof four);
+        any |= four;
+    }
+    for (; g < group_count; g++)
+        any |= mask[g];
+    return any;
 }
 
 /// The current sample's own memory for the light in a slot.

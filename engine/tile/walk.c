@@ -34,14 +34,6 @@ static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uin
 
 // ---- A sample ----
 
-static bool any_hit(const glint_tile *tile)
-{
-    unsigned any = 0;
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        any |= tile->at.hits[g];
-    return any;
-}
-
 /// Rays, hits and, as soon as a stage needs them, points: of one sample.
 typedef struct walk {
     uint32_t sample;
@@ -149,7 +141,7 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
         }
         glint_tile_count_stage(tile, frame, GLINT_STAGE_VISIBLE_LIGHT, false);
     }
-    const bool any = any_hit(tile);
+    const bool any = glint_has_lanes(tile->at.hits, tile->group_count);
     if (!any)
         glint_tile_keep_box(tile, frame, NULL);
     if (tile->cached && !glint_key_equal(tile->cached->seen, plan->keys[GLINT_STAGE_SURFACE])) {
