@@ -177,11 +177,8 @@ static void slope_case(int precision, bool odd)
     const glint_derivative_material material = any_material(other && one_in(2));
     any_source(&points, &light, &source);
     any_planes(&planes);
-    any_bend_room room = { .normal = { 0 } };
-    const glint_bend_args bend = any_bend(&points, &room);
     const double *before = sixteen(-1, 1);
     glint_slope_args args = { &light, &material, painted ? &planes : NULL, &points, &source, .lanes = random_mask() };
-    args.bend = bent && one_in(2) ? &bend : NULL;
     FOR_EACH_TESTED
     {
         for (int c = 0; c < 3; c++) {

@@ -126,7 +126,6 @@ typedef struct glint_slope_args {
     const glint_derivative_planes *planes; ///< of what programs give; NULL: they give nothing
     const glint_derivative_points *points;
     const glint_derivative_source *source;
-    const struct glint_bend_args *bend; ///< how the points of the lanes move, which are those; NULL: as they have slopes
     unsigned lanes; ///< a bit each
     double *sum[3]; ///< in and out: slopes
     double *whole[3]; ///< in and out: what the light leaves; whole[0] NULL: not wanted

@@ -9,9 +9,6 @@ enum {
     SLOPES_ALL = 7
 };
 
-/// Where slopes of points come from.
-typedef enum bent_by { BENT_BY_SLOPES, BENT_BY_SPHERE, BENT_BY_PLANE } bent_by;
-
 /// VD points with their slopes.
 typedef struct seen_lanes {
     vs point[3], normal[3], eye[3];
@@ -39,21 +36,6 @@ INNER seen_lanes seen_points(const glint_derivative_points *points, const unsign
     load_points(points, 0, slopes, i, out.point);
     load_points(points, 1, slopes, i, out.normal);
     load_points(points, 2, slopes, i, out.eye);
-    return out;
-}
-
-/// Of points on a sphere or a plane that a pinhole sees.
-INNER seen_lanes bent_points(const glint_bend_args *bend, const bool round, int i)
-{
-    const bent_rays rays = see_from_point(bend, i);
-    seen_lanes out = seen_points(bend->points, 0, i);
-    vd slope[3][3];
-    hold_lanes(bend, &rays, round, i, slope);
-    for (int c = 0; c < 3; c++) {
-        out.point[c] = s_make(out.point[c].v, slope[0][c]);
-        out.normal[c] = s_make(out.normal[c].v, slope[1][c]);
-        out.eye[c] = s_make(out.eye[c].v, slope[2][c]);
-    }
     return out;
 }
 
@@ -252,14 +234,13 @@ INNER vs left_of(const glint_slope_args *args, const shared_colors *k, const shi
     return left;
 }
 
-INNER void slope_lanes(const glint_slope_args *args, const shared_colors *k, const unsigned slopes, const bent_by by, int i)
+INNER void slope_lanes(const glint_slope_args *args, const shared_colors *k, const unsigned slopes, int i)
 {
     const glint_derivative_material *m = args->material;
     const bool other = slopes & SLOPES_OTHER;
     const dm reached = dm_from_bits(args->lanes >> i & D_ALL);
     vs specular = s_keep(true, s_set(0)), grazing = s_keep(true, s_set(0));
-    const seen_lanes seen =
-        by == BENT_BY_SLOPES ? seen_points(args->points, slopes, i) : bent_points(args->bend, by == BENT_BY_SPHERE, i);
+    const seen_lanes seen = seen_points(args->points, slopes, i);
     const shine_lanes s = find_shine(args->light, args->source, seen.point, seen.normal, slopes, i);
     if (m->highlight == GLINT_HIGHLIGHT_FACETS) {
         const vs alpha = take_plane(args->planes, GLINT_DERIVED_ALPHA, slopes, i, s_of(other, m->alpha));
@@ -276,58 +257,29 @@ INNER void slope_lanes(const glint_slope_args *args, const shared_colors *k, con
     }
 }
 
-INNER void slope_group(const glint_slope_args *args, const unsigned slopes, const bent_by by)
+INNER void slope_group(const glint_slope_args *args, const unsigned slopes)
 {
-    glint_slope_args call = *args; // stores may not change it
-    const glint_bend_args bend_call = by == BENT_BY_SLOPES ? (glint_bend_args) { .points = NULL } : *args->bend;
-    call.bend = &bend_call;
+    const glint_slope_args call = *args; // stores may not change it
     const shared_colors k = share_colors(&call, slopes);
     for (int i = 0; i < GLINT_GROUP; i += VD)
         if (call.lanes >> i & D_ALL)
-            slope_lanes(&call, &k, slopes, by, i);
-}
-
-static void slope_memory(const glint_slope_args *args)
-{
-    const bool bent = args->points->slope[0][0], turned = args->light->turns;
-    const bool other = args->light->shines || args->material->varies || args->planes || args->source->tint[0];
-    if (bent && (turned || other))
-        slope_group(args, SLOPES_ALL, BENT_BY_SLOPES);
-    else if (bent)
-        slope_group(args, SLOPES_BENT, BENT_BY_SLOPES);
-    else if (turned && other)
-        slope_group(args, SLOPES_TURNED | SLOPES_OTHER, BENT_BY_SLOPES);
-    else if (turned)
-        slope_group(args, SLOPES_TURNED, BENT_BY_SLOPES);
-    else
-        slope_group(args, SLOPES_OTHER, BENT_BY_SLOPES);
-}
-
-/// Where points move and other things do, by way of memory.
-static void slope_bent(const glint_slope_args *args)
-{
-    _Alignas(64) double bent[9][GLINT_GROUP];
-    glint_bend_args bend_call = *args->bend;
-    glint_derivative_points points = *args->bend->points;
-    glint_slope_args call = *args;
-    for (int k = 0; k < 9; k++)
-        points.slope[k / 3][k % 3] = bend_call.slope[k / 3][k % 3] = bent[k];
-    bend(&bend_call);
-    call.points = &points;
-    slope_memory(&call);
+            slope_lanes(&call, &k, slopes, i);
 }
 
 static void slope(const glint_slope_args *args)
 {
-    const bool other = args->light->turns || args->light->shines || args->material->varies || args->planes || args->source->tint[0];
-    if (!args->bend)
-        slope_memory(args);
-    else if (other || args->bend->place[0])
-        slope_bent(args);
-    else if (args->bend->prim->kind == GLINT_PRIM_SPHERE)
-        slope_group(args, SLOPES_BENT, BENT_BY_SPHERE);
+    const bool bent = args->points->slope[0][0], turned = args->light->turns;
+    const bool other = args->light->shines || args->material->varies || args->planes || args->source->tint[0];
+    if (bent && (turned || other))
+        slope_group(args, SLOPES_ALL);
+    else if (bent)
+        slope_group(args, SLOPES_BENT);
+    else if (turned && other)
+        slope_group(args, SLOPES_TURNED | SLOPES_OTHER);
+    else if (turned)
+        slope_group(args, SLOPES_TURNED);
     else
-        slope_group(args, SLOPES_BENT, BENT_BY_PLANE);
+        slope_group(args, SLOPES_OTHER);
 }
 
 INNER void arrival_group(const glint_arrival_args *args, const unsigned slopes)

@@ -213,19 +213,6 @@ static void slope_lane(const glint_slope_args *args, int i)
 
 static void slope(const glint_slope_args *args)
 {
-    if (args->bend) {
-        double bent[9][GLINT_GROUP];
-        glint_bend_args bend_args = *args->bend;
-        glint_derivative_points points = *args->bend->points;
-        glint_slope_args moved = *args;
-        for (int k = 0; k < 9; k++)
-            points.slope[k / 3][k % 3] = bend_args.slope[k / 3][k % 3] = bent[k];
-        bend(&bend_args);
-        moved.points = &points;
-        moved.bend = NULL;
-        slope(&moved);
-        return;
-    }
     for (int i = 0; i < GLINT_GROUP; i++)
         if (args->lanes >> i & 1)
             slope_lane(args, i);

@@ -312,9 +312,15 @@ void glint_bend_aim(const glint_tile *tile, const glint_plan *plan)
     }
 }
 
+/// Of hits on one sphere or plane, what the kernel reads.
+typedef struct bend_room {
+    glint_bend_args args;
+    _Alignas(64) double place[2][GLINT_GROUP], shift[3][GLINT_GROUP], shift_slope[3][GLINT_GROUP];
+} bend_room;
+
 /// Where a group's samples are in the picture and on the lens.
 static void find_places(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t g,
-                        glint_bend_room *out)
+                        bend_room *out)
 {
     for (uint32_t i = 0; i < GLINT_GROUP; i++) {
         double middle[2], lens[3] = { 0 }, change[3] = { 0 };
@@ -373,8 +379,10 @@ static unsigned bend_each(const glint_tile *tile, const glint_tile_frame *frame,
     return bent;
 }
 
-unsigned glint_bend_begin(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
-                          const glint_derivative_points *points, glint_bend_room *out, bool *seen, bool *moves)
+/// Begins to bend those of `lanes` that show the primitive of the first of them. Returns these. *moves: they move; *seen: the kernel
+/// bends them, else they are bent one by one.
+static unsigned begin(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
+                      const glint_derivative_points *points, bend_room *out, bool *seen, bool *moves)
 {
     const glint_plan *plan = frame->plan;
     const glint_plan_derivative *d = &plan->derivatives->of[index];
@@ -405,11 +413,11 @@ unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame
                            unsigned lanes, const glint_derivative_points *points, double *const slope[9])
 {
     _Alignas(64) double some[9][GLINT_GROUP];
-    glint_bend_room room;
+    bend_room room;
     unsigned bent = 0;
     bool seen, moves;
     for (unsigned left = lanes, same; left; left &= ~same) {
-        same = glint_bend_begin(tile, frame, index, g, left, points, &room, &seen, &moves);
+        same = begin(tile, frame, index, g, left, points, &room, &seen, &moves);
         if (!moves)
             continue;
         if (!seen) {

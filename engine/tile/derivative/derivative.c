@@ -220,35 +220,6 @@ static void add_ambient(const glint_tile *tile, const glint_plan *plan, size_t i
 
 // ---- One light ----------------------------------------------------------------------------------------------------
 
-/// Adds the slopes of the lanes in `args` that some surface or the eye moves, one sphere or plane after the other; `bent` has room for
-/// those of other surfaces. Returns the lanes that stay where they are.
-static unsigned slope_bent(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g,
-                           const glint_derivative_points *bent, const glint_slope_args *args)
-{
-    glint_slope_args call = *args;
-    glint_bend_room room;
-    double *rows[9];
-    unsigned rest = 0;
-    bool seen, moves;
-    for (int k = 0; k < 9; k++)
-        rows[k] = tile->derivative->bend[k / 3][k % 3];
-    for (unsigned left = args->lanes; left; left &= ~call.lanes) {
-        const unsigned lanes = glint_bend_begin(tile, frame, index, g, left, args->points, &room, &seen, &moves);
-        call.lanes = lanes;
-        call.bend = moves && seen ? &room.args : NULL;
-        call.points = call.bend ? args->points : bent;
-        if (!moves)
-            call.lanes = 0;
-        else if (!seen)
-            call.lanes = glint_bend_points(tile, frame, index, g, lanes, args->points, rows);
-        if (call.lanes)
-            frame->stages->slope(&call);
-        rest |= lanes & ~call.lanes;
-        call.lanes = lanes;
-    }
-    return rest;
-}
-
 /// `reached`: lanes that the light reaches; `tinted`: through something, which leaves its tint.
 static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
                          glint_derivative_source source, uint32_t g, unsigned reached,
@@ -260,12 +231,11 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
     const size_t at = (size_t)g * GLINT_GROUP;
     const bool weighs = glint_derivatives_read_light(tile, frame->plan);
     glint_derivative_points points, bent_points;
+    double *bent[9];
     glint_derivative_find_points(tile, frame, g, &points);
-    if (all->bends) {
-        glint_derivative_find_points(tile, frame, g, &bent_points);
-        for (int i = 0; i < 9; i++)
-            bent_points.slope[i / 3][i % 3] = work->bend[i / 3][i % 3];
-    }
+    bent_points = points;
+    for (int i = 0; i < 9 && all->bends; i++)
+        bent_points.slope[i / 3][i % 3] = bent[i] = work->bend[i / 3][i % 3];
     if (sample && sample->emission == GLINT_EMIT_CONE)
         glint_derivative_take_cone(tile, frame, light, &points, &source);
     for (int i = 0; i < GLINT_GROUP && light->cap && light->shadows; i++) {
@@ -278,9 +248,7 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
         for (size_t k = 0; k < all->count && !(frame->plan->materials[material].planes & GLINT_PLANE_SHADED); k++) {
             glint_slope_args args = { .light = &all->of[k].lights[light->source],
                                       .material = &all->of[k].materials[material],
-                                      .points = &points,
-                                      .source = &source,
-                                      .lanes = lanes };
+                                      .source = &source };
             glint_derivative_planes room;
             args.planes = planes_of(tile, frame->plan, k, material, g, &room);
             if (tinted)
@@ -289,9 +257,14 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
                 args.sum[c] = work->sum[k][c] + at;
                 args.whole[c] = weighs && k == 0 ? work->light[c] + at : NULL;
             }
-            if (all->of[k].bends)
-                args.lanes = slope_bent(tile, frame, k, g, &bent_points, &args);
-            if (args.lanes && (tinted || args.whole[0] || args.light->varies || args.material->varies))
+            args.lanes = all->of[k].bends ? glint_bend_points(tile, frame, k, g, lanes, &points, bent) : 0;
+            args.points = &bent_points;
+            const unsigned rest = lanes & ~args.lanes;
+            if (args.lanes)
+                frame->stages->slope(&args);
+            args.lanes = rest;
+            args.points = &points;
+            if (rest && (tinted || args.whole[0] || args.light->varies || args.material->varies))
                 frame->stages->slope(&args);
         }
     }

@@ -100,17 +100,6 @@ bool glint_derive_fade_fits(glint_derivative_work *work, const glint_plan *plan)
 bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
                        const glint_derivative_points *points, glint_bend *out);
 
-/// Of hits on one sphere or plane, what bend reads.
-typedef struct glint_bend_room {
-    glint_bend_args args;
-    _Alignas(64) double place[2][GLINT_GROUP], shift[3][GLINT_GROUP], shift_slope[3][GLINT_GROUP];
-} glint_bend_room;
-
-/// Those of `lanes` that show what the first of them does. seen: by the eye, a sphere or plane; then `out` holds what stages read of
-/// them, but for where slopes go. moves: that moves, or the eye does.
-unsigned glint_bend_begin(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
-                          const glint_derivative_points *points, glint_bend_room *out, bool *seen, bool *moves);
-
 /// The slopes of those points of a group, among `lanes`, that derivative number `index` moves; returns which they are. slope: of
 /// points, of normals, of eyes, sixteen each.
 unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
