@@ -129,13 +129,19 @@ static bool is_convex(const glint_geometry *geometry, const glint_prim *part)
     return form == GLINT_FORM_BOX || form == GLINT_FORM_BALL || form == GLINT_FORM_CYLINDER;
 }
 
+/// Whether a part may be joined by one operation after another: by the same, and what parts have in common is cut.
+static bool may_follow(uint8_t before, uint8_t operation)
+{
+    return operation == before || (before == GLINT_COMBINE_INTERSECTION && operation == GLINT_COMBINE_DIFFERENCE);
+}
+
 bool glint_combined_simple(const glint_geometry *geometry, const glint_combined *combined)
 {
     bool simple = combined->count > 1 && combined->count <= GLINT_SIMPLE_PARTS && combined->length == 2 * combined->count - 1;
     for (uint32_t j = 0; j < combined->count && simple; j++) {
         const uint8_t *next = combined->program + 2 * j;
-        simple = is_convex(geometry, &geometry->members[combined->first + j]) &&
-                 (j == 0 || (next[-1] == j && next[0] == combined->program[2]));
+        simple = is_convex(geometry, &geometry->members[combined->first + j]) && (j == 0 || next[-1] == j) &&
+                 (j < 2 || may_follow(next[-2], next[0]));
     }
     return simple;
 }

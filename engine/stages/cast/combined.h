@@ -136,7 +136,6 @@ static inline void R(make_program)(const glint_combined *whole, uint64_t live, R
 
 /// A vector of rays before a combined solid.
 typedef struct R(whole_rays) {
-    const R(eye_parts) *eye; ///< of a simple whole, where they start at one eye; else NULL
     const vr *o, *d;
     const uint32_t *on; ///< the primitive that each starts on; NULL: on none
     unsigned inward, lanes; ///< those that go into it there; those that are wanted
@@ -377,35 +376,29 @@ static void R(keep_part)(const glint_cast_args *args, const glint_combined *whol
     }
 }
 
-/// Decides a simple whole where that takes little. Returns the lanes that are left; *any: those that met it.
-static unsigned R(cast_simple)(const glint_cast_args *args, const glint_combined *whole, size_t at, const R(whole_rays) * w,
-                               unsigned *any)
+/// Keeps what a vector of rays met of a simple whole. Returns whether any did.
+INNER bool R(keep_simple)(const glint_cast_args *args, const glint_combined *whole, size_t at, unsigned lanes,
+                          const R(simple_hits) * hits)
 {
     const uint32_t first = args->geometry->prim_count + whole->first;
-    R(simple_hits) hits;
-    const unsigned met = w->eye ? R(meet_from_eye)(args->geometry, whole, w->eye, w->d, &hits)
-                                : R(meet_from_anywhere)(args->geometry, whole, w->o, w->d, &hits);
-    const rm hit = rm_and(hits.hit, rm_from_bits(w->lanes));
-    *any = rm_bits(hit);
-    for (uint32_t j = 0; j < whole->count && *any; j++) {
-        const rm mine = rm_and(hit, r_eq(hits.part, r_set(j)));
+    const rm hit = rm_and(hits->hit, rm_from_bits(lanes));
+    if (!rm_bits(hit))
+        return false;
+    for (uint32_t j = 0; j < whole->count; j++) {
+        const rm mine = rm_and(hit, r_eq(hits->part, r_set(j)));
         if (rm_bits(mine))
-            R(keep_nearest)(args, at, first + j, mine, hits.t);
+            R(keep_nearest)(args, at, first + j, mine, hits->t);
     }
-    return w->lanes & ~met;
+    return true;
 }
 
 /// Decides the whole for a vector of rays, from lane `at` of the call on, and keeps the nearest: a part of it. Returns whether any hit
 /// was kept.
-static bool R(cast_combined)(const glint_cast_args *args, const glint_prim *prim, size_t at, const R(whole_rays) * w)
+static __attribute__((noinline)) bool R(cast_combined)(const glint_cast_args *args, const glint_combined *whole, size_t at, const R(whole_rays) * w)
 {
-    const glint_combined *whole = &args->geometry->combined[prim->item];
     R(stretches) s;
     vr from = r_set(0), t;
     unsigned any = 0, hit, left = w->lanes;
-    const bool simple = GLINT_REAL == 64 && whole->simple;
-    if (simple && !R(starts_on)(w->on, args->geometry->prim_count + whole->first, whole->count))
-        left = R(cast_simple)(args, whole, at, w, &any);
     while (left) {
         left = R(next_change)(args->geometry, whole, w, left, &from, &s, &t, &hit);
         any |= hit;
@@ -430,9 +423,23 @@ static bool R(cast_combined)(const glint_cast_args *args, const glint_prim *prim
     return any != 0;
 }
 
+/// The same of rays that start anywhere: quickly where that is enough.
+static bool R(cast_combined_vector)(const glint_cast_args *args, const glint_combined *whole, size_t at, R(whole_rays) w)
+{
+    bool any = false;
+    if (GLINT_REAL == 64 && whole->simple && !R(starts_on)(w.on, args->geometry->prim_count + whole->first, whole->count)) {
+        R(simple_hits) hits;
+        const unsigned told = R(meet_from_anywhere)(args->geometry, whole, w.o, w.d, &hits);
+        any = R(keep_simple)(args, whole, at, w.lanes, &hits);
+        w.lanes &= ~told;
+    }
+    return (w.lanes && R(cast_combined)(args, whole, at, &w)) || any;
+}
+
 /// Decides it for the rays of a group in `near`. Returns whether any hit was kept.
 static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const glint_prim *prim, unsigned near)
 {
+    const glint_combined *whole = &args->geometry->combined[prim->item];
     const size_t at = (size_t)g * GLINT_GROUP;
     bool any = false;
     count_tests(args->tests, near);
@@ -443,31 +450,52 @@ static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const
         R(load3)(args->origin, at + (size_t)i, o);
         R(load3)(args->direction, at + (size_t)i, d);
         const uint32_t *on = args->leaving ? args->leaving + at + i : NULL;
-        const R(whole_rays) rays = { NULL, o, d, on, on ? args->inward[g] >> i : 0, near >> i & ((1u << VR) - 1) };
-        if (R(cast_combined)(args, prim, at + (size_t)i, &rays))
+        const R(whole_rays) rays = { o, d, on, on ? args->inward[g] >> i : 0, near >> i & ((1u << VR) - 1) };
+        if (R(cast_combined_vector)(args, whole, at + (size_t)i, rays))
             any = true;
     }
     return any;
 }
 
-/// The same of the eye's rays, in group (x, y) of a tile.
-static __attribute__((noinline)) bool R(cast_combined_pixels)(const glint_cast_args *args, const glint_prim *prim,
-                                                              const R(eye_parts) * eye_parts, int x, int y, size_t at,
-                                                              unsigned near)
+/// The same of the eye's rays, what a simple whole leaves of them.
+static __attribute__((noinline)) bool R(cast_combined_left)(const glint_cast_args *args, const glint_combined *whole,
+                                                            R(group_directions) directions, size_t at, unsigned left)
 {
     const double *eye = args->camera->eye;
     const vr o[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
-    const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
     bool any = false;
-    count_tests(args->tests, near);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         vr d[3];
-        if (!(near >> i & ((1u << VR) - 1)))
+        if (!(left >> i & ((1u << VR) - 1)))
             continue;
         R(load_direction)(directions, args->direction, 0, i, d);
-        const R(whole_rays) rays = { eye_parts, o, d, NULL, 0, near >> i & ((1u << VR) - 1) };
-        if (R(cast_combined)(args, prim, at + (size_t)i, &rays))
+        const R(whole_rays) rays = { o, d, NULL, 0, left >> i & ((1u << VR) - 1) };
+        if (R(cast_combined)(args, whole, at + (size_t)i, &rays))
             any = true;
     }
     return any;
+}
+
+/// The eye's rays in group (x, y) of a tile. parts: of a simple whole, else NULL.
+static __attribute__((noinline)) bool R(cast_combined_pixels)(const glint_cast_args *args, const glint_prim *prim,
+                                                              const R(eye_parts) * parts, int x, int y, size_t at,
+                                                              unsigned near)
+{
+    const glint_combined *whole = &args->geometry->combined[prim->item];
+    const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
+    bool any = false;
+    count_tests(args->tests, near);
+    if (parts) {
+        R(simple_hits) hits[GLINT_GROUP / VR];
+        (whole->count == 2 ? R(meet_group_of_two) : R(meet_group_of_more))(args->geometry, whole, parts, args, directions, near,
+                                                                         hits);
+        for (int v = 0; v < GLINT_GROUP / VR; v++) {
+            const unsigned lanes = near >> v * VR & ((1u << VR) - 1);
+            if (lanes && R(keep_simple)(args, whole, at + (size_t)(v * VR), lanes, &hits[v]))
+                any = true;
+            if (lanes)
+                near &= ~(rm_bits(rm_or(hits[v].hit, hits[v].missed)) << v * VR);
+        }
+    }
+    return (near && R(cast_combined_left)(args, whole, directions, at, near)) || any;
 }

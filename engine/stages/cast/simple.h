@@ -1,5 +1,5 @@
-// simple: combined solids of a few parts that are convex, all united, all met or all but the first taken away, before rays that start
-// outside. Where a ray goes into a part, the place says whether it is in the others: that takes neither a root nor a division, and
+// simple: combined solids of a few parts that are convex, all united, or of which the first few are met and the others, the cutters, taken
+// away, before rays that start outside. Where a ray goes into a part, the place says whether it is in the others: that takes neither a root nor a division, and
 // most hits need no other end. What is within rounding of a face is left to combined.h; ends are made as there, to the last bit.
 // Contract: stages.h, cast.
 
@@ -187,36 +187,8 @@ typedef struct R(simple_hits) {
     rm hit, missed; ///< for certain
 } R(simple_hits);
 
-/// The first part without the others. A ray that is in a cutter where it goes into the first may meet what is left where it goes out of
-/// that cutter, if that is the only one.
-INNER void R(meet_difference)(R(convex) x[], uint32_t count, const bool at_eye, R(simple_hits) * hits)
-{
-    rm hit, held, in = rm_from_bits(0), out;
-    R(way_into)(&x[0], at_eye, &hits->t, &hit, &hits->missed);
-    hits->part = r_set(0);
-    hits->hit = hit;
-    if (!rm_bits(hit))
-        return;
-    for (uint32_t j = 1; j < count; j++) {
-        R(convex_at)(&x[j], at_eye, hits->t, &in, &out);
-        hits->hit = rm_and(hits->hit, out);
-    }
-    in = rm_and(hit, in);
-    if (count > 2 || !rm_bits(in))
-        return;
-    vr end;
-    rm gone;
-    const rm told = rm_and(in, R(way_out_of)(&x[1], at_eye, &end));
-    R(convex_at)(&x[0], at_eye, end, &held, &gone);
-    const rm second = rm_and(told, held);
-    hits->missed = rm_or(hits->missed, rm_and(told, gone));
-    hits->hit = rm_or(hits->hit, second);
-    hits->t = r_select(second, end, hits->t);
-    hits->part = r_select(second, r_set(1), hits->part);
-}
-
 /// What all parts have in common begins where the last of them does, if the others have not ended there.
-INNER void R(meet_intersection)(R(convex) x[], uint32_t count, const bool at_eye, R(simple_hits) * hits)
+INNER void R(meet_intersection)(const R(convex) x[], uint32_t count, const bool at_eye, R(simple_hits) * hits)
 {
     rm all = rm_from_bits((1u << VR) - 1), hit, missed, in, out;
     hits->t = r_set(-HUGE_VAL);
@@ -240,8 +212,48 @@ INNER void R(meet_intersection)(R(convex) x[], uint32_t count, const bool at_eye
     }
 }
 
+/// What the first `met` parts have in common without the others, where that begins. Returns rays that are in the only cutter there,
+/// which look_behind_cutter is for.
+INNER rm R(meet_difference)(const R(convex) x[], const uint32_t met, const uint32_t count, const bool at_eye,
+                            R(simple_hits) * hits)
+{
+    rm in = rm_from_bits(0), out;
+    if (met > 1) {
+        R(meet_intersection)(x, met, at_eye, hits);
+    } else {
+        R(way_into)(&x[0], at_eye, &hits->t, &hits->hit, &hits->missed);
+        hits->part = r_set(0);
+    }
+    const rm hit = hits->hit;
+    if (!at_eye && !rm_bits(hit)) // of one eye, rays near the whole do meet the part
+        return hit;
+    for (uint32_t j = met; j < count; j++) {
+        R(convex_at)(&x[j], at_eye, hits->t, &in, &out);
+        hits->hit = rm_and(hits->hit, out);
+    }
+    return count - met == 1 ? rm_and(hit, in) : rm_from_bits(0);
+}
+
+/// Rays that are in the only cutter, which is the last part, where they go into the others may meet what is left of these where they
+/// go out of it.
+INNER void R(look_behind_cutter)(const R(convex) x[], const uint32_t count, const bool at_eye, rm in, R(simple_hits) * hits)
+{
+    vr end;
+    const rm told = rm_and(in, R(way_out_of)(&x[count - 1], at_eye, &end));
+    rm second = told, gone = rm_from_bits(0), held, out;
+    for (uint32_t j = 0; j + 1 < count; j++) {
+        R(convex_at)(&x[j], at_eye, end, &held, &out);
+        second = rm_and(second, held);
+        gone = rm_or(gone, out);
+    }
+    hits->missed = rm_or(hits->missed, rm_and(told, gone));
+    hits->hit = rm_or(hits->hit, second);
+    hits->t = r_select(second, end, hits->t);
+    hits->part = r_select(second, r_set(count - 1), hits->part);
+}
+
 /// All parts together begin where the first of them does.
-INNER void R(meet_union)(R(convex) x[], uint32_t count, const bool at_eye, R(simple_hits) * hits)
+INNER void R(meet_union)(const R(convex) x[], uint32_t count, const bool at_eye, R(simple_hits) * hits)
 {
     const vr none = r_set(HUGE_VAL);
     rm told = rm_from_bits((1u << VR) - 1), hit, missed;
@@ -262,33 +274,141 @@ INNER void R(meet_union)(R(convex) x[], uint32_t count, const bool at_eye, R(sim
     hits->hit = rm_and(told, r_lt(hits->t * r_set(1 + SIMPLE_SLACK), next));
 }
 
-/// What rays that start on no part of a simple whole meet. eye: of those that start at one eye. Returns the lanes that are
-/// decided.
-INNER unsigned R(meet_simple)(const glint_geometry_table *table, const glint_combined *whole, const vr o[3], const vr d[3],
-                              const bool at_eye, const R(eye_parts) * eye, R(simple_hits) * hits)
+/// The part of a whole, before a vector of rays. eye: of those that start at one eye.
+INNER void R(begin_part)(const glint_geometry_table *table, const glint_combined *whole, uint32_t j, const vr o[3],
+                         const vr d[3], const bool at_eye, const R(eye_parts) * eye, R(convex) * x)
 {
-    R(convex) x[GLINT_SIMPLE_PARTS];
-    for (uint32_t j = 0; j < whole->count; j++) {
-        x[j].eye = at_eye ? &eye->part[j] : NULL;
-        R(begin_convex)(table, &table->prims[table->prim_count + whole->first + j], o, d, at_eye, &x[j]);
-    }
-    if (whole->program[2] == GLINT_COMBINE_DIFFERENCE)
-        R(meet_difference)(x, whole->count, at_eye, hits);
-    else if (whole->program[2] == GLINT_COMBINE_INTERSECTION)
-        R(meet_intersection)(x, whole->count, at_eye, hits);
-    else
-        R(meet_union)(x, whole->count, at_eye, hits);
-    return rm_bits(rm_or(hits->missed, hits->hit));
+    x->eye = at_eye ? &eye->part[j] : NULL;
+    R(begin_convex)(table, &table->prims[table->prim_count + whole->first + j], o, d, at_eye, x);
 }
 
+/// How many parts of a simple whole, which is no union, are met before the others are taken away.
+static inline uint32_t R(parts_met)(const glint_combined *whole)
+{
+    uint32_t met = 1;
+    while (met < whole->count && whole->program[2 * met] == GLINT_COMBINE_INTERSECTION)
+        met++;
+    return met;
+}
+
+/// What rays that start on no part of a simple whole meet, but for those that it returns, see meet_difference. count: of parts.
+INNER rm R(meet_simple)(const glint_combined *whole, const uint32_t count, const bool at_eye, const R(convex) x[],
+                        R(simple_hits) * hits)
+{
+    if (whole->program[2] == GLINT_COMBINE_UNION) {
+        R(meet_union)(x, count, at_eye, hits);
+        return rm_from_bits(0);
+    }
+    const uint32_t met = R(parts_met)(whole);
+    if (met == 1)
+        return R(meet_difference)(x, 1, count, at_eye, hits);
+    return R(meet_difference)(x, count > 2 ? met : 2, count, at_eye, hits);
+}
+
+/// Returns the lanes that are decided.
 static unsigned R(meet_from_anywhere)(const glint_geometry_table *table, const glint_combined *whole, const vr o[3],
                                       const vr d[3], R(simple_hits) * hits)
 {
-    return R(meet_simple)(table, whole, o, d, false, NULL, hits);
+    R(convex) x[GLINT_SIMPLE_PARTS];
+    for (uint32_t j = 0; j < whole->count; j++)
+        R(begin_part)(table, whole, j, o, d, false, NULL, &x[j]);
+    const rm in = R(meet_simple)(whole, whole->count, false, x, hits);
+    if (rm_bits(in))
+        R(look_behind_cutter)(x, whole->count, false, in, hits);
+    return rm_bits(rm_or(hits->missed, hits->hit));
 }
 
-static unsigned R(meet_from_eye)(const glint_geometry_table *table, const glint_combined *whole, const R(eye_parts) * eye,
-                                 const vr d[3], R(simple_hits) * hits)
+/// What the vectors of a group from one eye meet of a whole; no branch is taken by what one of them does, so that they are worked
+/// on together. count: of parts; 0: any, else a constant. near: lanes that are wanted.
+INNER void R(meet_group)(const glint_geometry_table *table, const glint_combined *whole, const uint32_t count,
+                         const R(eye_parts) * eye, const glint_cast_args *args, R(group_directions) directions, unsigned near,
+                         R(simple_hits) hits[])
 {
-    return R(meet_simple)(table, whole, NULL, d, true, eye, hits);
+    rm in[GLINT_GROUP / VR];
+    for (int pass = 0; pass < 2; pass++)
+        for (int v = 0; v < GLINT_GROUP / VR; v++) {
+            const unsigned lanes = near >> v * VR & ((1u << VR) - 1);
+            R(convex) x[count ? count : GLINT_SIMPLE_PARTS];
+            vr d[3];
+            if (!lanes || (pass && !(rm_bits(in[v]) & lanes)))
+                continue;
+            R(load_direction)(directions, args->direction, 0, v * VR, d);
+            R(begin_part)(table, whole, 0, NULL, d, true, eye, &x[0]); // two parts are in registers
+            R(begin_part)(table, whole, 1, NULL, d, true, eye, &x[1]);
+            for (uint32_t j = 2; j < (count ? count : whole->count); j++)
+                R(begin_part)(table, whole, j, NULL, d, true, eye, &x[j]);
+            if (pass)
+                R(look_behind_cutter)(x, count ? count : whole->count, true, in[v], &hits[v]);
+            else
+                in[v] = R(meet_simple)(whole, count ? count : whole->count, true, x, &hits[v]);
+        }
+}
+
+static __attribute__((noinline)) void R(meet_group_of_two)(const glint_geometry_table *table, const glint_combined *whole,
+                                                           const R(eye_parts) * eye, const glint_cast_args *args,
+                                                           R(group_directions) directions, unsigned near, R(simple_hits) hits[])
+{
+    R(meet_group)(table, whole, 2, eye, args, directions, near, hits);
+}
+
+static __attribute__((noinline)) void R(meet_group_of_more)(const glint_geometry_table *table, const glint_combined *whole,
+                                                            const R(eye_parts) * eye, const glint_cast_args *args,
+                                                            R(group_directions) directions, unsigned near, R(simple_hits) hits[])
+{
+    R(meet_group)(table, whole, 0, eye, args, directions, near, hits);
+}
+
+// ---- Rays that start on a part ----
+
+/// Those that go into cutter `on` are in it up to its other side. There they meet what is left of the first `met` parts, if they are
+/// in all of these; what these have in common is convex, so that those that are out of it do not come back.
+static void R(meet_through_cutter)(const glint_geometry_table *table, const glint_combined *whole, uint32_t met, uint32_t on,
+                                   const vr o[3], const vr d[3], R(simple_hits) * hits)
+{
+    R(convex) x;
+    rm in, out;
+    R(begin_part)(table, whole, on, o, d, false, NULL, &x);
+    const rm told = R(way_out_of)(&x, false, &hits->t);
+    hits->t = r_max(hits->t, r_set(GLINT_LEAST_WAY));
+    hits->missed = rm_from_bits(0);
+    hits->hit = told;
+    for (uint32_t j = 0; j < whole->count; j++) {
+        if (j == on)
+            continue;
+        R(begin_part)(table, whole, j, o, d, false, NULL, &x);
+        R(convex_at)(&x, false, hits->t, &in, &out);
+        hits->hit = rm_and(hits->hit, j < met ? in : out);
+        if (j < met)
+            hits->missed = rm_or(hits->missed, rm_and(told, out));
+    }
+}
+
+/// Those that go out of the part meet the others, if any is met alone.
+static void R(meet_other_parts)(const glint_geometry_table *table, const glint_combined *whole, uint32_t on, const vr o[3],
+                                const vr d[3], R(simple_hits) * hits)
+{
+    R(convex) x[GLINT_SIMPLE_PARTS];
+    uint32_t others = 0;
+    for (uint32_t j = 0; j < whole->count; j++)
+        if (j != on)
+            R(begin_part)(table, whole, j, o, d, false, NULL, &x[others++]);
+    R(meet_union)(x, others, false, hits);
+}
+
+/// What rays meet that start on part `on` of a simple whole; into: lanes that go into it there. Returns the lanes that are decided;
+/// hits->part is of no use.
+static unsigned R(meet_from_part)(const glint_geometry_table *table, const glint_combined *whole, uint32_t on, unsigned into,
+                                  const vr o[3], const vr d[3], R(simple_hits) * hits)
+{
+    const bool united = whole->program[2] == GLINT_COMBINE_UNION;
+    const uint32_t met = united ? whole->count : R(parts_met)(whole);
+    const bool cutter = on >= met;
+    hits->t = r_set(HUGE_VAL);
+    hits->hit = rm_from_bits(0);
+    hits->missed = rm_from_bits((1u << VR) - 1); // nothing is left of what all of the whole is in
+    if (cutter)
+        R(meet_through_cutter)(table, whole, met, on, o, d, hits);
+    else if (united)
+        R(meet_other_parts)(table, whole, on, o, d, hits);
+    return rm_bits(rm_or(hits->missed, hits->hit)) & (cutter ? into : ~into);
 }

@@ -310,6 +310,8 @@ static unsigned R(stay_in_combined)(const glint_occlude_args *args, const glint_
 {
     const glint_combined *whole = &args->geometry->combined[prim->item];
     const uint32_t first = args->geometry->prim_count + whole->first;
+    if (!(lanes_below(args->prim + at, first + whole->count) & ~lanes_below(args->prim + at, first)))
+        return wanted; // no lane is on a part, and those need not come from memory
     const unsigned back = args->back[at / GLINT_GROUP];
     for (uint64_t left = whole->all & whole->needs; left && wanted; left &= left - 1) {
         const uint32_t index = first + (uint32_t)__builtin_ctzll(left);
@@ -317,6 +319,36 @@ static unsigned R(stay_in_combined)(const glint_occlude_args *args, const glint_
         wanted &= ~lanes_equal(args->prim + at, index) | into;
     }
     return wanted;
+}
+
+/// Decides a simple whole for `lanes` of segments where that takes little. Returns those that are left; *blocked: of the others.
+static unsigned R(settle_simple)(const glint_occlude_args *args, const glint_combined *whole, const R(whole_rays) * rays,
+                                 unsigned lanes, unsigned *blocked)
+{
+    const uint32_t first = args->geometry->prim_count + whole->first;
+    unsigned own = 0;
+    for (int i = 0; i < VR; i++)
+        own |= (unsigned)(rays->on[i] - first < whole->count) << i;
+    own &= lanes;
+    for (unsigned left = lanes, here, told; left; left &= ~here) {
+        R(simple_hits) hits;
+        here = left & ~own;
+        if (here) {
+            told = R(meet_from_anywhere)(args->geometry, whole, rays->o, rays->d, &hits);
+        } else {
+            const uint32_t on = rays->on[__builtin_ctz(left)];
+            const unsigned into = args->geometry->prims[on].turned ? ~rays->inward : rays->inward;
+            here = R(vector_lanes)(rays->on, on) & left;
+            told = R(meet_from_part)(args->geometry, whole, on - first, into, rays->o, rays->d, &hits);
+        }
+        told &= here;
+        lanes &= ~told;
+        rm hit = hits.hit;
+        if (!args->directional)
+            hit = rm_and(hit, r_lt(hits.t * r_set(args->scale), r_set(1)));
+        *blocked |= rm_bits(hit) & told;
+    }
+    return lanes;
 }
 
 /// The lanes of `wanted` that a combined solid blocks: a segment from one of its parts begins within where that is seen from
@@ -336,8 +368,12 @@ static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const gli
             continue;
         R(load3)(args->point, at + i, p);
         R(directions_to)(args, position, at, i, d);
-        const R(whole_rays) rays = { NULL, p, d, args->prim + at + i, back >> i, lanes };
-        for (unsigned left = lanes, hit; left;) {
+        const R(whole_rays) rays = { p, d, args->prim + at + i, back >> i, lanes };
+        unsigned left = lanes, met = 0, hit;
+        if (GLINT_REAL == 64 && whole->simple)
+            left = R(settle_simple)(args, whole, &rays, lanes, &met);
+        blocked |= met << i;
+        while (left) {
             left = R(next_change)(args->geometry, whole, &rays, left, &from, &s, &t, &hit);
             if (!args->directional)
                 hit &= rm_bits(r_lt(t * r_set(args->scale), r_set(1)));
