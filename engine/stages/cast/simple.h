@@ -1,6 +1,7 @@
-// simple: combined solids of a few parts that are convex, all united, or of which the first few are met and the others, the cutters, taken
-// away, before rays that start outside. Where a ray goes into a part, the place says whether it is in the others: that takes neither a root nor a division, and
-// most hits need no other end. What is within rounding of a face is left to combined.h; ends are made as there, to the last bit.
+// simple: combined solids of a few parts that are convex, all united, or of which the first few are met and the others, the cutters,
+// taken away, before rays that start outside. Where a ray goes into a part, the place says whether it is in the others: that takes
+// neither a root nor a division, and most hits need no other end. What is within rounding of a face is left to combined.h; ends are
+// made as there, to the last bit.
 // Contract: stages.h, cast.
 
 #define SIMPLE_SLACK BOX_SLACK ///< of what squares are made of, too
