@@ -88,9 +88,11 @@ static bool is_direct(const glint_tile *tile, const glint_tile_frame *frame)
             return false;
     if (!plan->accumulate || plan->desc.samples > 1 || plan->light_count > GLINT_LIGHT_CHUNK || plan->derivatives)
         return false;
-    return !glint_has_lanes(tile->at.hits, tile->group_count) || !(plan->dims || plan->runs[GLINT_STAGE_INDIRECT] || plan->runs[GLINT_STAGE_VERTEX] ||
-                     (plan->runs[GLINT_STAGE_BOUNCE] && glint_tile_sends_on(tile, frame)) ||
-                     (plan->tints && glint_tile_is_shadowed(tile, plan, 0, plan->light_count)));
+    if (!glint_has_lanes(tile->at.hits, tile->group_count))
+        return true;
+    return !(plan->dims || plan->runs[GLINT_STAGE_INDIRECT] || plan->runs[GLINT_STAGE_VERTEX] ||
+             (plan->runs[GLINT_STAGE_BOUNCE] && glint_tile_sends_on(tile, frame)) ||
+             (plan->tints && glint_tile_is_shadowed(tile, plan, 0, plan->light_count)));
 }
 
 /// Before the first call for what the eye sees: the sums that it adds to, where it does.
