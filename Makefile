@@ -266,12 +266,12 @@ THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carr
 
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
 	@tests/deps.sh build test
-	@$(MAKE) --no-print-directory san-run BUILD=build-asan CFLAGS="-O1 -g" KERNEL_CFLAGS=-O1 \
+	@$(MAKE) --no-print-directory san-run BUILD=build-asan CFLAGS="-O1 -g1" KERNEL_CFLAGS=-O1 \
 	    SANITIZE=address,undefined,float-cast-overflow PRELOAD=libasan.so ITEMS='$$(TEST_BIN) $$(HARD_BIN) $$(SANITIZED)'
 
 tsan: ## the tests with threads under ThreadSanitizer, in build-tsan/
 	@tests/deps.sh build test
-	@$(MAKE) --no-print-directory san-run BUILD=build-tsan CFLAGS="-O1 -g" KERNEL_CFLAGS=-O1 SANITIZE=thread \
+	@$(MAKE) --no-print-directory san-run BUILD=build-tsan CFLAGS="-O1 -g1" KERNEL_CFLAGS=-O1 SANITIZE=thread \
 	    PRELOAD=libtsan.so ITEMS='$$(THREADED)'
 
 # ---- Checks that need more than the build does; each says what is missing ----
@@ -402,7 +402,7 @@ $(BUILD)/tests/fuzz/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/file.c tests/fuzz/fuz
 
 .PHONY: san-run
 san-run: tests
-	@T="$(T)" HARD_RAYS=20000 TEST_LIMIT_S=$${TEST_LIMIT_S:-900} PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(ITEMS)
+	@T="$(T)" HARD_RAYS=20000 GLINT_CASE_STEP=7 TEST_LIMIT_S=$${TEST_LIMIT_S:-900} PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(ITEMS)
 
 hard: ## the hard cases as Markdown tables: truth, engine in double and in float, textbook formula, verdict
 	@tests/deps.sh build test

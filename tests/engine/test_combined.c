@@ -147,7 +147,8 @@ static int random_mesh(glint_shape *whole, const glint_transform *around)
 /// Planes stand in no map but the identity.
 static int random_part(glint_shape *whole, const glint_transform *around, bool plane)
 {
-    static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER, GLINT_SHAPE_CONE };
+    static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER,
+                                              GLINT_SHAPE_CONE };
     if (with_meshes && !plane && one_in(2))
         return random_mesh(whole, around);
     node *n = &nodes[node_count];
@@ -256,7 +257,9 @@ static bool in_set(int at, const quad p[3])
     bool in = in_set(n->children[0], p);
     for (int i = 1; i < n->count; i++) {
         const bool other = in_set(n->children[i], p);
-        in = n->kind == GLINT_SHAPE_INTERSECTION ? in && other : n->kind == GLINT_SHAPE_DIFFERENCE ? in && !other : in || other;
+        in = n->kind == GLINT_SHAPE_INTERSECTION ? in && other
+             : n->kind == GLINT_SHAPE_DIFFERENCE ? in && !other
+                                                 : in || other;
     }
     return in;
 }
@@ -391,7 +394,7 @@ static void against_sets(uint64_t seeds)
 {
     int hits = 0, sure_rays = 0, rays = 0;
     with_tori = false;
-    for (uint64_t seed = 1; seed <= seeds; seed++) {
+    for (uint64_t seed = 1; seed <= seeds; seed += case_step()) {
         glint_scene *scene;
         random_state = seed;
         glint_shape *whole = random_whole(3);
@@ -478,8 +481,8 @@ static void add(glint_scene *scene, glint_shape *shape)
 
 static void add_light(glint_scene *scene)
 {
-    static const glint_light_kind kinds[] = { GLINT_LIGHT_POINT, GLINT_LIGHT_POINT, GLINT_LIGHT_DIRECTIONAL, GLINT_LIGHT_SPHERE,
-                                              GLINT_LIGHT_DISK };
+    static const glint_light_kind kinds[] = { GLINT_LIGHT_POINT, GLINT_LIGHT_POINT, GLINT_LIGHT_DIRECTIONAL,
+                                              GLINT_LIGHT_SPHERE, GLINT_LIGHT_DISK };
     glint_light *lamp;
     glint_light_desc l = glint_light_desc_default(kinds[below(5)]);
     random_vector(l.position, 6);
@@ -572,7 +575,7 @@ static void same_on_every_set(uint64_t seeds)
 {
     static const char *const sets[] = { "generic", "sse2", "avx2", "avx512" };
     with_tori = true;
-    for (uint64_t seed = 1; seed <= seeds; seed++)
+    for (uint64_t seed = 1; seed <= seeds; seed += case_step())
         for (int precision = 0; precision < 2; precision++) {
             random_state = seed;
             glint_scene *scene = lit_scene(one_in(2), one_in(3));
@@ -585,7 +588,8 @@ static void same_on_every_set(uint64_t seeds)
             for (int i = 0; i < 4; i++) {
                 glint_image *got = render(scene, sets[i], 1 + i, (glint_precision)precision);
                 if (got && differing(want, got))
-                    fail_msg("seed %d, %s, precision %d: %d pixels", (int)seed, sets[i], precision, differing(want, got));
+                    fail_msg("seed %d, %s, precision %d: %d pixels", (int)seed, sets[i], precision,
+                             differing(want, got));
                 glint_image_release(got);
             }
             glint_image_release(want);
@@ -626,17 +630,19 @@ static glint_shape *grid_part(const double place[3], glint_shape_kind kind)
 /// So many wholes of few parts that tiles find them by the index, among boxes: what is worked out for the eye once holds for all rays.
 static void many_small_wholes(void **unused)
 {
-    static const glint_shape_kind kinds[] = { GLINT_SHAPE_BOX, GLINT_SHAPE_BOX, GLINT_SHAPE_SPHERE, GLINT_SHAPE_CYLINDER };
+    static const glint_shape_kind kinds[] = { GLINT_SHAPE_BOX, GLINT_SHAPE_BOX, GLINT_SHAPE_SPHERE,
+                                              GLINT_SHAPE_CYLINDER };
     static const char *const sets[] = { "generic", "sse2", "avx2", "avx512" };
     (void)unused;
-    for (uint64_t seed = 1; seed <= 60; seed++) {
+    for (uint64_t seed = 1; seed <= 60; seed += case_step()) {
         random_state = seed;
         glint_scene *scene = lit_scene(one_in(2), false);
         for (int i = 0; i < 60; i++) {
             double place[3];
             for (int c = 0; c < 3; c++)
                 place[c] = 0.5 * (below(9) - 4.0);
-            glint_shape *whole = one_in(3) ? grid_part(place, GLINT_SHAPE_BOX) : new_whole((glint_shape_kind)(GLINT_SHAPE_UNION + below(3)));
+            glint_shape *whole = one_in(3) ? grid_part(place, GLINT_SHAPE_BOX)
+                                           : new_whole((glint_shape_kind)(GLINT_SHAPE_UNION + below(3)));
             for (uint32_t k = glint_shape_get(whole)->kind == GLINT_SHAPE_BOX ? 0 : 2 + below(2); k > 0; k--)
                 put_in(whole, grid_part(place, kinds[below(4)]));
             dress(whole);
@@ -656,7 +662,8 @@ static void many_small_wholes(void **unused)
 
 // ---- Wholes that are one solid ----
 
-static const glint_shape_kind solids[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER, GLINT_SHAPE_CONE, GLINT_SHAPE_TORUS };
+static const glint_shape_kind solids[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER, GLINT_SHAPE_CONE,
+                                           GLINT_SHAPE_TORUS };
 
 static glint_shape *random_solid(glint_shape_kind kind)
 {
@@ -709,7 +716,7 @@ static glint_shape *same_solid(glint_shape *solid, uint32_t way)
 static void wholes_of_one_solid(void **unused)
 {
     (void)unused;
-    for (uint64_t seed = 1; seed <= 200; seed++) {
+    for (uint64_t seed = 1; seed <= 200; seed += case_step()) {
         glint_image *image[2];
         for (int i = 0; i < 2; i++) {
             random_state = seed;
@@ -753,13 +760,14 @@ static void boxes_of_triangles(void **unused)
 {
     int hits = 0, off = 0;
     (void)unused;
-    for (uint64_t seed = 1; seed <= 200; seed++) {
+    for (uint64_t seed = 1; seed <= 200; seed += case_step()) {
         glint_image *image[2];
         for (int i = 0; i < 2; i++) {
             random_state = seed;
             glint_scene *scene = lit_scene(seed % 2, seed % 3 == 0);
             glint_shape_desc d = glint_shape_desc_default((glint_shape_kind)(GLINT_SHAPE_UNION + below(3)));
-            glint_shape_desc box = glint_shape_desc_default(GLINT_SHAPE_BOX), ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+            glint_shape_desc box = glint_shape_desc_default(GLINT_SHAPE_BOX),
+                             ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
             d.transform = random_map(0.5);
             d.material = random_material();
             random_vector(box.max, 0.5);
@@ -786,7 +794,7 @@ static void boxes_of_triangles(void **unused)
         glint_image_release(image[1]);
     }
     assert_int_equal(off, 0);
-    assert_true(hits > 50000);
+    assert_true(hits * (int)case_step() > 50000);
 }
 
 // ---- Faces that coincide ----
@@ -832,7 +840,7 @@ static void flush_cutters(void **unused)
 {
     int through = 0;
     (void)unused;
-    for (uint64_t seed = 1; seed <= 400; seed++) {
+    for (uint64_t seed = 1; seed <= 400; seed += case_step()) {
         glint_scene *scenes[2];
         glint_shape *whole[2];
         for (int i = 0; i < 2; i++) {
@@ -863,14 +871,14 @@ static void flush_cutters(void **unused)
             glint_shape_release(whole[i]);
         }
     }
-    assert_true(through > 1000);
+    assert_true(through * (int)case_step() > 1000);
 }
 
 /// Two halves of a block are the block: nothing is between them, and the same is met from wherever.
 static void halves_are_whole(void **unused)
 {
     (void)unused;
-    for (uint64_t seed = 1; seed <= 400; seed++) {
+    for (uint64_t seed = 1; seed <= 400; seed += case_step()) {
         glint_scene *scenes[2];
         glint_shape *whole[2];
         for (int i = 0; i < 2; i++) {
@@ -913,7 +921,7 @@ static void halves_are_whole(void **unused)
 static void nothing_is_left(void **unused)
 {
     (void)unused;
-    for (uint64_t seed = 1; seed <= 400; seed++) {
+    for (uint64_t seed = 1; seed <= 400; seed += case_step()) {
         glint_scene *scene;
         random_state = seed;
         glint_shape *solid = random_solid(solids[seed % 5]), *whole = new_whole(GLINT_SHAPE_DIFFERENCE);
@@ -943,8 +951,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wholes_against_sets), cmocka_unit_test(same_on_every_instruction_set),
         cmocka_unit_test(meshes_against_sets), cmocka_unit_test(meshes_on_every_instruction_set),
-        cmocka_unit_test(wholes_of_one_solid), cmocka_unit_test(boxes_of_triangles), cmocka_unit_test(flush_cutters),
-        cmocka_unit_test(many_small_wholes),   cmocka_unit_test(halves_are_whole),    cmocka_unit_test(nothing_is_left),
+        cmocka_unit_test(wholes_of_one_solid), cmocka_unit_test(boxes_of_triangles),
+        cmocka_unit_test(flush_cutters),       cmocka_unit_test(many_small_wholes),
+        cmocka_unit_test(halves_are_whole),    cmocka_unit_test(nothing_is_left),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,6 +9,7 @@
 #include "engine/plan/plan.h"
 #include "engine/stages/stages.h"
 #include "tests/engine/cases/builder_case.h"
+#include "tests/engine/cases/random.h"
 
 // ---- Programs ------------------------------------------------------------------------------------------------------
 
@@ -137,29 +138,19 @@ static void test_floor(void **state)
 
 // ---- Properties: every way to one picture gives the same bits ---------------------------------------------------------
 
-static uint64_t seed;
-
-static double uniform(double low, double high)
-{
-    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return low + (high - low) * ((double)(seed >> 33) * 0x1p-31);
-}
-
-static uint32_t draw(uint32_t below) { return (uint32_t)uniform(0, below) % below; }
-
 /// A program of one or three numbers, of the point, the normal, the view and the surface, some of them odd.
 static glint_program *random_program(size_t count, double low, double high)
 {
     glint_value out[3];
     begin_program(GLINT_PROGRAM_PATTERN);
     for (size_t i = 0; i < count; i++) {
-        const glint_input inputs[] = { GLINT_INPUT_P_X, GLINT_INPUT_P_Y,  GLINT_INPUT_P_Z,  GLINT_INPUT_WORLD_Y,
-                                       GLINT_INPUT_N_X, GLINT_INPUT_V_Z,  GLINT_INPUT_UV_U, GLINT_INPUT_UV_V,
-                                       GLINT_INPUT_UV_FOOTPRINT };
-        const glint_value x = mul(in(inputs[draw(9)]), num(uniform(1, 5))), y = in(inputs[draw(9)]);
+        const glint_input inputs[] = { GLINT_INPUT_P_X,     GLINT_INPUT_P_Y,  GLINT_INPUT_P_Z,
+                                       GLINT_INPUT_WORLD_Y, GLINT_INPUT_N_X,  GLINT_INPUT_V_Z,
+                                       GLINT_INPUT_UV_U,    GLINT_INPUT_UV_V, GLINT_INPUT_UV_FOOTPRINT };
+        const glint_value x = mul(in(inputs[below(9)]), num(between(1, 5))), y = in(inputs[below(9)]);
         const glint_value wave = op(GLINT_OP_SIN, op(GLINT_OP_ADD, x, y, 0), 0, 0);
         out[i] = op(GLINT_OP_MULADD, wave, num((high - low) / 2), num((high + low) / 2));
-        if (draw(6) == 0) // below 0, and NaN
+        if (below(6) == 0) // below 0, and NaN
             out[i] = op(GLINT_OP_SELECT, op(GLINT_OP_LESS, wave, num(-0.9), 0), op(GLINT_OP_SQRT, wave, 0, 0),
                         op(GLINT_OP_SUB, out[i], num(low + 0.1), 0));
     }
@@ -177,21 +168,20 @@ static glint_program *random_shader(void)
         nl = op(GLINT_OP_MULADD, n, in((glint_input)(GLINT_INPUT_L_X + c)), nl);
         nv = op(GLINT_OP_MULADD, n, in((glint_input)(GLINT_INPUT_V_X + c)), nv);
     }
-    const glint_value step = op(GLINT_OP_SELECT, op(GLINT_OP_LESS, num(uniform(0.2, 0.6)), nl, 0), num(1), num(0.3));
+    const glint_value step = op(GLINT_OP_SELECT, op(GLINT_OP_LESS, num(between(0.2, 0.6)), nl, 0), num(1), num(0.3));
     const glint_value shine = op(GLINT_OP_HIGHLIGHT, nv, in(GLINT_INPUT_SHININESS), 0);
     for (int c = 0; c < 3; c++) {
         const glint_value light = in((glint_input)(GLINT_INPUT_LIGHT_R + c));
         out[c] = mul(mul(in((glint_input)(GLINT_INPUT_KD_R + c)), light), step);
         out[3 + c] = mul(mul(in((glint_input)(GLINT_INPUT_KS_R + c)), light), shine);
     }
-    return end_program(out, draw(2) ? 3 : 6);
+    return end_program(out, below(2) ? 3 : 6);
 }
 
 static void release_programs(const glint_material_programs *p)
 {
-    glint_program *const programs[] = { p->diffuse,   p->specular,  p->mirror, p->transmission,
-                                        p->shininess, p->roughness, p->bump,   p->opacity,
-                                        p->shader };
+    glint_program *const programs[] = { p->diffuse,   p->specular, p->mirror,  p->transmission, p->shininess,
+                                        p->roughness, p->bump,     p->opacity, p->shader };
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         glint_program_release(programs[i]);
 }
@@ -199,33 +189,33 @@ static void release_programs(const glint_material_programs *p)
 static glint_material *random_material(bool bouncing)
 {
     glint_material_desc desc = glint_material_desc_default();
-    desc.model = (glint_model)draw(4);
-    desc.normalized = draw(3) == 0;
-    desc.matched = draw(3) == 0;
-    desc.distribution = (glint_distribution)draw(2);
-    desc.has_ambient = draw(3) == 0;
+    desc.model = (glint_model)below(4);
+    desc.normalized = below(3) == 0;
+    desc.matched = below(3) == 0;
+    desc.distribution = (glint_distribution)below(2);
+    desc.has_ambient = below(3) == 0;
     for (int c = 0; c < 3; c++) {
-        desc.specular[c] = draw(2) ? uniform(0, 1) : 0;
-        desc.diffuse[c] = uniform(0, 1);
-        desc.ambient[c] = uniform(0, 0.5);
+        desc.specular[c] = below(2) ? between(0, 1) : 0;
+        desc.diffuse[c] = between(0, 1);
+        desc.ambient[c] = between(0, 0.5);
     }
-    if (draw(4))
-        desc.program.diffuse = random_program(draw(2) ? 3 : 1, 0, 1);
-    if (draw(2))
-        desc.program.specular = random_program(draw(2) ? 3 : 1, 0, 1);
-    if (draw(2))
+    if (below(4))
+        desc.program.diffuse = random_program(below(2) ? 3 : 1, 0, 1);
+    if (below(2))
+        desc.program.specular = random_program(below(2) ? 3 : 1, 0, 1);
+    if (below(2))
         desc.program.shininess = random_program(1, 2, 100);
-    if (draw(2))
+    if (below(2))
         desc.program.roughness = random_program(1, 0.05, 0.9);
-    if (bouncing && draw(2))
-        desc.program.mirror = random_program(draw(2) ? 3 : 1, 0, 0.6);
-    if (bouncing && draw(3) == 0)
-        desc.program.transmission = random_program(draw(2) ? 3 : 1, 0, 0.6);
-    if (draw(3) == 0)
+    if (bouncing && below(2))
+        desc.program.mirror = random_program(below(2) ? 3 : 1, 0, 0.6);
+    if (bouncing && below(3) == 0)
+        desc.program.transmission = random_program(below(2) ? 3 : 1, 0, 0.6);
+    if (below(3) == 0)
         desc.program.bump = random_program(1, 0, 0.2);
-    if (draw(5) == 0)
+    if (below(5) == 0)
         desc.program.opacity = random_program(1, 0.1, 1);
-    if (draw(4) == 0)
+    if (below(4) == 0)
         desc.program.shader = random_shader();
     glint_material *material = new_material(&desc);
     release_programs(&desc.program);
@@ -237,16 +227,16 @@ static void random_shape(world *w, glint_material *material)
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX,  GLINT_SHAPE_CYLINDER,
                                               GLINT_SHAPE_CONE,   GLINT_SHAPE_DISK, GLINT_SHAPE_SPHERE,
                                               GLINT_SHAPE_TORUS };
-    glint_shape_desc desc = glint_shape_desc_default(kinds[draw(7)]);
-    const double axis[3] = { uniform(-1, 1), 1, uniform(-1, 1) }, by[3] = { uniform(0.5, 1.5), uniform(0.5, 1.5), -1 };
-    const double to[3] = { uniform(-3, 3), uniform(0, 2), uniform(-3, 3) };
+    glint_shape_desc desc = glint_shape_desc_default(kinds[below(7)]);
+    const double axis[3] = { between(-1, 1), 1, between(-1, 1) }, by[3] = { between(0.5, 1.5), between(0.5, 1.5), -1 };
+    const double to[3] = { between(-3, 3), between(0, 2), between(-3, 3) };
     desc.transform = glint_transform_translate(to);
-    if (draw(2)) {
-        const glint_transform turn = glint_transform_rotate(axis, uniform(0, 360)), size = glint_transform_scale(by);
+    if (below(2)) {
+        const glint_transform turn = glint_transform_rotate(axis, between(0, 360)), size = glint_transform_scale(by);
         const glint_transform both = glint_transform_product(&turn, &size);
         desc.transform = glint_transform_product(&desc.transform, &both);
     }
-    desc.two_sided = draw(3) > 0;
+    desc.two_sided = below(3) > 0;
     add_shape(w, &desc, material);
 }
 
@@ -290,13 +280,13 @@ static glint_shape *new_sheet(const glint_mesh_desc *like, bool torn, double fir
 static void random_mesh(world *w, glint_material *material)
 {
     glint_mesh_desc desc = glint_mesh_desc_default();
-    const double to[3] = { uniform(-2, 2), 1, uniform(-2, 2) }, by[3] = { uniform(0.8, 1.5), 1, -1 };
+    const double to[3] = { between(-2, 2), 1, between(-2, 2) }, by[3] = { between(0.8, 1.5), 1, -1 };
     const glint_transform move = glint_transform_translate(to), size = glint_transform_scale(by);
-    desc.transform = draw(2) ? move : glint_transform_product(&move, &size);
+    desc.transform = below(2) ? move : glint_transform_product(&move, &size);
     desc.has_shading = true;
-    desc.shading = (glint_shading)draw(4);
+    desc.shading = (glint_shading)below(4);
     desc.material = material;
-    glint_shape *shape = new_sheet(&desc, draw(2), 0.5);
+    glint_shape *shape = new_sheet(&desc, below(2), 0.5);
     OK(glint_scene_add_shape(w->scene, shape, &error));
     glint_shape_release(shape);
 }
@@ -305,17 +295,17 @@ static void random_light(world *w)
 {
     const glint_light_kind kinds[] = { GLINT_LIGHT_POINT, GLINT_LIGHT_DIRECTIONAL, GLINT_LIGHT_SPOT, GLINT_LIGHT_DISK,
                                        GLINT_LIGHT_SPHERE };
-    glint_light_desc desc = glint_light_desc_default(kinds[draw(5)]);
+    glint_light_desc desc = glint_light_desc_default(kinds[below(5)]);
     glint_light *light;
     for (int c = 0; c < 3; c++) {
-        desc.position[c] = uniform(-4, 4) + (c == 1 ? 6 : 0);
-        desc.direction[c] = c == 1 ? -1 : uniform(-1, 1);
-        desc.color[c] = uniform(0.2, 1);
+        desc.position[c] = between(-4, 4) + (c == 1 ? 6 : 0);
+        desc.direction[c] = c == 1 ? -1 : between(-1, 1);
+        desc.color[c] = between(0.2, 1);
     }
-    if (desc.kind == GLINT_LIGHT_SPHERE && draw(2))
+    if (desc.kind == GLINT_LIGHT_SPHERE && below(2))
         desc.shadow = GLINT_SHADOW_CAPS;
     desc.outer_rad = 1.2;
-    desc.samples = 1 + draw(6);
+    desc.samples = 1 + below(6);
     OK(glint_light_create(&desc, &light, &error));
     OK(glint_scene_add_light(w->scene, light, &error));
     glint_light_release(light);
@@ -325,30 +315,30 @@ static world random_world(void)
 {
     const double eye[3] = { 1, 4, 9 }, at[3] = { 0, 0.5, 0 };
     world w = new_world(eye, at, 80, 60);
-    const bool bouncing = draw(3) == 0, meshes = draw(3) == 0;
+    const bool bouncing = below(3) == 0, meshes = below(3) == 0;
     glint_shape_desc floor = glint_shape_desc_default(GLINT_SHAPE_PLANE);
     glint_material *materials[4];
     for (int i = 0; i < 4; i++)
         materials[i] = random_material(bouncing);
     add_shape(&w, &floor, materials[0]);
     for (int i = 0; i < 5; i++)
-        random_shape(&w, materials[draw(4)]);
+        random_shape(&w, materials[below(4)]);
     if (meshes)
-        random_mesh(&w, materials[draw(4)]);
-    for (uint32_t i = 0; i < 1 + draw(3); i++)
+        random_mesh(&w, materials[below(4)]);
+    for (uint32_t i = 0; i < 1 + below(3); i++)
         random_light(&w);
     for (int i = 0; i < 4; i++)
         glint_material_release(materials[i]);
     glint_scene_desc desc = *glint_scene_get(w.scene);
     desc.ambient[0] = desc.ambient[1] = desc.ambient[2] = 0.1;
     desc.background[2] = 0.3;
-    desc.has_indirect = draw(5) == 0;
+    desc.has_indirect = below(5) == 0;
     desc.indirect_samples = 2;
     desc.indirect_bounces = 2;
     OK(glint_scene_set(w.scene, &desc, &error));
-    w.render.samples = draw(2) ? 1 : draw(2) ? 4 : 20;
-    w.render.adaptive = draw(4) ? 0 : 0.1;
-    w.render.precision = draw(4) ? GLINT_DOUBLE : GLINT_FLOAT;
+    w.render.samples = below(2) ? 1 : below(2) ? 4 : 20;
+    w.render.adaptive = below(4) ? 0 : 0.1;
+    w.render.precision = below(4) ? GLINT_DOUBLE : GLINT_FLOAT;
     w.render.passes = (1u << GLINT_PASS_COUNT) - 1;
     return w;
 }
@@ -368,8 +358,8 @@ static void check_same(const glint_image *a, const glint_image *b, const char *w
 static void test_same_bits(void **state)
 {
     (void)state;
-    for (int round = 0; round < 40; round++) {
-        seed = 77 + (uint64_t)round;
+    for (int round = 0; round < 40; round += (int)case_step()) {
+        random_state = 77 + (uint64_t)round;
         world w = random_world();
         glint_image *reference = render(&w, "ref", 1);
         for (const glint_stages *const *set = glint_stages_built; *set; set++) {
@@ -502,10 +492,10 @@ static void test_shader(void **state)
                          op(GLINT_OP_HIGHLIGHT, rv, in(GLINT_INPUT_SHININESS), 0));
     }
     glint_program *phong = end_program(out, 6);
-    for (int round = 0; round < 12; round++) {
+    for (int round = 0; round < 12; round += (int)case_step()) {
         glint_image *images[2];
         for (int which = 0; which < 2; which++) {
-            seed = 900 + (uint64_t)round;
+            random_state = 900 + (uint64_t)round;
             const double eye[3] = { 1, 4, 9 }, at[3] = { 0, 0.5, 0 };
             world w = new_world(eye, at, 80, 60);
             glint_material_desc desc = glint_material_desc_default();
@@ -569,8 +559,8 @@ enum { WAVES = 8 };
 static void set_waves(glint_material *material, const wave waves[WAVES])
 {
     glint_material_desc desc = *glint_material_get(material);
-    glint_program **const programs[WAVES] = { &desc.program.diffuse,     &desc.program.specular,  &desc.program.mirror,
-                                              &desc.program.shininess,   &desc.program.roughness, &desc.program.bump,
+    glint_program **const programs[WAVES] = { &desc.program.diffuse,      &desc.program.specular,  &desc.program.mirror,
+                                              &desc.program.shininess,    &desc.program.roughness, &desc.program.bump,
                                               &desc.program.transmission, &desc.program.opacity };
     for (int i = 0; i < WAVES; i++)
         *programs[i] = wave_program(&waves[i]);
@@ -627,13 +617,14 @@ static void test_reuse(void **state)
     for (int round = 0; round < 4; round++) {
         const double eye[3] = { 1, 4, 9 }, at[3] = { 0, 0.5, 0 };
         world w = new_world(eye, at, 48, 36);
-        wave waves[WAVES] = { { 0.3, 3, 0.05, false }, { 0.3, 5, 0.1, false }, { 0.1, 2, 0, true }, { 5, 3, 9, false },
-                              { 0.2, 3, 0.1, false },  { 0.1, 6, 0, false },   { 0.1, 3, 0, false },  { 0.3, 4, 0.2, false } };
+        wave waves[WAVES] = { { 0.3, 3, 0.05, false }, { 0.3, 5, 0.1, false }, { 0.1, 2, 0, true },
+                              { 5, 3, 9, false },      { 0.2, 3, 0.1, false }, { 0.1, 6, 0, false },
+                              { 0.1, 3, 0, false },    { 0.3, 4, 0.2, false } };
         glint_material_desc desc = glint_material_desc_default();
         desc.model = round % 2 ? GLINT_MODEL_COOK_TORRANCE : GLINT_MODEL_PHONG;
         desc.normalized = round == 2;
         glint_material *material = new_material(&desc);
-        seed = 5 + (uint64_t)round;
+        random_state = 5 + (uint64_t)round;
         glint_shape_desc floor = glint_shape_desc_default(GLINT_SHAPE_PLANE);
         glint_shape_desc ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
         add_shape(&w, &floor, material);
@@ -645,7 +636,7 @@ static void test_reuse(void **state)
         glint_renderer_desc options = { .threads = 2 };
         glint_renderer *renderer;
         OK(glint_renderer_create(&options, &renderer, &error));
-        for (uint32_t turn = 0; turn < 5 * WAVES * 4; turn++) {
+        for (uint32_t turn = 0; turn < 5 * WAVES * 4; turn += case_step()) {
             edit(turn, waves, material, &w);
             for (int again = 0; again < 2; again++) { // what stays is kept from the second frame on
                 glint_image *reused = render_with(renderer, &w, NULL), *fresh = render(&w, NULL, 2);
@@ -683,7 +674,8 @@ static void test_reuse_uv(void **state)
         glint_image *reused = render_with(renderer, &w, NULL), *fresh = render(&w, NULL, 2);
         check_same(reused, fresh, "reused", turn);
         const size_t bytes = sizeof(float) * 64 * 48;
-        const bool same = before && memcmp(before->plane[GLINT_PASS_ALBEDO][0], fresh->plane[GLINT_PASS_ALBEDO][0], bytes) == 0;
+        const bool same =
+            before && memcmp(before->plane[GLINT_PASS_ALBEDO][0], fresh->plane[GLINT_PASS_ALBEDO][0], bytes) == 0;
         assert_int_equal(same, turn == 1 || turn == 5);
         OK(glint_scene_remove_shape(w.scene, sheet, &error));
         glint_shape_release(sheet);

@@ -225,14 +225,6 @@ static inline const test_array *wanted_array(const char *name)
     return NULL;
 }
 
-/// One of so many cases is run: 1, or GLINT_CASE_STEP where all of them would take too long (on an emulated machine). Prime to 6,
-/// or some kinds of case would never be.
-static inline uint32_t case_step(void)
-{
-    const char *step = getenv("GLINT_CASE_STEP");
-    return step ? (uint32_t)strtoul(step, NULL, 10) : 1;
-}
-
 static inline void run_cases(uint32_t cases, uint64_t seed, void (*one)(int precision, bool odd))
 {
     mismatches = 0;
