@@ -30,11 +30,11 @@ void *glint_alloc(size_t count, size_t size)
     return memory;
 }
 
-/// Advice: refused, the pages are small; what is beyond the last whole large one stays so, and is not resident for nothing.
+/// Advice: refused, the pages are small; so they are in the last large one unless half of it and more is wanted.
 static void want_large_pages(void *memory, size_t bytes)
 {
 #ifdef MADV_HUGEPAGE
-    madvise(memory, bytes / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
+    madvise(memory, (bytes + LARGE_PAGE / 2) / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
 #else
     (void)memory, (void)bytes;
 #endif
