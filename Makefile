@@ -260,7 +260,8 @@ check-run: tests
 
 # What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
 SANITIZED := $(filter-out tests/command/povray.sh tests/command/gallery.sh tests/command/install.sh,$(SCRIPTED))
-# What has threads: tiles, index, bands of rows, the writer, what is kept from frame to frame, the server of watch.
+# What has threads: tiles, index, bands of rows, the writer, what is kept from frame to frame, the server of watch. With two of
+# the instruction sets: what threads share is the same in all.
 THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image reuse reuse_turns soft) \
                hard/hard_limits) tests/lua/test_patterned.lua tests/command/watch.sh
 
@@ -272,7 +273,7 @@ asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
 tsan: ## the tests with threads under ThreadSanitizer, in build-tsan/
 	@tests/deps.sh build test
 	@$(MAKE) --no-print-directory san-run BUILD=build-tsan CFLAGS="-O1 -g1" KERNEL_CFLAGS=-O1 SANITIZE=thread \
-	    PRELOAD=libtsan.so ITEMS='$$(THREADED)'
+	    KERNELS="$(filter generic avx2,$(KERNELS))" PRELOAD=libtsan.so ITEMS='$$(THREADED)'
 
 # ---- Checks that need more than the build does; each says what is missing ----
 
