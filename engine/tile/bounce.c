@@ -31,9 +31,16 @@ struct glint_bounce {
 /// Its pages are the system's until a level is used.
 struct glint_bounce *glint_bounce_create(void)
 {
-    struct glint_bounce *bounce = glint_alloc(1, sizeof *bounce);
-    for (int i = 0; bounce && i < GLINT_BOUNCE_LEVELS; i++)
+    struct glint_bounce *bounce = aligned_alloc(_Alignof(struct glint_bounce), sizeof *bounce);
+    if (!bounce)
+        return NULL;
+    memset(&bounce->batch, 0, sizeof bounce->batch);
+    bounce->slopes = NULL;
+    for (int i = 0; i < GLINT_BOUNCE_LEVELS; i++) { // of a level not yet used the pages are the system's
+        bounce->room[i].slopes = NULL;
         bounce->levels[i] = &bounce->room[i];
+        bounce->counts[i] = 0;
+    }
     return bounce;
 }
 
