@@ -259,11 +259,10 @@ INNER void slope_lanes(const glint_slope_args *args, const shared_colors *k, con
 
 INNER void slope_group(const glint_slope_args *args, const unsigned slopes)
 {
-    const glint_slope_args call = *args; // stores may not change it
-    const shared_colors k = share_colors(&call, slopes);
+    const shared_colors k = share_colors(args, slopes);
     for (int i = 0; i < GLINT_GROUP; i += VD)
-        if (call.lanes >> i & D_ALL)
-            slope_lanes(&call, &k, slopes, i);
+        if (args->lanes >> i & D_ALL)
+            slope_lanes(args, &k, slopes, i);
 }
 
 static void slope(const glint_slope_args *args)

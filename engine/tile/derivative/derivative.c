@@ -233,7 +233,7 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
     glint_derivative_points points, bent_points;
     double *bent[9];
     glint_derivative_find_points(tile, frame, g, &points);
-    bent_points = points;
+    glint_derivative_find_points(tile, frame, g, &bent_points);
     for (int i = 0; i < 9 && all->bends; i++)
         bent_points.slope[i / 3][i % 3] = bent[i] = work->bend[i / 3][i % 3];
     if (sample && sample->emission == GLINT_EMIT_CONE)
