@@ -456,9 +456,12 @@ static inline double glint_real_at(const void *array, glint_precision precision,
 /// Whether a group's numbers are all this one.
 static inline bool glint_all_are(const uint32_t of[GLINT_GROUP], uint32_t number)
 {
-    uint32_t other = 0;
-    for (int i = 0; i < GLINT_GROUP; i++)
-        other |= of[i] ^ number;
+    const uint64_t both = (uint64_t)number << 32 | number;
+    uint64_t two, other = 0;
+    for (int i = 0; i < GLINT_GROUP; i += 2) {
+        memcpy(&two, of + i, sizeof two);
+        other |= two ^ both;
+    }
     return !other;
 }
 /// How many lanes there are.

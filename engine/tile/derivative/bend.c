@@ -347,18 +347,6 @@ static void put_lanes(unsigned lanes, double (*from)[GLINT_GROUP], double *const
             to[k][__builtin_ctz(left)] = from[k][__builtin_ctz(left)];
 }
 
-/// Those of `lanes` that show the primitive of the first of them.
-static unsigned lanes_of_prim(const uint32_t *prim, unsigned lanes)
-{
-    const uint32_t first = prim[__builtin_ctz(lanes)];
-    unsigned same = 0;
-    if (glint_all_are(prim, first)) // the common case
-        return lanes;
-    for (unsigned rest = lanes; rest; rest &= rest - 1)
-        same |= prim[__builtin_ctz(rest)] == first ? rest & -rest : 0;
-    return same;
-}
-
 /// One by one.
 static unsigned bend_each(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
                           const glint_derivative_points *points, double *const slope[9])
@@ -406,7 +394,7 @@ static unsigned begin(const glint_tile *tile, const glint_tile_frame *frame, siz
         if (d->view.moves && (plan->lens || plan->camera.orthographic))
             find_places(tile, plan, &d->view, g, out);
     }
-    return lanes_of_prim(prims, lanes);
+    return glint_lanes_alike(prims, lanes);
 }
 
 unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g,

@@ -56,16 +56,11 @@ static void find_eyes(const glint_tile *tile, const glint_tile_frame *frame, uin
 }
 
 /// The lanes of group g, among those that are left, that show the material of the first of them.
-static unsigned lanes_alike(const glint_tile *tile, uint32_t g, unsigned left, uint32_t *material)
+static unsigned lanes_of_material(const glint_tile *tile, uint32_t g, unsigned left, uint32_t *material)
 {
     const uint32_t *of = tile->surface.material + (size_t)g * GLINT_GROUP;
-    unsigned lanes = 0;
     *material = of[__builtin_ctz(left)];
-    if (glint_all_are(of, *material)) // the common case
-        return left;
-    for (unsigned rest = left; rest; rest &= rest - 1)
-        lanes |= of[__builtin_ctz(rest)] == *material ? rest & -rest : 0;
-    return lanes;
+    return glint_lanes_alike(of, left);
 }
 
 /// Whether the derivatives of a group read from where it is seen: for highlights, for what turns with the view, for rays that go on.
@@ -75,7 +70,7 @@ static bool reads_eyes(const glint_tile *tile, const glint_plan *plan, uint32_t 
     bool reads = all->bends || plan->runs[GLINT_STAGE_BOUNCE];
     for (unsigned left = tile->at.hits[g], lanes; left && !reads; left &= ~lanes) {
         uint32_t material;
-        lanes = lanes_alike(tile, g, left, &material);
+        lanes = lanes_of_material(tile, g, left, &material);
         for (size_t k = 0; k < all->count; k++)
             reads = reads || all->of[k].materials[material].highlight != GLINT_HIGHLIGHT_NONE;
         reads = reads || plan->materials[material].planes & GLINT_PLANE_SHADED;
@@ -244,7 +239,7 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
     }
     for (unsigned left = reached, lanes; left; left &= ~lanes) {
         uint32_t material;
-        lanes = lanes_alike(tile, g, left, &material);
+        lanes = lanes_of_material(tile, g, left, &material);
         for (size_t k = 0; k < all->count && !(frame->plan->materials[material].planes & GLINT_PLANE_SHADED); k++) {
             glint_slope_args args = { .light = &all->of[k].lights[light->source],
                                       .material = &all->of[k].materials[material],
@@ -276,7 +271,7 @@ static bool are_shaded(const glint_tile *tile, const glint_plan *plan, uint32_t 
     bool all = plan->patterns && plan->patterns->shaders;
     for (unsigned left = lanes, alike; left && all; left &= ~alike) {
         uint32_t material;
-        alike = lanes_alike(tile, g, left, &material);
+        alike = lanes_of_material(tile, g, left, &material);
         all = plan->materials[material].planes & GLINT_PLANE_SHADED;
     }
     return all;
@@ -405,65 +400,71 @@ static void begin_light(glint_tile *tile, const glint_tile_frame *frame, uint32_
                     : 0;
 }
 
-/// Between samples: which lanes have not kept from them what the first had.
-static void turn_sample(glint_tile *tile, bool is_first)
+/// After a sample: which lanes have not kept from them what the first had.
+static void end_shadows(glint_tile *tile, bool is_first)
 {
     glint_derivative_work *work = tile->derivative;
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        if (is_first)
-            work->first[i] = work->shadows[i];
-        else if (work->shadows[i] != work->first[i])
-            work->mixed[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
-        work->shadows[i] = NO_SHADOWS;
+    const uint32_t count = tile->group_count * GLINT_GROUP;
+    if (is_first) {
+        memcpy(work->first, work->shadows, count * sizeof *work->first);
+        return;
     }
+    for (uint32_t i = 0; i < count; i++)
+        if (work->shadows[i] != work->first[i])
+            work->mixed[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
 }
 
-/// Notes which surfaces group g shows.
-static void note_hits(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
+static void fill_group(uint32_t out[GLINT_GROUP], uint32_t number)
+{
+    for (int i = 0; i < GLINT_GROUP; i++)
+        out[i] = number;
+}
+
+/// Before lights keep anything from group g: which surfaces it shows, where these move.
+static void begin_shadows(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
     uint32_t *shadows = tile->derivative->shadows + (size_t)g * GLINT_GROUP;
     const uint32_t *prims = tile->at.prim + (size_t)g * GLINT_GROUP;
-    for (unsigned left = tile->at.hits[g], same; left; left &= ~same) {
+    fill_group(shadows, NO_SHADOWS);
+    for (unsigned left = frame->plan->derivatives->bends ? tile->at.hits[g] : 0, same; left; left &= ~same) {
         const uint32_t prim = prims[__builtin_ctz(left)];
         const uint32_t hash = (NO_SHADOWS ^ (frame->geometry.prims[prim].id + 1)) * GLINT_SHADOW_MIXER;
-        same = 0;
-        for (unsigned i = 0; i < GLINT_GROUP; i++) {
-            const bool is = prims[i] == prim && left >> i & 1;
-            same |= (unsigned)is << i;
-            shadows[i] = is ? hash : shadows[i];
-        }
+        same = glint_lanes_alike(prims, left);
+        if (same == 0xffff) // the common case
+            fill_group(shadows, hash);
+        for (unsigned rest = same == 0xffff ? 0 : same; rest; rest &= rest - 1)
+            shadows[__builtin_ctz(rest)] = hash;
     }
 }
 
 static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_derivative_work *work = tile->derivative;
+    const glint_plan_derivatives *all = frame->plan->derivatives;
     const size_t count = tile->group_count * (size_t)GLINT_GROUP;
     if (tile->sample == 0 || tile->batch) {
         memset(work->mixed, 0, tile->group_count * sizeof *work->mixed);
-        for (size_t k = 0; k < frame->plan->derivatives->count; k++)
+        for (size_t k = 0; k < all->count; k++)
             for (int c = 0; c < 3; c++)
                 memset(work->sum[k][c], 0, count * sizeof **work->sum[k]);
-        for (size_t i = 0; frame->plan->derivatives->moves && i < count; i++)
-            work->shadows[i] = NO_SHADOWS;
-    } else if (frame->plan->derivatives->moves) {
-        turn_sample(tile, tile->sample == 1);
+    } else if (all->moves) {
+        end_shadows(tile, tile->sample == 1);
     }
-    if (frame->plan->derivatives->repaints)
+    if (all->repaints)
         glint_derivative_repaint(tile, frame);
-    if (frame->plan->derivatives->bends)
+    if (all->bends)
         glint_bend_aim(tile, frame->plan);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         if (tile->sample == 0 && !tile->batch && !glint_derives_sites(tile))
             glint_tile_prefetch_derivatives(tile, frame, g);
-        if (frame->plan->derivatives->everywhere && !glint_derives_sites(tile))
+        if (all->everywhere && !glint_derives_sites(tile))
             begin_group(tile, frame, g);
         if (tile->at.hits[g])
             gather_points(tile, frame, g);
         if (glint_derivatives_read_light(tile, frame->plan))
             begin_light(tile, frame, g);
-        if (frame->plan->derivatives->bends)
-            note_hits(tile, frame, g);
+        if (all->moves)
+            begin_shadows(tile, frame, g);
     }
 }
 
@@ -480,7 +481,7 @@ void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t
 static void store_shadows(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_derivative_work *work = tile->derivative;
-    turn_sample(tile, frame->plan->desc.samples == 1);
+    end_shadows(tile, frame->plan->desc.samples == 1);
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned rest = work->mixed[g]; rest; rest &= rest - 1)
             work->first[g * GLINT_GROUP + (unsigned)__builtin_ctz(rest)] = 0;

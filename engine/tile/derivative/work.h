@@ -55,6 +55,18 @@ static inline bool glint_derivatives_read_light(const glint_tile *tile, const gl
     return (tile->batch || plan->runs[GLINT_STAGE_DEPTH_CUE]) && glint_derivatives_weigh(plan->derivatives);
 }
 
+/// Those of `lanes` that have the number of the first of them; `of`: of a group.
+static inline unsigned glint_lanes_alike(const uint32_t of[GLINT_GROUP], unsigned lanes)
+{
+    const uint32_t first = of[__builtin_ctz(lanes)];
+    unsigned same = 0;
+    if (glint_all_are(of, first)) // the common case
+        return lanes;
+    for (unsigned rest = lanes; rest; rest &= rest - 1)
+        same |= of[__builtin_ctz(rest)] == first ? rest & -rest : 0;
+    return same;
+}
+
 /// derivative.c: points `out` at the samples of group g, after glint_tile_derive; their slopes are 0. In place, since a copy of so many
 /// pointers that were just written waits for them.
 void glint_derivative_find_points(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, glint_derivative_points *out);
