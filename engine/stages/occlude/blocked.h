@@ -481,11 +481,10 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
         return R(blocked_by_solid)(args, prim, tile->position, group->at, own, wanted, occluder.sides.outside);
     }
     if (prim->kind == GLINT_PRIM_COMBINED) {
-        wanted = R(stay_in_combined)(args, prim, group->at, wanted);
-        wanted = wanted ? R(segments_near)(tile, prim, group, wanted) : 0;
-        if (!wanted)
-            return 0;
-        return R(blocked_by_combined)(args, prim, tile->position, group->at, wanted);
+        wanted = R(segments_near)(tile, prim, group, wanted);
+        if (wanted)
+            wanted = R(stay_in_combined)(args, prim, group->at, wanted);
+        return wanted ? R(blocked_by_combined)(args, prim, tile->position, group->at, wanted) : 0;
     }
     if (own && sphere)
         blocked = own & args->back[group->at / GLINT_GROUP] & occluder.sides.outside;
