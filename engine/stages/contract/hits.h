@@ -133,7 +133,8 @@ typedef struct glint_surface_args {
     uint32_t *material; ///< out
     uint16_t *back; ///< out: lanes seen from behind (from inside), whose normal was turned to the viewer
     uint16_t *dark; ///< out: of these, lanes of one-sided surfaces: ambient only
-    void *slack; ///< out, real: bound of what rounding moved the point by off its triangle, a component; may be NULL
+    void *slack; ///< out, real: bound of what rounding moved the point by off its triangle, a component; may be NULL,
+        ///< as where there are no triangles
     glint_point_box *box; ///< out: of all hits' points; may be NULL
 } glint_surface_args;
 // Groups without a hit get back = dark = 0 and nothing else; of other groups, lanes without a hit get point = normal = 0

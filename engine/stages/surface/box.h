@@ -72,24 +72,23 @@ INNER void R(place_on_box)(const glint_solid *solid, const glint_prim *prim, con
 INNER bool R(find_on_box)(const glint_solid *solid, const glint_prim *prim, const real f[3], const R(box_view) * view,
                           const bool level, const vr d[3], vr t, unsigned lanes, R(box_faces) * faces, vr n[3], vr p[3])
 {
-    unsigned on[6];
-    bool first = true;
+    unsigned on[6], met = 0;
     if (!R(lanes_on_faces)(solid, view, level, d, t, lanes, on))
         return false;
     R(place_on_box)(solid, prim, f, level, d, t, on, p);
-    for (int i = 0; i < 6; i++) {
-        if (!(on[i] & lanes))
-            continue;
+    for (unsigned i = 0; i < 6; i++)
+        met |= (unsigned)((on[i] & lanes) != 0) << i;
+    for (unsigned left = met; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
         const glint_face *face = &solid->faces[i];
         const rm mine = rm_from_bits(on[i]);
         if (!(faces->known >> i & 1))
             R(learn_face)(solid, i, faces);
         for (int c = 0; c < 3; c++) {
-            n[c] = first ? r_set(faces->normal[i][c]) : r_select(mine, r_set(faces->normal[i][c]), n[c]);
+            n[c] = left == met ? r_set(faces->normal[i][c]) : r_select(mine, r_set(faces->normal[i][c]), n[c]);
             if (face->axis == (uint32_t)c)
                 p[c] = r_select(mine, r_set(face->at[c]), p[c]);
         }
-        first = false;
     }
     return true;
 }

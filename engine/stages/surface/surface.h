@@ -32,11 +32,11 @@ typedef struct R(seen_prim) {
     real from[3], way[3]; ///< of a plane: points are at from + way (t direction): on that axis the plane's own place
 } R(seen_prim);
 
-/// view: where the heights of the eye over a solid's faces go.
-static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id, R(box_view) * view)
+/// In place, since a copy of numbers that were just written waits for them. view: where the heights of the eye over a solid's faces go.
+static inline void R(see_prim)(const glint_surface_args *args, uint32_t id, R(seen_prim) * seen, R(box_view) * view)
 {
     const glint_prim *prim = &args->prims[id];
-    R(seen_prim) seen = { .id = id, .prim = prim };
+    *seen = (R(seen_prim)) { .id = id, .prim = prim };
     if (prim->kind != GLINT_PRIM_SPHERE) {
         double n[3] = { 0, 0, 0 };
         if (prim->kind == GLINT_PRIM_TRIANGLE)
@@ -44,24 +44,23 @@ static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id, R(b
         for (int k = 0; k < 3 && prim->kind == GLINT_PRIM_PLANE; k++)
             n[k] = prim->normal[k];
         for (int k = 0; k < 3; k++)
-            seen.normal[k] = (real)(prim->turned ? -n[k] : n[k]);
-        seen.level = prim->kind == GLINT_PRIM_PLANE ? glint_axis_along(prim->normal) : 3;
+            seen->normal[k] = (real)(prim->turned ? -n[k] : n[k]);
+        seen->level = prim->kind == GLINT_PRIM_PLANE ? glint_axis_along(prim->normal) : 3;
         for (int k = 0; k < 3 && args->camera; k++) {
-            seen.from[k] = (real)(k == seen.level ? prim->center[k] : args->camera->eye[k]);
-            seen.way[k] = k != seen.level;
+            seen->from[k] = (real)(k == seen->level ? prim->center[k] : args->camera->eye[k]);
+            seen->way[k] = k != seen->level;
         }
         if (prim->kind == GLINT_PRIM_SOLID && args->camera)
-            R(start_at_eye)(&args->solids[prim->item], prim, args->camera->eye, seen.f, view->height);
-        return seen;
+            R(start_at_eye)(&args->solids[prim->item], prim, args->camera->eye, seen->f, view->height);
+        return;
     }
-    seen.scale = (real)glint_sphere_scale(prim);
-    seen.inverse_radius = (real)1 / ((real)prim->radius * seen.scale);
+    seen->scale = (real)glint_sphere_scale(prim);
+    seen->inverse_radius = (real)1 / ((real)prim->radius * seen->scale);
     if (!args->camera)
-        return seen;
+        return;
     for (int k = 0; k < 3; k++)
-        seen.f[k] = ((real)args->camera->eye[k] - (real)prim->center[k]) * (real)glint_sphere_scale(prim);
-    seen.range = R(range_of)(seen.f);
-    return seen;
+        seen->f[k] = ((real)args->camera->eye[k] - (real)prim->center[k]) * (real)glint_sphere_scale(prim);
+    seen->range = R(range_of)(seen->f);
 }
 
 /// What is known while the groups of a tile are gone through.
@@ -94,14 +93,15 @@ INNER void R(find_on_solid)(const glint_surface_args *args, R(surface_walk) * wa
 {
     const R(seen_prim) *seen = &walk->seen;
     const glint_solid *solid = &args->solids[seen->prim->item];
-    R(solid_start) start = { .place = from, .height = args->camera ? walk->view.height : NULL };
-    for (int k = 0; k < 3; k++)
-        start.f[k] = r_set(seen->f[k]);
-    if (!args->camera)
-        R(unit_offset)(solid, seen->prim, from, start.f);
     const bool box = args->camera && solid->form == GLINT_FORM_BOX;
-    if (!box || !R(box_surface)(solid, seen->prim, seen->f, &walk->view, d, t, lanes, &walk->faces, n, p))
+    if (!box || !R(box_surface)(solid, seen->prim, seen->f, &walk->view, d, t, lanes, &walk->faces, n, p)) {
+        R(solid_start) start = { .place = from, .height = args->camera ? walk->view.height : NULL };
+        for (int k = 0; k < 3; k++)
+            start.f[k] = r_set(seen->f[k]);
+        if (!args->camera)
+            R(unit_offset)(solid, seen->prim, from, start.f);
         R(solid_surface)(solid, seen->prim, &start, d, t, lanes, &walk->faces, n, p);
+    }
     for (int k = 0; seen->prim->turned && k < 3; k++)
         n[k] = -n[k];
 }
@@ -264,7 +264,7 @@ INNER void R(begin_walk)(R(surface_walk) * walk)
 static __attribute__((noinline)) void R(look_at_other)(const glint_surface_args *args, R(surface_walk) * walk,
                                                        uint32_t id)
 {
-    walk->seen = R(see_prim)(args, id, &walk->view);
+    R(see_prim)(args, id, &walk->seen, &walk->view);
     walk->faces.known = 0;
     if (walk->seen.prim->kind == GLINT_PRIM_SOLID && args->camera)
         R(view_box)(&args->solids[walk->seen.prim->item], &walk->view);
@@ -395,17 +395,21 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
     unsigned left = args->hits[g], back = 0, dark = 0;
     if (left != 0xffff)
         R(clear_surface)(args, at);
-    const unsigned mesh = way == R(MIXED) ? R(mesh_lanes)(args, at, left) : 0;
+    const bool meshes = way == R(MIXED) && args->slack; // which triangles alone need
+    const unsigned mesh = meshes ? R(mesh_lanes)(args, at, left) : 0;
     if (mesh) {
         back = R(surface_mesh)(args, walk, box, directions, at, mesh);
         dark = back & R(put_materials)(args, at, mesh);
         left &= ~mesh;
     }
     while (left) {
-        const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(left)];
-        const unsigned lanes = lanes_equal(args->prim + at, id) & left;
-        unsigned behind = 0;
-        R(look_at)(args, walk, id);
+        uint32_t id = walk->seen.id; // what the group before has shown last need not be looked at anew
+        unsigned lanes = lanes_equal(args->prim + at, id) & left, behind = 0;
+        if (!lanes) {
+            id = args->prim[at + (unsigned)__builtin_ctz(left)];
+            lanes = lanes_equal(args->prim + at, id) & left;
+            R(look_at)(args, walk, id);
+        }
         const bool placed =
             way == R(POINTS_ALONE) && args->camera && lanes == 0xffff && R(is_near_or_plane)(&walk->seen);
         if (placed)
