@@ -88,7 +88,7 @@ typedef struct glint_unit_args {
     const double *place; ///< x, y, z that are `to` of every lane; NULL: not one place
     const double *from[3]; ///< 16 numbers a group; NULL: d = to
     double *unit[3]; ///< out; may be in the place of `to` or `from`
-    double *length; ///< out
+    double *length; ///< out; NULL: not wanted
 } glint_unit_args;
 
 // What each operation is stands in glint.h; the arithmetic and its order in ref/program.h and ref/pattern.h.

@@ -69,7 +69,8 @@ INNER void unit_lanes(const glint_unit_args *args, const unit_way way, const dou
     divide_by_length(d, length, length2, q);
     for (int c = 0; c < 3; c++)
         d_store(args->unit[c] + at, q[c]);
-    d_store(args->length + at, length);
+    if (args->length)
+        d_store(args->length + at, length);
 }
 
 INNER void unit_groups(const glint_unit_args *args, const unit_way way)

@@ -334,6 +334,7 @@ static void unit(const glint_unit_args *args)
         const double length = sqrt((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
         for (int c = 0; c < 3; c++)
             args->unit[c][lane] = d[c] / length;
-        args->length[lane] = length;
+        if (args->length)
+            args->length[lane] = length;
     }
 }

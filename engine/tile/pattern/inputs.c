@@ -180,9 +180,7 @@ static void make_views(glint_pattern_inputs *inputs, const glint_tile_frame *fra
                        const glint_pattern_lanes *entries, uint32_t count)
 {
     uint32_t groups[GLINT_PROGRAM_GROUPS];
-    glint_unit_args args = {
-        .group_count = count, .camera = camera_of(frame, points), .groups = groups, .length = inputs->length
-    };
+    glint_unit_args args = { .group_count = count, .camera = camera_of(frame, points), .groups = groups };
     for (uint32_t k = 0; k < count; k++)
         groups[k] = entries[k].group;
     for (int c = 0; c < 3; c++) {

@@ -14,7 +14,6 @@ typedef struct glint_pattern_inputs {
     const double *from[GLINT_INPUT_COUNT]; ///< where a program reads: a row, or arrays of the tile as they are
     uint32_t used, same; ///< a bit an input: there is something in `from`; as glint_program_args has it
     _Alignas(64) double row[GLINT_INPUT_COUNT][GLINT_PROGRAM_LANES];
-    double length[GLINT_PROGRAM_LANES]; ///< of the ways to the eye
     double uv_slope[2][3][GLINT_PROGRAM_LANES]; ///< with u and v: how they grow along the axes of the shape's own space
 } glint_pattern_inputs;
 

@@ -105,16 +105,17 @@ static void place_sample(glint_tile *tile, const glint_plan *plan, const batch *
         }
 }
 
-/// Ways to a light, and how far it is.
+/// Ways to a light and, where the program reads it, how far it is.
 static void gather_way(glint_tile *tile, const glint_tile_frame *frame, const batch *b, const reached *lit,
                        const glint_plan_light *light)
 {
     glint_pattern_inputs *inputs = &tile->pattern->inputs;
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
     const size_t at = light->directional ? 0 : (size_t)lit->first * GLINT_GROUP; // one way for all points
+    const bool measured = glint_program_reads(b->program, GLINT_INPUT_DISTANCE) && !light->directional;
     glint_unit_args args = { .group_count = light->directional ? 1 : lit->count,
                              .place = sample ? NULL : light->position,
-                             .length = glint_pattern_row(inputs, GLINT_INPUT_DISTANCE) + at };
+                             .length = measured ? glint_pattern_row(inputs, GLINT_INPUT_DISTANCE) + at : NULL };
     for (int c = 0; c < 3; c++) {
         double *way = inputs->row[GLINT_INPUT_L_X + c] + at;
         args.to[c] = way;
