@@ -392,7 +392,7 @@ static void derive(const shading *s, const glint_pattern_points *points)
 
 void glint_derive_shaders(glint_tile *tile, const glint_tile_frame *frame, const glint_derivative_reach *reach)
 {
-    const glint_pattern_points points = glint_shader_find_lanes(tile, frame->plan);
+    const glint_pattern_points points = glint_shader_find_lanes(tile, frame->plan, tile->at.hits);
     shading s = { tile, frame, reach, tile->derivative->shader, NULL, 0 };
     while ((s.count = glint_pattern_take(tile->pattern, &s.entries)))
         derive(&s, &points);

@@ -92,20 +92,48 @@ static unsigned lanes_of(const uint32_t *material, uint32_t m, unsigned lanes)
     return same & lanes;
 }
 
+/// Lists points that all have one material.
+static void list_one_material(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
+                              const glint_pattern_points *points,
+                              bool (*wants)(const glint_plan_pattern *own, uint32_t fields))
+{
+    const uint16_t *hits = points->hits;
+    const uint32_t group_count = points->group_count;
+    glint_pattern_lanes *entries = pattern->lanes;
+    uint32_t count = 0, first = 0;
+    pattern->first = pattern->count = 0;
+    pattern->several = false;
+    while (first < group_count && !hits[first])
+        first++;
+    if (first == group_count)
+        return;
+    const uint32_t m = points->material[first * GLINT_GROUP + (uint32_t)__builtin_ctz(hits[first])];
+    if (!wants(&patterns->of[m], points->fields))
+        return;
+    for (uint32_t g = first; g < group_count; g++) {
+        entries[count] = (glint_pattern_lanes) { m, (uint16_t)g, hits[g] };
+        count += hits[g] != 0;
+    }
+    pattern->count = count;
+}
+
 void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
                               const glint_pattern_points *points,
                               bool (*wants)(const glint_plan_pattern *own, uint32_t fields))
 {
     const uint16_t *hits = points->hits;
     const uint32_t *material = points->material, group_count = points->group_count;
-    const bool only = points->only;
     glint_pattern_lanes *entries = pattern->lanes;
     uint32_t count = 0, last = GLINT_MISS;
     bool wanted = false, several = false; // whether material `last` is; whether others were
+    if (points->only) {
+        list_one_material(pattern, patterns, points, wants);
+        return;
+    }
     for (uint32_t g = 0; g < group_count; g++, material += GLINT_GROUP)
         for (unsigned left = hits[g], lanes; left; left &= ~lanes) {
             const uint32_t m = material[__builtin_ctz(left)];
-            lanes = only || glint_all_are(material, m) ? left : lanes_of(material, m, left);
+            lanes = glint_all_are(material, m) ? left : lanes_of(material, m, left);
             if (m != last) {
                 wanted = wants(&patterns->of[m], points->fields);
                 several = several || (wanted && count > 0 && entries[0].material != m);

@@ -22,25 +22,23 @@ typedef struct batch {
 /// Where a light's share goes.
 typedef enum result { TO_SUMS, TO_TOTALS, TO_PLANES } result;
 
-/// Those of a batch that a light reaches: from `first` on, with what lies between them.
+/// Those of a batch that a light reaches: `count` of its entries from `first` on, with what lies between them.
 typedef struct reached {
     uint32_t first, count;
-    uint16_t lanes[GLINT_PROGRAM_GROUPS]; ///< of entry first + k
+    uint16_t lanes[GLINT_PROGRAM_GROUPS]; ///< of each of the batch's entries
 } reached;
 
-static reached find_reached(const batch *b, const uint16_t *lit)
+static void find_reached(const batch *b, const uint16_t *lit, reached *out)
 {
-    reached out = { .count = 0 };
-    for (uint32_t k = 0; k < b->count; k++) {
-        const uint16_t lanes = b->entries[k].lanes & lit[b->groups[k]];
-        if (!lanes && !out.count)
-            continue;
-        if (!out.count)
-            out.first = k;
-        out.lanes[k - out.first] = lanes;
-        out.count = lanes ? k - out.first + 1 : out.count;
-    }
-    return out;
+    uint32_t first = 0, end = b->count;
+    for (uint32_t k = 0; k < b->count; k++)
+        out->lanes[k] = b->entries[k].lanes & lit[b->groups[k]];
+    while (end > 0 && !out->lanes[end - 1])
+        end--;
+    while (first < end && !out->lanes[first])
+        first++;
+    out->first = first;
+    out->count = end - first;
 }
 
 // ---- What a program reads ----
@@ -170,7 +168,7 @@ static void add_light(glint_tile *tile, const glint_tile_frame *frame, const bat
     struct glint_pattern *pattern = tile->pattern;
     _Alignas(64) float share[GLINT_PROGRAM_LANES];
     glint_program_args args = { .group_count = lit->count,
-                                .wanted = lit->lanes,
+                                .wanted = lit->lanes + lit->first,
                                 .groups = to == TO_TOTALS ? NULL : b->groups + lit->first,
                                 .share = from->visible ? share : NULL };
     gather_way(tile, frame, b, lit, from->light);
@@ -185,7 +183,7 @@ static void add_light(glint_tile *tile, const glint_tile_frame *frame, const bat
     }
     glint_pattern_call(pattern, frame, &b->program->code, lit->first, &args);
     for (uint32_t k = 0; k < lit->count; k++)
-        tile->counts.work.patterns += glint_count_lanes(lit->lanes[k]);
+        tile->counts.work.patterns += glint_count_lanes(lit->lanes[lit->first + k]);
 }
 
 /// Rounds the totals of a batch into planes.
@@ -221,7 +219,8 @@ static void shade_batch(glint_tile *tile, const glint_tile_frame *frame, const g
     for (int term = 0; to == TO_TOTALS && term < GLINT_SHADER_TERMS; term++)
         memset(tile->pattern->total[term], 0, (size_t)b->count * GLINT_GROUP * sizeof(double));
     for (uint32_t i = 0; i < light_count; i++) {
-        const reached lit = find_reached(b, lights[i].lit);
+        reached lit;
+        find_reached(b, lights[i].lit, &lit);
         if (!lit.count)
             continue;
         if (!gathered)
@@ -241,9 +240,10 @@ static bool has_shader(const glint_plan_pattern *own, uint32_t fields)
     return own->program[GLINT_FIELD_SHADER];
 }
 
-glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint_plan *plan)
+glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint_plan *plan, const uint16_t *lanes)
 {
     glint_pattern_points points = glint_pattern_points_of(tile);
+    points.hits = lanes;
     points.shading = true;
     for (int c = 0; c < 3; c++)
         points.normal[c] = tile->surface.normal[c];
@@ -251,9 +251,25 @@ glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint
     return points;
 }
 
+/// The lanes that any of the lights reaches; `room`: for those of several.
+static const uint16_t *find_lit(const glint_tile *tile, const glint_shader_light *lights, uint32_t light_count,
+                                uint16_t room[GLINT_TILE_GROUPS])
+{
+    if (light_count == 1)
+        return lights->lit;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        room[g] = 0;
+        for (uint32_t i = 0; i < light_count; i++)
+            room[g] |= lights[i].lit[g];
+    }
+    return room;
+}
+
 void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const glint_shader_light *lights, uint32_t light_count)
 {
-    const glint_pattern_points points = glint_shader_find_lanes(tile, frame->plan);
+    uint16_t room[GLINT_TILE_GROUPS];
+    const uint16_t *lit = find_lit(tile, lights, light_count, room);
+    const glint_pattern_points points = glint_shader_find_lanes(tile, frame->plan, lit);
     const glint_pattern_lanes *entries;
     if (!tile->pattern->count)
         return;

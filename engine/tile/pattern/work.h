@@ -72,8 +72,8 @@ void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_pa
 /// Takes the first entry that is left and those after it of the same material, as many as a call has room for, off the list.
 /// Returns how many: 0, where the list is empty.
 uint32_t glint_pattern_take(struct glint_pattern *pattern, const glint_pattern_lanes **entries);
-/// shader.c: lists the lanes of materials with shaders. Returns the points as shaders see them.
-glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint_plan *plan);
+/// shader.c: lists those of the lanes, a bit each, that show materials with shaders. Returns the points as shaders see them.
+glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint_plan *plan, const uint16_t *lanes);
 /// Finds what a shader reads of the points of some entries, and of their material; what is `known`, a bit an input, is put there by
 /// the caller.
 void glint_shader_gather(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points, uint32_t known,
