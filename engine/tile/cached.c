@@ -63,6 +63,17 @@ static void prefetch_last_codes(const glint_tile *tile, const glint_image *last)
     glint_prefetch((const char *)last->codes + (tile->y0 * (size_t)last->width + tile->x0) * pixel, tile->width * pixel);
 }
 
+/// Whether the tile may show a material with highlights.
+static bool may_shine(const glint_cached_tile *cached, const glint_plan *plan)
+{
+    if (!plan->powers || !glint_key_equal(cached->seen, plan->keys[GLINT_STAGE_SURFACE]))
+        return plan->powers; // what it showed is not known
+    bool shines = cached->shown_count > GLINT_SHOWN_MAX;
+    for (uint32_t i = 0; !shines && i < cached->shown_count; i++)
+        shines = plan->materials[cached->shown[i]].highlight;
+    return shines;
+}
+
 void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
@@ -74,6 +85,7 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
     if (tile->anew || !glint_key_equal(cached->cast, plan->keys[GLINT_STAGE_CAST]))
         return;
     glint_prefetch(cached->hits, GLINT_TILE_GROUPS * sizeof *cached->hits);
+    const bool shines = may_shine(cached, plan);
     for (uint32_t i = 0; i < reuse->light_count; i++) {
         const glint_cached_light *light = &cached->lights[i];
         if (!glint_key_equal(light->light, plan->lights[i].key)) {
@@ -81,7 +93,7 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
             continue;
         }
         glint_prefetch(light->cosine, GLINT_TILE_SAMPLES * sizeof *light->cosine);
-        if (plan->powers)
+        if (shines)
             glint_prefetch(light->log2_specular, GLINT_TILE_SAMPLES * sizeof *light->log2_specular);
     }
     if (points)
