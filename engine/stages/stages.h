@@ -46,6 +46,7 @@ typedef struct glint_stages {
     } geometry[2]; ///< by glint_precision: double, float
     void (*program)(const glint_program_args *args);
     void (*unit)(const glint_unit_args *args);
+    void (*choose)(const glint_choose_args *args);
     void (*eyes)(const glint_eyes_args *args);
     void (*bend)(const glint_bend_args *args);
     void (*slope)(const glint_slope_args *args);

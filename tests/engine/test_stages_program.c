@@ -354,6 +354,40 @@ static void test_unit(void **state)
     run_cases(CASES, 46000, unit_case);
 }
 
+/// Some groups of a tile, each once.
+static void choose_case(int precision, bool odd)
+{
+    (void)precision;
+    (void)odd;
+    const uint32_t count = 1 + below(GLINT_PROGRAM_GROUPS), more = below(4), tile = count + more;
+    uint32_t *places = input(KIND_U32, count);
+    uint16_t *lanes = input(KIND_U16, count), *truths = input(KIND_U16, tile);
+    for (uint32_t k = 0; k < count; k++) {
+        places[k] = k + (k >= count / 2 ? more : 0);
+        lanes[k] = (uint16_t)(one_in(2) ? 0xffff : random_bits());
+    }
+    for (uint32_t g = 0; g < tile; g++)
+        truths[g] = (uint16_t)random_bits();
+    const float first = (float)between(0, 2), second = (float)between(0, 2);
+    FOR_EACH_TESTED
+    {
+        const glint_choose_args args = { .group_count = count,
+                                         .groups = places,
+                                         .wanted = lanes,
+                                         .truths = truths,
+                                         .number = { first, second },
+                                         .plane = output("plane", KIND_FLOAT, tile * GLINT_GROUP) };
+        running->choose(&args);
+        compare_outputs("choose");
+    }
+}
+
+static void test_choose(void **state)
+{
+    (void)state;
+    run_cases(200, 47000, choose_case);
+}
+
 /// A picture of odd sides, of any texels.
 static void load_texture(glint_wrap wrap, glint_filter filter)
 {
@@ -401,6 +435,7 @@ int main(void)
         cmocka_unit_test(test_gradients),
         cmocka_unit_test(test_damaged_programs),
         cmocka_unit_test(test_unit),
+        cmocka_unit_test(test_choose),
         cmocka_unit_test(test_texels),
     };
     find_tested();

@@ -91,6 +91,16 @@ typedef struct glint_unit_args {
     double *length; ///< out; NULL: not wanted
 } glint_unit_args;
 
+/// Reflectances that are one of two numbers.
+typedef struct glint_choose_args {
+    uint32_t group_count;
+    const uint32_t *groups; ///< where each is in `truths` and `plane`
+    const uint16_t *wanted; ///< a bit a lane; elsewhere nothing is stored
+    const uint16_t *truths; ///< a bit a lane: which of the numbers
+    float number[2];
+    float *plane; ///< out
+} glint_choose_args;
+
 // What each operation is stands in glint.h; the arithmetic and its order in ref/program.h and ref/pattern.h.
 
 #endif

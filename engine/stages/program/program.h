@@ -289,3 +289,19 @@ static void program(const glint_program_args *args)
         store_output(&out, args->result[k], args->plane[k], args->total[k]);
     }
 }
+
+/// The stage `choose`.
+static void choose(const glint_choose_args *args)
+{
+    const vf no = f_set(args->number[0]), yes = f_set(args->number[1]);
+    for (uint32_t k = 0; k < args->group_count; k++) {
+        const uint32_t g = args->groups[k];
+        float *to = args->plane + (size_t)g * GLINT_GROUP;
+        const unsigned wanted = args->wanted[k], truths = args->truths[g];
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            const unsigned all = (1u << VF) - 1;
+            const vf chosen = f_select(fm_from_bits(truths >> i & all), yes, no);
+            f_store(to + i, f_select(fm_from_bits(wanted >> i & all), chosen, f_load(to + i)));
+        }
+    }
+}

@@ -338,3 +338,11 @@ static void unit(const glint_unit_args *args)
             args->length[lane] = length;
     }
 }
+
+static void choose(const glint_choose_args *args)
+{
+    for (uint32_t k = 0; k < args->group_count; k++)
+        for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
+            if (args->wanted[k] >> lane & 1)
+                args->plane[args->groups[k] * GLINT_GROUP + lane] = args->number[args->truths[args->groups[k]] >> lane & 1];
+}

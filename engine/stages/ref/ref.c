@@ -316,6 +316,7 @@ const glint_stages glint_stages_ref = {
     .geometry = { GEOMETRY_STAGES(double), GEOMETRY_STAGES(float) },
     .program = program,
     .unit = unit,
+    .choose = choose,
     .eyes = eyes,
     .bend = bend,
     .slope = slope,

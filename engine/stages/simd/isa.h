@@ -55,6 +55,7 @@ const glint_stages GLINT_STAGES_SYMBOL = {
     .sky = GLINT_WITH_INDIRECT ? sky : NULL,
     .program = GLINT_WITH_PROGRAM ? program : NULL,
     .unit = GLINT_WITH_PROGRAM ? unit : NULL,
+    .choose = GLINT_WITH_PROGRAM ? choose : NULL,
     .eyes = GLINT_WITH_DERIVATIVE ? eyes : NULL,
     .bend = GLINT_WITH_DERIVATIVE ? bend : NULL,
     .slope = GLINT_WITH_DERIVATIVE ? slope : NULL,

@@ -3,6 +3,7 @@
 #include "engine/program/program.h"
 #include "engine/tile/pattern/work.h"
 
+#include <math.h>
 #include <string.h>
 
 /// Where what is kept of a sample is; of a tile whose key says that it is.
@@ -136,12 +137,65 @@ static void read_value(struct glint_pattern *pattern, glint_pattern_batch *batch
     }
 }
 
+/// The instruction that makes output k by choosing one of two reflectances. NULL: it is made in another way.
+static const glint_instruction *find_choice(const glint_program_code *code, uint32_t truths, uint32_t k)
+{
+    const glint_instruction *at = code->instructions + code->length;
+    while (at > code->instructions)
+        if ((--at)->out[0] == code->outputs[k])
+            break;
+    if (!code->length || at->out[0] != code->outputs[k] || at->op != GLINT_OP_SELECT || at->in[0] < GLINT_ROW_INPUT ||
+        at->in[0] >= GLINT_ROW_NUMBER || !(truths >> (at->in[0] - GLINT_ROW_INPUT) & 1))
+        return NULL;
+    for (int i = 1; i < 3; i++) {
+        const double x = at->in[i] < GLINT_ROW_NUMBER ? -1 : code->numbers[at->in[i] - GLINT_ROW_NUMBER][0];
+        if (!(x >= 0 && x <= GLINT_REFLECTANCE_MAX))
+            return NULL;
+    }
+    return at;
+}
+
+/// Makes the planes of a second part that does nothing but choose by what is kept: without rows. Returns false where it does more.
+static bool choose_outputs(const glint_tile_frame *frame, const glint_pattern_batch *batch, const glint_split_field *of,
+                           const glint_program_code *code, const kept_sample *from)
+{
+    const glint_instruction *by[GLINT_PROGRAM_OUTPUTS_MAX];
+    for (uint32_t k = 0; k < code->output_count; k++)
+        if (!(by[k] = find_choice(code, of->split->truths, k)))
+            return false;
+    for (uint32_t k = 0; k < code->output_count; k++) {
+        const uint32_t place = of->place[by[k]->in[0] - GLINT_ROW_INPUT];
+        glint_choose_args args = { .group_count = batch->count,
+                                   .groups = batch->called.groups,
+                                   .wanted = batch->called.wanted,
+                                   .truths = from->truths + (size_t)place * GLINT_TILE_GROUPS,
+                                   .plane = batch->args.plane[k] };
+        for (int i = 0; i < 2; i++)
+            args.number[i] = (float)fabs(code->numbers[by[k]->in[2 - i] - GLINT_ROW_NUMBER][0]); // -0 is 0
+        frame->stages->choose(&args);
+    }
+    return true;
+}
+
 static bool any_odd(const glint_pattern_batch *batch)
 {
     unsigned any = 0;
     for (uint32_t k = 0; k < batch->count; k++)
         any |= batch->called.odd[k];
     return any;
+}
+
+/// The second part of a field's program. Returns false where it gave what is no reflectance.
+static bool run_field(glint_tile *tile, const glint_tile_frame *frame, glint_pattern_batch *batch,
+                      const glint_split_field *of, const glint_program_code *code, const kept_sample *from)
+{
+    for (uint32_t k = 0; k < of->split->first.output_count; k++)
+        read_value(tile->pattern, batch, k, of->split->truths >> k & 1, of->place[k], from);
+    batch->args.code = code;
+    batch->args.rows = tile->pattern->rows;
+    batch->args.same = 0;
+    frame->stages->program(&batch->args);
+    return !any_odd(batch);
 }
 
 /// The second parts of a batch's programs, and what follows from them. Returns false where one gave what is no reflectance,
@@ -157,13 +211,7 @@ static bool run_second(glint_tile *tile, const glint_tile_frame *frame, const gl
         if (of->split) {
             glint_program_code code = part_of(&of->split->second, batch->own->program[field]);
             glint_pattern_point_planes(batch, frame, points, field, &code);
-            for (uint32_t k = 0; k < of->split->first.output_count; k++)
-                read_value(tile->pattern, batch, k, of->split->truths >> k & 1, of->place[k], from);
-            batch->args.code = &code;
-            batch->args.rows = tile->pattern->rows;
-            batch->args.same = 0;
-            frame->stages->program(&batch->args);
-            if (any_odd(batch))
+            if (!choose_outputs(frame, batch, of, &code, from) && !run_field(tile, frame, batch, of, &code, from))
                 return false;
         }
         glint_pattern_finish(batch, points, frame->plan, field);
