@@ -72,19 +72,20 @@ static inline const double *find_operand(const glint_program_args *args, uint32_
 }
 
 /// VF numbers as reflectances; NaN gives 0. They are rounded before they are bounded, as the bounds are floats.
-INNER vf reflectances(const double *from)
+INNER vf reflectances(vd low, vd high)
 {
-    return f_min(f_max(f_join(d_load(from), d_load(from + VD)), f_set(0)), f_set((float)GLINT_REFLECTANCE_MAX));
+    return f_min(f_max(f_join(low, high), f_set(0)), f_set((float)GLINT_REFLECTANCE_MAX));
 }
+
+/// Lanes that are such already.
+INNER dm are_even(vd x) { return dm_and(d_le(d_set(0), x), d_le(x, d_set(GLINT_REFLECTANCE_MAX))); }
 
 /// The lanes of a group that are none.
 INNER unsigned find_odd(const double *from)
 {
     unsigned even = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VD) {
-        const vd x = d_load(from + i);
-        even |= dm_bits(dm_and(d_le(d_set(0), x), d_le(x, d_set(GLINT_REFLECTANCE_MAX)))) << i;
-    }
+    for (int i = 0; i < GLINT_GROUP; i += VD)
+        even |= dm_bits(are_even(d_load(from + i))) << i;
     return ~even;
 }
 
@@ -111,35 +112,37 @@ static bool is_whole(const glint_program_args *args)
     return true;
 }
 
-/// Whether all are reflectances, of a whole call.
-static bool is_even(const output *out)
-{
-    dm even = d_eq(d_set(0), d_set(0));
-    for (uint32_t g = 0; g < out->args->group_count; g++)
-        for (int i = 0; i < GLINT_GROUP; i += VD) {
-            const vd x = d_load(output_of(out, g) + i);
-            even = dm_and(even, dm_and(d_le(d_set(0), x), d_le(x, d_set(GLINT_REFLECTANCE_MAX))));
-        }
-    return dm_bits(even) == D_ALL;
-}
-
 /// Notes the lanes that are no reflectances.
 static void note_odd(const output *out)
 {
-    if (out->whole && is_even(out))
-        return;
     for (uint32_t g = 0; g < out->args->group_count; g++)
         out->args->odd[g] |= (uint16_t)(find_odd(output_of(out, g)) & out->args->wanted[g]);
 }
 
-static void store_whole_plane(const output *out, float *plane)
+/// Of a whole call. `watched`, a constant: returns whether all are reflectances.
+INNER bool store_lanes(const output *out, const bool watched, float *to)
 {
     const size_t step = out->step, count = (size_t)out->args->group_count * GLINT_GROUP;
     const double *row = out->row;
-    float *to = plane + place_of(out, 0);
+    dm even = d_eq(d_set(0), d_set(0));
     for (size_t i = 0; i < count; i += GLINT_GROUP)
-        for (size_t k = 0; k < GLINT_GROUP; k += VF)
-            f_store(to + i + k, reflectances(row + (i & step) + k));
+        for (size_t k = 0; k < GLINT_GROUP; k += VF) {
+            const double *from = row + (i & step) + k;
+            const vd low = d_load(from), high = d_load(from + VD);
+            f_store(to + i + k, reflectances(low, high));
+            if (watched)
+                even = dm_and(even, dm_and(are_even(low), are_even(high)));
+        }
+    return dm_bits(even) == D_ALL;
+}
+
+static void store_whole_plane(const output *out, float *plane)
+{
+    float *to = plane + place_of(out, 0);
+    if (!out->args->odd)
+        store_lanes(out, false, to);
+    else if (!store_lanes(out, true, to))
+        note_odd(out);
 }
 
 static void store_plane(const output *out, float *plane)
@@ -150,9 +153,11 @@ static void store_plane(const output *out, float *plane)
         const unsigned wanted = out->args->wanted[g];
         for (int i = 0; i < GLINT_GROUP; i += VF) {
             const fm here = fm_from_bits(wanted >> i & ((1u << VF) - 1));
-            f_store(to + i, f_select(here, reflectances(from + i), f_load(to + i)));
+            f_store(to + i, f_select(here, reflectances(d_load(from + i), d_load(from + i + VD)), f_load(to + i)));
         }
     }
+    if (out->args->odd)
+        note_odd(out);
 }
 
 /// Adds outputs, as store_plane rounds them, times `share`.
@@ -165,7 +170,7 @@ static void add_total(const output *out, double *total)
         const unsigned wanted = out->args->wanted[g];
         for (int i = 0; wanted && i < GLINT_GROUP; i += VF) {
             vd v[VF / VD], weight[VF / VD];
-            f_split(reflectances(from + i), v);
+            f_split(reflectances(d_load(from + i), d_load(from + i + VD)), v);
             f_split(share ? f_load(share + i) : f_set(1), weight);
             for (int k = 0; k < VF / VD; k++) {
                 const vd old = d_load(to + i + k * VD), sum = old + weight[k] * v[k];
@@ -193,8 +198,6 @@ static void store_output(const output *out, double *result, float *plane, double
         store_whole_plane(out, plane);
     else if (plane)
         store_plane(out, plane);
-    if (plane && out->args->odd)
-        note_odd(out);
     if (total)
         add_total(out, total);
 }

@@ -209,9 +209,10 @@ static bool run_second(glint_tile *tile, const glint_tile_frame *frame, const gl
         if (!(split->again >> field & 1))
             continue;
         if (of->split) {
-            glint_program_code code = part_of(&of->split->second, batch->own->program[field]);
-            glint_pattern_point_planes(batch, frame, points, field, &code);
-            if (!choose_outputs(frame, batch, of, &code, from) && !run_field(tile, frame, batch, of, &code, from))
+            const glint_program_code second = part_of(&of->split->second, batch->own->program[field]);
+            glint_program_code room;
+            const glint_program_code *code = glint_pattern_point_planes(batch, frame, points, field, &second, &room);
+            if (!choose_outputs(frame, batch, of, code, from) && !run_field(tile, frame, batch, of, code, from))
                 return false;
         }
         glint_pattern_finish(batch, points, frame->plan, field);
@@ -244,7 +245,7 @@ static bool run_split(glint_tile *tile, const glint_tile_frame *frame, const kep
     const glint_odd_pattern odd = tile->counts.odd;
     const uint64_t patterns = tile->counts.work.patterns;
     const glint_pattern_points points = glint_pattern_points_of(tile);
-    glint_pattern_batch batch;
+    glint_pattern_batch batch = { .count = 0 };
     bool good = true;
     while (good && glint_pattern_next(tile->pattern, frame, &batch)) {
         for (uint32_t k = 0; k < batch.count; k++)

@@ -267,14 +267,19 @@ void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *f
     frame->stages->program(args);
 }
 
-void glint_pattern_point_planes(glint_pattern_batch *batch, const glint_tile_frame *frame,
-                                const glint_pattern_points *points, int field, glint_program_code *code)
+const glint_program_code *glint_pattern_point_planes(glint_pattern_batch *batch, const glint_tile_frame *frame,
+                                                     const glint_pattern_points *points, int field,
+                                                     const glint_program_code *code, glint_program_code *room)
 {
     const int planes = frame->plan->patterns->planes[field];
     for (int c = 0; c < planes; c++)
         batch->args.plane[c] = plane_at(points, frame->plan, field, c);
-    for (; code->output_count < (uint32_t)planes; code->output_count++)
-        code->outputs[code->output_count] = code->outputs[0];
+    if (code->output_count >= (uint32_t)planes)
+        return code;
+    *room = *code;
+    for (; room->output_count < (uint32_t)planes; room->output_count++)
+        room->outputs[room->output_count] = room->outputs[0];
+    return room;
 }
 
 static bool is_before(const double a[3], const double b[3])
@@ -313,10 +318,10 @@ bool glint_pattern_next(struct glint_pattern *pattern, const glint_tile_frame *f
     if (!batch->count)
         return false;
     batch->own = &frame->plan->patterns->of[batch->entries[0].material];
-    batch->args = (glint_program_args) { .group_count = batch->count,
-                                         .wanted = called->wanted,
-                                         .groups = called->groups,
-                                         .odd = called->odd };
+    batch->args.group_count = batch->count;
+    batch->args.wanted = called->wanted;
+    batch->args.groups = called->groups;
+    batch->args.odd = called->odd;
     for (uint32_t k = 0; k < batch->count; k++) {
         called->groups[k] = batch->entries[k].group;
         called->wanted[k] = batch->entries[k].lanes;
@@ -338,9 +343,10 @@ void glint_pattern_run_batch(struct glint_pattern *pattern, const glint_tile_fra
         if (!(own->made & points->fields & 1u << field))
             continue;
         if (own->program[field]) {
-            glint_program_code code = own->program[field]->code;
-            glint_pattern_point_planes(batch, frame, points, field, &code);
-            glint_pattern_call(pattern, frame, &code, 0, &batch->args);
+            glint_program_code room;
+            const glint_program_code *code =
+                glint_pattern_point_planes(batch, frame, points, field, &own->program[field]->code, &room);
+            glint_pattern_call(pattern, frame, code, 0, &batch->args);
             glint_pattern_note_odd(batch, frame, points, field, counts);
         }
         glint_pattern_finish(batch, points, frame->plan, field);
@@ -353,7 +359,7 @@ static bool has_planes(const glint_plan_pattern *own, uint32_t fields) { return 
 static void run_list(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
                      glint_tile_counts *counts)
 {
-    glint_pattern_batch batch;
+    glint_pattern_batch batch = { .count = 0 };
     while (glint_pattern_next(pattern, frame, &batch)) {
         count_lanes(&batch, counts);
         glint_pattern_gather(&pattern->inputs, frame, points, batch.own->reads, batch.entries, batch.count);
@@ -421,7 +427,11 @@ uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan)
 
 bool glint_tile_find_painted(glint_tile *tile, const glint_tile_frame *frame)
 {
-    const glint_pattern_points points = glint_pattern_points_of(tile);
+    const glint_pattern_points points = { .group_count = tile->group_count,
+                                          .hits = tile->at.hits,
+                                          .material = tile->surface.material,
+                                          .only = tile->at.only,
+                                          .fields = GLINT_FIELDS_PLANES }; // the list depends on no more
     glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, has_planes);
     return tile->pattern->count > 0;
 }

@@ -49,14 +49,16 @@ typedef struct glint_pattern_batch {
     glint_program_args args; ///< of a call about all of these
 } glint_pattern_batch;
 
-/// Takes a batch off the list of glint_pattern_find_lanes. Returns false where it is empty.
+/// Takes a batch off the list of glint_pattern_find_lanes; of the first all else is 0. Returns false where the list is empty.
 bool glint_pattern_next(struct glint_pattern *pattern, const glint_tile_frame *frame, glint_pattern_batch *batch);
 /// The batch's programs of points->fields, whose inputs are gathered.
 void glint_pattern_run_batch(struct glint_pattern *pattern, const glint_tile_frame *frame,
                              const glint_pattern_points *points, glint_pattern_batch *batch, glint_tile_counts *counts);
-/// Points the batch's arguments at the planes of a field; where what a program gives is one number, at all of them.
-void glint_pattern_point_planes(glint_pattern_batch *batch, const glint_tile_frame *frame,
-                                const glint_pattern_points *points, int field, glint_program_code *code);
+/// Points the batch's arguments at the planes of a field. Returns the code; where that gives one number of several planes, in `room`
+/// one that gives it for each.
+const glint_program_code *glint_pattern_point_planes(glint_pattern_batch *batch, const glint_tile_frame *frame,
+                                                     const glint_pattern_points *points, int field,
+                                                     const glint_program_code *code, glint_program_code *room);
 /// What follows from the program of a field, once it has been run.
 void glint_pattern_finish(const glint_pattern_batch *batch, const glint_pattern_points *points, const glint_plan *plan,
                           int field);
