@@ -99,6 +99,50 @@ static void *plain_output(const char *name, array_kind kind, uint32_t count)
     return new_array(gotten, &gotten_count, name, kind, count);
 }
 
+/// A program that chooses between numbers by a parity, and of which planes alone are wanted: often a checker, which kernels know.
+static void checker_case(int precision, bool odd)
+{
+    (void)precision;
+    glint_builder *b;
+    glint_program *program;
+    glint_error error;
+    glint_value p[3], parity, number[2], out[3];
+    const uint32_t groups = 1 + below(GLINT_PROGRAM_GROUPS), places = groups + below(5), outputs = one_in(2) ? 1 : 3;
+    uint32_t *place = input(KIND_U32, groups);
+    assert_int_equal(glint_builder_create(GLINT_PROGRAM_PATTERN, &b, &error), GLINT_OK);
+    for (uint32_t c = 0; c < 3; c++)
+        glint_builder_input(b, (glint_input)c, &p[c], &error);
+    glint_builder_op(b, GLINT_OP_PARITY, p, &parity, &error);
+    for (uint32_t k = 0; k < outputs; k++) {
+        for (int i = 0; i < 2; i++)
+            glint_builder_number(b, one_in(8) ? maybe_odd(odd, -0.0) : between(one_in(8) ? -1 : 0, 1), &number[i], &error);
+        const glint_value by = k > 0 && one_in(8) ? out[k - 1] : parity, other = one_in(8) ? p[0] : number[1];
+        glint_builder_op(b, GLINT_OP_SELECT, (const glint_value[]) { by, number[0], other }, &out[k], &error);
+    }
+    assert_int_equal(glint_builder_finish(b, out, outputs, &program, &error), GLINT_OK);
+    glint_program_args args = program_inputs(program, groups, odd);
+    args.wanted = masks(groups);
+    for (uint32_t g = 0; g < groups; g++)
+        place[g] = g + places - groups;
+    args.groups = one_in(2) ? place : NULL;
+    FOR_EACH_TESTED
+    {
+        for (uint32_t k = 0; k < outputs; k++)
+            args.plane[k] = output("plane", KIND_FLOAT, places * GLINT_GROUP);
+        args.odd = output("odd", KIND_U16, groups);
+        running->program(&args);
+        compare_outputs("checker");
+    }
+    glint_program_release(program);
+    glint_builder_destroy(b);
+}
+
+static void test_checkers(void **state)
+{
+    (void)state;
+    run_cases(CASES, 48000, checker_case);
+}
+
 /// Factors of outputs, and which sums they are in: what is infinite or no number meets some that are 0.
 static void random_sums(uint32_t outputs, uint32_t n, bool odd, glint_program_sums *out)
 {
@@ -434,6 +478,7 @@ int main(void)
         cmocka_unit_test(test_random_programs),
         cmocka_unit_test(test_gradients),
         cmocka_unit_test(test_damaged_programs),
+        cmocka_unit_test(test_checkers),
         cmocka_unit_test(test_unit),
         cmocka_unit_test(test_choose),
         cmocka_unit_test(test_texels),

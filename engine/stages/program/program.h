@@ -106,10 +106,12 @@ INNER size_t place_of(const output *out, uint32_t g)
 
 static bool is_whole(const glint_program_args *args)
 {
+    unsigned wanted = 0xffff, apart = 0; // without a branch for each
     for (uint32_t g = 0; g < args->group_count; g++)
-        if (args->wanted[g] != 0xffff || (args->groups && args->groups[g] != args->groups[0] + g))
-            return false;
-    return true;
+        wanted &= args->wanted[g];
+    for (uint32_t g = 0; args->groups && g < args->group_count; g++)
+        apart |= args->groups[g] ^ (args->groups[0] + g);
+    return wanted == 0xffff && !apart;
 }
 
 /// Notes the lanes that are no reflectances.
@@ -263,11 +265,105 @@ static void add_slopes(const glint_program_args *args)
     }
 }
 
+// ---- Choices by a bit ---------------------------------------------------------------------------------------------
+
+/// Stores one of two numbers in the lanes of a group that are wanted.
+INNER void choose_lanes(float *to, unsigned wanted, unsigned truths, vf no, vf yes)
+{
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const unsigned all = (1u << VF) - 1;
+        const vf chosen = f_select(fm_from_bits(truths >> i & all), yes, no);
+        f_store(to + i, f_select(fm_from_bits(wanted >> i & all), chosen, f_load(to + i)));
+    }
+}
+
+/// The stage `choose`.
+static void choose(const glint_choose_args *args)
+{
+    const vf no = f_set(args->number[0]), yes = f_set(args->number[1]);
+    for (uint32_t k = 0; k < args->group_count; k++) {
+        const uint32_t g = args->groups[k];
+        choose_lanes(args->plane + (size_t)g * GLINT_GROUP, args->wanted[k], args->truths[g], no, yes);
+    }
+}
+
+#define CHECKER_OUTPUTS 3
+
+/// A checker: a parity, by which the outputs are one of two reflectances each.
+typedef struct checker {
+    const glint_program_args *args;
+    op_call parity;
+    vf number[CHECKER_OUTPUTS][2];
+} checker;
+
+/// Finds what output k is one of. Returns false where it is not.
+static bool find_choice(checker *to, uint32_t k)
+{
+    const glint_program_args *args = to->args;
+    const glint_program_code *code = args->code;
+    const glint_instruction *parity = code->instructions, *at = parity + code->length - 1;
+    while (at > parity && at->out[0] != code->outputs[k])
+        at--;
+    if (at == parity || args->result[k] || args->total[k] || !args->plane[k])
+        return false;
+    for (const glint_instruction *before = parity + 1; before <= at; before++)
+        if (before->op != GLINT_OP_SELECT || (before < at && before->out[0] == parity->out[0]))
+            return false;
+    for (int i = 0; i < 2; i++) {
+        const uint32_t row = at->in[2 - i];
+        const double x = row < GLINT_ROW_NUMBER ? -1 : code->numbers[row - GLINT_ROW_NUMBER][0];
+        if (!(x >= 0 && x <= GLINT_REFLECTANCE_MAX))
+            return false;
+        to->number[k][i] = f_set((float)fabs(x)); // -0 is 0
+    }
+    return at->in[0] == parity->out[0];
+}
+
+static bool is_checker(const glint_program_args *args, checker *to)
+{
+    const glint_program_code *code = args->code;
+    const glint_instruction *parity = code->instructions;
+    if (code->length < 2 || parity->op != GLINT_OP_PARITY || code->output_count > CHECKER_OUTPUTS || args->sums_count ||
+        args->added[0])
+        return false;
+    to->args = args;
+    for (uint32_t k = 0; k < code->output_count; k++)
+        if (!find_choice(to, k))
+            return false;
+    for (uint32_t k = 0; k < parity->operands; k++)
+        to->parity.in[k] = find_operand(args, parity->in[k], &to->parity.step[k]);
+    return true;
+}
+
+/// In one pass without rows: the common pattern.
+static void run_checker(const checker *by)
+{
+    const glint_program_args *args = by->args;
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        const size_t from = (size_t)g * GLINT_GROUP, to = (size_t)(args->groups ? args->groups[g] : g) * GLINT_GROUP;
+        unsigned even = 0;
+        for (size_t i = 0; i < GLINT_GROUP; i += VD) {
+            const vd parity = d_parity(op_in(&by->parity, 0, from + i), op_in(&by->parity, 1, from + i),
+                                       op_in(&by->parity, 2, from + i));
+            even |= dm_bits(d_eq(parity, d_set(0))) << i;
+        }
+        for (uint32_t k = 0; k < args->code->output_count; k++)
+            choose_lanes(args->plane[k] + to, args->wanted[g], ~even, by->number[k][0], by->number[k][1]);
+    }
+}
+
 static void program(const glint_program_args *args)
 {
     const glint_program_code *code = args->code;
     const glint_instruction *end = code->instructions + code->length;
     double *rows = args->rows;
+    checker even;
+    for (uint32_t g = 0; args->odd && g < args->group_count; g++)
+        args->odd[g] = 0;
+    if (is_checker(args, &even)) {
+        run_checker(&even);
+        return;
+    }
     op_call call = { .lanes = (size_t)args->group_count * GLINT_GROUP };
     for (const glint_instruction *at = code->instructions; at < end; at++) {
         for (uint32_t k = 0; k < at->operands; k++)
@@ -279,8 +375,6 @@ static void program(const glint_program_args *args)
             call.texture = code->textures[at->texture];
         op_kernels[at->op](&call);
     }
-    for (uint32_t g = 0; args->odd && g < args->group_count; g++)
-        args->odd[g] = 0;
     if (args->sums_count)
         add_sums(args);
     if (args->added[0])
@@ -290,21 +384,5 @@ static void program(const glint_program_args *args)
         output out = { .args = args, .whole = whole };
         out.row = find_operand(args, code->outputs[k], &out.step);
         store_output(&out, args->result[k], args->plane[k], args->total[k]);
-    }
-}
-
-/// The stage `choose`.
-static void choose(const glint_choose_args *args)
-{
-    const vf no = f_set(args->number[0]), yes = f_set(args->number[1]);
-    for (uint32_t k = 0; k < args->group_count; k++) {
-        const uint32_t g = args->groups[k];
-        float *to = args->plane + (size_t)g * GLINT_GROUP;
-        const unsigned wanted = args->wanted[k], truths = args->truths[g];
-        for (int i = 0; i < GLINT_GROUP; i += VF) {
-            const unsigned all = (1u << VF) - 1;
-            const vf chosen = f_select(fm_from_bits(truths >> i & all), yes, no);
-            f_store(to + i, f_select(fm_from_bits(wanted >> i & all), chosen, f_load(to + i)));
-        }
     }
 }
