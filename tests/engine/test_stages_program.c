@@ -112,6 +112,10 @@ static void checker_case(int precision, bool odd)
     assert_int_equal(glint_builder_create(GLINT_PROGRAM_PATTERN, &b, &error), GLINT_OK);
     for (uint32_t c = 0; c < 3; c++)
         glint_builder_input(b, (glint_input)c, &p[c], &error);
+    for (uint32_t c = below(6); c < 3; c++) {
+        glint_builder_number(b, maybe_odd(odd, between(-4, 4)), &number[0], &error);
+        glint_builder_op(b, GLINT_OP_MUL, (const glint_value[]) { p[c], number[0], 0 }, &p[c], &error);
+    }
     glint_builder_op(b, GLINT_OP_PARITY, p, &parity, &error);
     for (uint32_t k = 0; k < outputs; k++) {
         for (int i = 0; i < 2; i++)

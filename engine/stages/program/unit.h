@@ -8,28 +8,14 @@ static inline void divide_each(const vd d[3], vd by, vd q[3])
 }
 
 #ifdef GLINT_D_FUSED
-/// 1 / by, where by is the root of length2.
-static inline vd find_inverse(vd by, vd length2)
-{
-#ifdef GLINT_D_INVERSE_ROOT
-    // without the divider, which the root keeps; while that is found, one of Newton's steps comes within 2^-26
-    const vd guess = d_inverse_root(length2), half = d_set(0.5);
-    const vd near = d_fma(guess, d_fnma(length2 * guess, half * guess, half), guess), r = d_fnma(by, near, d_set(1));
-    return d_fma(d_fma(r, r, r), near, near);
-#else
-    (void)length2;
-    return d_set(1) / by;
-#endif
-}
-
-/// The same bits without three divisions, where |1 - y by| < 2^-53 (y: find_inverse), which it is where it is so once rounded. If q is
-/// a neighbour of d / by, q + (d - q by) y with both steps fused is d / by rounded to nearest (after P. Markstein, IBM J. Res. Dev.
-/// 34(1), 1990): what is rounded last is off by less than 2^-53 of q's own error, and d / by is 2^-54 of a last place or more from
-/// where rounding turns. d y + d rest, fused, is within 2^-104 of d / by before it is rounded, and so a neighbour after.
+/// The same bits by one division in place of three, where |1 - y by| < 2^-53 (y: 1 / by), which it is where it is so once rounded.
+/// If q is a neighbour of d / by, q + (d - q by) y with both steps fused is d / by rounded to nearest (after P. Markstein, IBM J. Res.
+/// Dev. 34(1), 1990): what is rounded last is off by less than 2^-53 of q's own error, and d / by is 2^-54 of a last place or more
+/// from where rounding turns. d y + d rest, fused, is within 2^-104 of d / by before it is rounded, and so a neighbour after.
 /// Within the bounds, where by is at most 2^512 as a root is, nothing that counts over- or underflows.
-static inline void divide_by_length(const vd d[3], vd by, vd length2, vd q[3])
+static inline void divide_by_length(const vd d[3], vd by, vd q[3])
 {
-    const vd y = find_inverse(by, length2), less_1 = d_fnma(by, y, d_set(1)), rest = less_1 * y;
+    const vd y = d_set(1) / by, less_1 = d_fnma(by, y, d_set(1)), rest = less_1 * y;
     const vd least = d_least_size(d_least_size(d[0], d[1]), d[2]);
     const dm good = dm_and(d_lt(d_abs(less_1), d_set(0x1p-53)), d_le(d_set(0x1p-400), least));
     if (dm_bits(good) != D_ALL) {
@@ -42,11 +28,7 @@ static inline void divide_by_length(const vd d[3], vd by, vd length2, vd q[3])
     }
 }
 #else
-static inline void divide_by_length(const vd d[3], vd by, vd length2, vd q[3])
-{
-    (void)length2;
-    divide_each(d, by, q);
-}
+static inline void divide_by_length(const vd d[3], vd by, vd q[3]) { divide_each(d, by, q); }
 #endif
 
 /// Which ways a call finds: each is compiled by itself.
@@ -65,8 +47,8 @@ INNER void unit_lanes(const glint_unit_args *args, const unit_way way, const dou
         if (way != TO_EYE && args->from[0])
             d[c] = d[c] - d_load(args->from[c] + at);
     }
-    const vd length2 = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2], length = d_sqrt(length2);
-    divide_by_length(d, length, length2, q);
+    const vd length = d_sqrt((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
+    divide_by_length(d, length, q);
     for (int c = 0; c < 3; c++)
         d_store(args->unit[c] + at, q[c]);
     if (args->length)

@@ -215,9 +215,6 @@ static inline vd d_fnma(vd a, vd b, vd c) { return _mm512_fnmadd_pd(a, b, c); }
 /// min(|a|, |b|), of NaN anything.
 static inline vd d_least_size(vd a, vd b) { return _mm512_range_pd(a, b, 10); }
 
-#define GLINT_D_INVERSE_ROOT 1 ///< there is the next: 1 / sqrt(x) within 2^-14 of itself, no two processors need agree
-static inline vd d_inverse_root(vd x) { return _mm512_rsqrt14_pd(x); }
-
 static inline vd d_two_prod(vd a, vd b, vd *error)
 {
     vd p = a * b;
