@@ -144,8 +144,10 @@ static const glint_instruction *find_choice(const glint_program_code *code, uint
     while (at > code->instructions)
         if ((--at)->out[0] == code->outputs[k])
             break;
-    if (!code->length || at->out[0] != code->outputs[k] || at->op != GLINT_OP_SELECT || at->in[0] < GLINT_ROW_INPUT ||
-        at->in[0] >= GLINT_ROW_NUMBER || !(truths >> (at->in[0] - GLINT_ROW_INPUT) & 1))
+    if (!code->length || at->out[0] != code->outputs[k] || at->op != GLINT_OP_SELECT || at->in[0] < GLINT_ROW_INPUT)
+        return NULL;
+    const uint32_t value = at->in[0] - GLINT_ROW_INPUT;
+    if (value >= GLINT_PROGRAM_OUTPUTS_MAX || !(truths >> value & 1))
         return NULL;
     for (int i = 1; i < 3; i++) {
         const double x = at->in[i] < GLINT_ROW_NUMBER ? -1 : code->numbers[at->in[i] - GLINT_ROW_NUMBER][0];
