@@ -144,6 +144,14 @@ static void fold_program(const program_field *field, glint_material_desc *desc)
     *program = NULL;
 }
 
+/// Of every number that a field has, -0 is 0: what is kept from one must serve the other.
+static void drop_signs_of_zeros(glint_material_desc *desc)
+{
+    EACH_FIELD(f)
+    for (size_t i = 0; f->number && i < f->count; i++)
+        ((double *)(void *)((char *)desc + f->number))[i] += 0.0;
+}
+
 /// Checks a description, and puts numbers where its programs are nothing else.
 static glint_status take(const glint_material_desc *desc, glint_material_desc *out, glint_error *error)
 {
@@ -157,6 +165,7 @@ static glint_status take(const glint_material_desc *desc, glint_material_desc *o
         if (program)
             fold_program(f, out);
     }
+    drop_signs_of_zeros(out);
     return check(out, error);
 }
 

@@ -72,6 +72,38 @@ function tests.numbers_alone_are_the_number()
   check(plain == traced, "the same picture")
 end
 
+function tests.minus_0_is_0()
+  local function lit(shininess) return (picture(make_scene(glint.material { specular = 0.3, shininess = shininess }))) end
+  local minus = lit(-0.0) -- first, so that nothing is kept of the other
+  check(minus == lit(glint.pattern(function() return -0.0 end)), "as a pattern")
+  check(minus == lit(0.0), "as 0")
+end
+
+-- A cap or a base is at one end of the coordinates from base to top, and so in one row of a texture.
+function tests.ends_are_in_one_row()
+  local halves = glint.pattern(function(_, s) return glint.floor(2 * glint.fract(s.uv.v)) end)
+  local function count(shape) -- pixels of the lower and of the upper half, from above, where its end hides all else
+    local image = glint.scene { camera = glint.camera { eye = { 0.1, 9, 0 }, at = { 0, 0, 0 }, fov = 20 }, ambient = 1, shape }
+      :render { width = 96, height = 96, passes = { "albedo", "object_id" } }
+    local seen = { [0] = 0, 0 }
+    for y = 0, 95 do
+      for x = 0, 95 do
+        local half = image:pixel(x, y, "albedo") // 1
+        if image:pixel(x, y, "object_id") > 0 then seen[half] = (seen[half] or 0) + 1 end
+      end
+    end
+    return seen
+  end
+  local material = glint.material { diffuse = halves }
+  for i = 1, 8 do
+    local low, high = { 0.003 * i, 0.01 * i, 0.01 }, { -0.005 * i, 0.1, 0.002 * i }
+    local cap = count(glint.cylinder { base = low, top = high, radius = 0.8, material = material })
+    check(cap[0] < 99 and cap[1] > 400, "a cap: %d pixels of the lower half, %d of the upper", cap[0], cap[1])
+    local base = count(glint.cone { base = high, top = low, radius = 0.8, material = material })
+    check(base[1] < 99 and base[0] > 400, "a base: %d pixels of the lower half, %d of the upper", base[0], base[1])
+  end
+end
+
 -- The pass albedo is the function of the point that plain Lua gives, rounded to float.
 function tests.albedo_is_what_plain_lua_says()
   local function f(p) return glint.mix({ 0.1, 0.2, 0.9 }, { 1, 0.5, 0.25 }, glint.smoothstep(-0.2, 0.2, glint.noise(p * 1.7))) end

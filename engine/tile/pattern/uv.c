@@ -3,6 +3,7 @@
 #include "engine/program/builder.h"
 
 #define TURN 0x1.921fb54442d18p+2 // 2 pi
+#define BELOW_1 0x1.fffffffffffffp-1
 
 /// The angle of x, z around an axis, 0 .. 1: from -z on by -x, z and x.
 static double around(double x, double z)
@@ -55,7 +56,7 @@ static void axis_uv(const glint_pattern_place *place, const double p[3], glint_s
         return;
     }
     out->at[0] = around(x, -y);
-    out->at[1] = vec_dot(d, place->along);
+    out->at[1] = fmin(fmax(vec_dot(d, place->along), 0), BELOW_1); // a cap is in one row of a texture, whatever rounding does
     out->unit = fmin(TURN * place->radius, place->length);
     for (int c = 0; c < 3; c++)
         out->slope[0][c] = (x * place->side[1][c] - y * place->side[0][c]) / turn;
