@@ -71,11 +71,11 @@ static int explain(lua_State *L)
         return 1;
     if (strstr(text, "'for' ") && strstr(text, "number"))
         cure = "a loop runs over numbers, not over values of the point";
-    else if (strstr(text, "got " GLINTL_SYMBOL))
+    else if (strstr(text, "got " GLINTL_SYMBOL) || strstr(text, "got " GLINTL_TRIPLE))
         cure = "a symbol has no number yet; write glint's own function, glint.sin(x) for math.sin(x)";
     else if (strstr(text, "stack overflow"))
         cure = "functions call each other without an end";
-    if (!cure || !trace)
+    if (!cure || !trace || strstr(text, cure)) // a pattern within a pattern has said it
         return 1;
     luaL_checkstack(L, 4, "message");
     lua_pushfstring(L, "%s%s: %s", has_place(text) ? "" : trace->place, text, cure);
