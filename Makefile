@@ -258,8 +258,8 @@ check: ## every test; T=name runs those whose name has it
 check-run: tests
 	@T="$(T)" $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
 
-# What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
-SANITIZED := $(filter-out tests/command/povray.sh tests/command/gallery.sh tests/command/install.sh,$(SCRIPTED))
+# What makes sense under a sanitizer: the C tests, the Lua tests and the command line; not what runs none of our programs.
+SANITIZED := $(filter-out $(addprefix tests/,$(addprefix command/,povray.sh gallery.sh install.sh) machines/systems.sh),$(SCRIPTED))
 # What has threads: tiles, index, bands of rows, the writer, what is kept from frame to frame, the server of watch. With two of
 # the instruction sets: what threads share is the same in all.
 THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image reuse reuse_turns soft) \
