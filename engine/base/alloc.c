@@ -30,11 +30,11 @@ void *glint_alloc(size_t count, size_t size)
     return memory;
 }
 
-/// Advice: refused, the pages are small; so they are in the last large one unless half of it and more is wanted.
+/// Advice: refused, the pages are small; so they are beyond the last whole large one.
 static void want_large_pages(void *memory, size_t bytes)
 {
 #ifdef MADV_HUGEPAGE
-    madvise(memory, (bytes + LARGE_PAGE / 2) / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
+    madvise(memory, bytes / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
 #else
     (void)memory, (void)bytes;
 #endif
@@ -48,7 +48,7 @@ void *glint_alloc_large(size_t count, size_t size)
     const size_t whole = whole_bytes(count, size, LARGE_PAGE);
     void *memory = whole ? aligned_alloc(LARGE_PAGE, whole) : NULL;
     if (memory)
-        want_large_pages(memory, bytes);
+        want_large_pages(memory, bytes + LARGE_PAGE / 2); // the last one too where that is half full, within `whole`
     return memory;
 }
 

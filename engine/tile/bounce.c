@@ -28,7 +28,7 @@ struct glint_bounce {
     glint_ray_slope *slopes; ///< what those of all levels and of the batch's own rays are in; NULL until a frame has derivatives
 };
 
-/// Its pages are the system's until a level is used.
+/// Not zeroed as a whole: the pages of a level are the system's until it is used.
 struct glint_bounce *glint_bounce_create(void)
 {
     struct glint_bounce *bounce = aligned_alloc(_Alignof(struct glint_bounce), sizeof *bounce);
@@ -36,7 +36,7 @@ struct glint_bounce *glint_bounce_create(void)
         return NULL;
     memset(&bounce->batch, 0, sizeof bounce->batch);
     bounce->slopes = NULL;
-    for (int i = 0; i < GLINT_BOUNCE_LEVELS; i++) { // of a level not yet used the pages are the system's
+    for (int i = 0; i < GLINT_BOUNCE_LEVELS; i++) {
         bounce->room[i].slopes = NULL;
         bounce->levels[i] = &bounce->room[i];
         bounce->counts[i] = 0;

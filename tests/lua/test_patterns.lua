@@ -203,6 +203,10 @@ function tests.errors_tell_the_place_and_the_cure()
   raises("symbol.x: a symbol is one number", function(p) return p.x.x end)
   raises("it is one number and no function", function(p) return p.x(3) end)
   raises("it is no integer", function(p) return p.x & 1 end)
+  local own
+  own = glint.pattern(function() return #own end)
+  local _, message = pcall(function() return #own end)
+  check(select(2, message:gsub("without an end", "")) == 1, "a pattern of itself has one cure, got %s", message)
   raises("functions call each other without an end", function(p)
     local round
     round = glint.pattern(function(q) return round(q) end)
