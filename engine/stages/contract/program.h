@@ -47,6 +47,29 @@ typedef struct glint_program_code {
     const glint_texture_table *const *textures;
 } glint_program_code;
 
+#define GLINT_REFLECTANCE_MAX 0x1p100
+
+/// The instruction that makes output k by a choice between two reflectances: number[0] where what it chooses by is 0, else
+/// number[1]. NULL: it is made in another way.
+static inline const glint_instruction *glint_find_choice(const glint_program_code *code, uint32_t k, float number[2])
+{
+    const glint_instruction *at = code->instructions + code->length;
+    do
+        if (at-- == code->instructions)
+            return NULL;
+    while (at->out[0] != code->outputs[k]);
+    if (at->op != GLINT_OP_SELECT)
+        return NULL;
+    for (int i = 0; i < 2; i++) {
+        const uint32_t row = at->in[2 - i];
+        const double x = row < GLINT_ROW_NUMBER ? -1 : code->numbers[row - GLINT_ROW_NUMBER][0];
+        if (!(x >= 0 && x <= GLINT_REFLECTANCE_MAX))
+            return NULL;
+        number[i] = (float)(x + 0.0); // -0 is 0
+    }
+    return at;
+}
+
 /// Sums of products of a program's outputs with other numbers.
 typedef struct glint_program_sums {
     const double *by[GLINT_CODE_OUTPUTS_MAX]; ///< what an output is multiplied by, 16 numbers a group; NULL: it is in no sum
@@ -76,8 +99,6 @@ typedef struct glint_program_args {
     /// NULL: not wanted, where nothing is added
     uint16_t *odd;
 } glint_program_args;
-
-#define GLINT_REFLECTANCE_MAX 0x1p100
 
 /// Ways and distances: length = sqrt(length2(d)) and unit = d / length, where d = to - from, or the way back along a camera's ray.
 typedef struct glint_unit_args {

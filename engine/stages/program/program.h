@@ -298,26 +298,20 @@ typedef struct checker {
 } checker;
 
 /// Finds what output k is one of. Returns false where it is not.
-static bool find_choice(checker *to, uint32_t k)
+static bool find_numbers(checker *to, uint32_t k)
 {
     const glint_program_args *args = to->args;
-    const glint_program_code *code = args->code;
-    const glint_instruction *parity = to->parity, *at = code->instructions + code->length - 1;
-    while (at > parity && at->out[0] != code->outputs[k])
-        at--;
-    if (at == parity || args->result[k] || args->total[k] || !args->plane[k])
+    const glint_instruction *parity = to->parity;
+    float number[2];
+    const glint_instruction *at = glint_find_choice(args->code, k, number);
+    if (!at || at < parity || at->in[0] != parity->out[0] || args->result[k] || args->total[k] || !args->plane[k])
         return false;
     for (const glint_instruction *before = parity + 1; before < at; before++)
         if (before->out[0] == parity->out[0])
             return false;
-    for (int i = 0; i < 2; i++) {
-        const uint32_t row = at->in[2 - i];
-        const double x = row < GLINT_ROW_NUMBER ? -1 : code->numbers[row - GLINT_ROW_NUMBER][0];
-        if (!(x >= 0 && x <= GLINT_REFLECTANCE_MAX))
-            return false;
-        to->number[k][i] = f_set((float)fabs(x)); // -0 is 0
-    }
-    return at->in[0] == parity->out[0];
+    for (int i = 0; i < 2; i++)
+        to->number[k][i] = f_set(number[i]);
+    return true;
 }
 
 static bool is_checker(const glint_program_args *args, checker *to)
@@ -335,7 +329,7 @@ static bool is_checker(const glint_program_args *args, checker *to)
     to->args = args;
     to->parity = parity;
     for (uint32_t k = 0; k < code->output_count; k++)
-        if (!find_choice(to, k))
+        if (!find_numbers(to, k))
             return false;
     for (uint32_t k = 0; k < parity->operands; k++)
         to->call.in[k] = find_operand(args, parity->in[k], &to->call.step[k]);

@@ -3,7 +3,6 @@
 #include "engine/program/program.h"
 #include "engine/tile/pattern/work.h"
 
-#include <math.h>
 #include <string.h>
 
 /// Where what is kept of a sample is; of a tile whose key says that it is.
@@ -137,45 +136,25 @@ static void read_value(struct glint_pattern *pattern, glint_pattern_batch *batch
     }
 }
 
-/// The instruction that makes output k by choosing one of two reflectances. NULL: it is made in another way.
-static const glint_instruction *find_choice(const glint_program_code *code, uint32_t truths, uint32_t k)
-{
-    const glint_instruction *at = code->instructions + code->length;
-    while (at > code->instructions)
-        if ((--at)->out[0] == code->outputs[k])
-            break;
-    if (!code->length || at->out[0] != code->outputs[k] || at->op != GLINT_OP_SELECT || at->in[0] < GLINT_ROW_INPUT)
-        return NULL;
-    const uint32_t value = at->in[0] - GLINT_ROW_INPUT;
-    if (value >= GLINT_PROGRAM_OUTPUTS_MAX || !(truths >> value & 1))
-        return NULL;
-    for (int i = 1; i < 3; i++) {
-        const double x = at->in[i] < GLINT_ROW_NUMBER ? -1 : code->numbers[at->in[i] - GLINT_ROW_NUMBER][0];
-        if (!(x >= 0 && x <= GLINT_REFLECTANCE_MAX))
-            return NULL;
-    }
-    return at;
-}
-
 /// Makes the planes of a second part that does nothing but choose by what is kept: without rows. Returns false where it does more.
 static bool choose_outputs(const glint_tile_frame *frame, const glint_pattern_batch *batch, const glint_split_field *of,
                            const glint_program_code *code, const kept_sample *from)
 {
-    const glint_instruction *by[GLINT_PROGRAM_OUTPUTS_MAX];
-    for (uint32_t k = 0; k < code->output_count; k++)
-        if (!(by[k] = find_choice(code, of->split->truths, k)))
-            return false;
+    glint_choose_args calls[GLINT_PROGRAM_OUTPUTS_MAX];
     for (uint32_t k = 0; k < code->output_count; k++) {
-        const uint32_t place = of->place[by[k]->in[0] - GLINT_ROW_INPUT];
-        glint_choose_args args = { .group_count = batch->count,
-                                   .groups = batch->called.groups,
-                                   .wanted = batch->called.wanted,
-                                   .truths = from->truths + (size_t)place * GLINT_TILE_GROUPS,
-                                   .plane = batch->args.plane[k] };
-        for (int i = 0; i < 2; i++)
-            args.number[i] = (float)fabs(code->numbers[by[k]->in[2 - i] - GLINT_ROW_NUMBER][0]); // -0 is 0
-        frame->stages->choose(&args);
+        glint_choose_args *call = &calls[k];
+        const glint_instruction *by = glint_find_choice(code, k, call->number);
+        const uint32_t value = by ? by->in[0] - GLINT_ROW_INPUT : GLINT_PROGRAM_OUTPUTS_MAX; // of a row or a number more
+        if (value >= GLINT_PROGRAM_OUTPUTS_MAX || !(of->split->truths >> value & 1))
+            return false;
+        call->group_count = batch->count;
+        call->groups = batch->called.groups;
+        call->wanted = batch->called.wanted;
+        call->truths = from->truths + (size_t)of->place[value] * GLINT_TILE_GROUPS;
+        call->plane = batch->args.plane[k];
     }
+    for (uint32_t k = 0; k < code->output_count; k++)
+        frame->stages->choose(&calls[k]);
     return true;
 }
 
