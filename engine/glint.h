@@ -157,6 +157,7 @@ typedef enum glint_op {
     GLINT_OP_PARITY, ///< of x, y, z: (floor(x) + floor(y) + floor(z)) % 2, for numbers of any size: a checkerboard
     // what the builder and differentiation make, and textures: not for glint_builder_op
     GLINT_OP_MULMUL, ///< (a b) c
+    GLINT_OP_DOT, ///< (a b + c d) + e f
     GLINT_OP_NOISE_SLOPE, ///< of x, y, z, k: derivatives of NOISE (k = 0) or of result k of NOISE3 (1 .. 3): 3 results
     GLINT_OP_CELL_SLOPE, ///< derivatives of CELL's first and second result: 6 results
     GLINT_OP_TEXEL, ///< glint_builder_texel: 4 results
@@ -164,7 +165,7 @@ typedef enum glint_op {
     GLINT_OP_COUNT
 } glint_op;
 
-#define GLINT_OPERANDS_MAX 4 ///< values that an operation reads
+#define GLINT_OPERANDS_MAX 6 ///< values that an operation reads
 #define GLINT_RESULTS_MAX 8 ///< values that it makes
 
 /// What is known of an operation.

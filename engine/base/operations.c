@@ -45,6 +45,7 @@ static const glint_op_info operations[GLINT_OP_COUNT] = {
     [GLINT_OP_HASH] = { "hash", 3, 1 },
     [GLINT_OP_PARITY] = { "parity", 3, 1 },
     [GLINT_OP_MULMUL] = { "mulmul", 3, 1 },
+    [GLINT_OP_DOT] = { "dot", 6, 1 },
     [GLINT_OP_NOISE_SLOPE] = { "noise_slope", 4, 3 },
     [GLINT_OP_CELL_SLOPE] = { "cell_slope", 3, 6 },
     [GLINT_OP_TEXEL] = { "texel", 3, 4 },

@@ -1,5 +1,5 @@
-/// From a builder's values to a program: what no output needs is dropped, pairs of operations become one, rows are
-/// allocated.
+/// From a builder's values to a program: what no output needs is dropped, operations that feed one another become one,
+/// rows are allocated.
 #include "engine/program/builder.h"
 
 #include "engine/base/alloc.h"
@@ -127,6 +127,24 @@ static void make_products(maker *m)
             if (is_only_of_this(m, inner, GLINT_OP_MUL))
                 become(m, i, GLINT_OP_MULMUL, of[0], of[1], m->nodes[i].operand[1 - k], inner);
         }
+}
+
+/// e f + (c d + a b) is dot(a, b, c, d, e, f).
+static void make_dots(maker *m)
+{
+    for (uint32_t i = 0; i < m->count; i++) {
+        const glint_value *last = m->nodes[i].operand, *second = m->nodes[last[2]].operand;
+        const glint_value e = last[0], f = last[1], sum = last[2], c = second[0], d = second[1], product = second[2];
+        if (!m->needed[i] || m->nodes[i].op != GLINT_OP_MULADD || !is_only_of_this(m, sum, GLINT_OP_MULADD) ||
+            !is_only_of_this(m, product, GLINT_OP_MUL))
+            continue;
+        become(m, i, GLINT_OP_DOT, m->nodes[product].operand[0], m->nodes[product].operand[1], c, sum);
+        m->uses[product] = 0;
+        m->needed[product] = false;
+        m->nodes[i].operand[3] = d;
+        m->nodes[i].operand[4] = e;
+        m->nodes[i].operand[5] = f;
+    }
 }
 
 // ---- Order and rows -----------------------------------------------------------------------------------------------
@@ -356,6 +374,7 @@ static glint_status make(maker *m, const glint_builder *builder, const glint_val
     mark_needed(m, outputs, count);
     if (!builder->plain) {
         make_pairs(m);
+        make_dots(m);
         make_products(m);
     }
     const glint_status status = find_rows(m, outputs, count, error);

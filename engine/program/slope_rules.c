@@ -251,11 +251,21 @@ static void pass_pattern(glint_slope_maker *s, const glint_ssa_node *node, uint3
     }
 }
 
+static void pass_dot(glint_slope_maker *s, const glint_ssa_node *node, glint_value g)
+{
+    for (int k = 4; k >= 0; k -= 2) {
+        glint_slope_give(s, node->operand[k], times(s, g, node->operand[k + 1]));
+        glint_slope_give(s, node->operand[k + 1], times(s, g, node->operand[k]));
+    }
+}
+
 void glint_slope_pass(glint_slope_maker *s, glint_value i)
 {
     const glint_ssa_node node = s->builder->nodes[i];
     const rule_case x = { (glint_op)node.op, i, s->given[i], node.operand[0], node.operand[1], node.operand[2] };
-    if (node.op >= GLINT_OP_NOISE && node.op != GLINT_OP_MULMUL)
+    if (node.op == GLINT_OP_DOT)
+        pass_dot(s, &node, x.g);
+    else if (node.op >= GLINT_OP_NOISE && node.op != GLINT_OP_MULMUL)
         pass_pattern(s, &node, node.part, x.g);
     else
         pass_on(s, &x);

@@ -107,6 +107,11 @@ static void test_pairs(void **state)
     check_listing(b, three, "r0 = mulmul p.x p.y p.z\nreturn r0\n");
     check_listing(b, op2(b, GLINT_OP_ADD, three, cosine),
                   "r0 = mul p.x p.y\nr1 = cos p.z\nr0 = muladd p.z r0 r1\nreturn r0\n");
+    const glint_value square = op2(b, GLINT_OP_MUL, z, z), two = op2(b, GLINT_OP_ADD, product, op2(b, GLINT_OP_MUL, y, z));
+    check_listing(b, op2(b, GLINT_OP_ADD, two, square), "r0 = dot p.x p.y p.y p.z p.z p.z\nreturn r0\n");
+    check_listing(b, op2(b, GLINT_OP_ADD, square, two), "r0 = dot p.x p.y p.y p.z p.z p.z\nreturn r0\n");
+    check_listing(b, op2(b, GLINT_OP_ADD, two, op2(b, GLINT_OP_MUL, two, z)), // a part that is needed twice
+                  "r0 = mul p.x p.y\nr0 = muladd p.y p.z r0\nr0 = muladd r0 p.z r0\nreturn r0\n");
     const glint_value outputs[] = { op2(b, GLINT_OP_ADD, z, product), product, z }; // which is needed by itself, too
     glint_program *p = finish(b, outputs, 3);
     assert_int_equal(glint_program_length(p), 2);

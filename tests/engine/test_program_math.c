@@ -202,6 +202,11 @@ static void truth_of(glint_op op, mpfr_t r, mpfr_t *x)
     case GLINT_OP_MULADD: mpfr_mul(t, x[0], x[1], MPFR_RNDN), mpfr_add(r, t, x[2], MPFR_RNDN); break;
     case GLINT_OP_MULSUB: mpfr_mul(t, x[0], x[1], MPFR_RNDN), mpfr_sub(r, t, x[2], MPFR_RNDN); break;
     case GLINT_OP_SUBMUL: mpfr_mul(t, x[1], x[2], MPFR_RNDN), mpfr_sub(r, x[0], t, MPFR_RNDN); break;
+    case GLINT_OP_DOT:
+        mpfr_mul(r, x[0], x[1], MPFR_RNDN);
+        for (int k = 2; k < 6; k += 2)
+            mpfr_mul(t, x[k], x[k + 1], MPFR_RNDN), mpfr_add(r, r, t, MPFR_RNDN);
+        break;
     case GLINT_OP_MIX:
         mpfr_sub(t, x[1], x[0], MPFR_RNDN), mpfr_mul(t, t, x[2], MPFR_RNDN), mpfr_add(r, x[0], t, MPFR_RNDN);
         break;
@@ -339,6 +344,8 @@ static void test_slopes_of_programs(void **state)
     const glint_value edge = make(GLINT_OP_MIN, make(GLINT_OP_FRACT, p[0], 0, 0), make(GLINT_OP_FRACT, p[1], 0, 0), 0);
     check_slopes("bricks", make(GLINT_OP_SMOOTHSTEP, constant(0.05), constant(0.1), edge), -3, 3);
     check_slopes("product", make(GLINT_OP_MUL, make(GLINT_OP_MUL, p[0], p[1], 0), p[2], 0), -3, 3);
+    const glint_value two = make(GLINT_OP_ADD, make(GLINT_OP_MUL, p[0], p[1], 0), make(GLINT_OP_MUL, p[1], p[2], 0), 0);
+    check_slopes("dot", make(GLINT_OP_ADD, two, make(GLINT_OP_MUL, p[2], p[0], 0), 0), -3, 3);
     const glint_value turn = make(GLINT_OP_ATAN2, p[1], p[0], 0);
     check_slopes("screw", make(GLINT_OP_POW, make(GLINT_OP_CLAMP, make(GLINT_OP_ADD, turn, p[2], 0), constant(0.1),
                                                   constant(3)), constant(2.5), 0), -3, 3);

@@ -11,7 +11,7 @@ typedef struct op_call {
 
 static inline vd op_in(const op_call *call, int k, size_t lane) { return d_load(call->in[k] + (lane & call->step[k])); }
 
-// One result from operands a; a and b; a, b and c. The compiler unrolls the inner loop.
+// One result from operands a; a and b; a, b and c; a to f. The compiler unrolls the inner loop.
 #define OP_KERNEL(name, operands, expression) \
     static void op_##name(const op_call *call) \
     { \
@@ -38,6 +38,11 @@ static inline vd op_in(const op_call *call, int k, size_t lane) { return d_load(
 #define OP_ABC(each) \
     OP_AB(each); \
     each(2, c)
+#define OP_ABCDEF(each) \
+    OP_ABC(each); \
+    each(3, d); \
+    each(4, e); \
+    each(5, f)
 
 /// 1 where the mask is set, else 0.
 static inline vd d_truth(dm mask) { return d_select(mask, d_set(1), d_set(0)); }

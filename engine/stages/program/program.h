@@ -51,6 +51,7 @@ static void (*const op_kernels[GLINT_OP_COUNT])(const op_call *call) = {
     [GLINT_OP_HASH] = op_hash,
     [GLINT_OP_PARITY] = op_parity,
     [GLINT_OP_MULMUL] = op_mulmul,
+    [GLINT_OP_DOT] = op_dot,
     [GLINT_OP_NOISE_SLOPE] = op_noise_slope,
     [GLINT_OP_CELL_SLOPE] = op_cell_slope,
     [GLINT_OP_TEXEL] = op_texel,

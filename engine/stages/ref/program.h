@@ -217,7 +217,7 @@ static double op_of_one(glint_op op, double a, double b, double c)
 }
 
 /// The results of one instruction for a lane.
-static void run_instruction(const glint_instruction *at, const glint_program_code *code, const double in[4],
+static void run_instruction(const glint_instruction *at, const glint_program_code *code, const double in[GLINT_OPERANDS_MAX],
                             double out[GLINT_RESULTS_MAX])
 {
     switch ((glint_op)at->op) {
@@ -228,6 +228,7 @@ static void run_instruction(const glint_instruction *at, const glint_program_cod
     case GLINT_OP_NOISE_SLOPE: op_noise(in[0], in[1], in[2], word_of(in[3]), out); break;
     case GLINT_OP_CELL: op_cell(in, out, NULL); break;
     case GLINT_OP_CELL_SLOPE: op_cell(in, NULL, out); break;
+    case GLINT_OP_DOT: out[0] = (in[0] * in[1] + in[2] * in[3]) + in[4] * in[5]; break;
     case GLINT_OP_TEXEL: op_texel(code->textures[at->texture], in, out, NULL); break;
     case GLINT_OP_TEXEL_SLOPE: op_texel(code->textures[at->texture], in, NULL, out); break;
     default: out[0] = op_of_one((glint_op)at->op, in[0], in[1], in[2]);
