@@ -15,6 +15,8 @@
 typedef struct glint_film_stamp {
     glint_key key; ///< of what they were made from. Equal keys: equal pixels; all zero: unknown
     uint64_t codes; ///< equal in two images of one size and tone: equal codes; 0: unknown
+    uint64_t base; ///< of a base of adaptive sampling: equal in two of one size, equal pixels; of the picture over it: equal pixels of
+                   ///< the base, and the same of them chosen; 0: unknown, or neither
 } glint_film_stamp;
 
 struct glint_image {

@@ -27,7 +27,7 @@ static glint_status make_room(glint_refine *refine, const glint_image *image, gl
     refine->tiles = glint_alloc_large((size_t)across * down, sizeof *refine->tiles);
     refine->edges = glint_alloc_large((size_t)down * 2 * GLINT_DIFFER_VALUES, refine->edge_length * sizeof *refine->edges);
     for (size_t i = 0; refine->tiles && i < (size_t)across * down; i++)
-        refine->tiles[i].key = (glint_key) { 0 };
+        refine->tiles[i].pixels = 0;
     return refine->tiles && refine->edges ? GLINT_OK : glint_fail_nomem(error);
 }
 

@@ -171,12 +171,8 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
         glint_tints_find(&renderer->tints, plan, &shared->geometry);
         shared->tints = &renderer->tints;
     }
-    if (shared->base) { // other pixels in every frame
-        glint_reuse_clear(&renderer->reuse);
-    } else {
-        glint_reuse_carry(&renderer->reuse, plan, renderer->spare, GLINT_SPARE_IMAGES);
-        glint_reuse_begin(&renderer->reuse, plan, tile_count);
-    }
+    glint_reuse_carry(&renderer->reuse, plan, renderer->spare, GLINT_SPARE_IMAGES);
+    glint_reuse_begin(&renderer->reuse, plan, tile_count);
     renderer->raster.ms = 0;
     if (!plan->raster || !casts(&renderer->reuse, plan))
         return GLINT_OK;
@@ -232,7 +228,7 @@ static glint_status begin_tiles(frame *f, size_t tiles, glint_error *error)
     glint_status status = prepare(renderer, plan, &f->shared, tiles, error);
     if (!status && plan->is_base)
         status = glint_refine_begin(renderer->refine, renderer->stages, image, &plan->desc, error);
-    if (image->film && (f->shared.base || !renderer->reuse.tile_count)) // what is put there is not signed
+    if (image->film && !renderer->reuse.tile_count) // what is put there is not signed
         memset(image->film, 0, tiles * sizeof *image->film);
     if (!status)
         status = glint_grids_begin(renderer->grids, &f->shared, &f->extent, threads, error);

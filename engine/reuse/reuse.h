@@ -45,6 +45,8 @@ typedef struct glint_cached_ways {
 #define GLINT_SHOWN_MAX 8 ///< materials of a tile that are told apart
 
 typedef struct glint_cached_tile {
+    uint64_t pixels; ///< of adaptive sampling: those whose samples all of this is of; 0: of all
+    uint64_t last_pixels; ///< the same of the last frame in which it had some
     glint_key cast;
     void *t; ///< doubles or floats; in one block with prim and hits
     uint32_t *prim;

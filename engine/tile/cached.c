@@ -4,6 +4,45 @@
 
 #include <math.h>
 
+// ---- The pixels it is of ----
+
+/// Which pixels of the tile have all samples; 0 where that is no choice.
+static uint64_t pixels_of(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_key none = { 0 };
+    if (!frame->base)
+        return 0;
+    const uint32_t *chosen = frame->refine->tiles[tile->index].chosen;
+    return glint_key_add(none, chosen, GLINT_TILE_HEIGHT * sizeof *chosen).low | 1;
+}
+
+static void forget(glint_cached_tile *cached, uint32_t light_count)
+{
+    const glint_key none = { 0 };
+    cached->cast = cached->view = cached->pattern = cached->split = cached->seen = cached->boxed = none;
+    for (uint32_t i = 0; i < light_count; i++) {
+        glint_cached_light *light = &cached->lights[i];
+        light->light = light->facet = light->occlude = light->place = none;
+    }
+}
+
+void glint_tile_fit_cached(glint_tile *tile, const glint_tile_frame *frame)
+{
+    glint_cached_tile *cached = tile->cached;
+    const uint64_t pixels = pixels_of(tile, frame);
+    if (!cached)
+        return;
+    const bool again = !pixels || cached->last_pixels == pixels;
+    cached->last_pixels = pixels;
+    if (cached->pixels == pixels)
+        return;
+    if (again) {
+        forget(cached, frame->reuse->light_count);
+        cached->pixels = pixels;
+    } else
+        tile->cached = NULL;
+}
+
 // ---- Kept hits, or new ones ----
 
 #define WAY_TURNS 6 ///< frames that a tile goes both ways in, in turn
@@ -291,6 +330,36 @@ static bool is_per_light(glint_stage_id id)
 
 static bool is_known(glint_key key) { return !glint_key_equal(key, (glint_key) { 0 }); }
 
+/// Which pixels of the base the tile has, and of which it has all samples; 0: not known.
+static uint64_t base_stamp(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const uint64_t base = frame->base->film ? frame->base->film[tile->index].base : 0;
+    const glint_key from = { base, 0 }, chosen = { pixels_of(tile, frame), 0 };
+    return base ? glint_key_mix(from, chosen).low | 1 : 0;
+}
+
+/// What the tile's pixels are made from; its `codes` are its own. The key is all zero where that is not known.
+static glint_film_stamp stamp_of(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_key base_alone = { 1, 0 };
+    glint_film_stamp stamp = { .key = { 0 } };
+    if (frame->base && !(stamp.base = base_stamp(tile, frame)))
+        return stamp;
+    stamp.key = !frame->base || glint_tile_has_chosen(tile, frame)
+                    ? glint_reuse_film_key(frame->reuse, tile->cached, frame->plan)
+                    : base_alone;
+    if (is_known(stamp.key))
+        stamp.codes = stamp.key.low ^ stamp.base;
+    if (frame->plan->is_base)
+        stamp.base = stamp.key.low;
+    return stamp;
+}
+
+static bool are_like(const glint_film_stamp *a, const glint_film_stamp *b)
+{
+    return glint_key_equal(a->key, b->key) && a->base == b->base;
+}
+
 /// Whether the tile's pixels are those of the last picture; then they are copied, unless they are in this one's memory
 /// from before.
 bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
@@ -299,12 +368,15 @@ bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
     const glint_image *last = frame->last;
     if (!tile->cached || !last || !last->film)
         return false;
-    const glint_key key = glint_reuse_film_key(frame->reuse, tile->cached, plan);
-    if (!is_known(key) || !glint_key_equal(key, last->film[tile->index].key))
+    const glint_film_stamp *was = &last->film[tile->index];
+    glint_film_stamp now = stamp_of(tile, frame);
+    if (plan->is_base && was->base != frame->refine->tiles[tile->index].pixels)
         return false;
-    if (plan->is_base && !glint_key_equal(key, frame->refine->tiles[tile->index].key))
+    if (plan->is_base) // it goes with the pixels, not with the key that they have in this frame
+        now.base = was->base;
+    if (!is_known(now.key) || !are_like(&now, was))
         return false;
-    if (!glint_key_equal(key, frame->image->film[tile->index].key))
+    if (!are_like(&now, &frame->image->film[tile->index]))
         glint_tile_copy(tile, frame, last);
     frame->image->film[tile->index] = last->film[tile->index];
     tile->counts.clipped += tile->cached->clipped;
@@ -315,22 +387,23 @@ bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
     return true;
 }
 
-/// Writes down what the tile shows now.
-void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before)
+void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before, bool sampled)
 {
     glint_cached_tile *cached = tile->cached;
     if (!cached)
         return;
-    cached->seen = frame->plan->keys[GLINT_STAGE_SURFACE];
-    for (uint32_t i = 0; i < frame->reuse->light_count && cached->shown_count > 0; i++)
+    if (sampled)
+        cached->seen = frame->plan->keys[GLINT_STAGE_SURFACE];
+    for (uint32_t i = 0; sampled && i < frame->reuse->light_count && cached->shown_count > 0; i++)
         cached->lights[i].place = frame->plan->lights[i].place_key;
-    const glint_key key = glint_reuse_film_key(frame->reuse, cached, frame->plan);
+    glint_film_stamp stamp = stamp_of(tile, frame);
     const glint_film_stamp *last = frame->last && frame->last->film ? &frame->last->film[tile->index] : NULL;
     const bool moved = tile->counts.runs[GLINT_STAGE_LIGHT] != before.lights; // then codes seldom stay as they are
-    const bool same = last && last->codes && !moved && glint_tile_has_codes_of(tile, frame->image, frame->last);
-    frame->image->film[tile->index] = (glint_film_stamp) { .key = key, .codes = same ? last->codes : key.low };
+    if (last && last->codes && !moved && glint_tile_has_codes_of(tile, frame->image, frame->last))
+        stamp.codes = last->codes;
+    frame->image->film[tile->index] = stamp;
     if (frame->plan->is_base)
-        frame->refine->tiles[tile->index].key = key;
+        frame->refine->tiles[tile->index].pixels = stamp.base;
     cached->clipped = tile->counts.clipped - before.clipped;
     cached->nonfinite = tile->counts.nonfinite - before.nonfinite;
 }

@@ -299,6 +299,6 @@ void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_f
     compare_inside(tile, frame, &values, own->inside);
     own->clipped = tile->counts.clipped - before.clipped;
     own->nonfinite = tile->counts.nonfinite - before.nonfinite;
-    own->key = (glint_key) { 0 }; // until the film is signed
+    own->pixels = 0; // until the film is signed
     glint_tile_count_stage(tile, frame, GLINT_STAGE_REFINE, false);
 }

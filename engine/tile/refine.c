@@ -17,6 +17,15 @@ static group_pixels pixels_of(const glint_tile *tile, const glint_tile_frame *fr
                             .rows = tile->height - y < 4 ? tile->height - y : 4 };
 }
 
+bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const uint32_t *chosen = frame->refine->tiles[tile->index].chosen;
+    uint32_t any = 0;
+    for (uint32_t y = 0; y < tile->height; y++)
+        any |= chosen[y];
+    return any;
+}
+
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame)
 {
     const uint32_t *chosen = frame->refine->tiles[tile->index].chosen;
@@ -44,19 +53,18 @@ static void mark_refined(const glint_tile *tile, const glint_tile_frame *frame)
 
 bool glint_tile_is_base(glint_tile *tile, const glint_tile_frame *frame)
 {
-    uint32_t any = 0;
-    if (!frame->base || !frame->refine->whole)
+    const glint_film_counts before = { .clipped = tile->counts.clipped,
+                                       .nonfinite = tile->counts.nonfinite,
+                                       .lights = tile->counts.runs[GLINT_STAGE_LIGHT] };
+    if (!frame->base || !frame->refine->whole || glint_tile_has_chosen(tile, frame))
         return false;
     const glint_refine_tile *own = &frame->refine->tiles[tile->index];
-    for (uint32_t y = 0; y < tile->height; y++)
-        any |= own->chosen[y];
-    if (any)
-        return false;
     if (!frame->refine->in_place)
         glint_tile_copy(tile, frame, frame->base);
     mark_refined(tile, frame);
     tile->counts.clipped += own->clipped;
     tile->counts.nonfinite += own->nonfinite;
+    glint_tile_sign_film(tile, frame, before, false);
     return true;
 }
 

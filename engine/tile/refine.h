@@ -23,7 +23,7 @@ typedef struct glint_refine_range {
 } glint_refine_range;
 
 typedef struct glint_refine_tile {
-    glint_key key; ///< of the base's pixels that were compared; all zero: not known
+    uint64_t pixels; ///< stamp of the base's that were compared, see glint_film_stamp; 0: not known
     // Pixels chosen: of each row, top first, a bit a pixel, the leftmost lowest.
     uint32_t inside[GLINT_TILE_HEIGHT]; ///< they differ from another of the tile
     uint32_t chosen[GLINT_TILE_HEIGHT]; ///< from any

@@ -256,10 +256,13 @@ typedef struct glint_film_counts {
     uint64_t clipped, nonfinite;
     uint64_t lights; ///< calls of the stage light
 } glint_film_counts;
-/// Writes down what the tile shows now.
-void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
+/// Writes down what the tile shows now. sampled: by samples of this frame, not by the base alone.
+void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before, bool sampled);
 
-/// tile/cached.c: of a tile that is to run and whose hits are known, chooses whether to read them or to find them anew, by what its
+/// tile/cached.c: forgets what is kept where that is of other pixels, from the second frame on that has these; in the first nothing is
+/// kept.
+void glint_tile_fit_cached(glint_tile *tile, const glint_tile_frame *frame);
+/// Of a tile that is to run and whose hits are known, chooses whether to read them or to find them anew, by what its
 /// frames took; afterwards notes what this one took.
 void glint_tile_choose_way(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_note_way(const glint_tile *tile);
@@ -382,7 +385,9 @@ void glint_differ_work_destroy(struct glint_differ_work *work); ///< NULL: nothi
 float *glint_differ_values(struct glint_differ_work *work, int value);
 void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
 
-/// tile/refine.c: leaves the pixels active that get all samples; returns whether there are any.
+/// tile/refine.c: whether some pixels of the tile get all samples.
+bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame);
+/// Leaves these active; returns whether there are any.
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether the base's pixels are all that there is to the tile; then the picture has them.
 bool glint_tile_is_base(glint_tile *tile, const glint_tile_frame *frame);

@@ -431,6 +431,17 @@ static void store(glint_tile *tile, const glint_tile_frame *frame, glint_film_co
         glint_tile_store_light(tile, frame);
 }
 
+/// What is kept of the tile, before its first sample.
+static void begin_cached(glint_tile *tile, const glint_tile_frame *frame)
+{
+    if (tile->cached)
+        frame->image->film[tile->index] = (glint_film_stamp) { 0 };
+    glint_tile_fit_cached(tile, frame);
+    glint_tile_choose_way(tile, frame);
+    if (tile->cached)
+        glint_tile_prefetch(tile, frame);
+}
+
 /// Every stage that the tile needs.
 static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
 {
@@ -438,22 +449,20 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     const glint_film_counts before = { .clipped = tile->counts.clipped,
                                        .nonfinite = tile->counts.nonfinite,
                                        .lights = tile->counts.runs[GLINT_STAGE_LIGHT] };
-    glint_tile_choose_way(tile, frame);
-    if (tile->cached) {
-        frame->image->film[tile->index] = (glint_film_stamp) { 0 };
-        glint_tile_prefetch(tile, frame);
-    }
-    glint_tile_prefetch_output(tile, frame);
-    tile->direct = false;
+    tile->anew = tile->direct = false;
     if (plan->lens && !plan->is_base && glint_tile_wants_geometry(plan))
         find_geometry(tile, frame);
     const bool refined = !frame->base || glint_tile_choose_refined(tile, frame);
+    if (refined)
+        begin_cached(tile, frame);
+    glint_tile_prefetch_output(tile, frame);
     for (uint32_t k = 0; refined && k < (uint32_t)plan->desc.samples; k++) {
         sample(tile, frame, k);
         if (glint_tile_cancelled(frame))
             return;
     }
-    glint_tile_sign_cached(tile, frame);
+    if (refined)
+        glint_tile_sign_cached(tile, frame);
     if (plan->runs[GLINT_STAGE_DEPTH_CUE] && refined)
         glint_tile_take_faded(tile, plan);
     if (plan->together && refined)
@@ -467,8 +476,9 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     store(tile, frame, before);
     if (plan->is_base)
         glint_tile_compare(tile, frame, before);
-    glint_tile_sign_film(tile, frame, before);
-    glint_tile_note_way(tile);
+    glint_tile_sign_film(tile, frame, before, refined);
+    if (refined)
+        glint_tile_note_way(tile);
 }
 
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row)
