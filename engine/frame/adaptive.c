@@ -65,9 +65,7 @@ static glint_status render_in_place(glint_renderer *renderer, const glint_plan *
     base->film = NULL;
     desc.codes = false;
     desc.passes &= ~plan->desc.passes;
-    if (desc.passes && renderer->reuse.on)
-        status = glint_image_create_for(&desc, more, error);
-    else if (desc.passes)
+    if (desc.passes)
         status = glint_renderer_take_image(renderer->base, &desc, more, error);
     for (int pass = 0; pass < GLINT_PLANE_COUNT && *more; pass++)
         for (int c = 0; c < 3; c++)
@@ -127,14 +125,17 @@ static glint_status refine_base(glint_renderer *renderer, const glint_plan *plan
     return GLINT_OK;
 }
 
-/// The base stands in the frame's own picture where nothing of it is kept: without reuse, and in the first frame.
+/// The base stands in the frame's own picture where nothing of it is kept: without reuse, in the first frame, and where so much has
+/// changed since the last that few of its pixels can stay.
 glint_status glint_renderer_run_adaptive(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
                                          const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
 {
     glint_refine *refine = renderer->refine;
     glint_image *kept = NULL, in_place;
     glint_frame_stats first;
-    const bool alone = !renderer->reuse.on || !renderer->base;
+    const bool alone =
+        !renderer->reuse.on || !renderer->base || !glint_key_equal(renderer->setting, plan->setting_key);
+    renderer->setting = plan->setting_key;
     refine->whole = !glint_plan_compares_codes(&plan->desc) && !plan->derivatives &&
                     !(plan->lens && glint_tile_wants_geometry(plan));
     refine->in_place = refine->whole && alone;

@@ -39,6 +39,7 @@ struct glint_renderer {
     glint_frame_stats last_stats;
     glint_refine own_refine, *refine; ///< a renderer of bases has that of its frames
     double refined_by[3]; ///< threshold, curve and exposure that the last base was compared by
+    glint_key setting; ///< the plan's setting_key of the last frame that had a base
     /// Makes the pictures that adaptive sampling looks at, with the pool and the tiles of this one; NULL until a frame
     /// has it, and again after one that has not.
     struct glint_renderer *base;

@@ -323,6 +323,8 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         add_inputs(plan, READS(MATERIALS) | READS(TINTS) | READS(INDIRECT) | READS(BOUNCES), none);
     plan->all_lights_key = add_inputs(plan, READS(LIGHT_PLACES) | READS(SHADOWS) | READS(LIGHT_COLORS), light_base);
     plan->background_key = add_inputs(plan, READS(BACKGROUND), none);
+    plan->setting_key =
+        add_inputs(plan, READS(VIEW) | READS(LIGHT_PLACES) | READS(SHADOWS) | READS(LIGHT_COLORS), none);
     plan->output_key = add_inputs(plan, READS(DEPTH_CUE) | READS(DERIVATIVES) | READS(PASSES) | READS(TONE), none);
     return GLINT_OK;
 }

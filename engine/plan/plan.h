@@ -193,6 +193,7 @@ struct glint_plan {
     glint_key all_materials_key, all_lights_key, background_key;
     glint_key vertex_key; ///< of what the light of faces and vertices is worked out from
     glint_key output_key; ///< of what pictures are made of pixels
+    glint_key setting_key; ///< of the view, and of lights' places and colours: where another, few pixels stay
     bool raster; ///< triangles are found by projecting them, not by casting
     bool needs_index; ///< some stage walks it
     bool accumulate; ///< sums over samples or over chunks of lights

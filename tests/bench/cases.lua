@@ -35,6 +35,9 @@ local measurements = {
   { "g.shutter.light", "glint", "reuse change=light times=8" },
   { "g.shutter.ball", "glint", "reuse change=sphere times=8" },
   { "g.shiny", "glint", "reuse change=shininess" },
+  { "g.chosen.light", "glint", "reuse change=light samples=16 adaptive=1" },
+  { "g.chosen.ball", "glint", "reuse change=sphere samples=16 adaptive=1" },
+  { "g.chosen.shiny", "glint", "reuse change=shininess samples=16 adaptive=1" },
 
   -- 60 frames to 60 PNG files
   { "g.light.1", "glint", "job change=light threads=1 out=$OUT" },
@@ -188,6 +191,9 @@ local rows = {
   { "reuse", "open shutter, 8 times of a moved light / full frame", "g.shutter.light:kept", "g.shutter.light:fresh", bar = 4 },
   { "reuse", "open shutter, 8 times of a moved sphere / full frame", "g.shutter.ball:kept", "g.shutter.ball:fresh" },
   { "reuse", "changed shininess / full frame", "g.shiny:kept", "g.shiny:fresh", bar = 0.15 },
+  { "reuse", "moved light, adaptive / full frame", "g.chosen.light:kept", "g.chosen.light:fresh" },
+  { "reuse", "moved sphere, adaptive / full frame", "g.chosen.ball:kept", "g.chosen.ball:fresh" },
+  { "reuse", "changed shininess, adaptive / full frame", "g.chosen.shiny:kept", "g.chosen.shiny:fresh" },
   { "jobs", "60-frame light job, two threads / one", "g.light.2:job", "g.light.1:job", bar = 0.55 },
   { "jobs", "60-frame shininess job, two threads / one", "g.shininess.2:job", "g.shininess.1:job", bar = 0.55 },
   { "jobs", "60-frame light job, reuse / none", "g.light.2:job", "g.light.fresh:job" },
