@@ -54,13 +54,16 @@ static glint_status render_base(glint_renderer *renderer, const glint_plan *plan
     return status;
 }
 
-/// The base in the picture that is made of it: `base` is that picture, with planes of `*more` where it has none. Nothing is kept.
+/// The base in the picture that is made of it: `base` is that picture, with planes of `*more` where it has none. Nothing is kept, and
+/// the last base is given up, since what its pixels were compared by is overwritten.
 static glint_status render_in_place(glint_renderer *renderer, const glint_plan *plan, const glint_image *image,
                                     const glint_tone_table *table, glint_image *base, glint_image **more,
                                     glint_frame_stats *stats, glint_error *error)
 {
     glint_render_desc desc = plan->base->desc;
     glint_status status = GLINT_OK;
+    forget(renderer->base);
+    glint_reuse_clear(&renderer->base->reuse);
     *base = *image;
     base->film = NULL;
     desc.codes = false;

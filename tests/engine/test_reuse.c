@@ -679,6 +679,55 @@ static void a_lamp_that_reaches_nothing(void **unused)
     glint_renderer_destroy(fresh);
 }
 
+/// Frames of a few places and colours that come back in any order, so that all that is kept of one is met again.
+static void frames_that_come_back(void **unused)
+{
+    (void)unused;
+    for (int round = 0; round < 6; round++) {
+        world w;
+        glint_renderer *reusing, *fresh;
+        glint_renderer_desc desc = glint_renderer_desc_default();
+        assert_int_equal(glint_renderer_create(&desc, &reusing, NULL), GLINT_OK);
+        desc.no_reuse = true;
+        assert_int_equal(glint_renderer_create(&desc, &fresh, NULL), GLINT_OK);
+        state = 700 + (uint64_t)round;
+        make_world(&w);
+        for (int i = 1; i < LIGHTS && round >= 2; i++) // where one lamp is all light, little changes what is chosen
+            assert_int_equal(glint_scene_remove_light(w.scene, w.lights[i], NULL), GLINT_OK);
+        w.render.samples = 4;
+        w.render.adaptive = round % 2 ? 0.03 : 0.3;
+        w.render.codes = round % 3 < 2;
+        for (int frame = 0; frame < 60; frame++) {
+            glint_plan *plan;
+            glint_image *a, *b;
+            glint_material_desc paint = *glint_material_get(w.materials[1]);
+            glint_shape_desc place = *glint_shape_get(w.shapes[4]);
+            glint_light_desc lamp = *glint_light_get(w.lights[0]);
+            const uint32_t what = draw(4), value = draw(3);
+            if (what == 0)
+                paint.diffuse[0] = 0.3 * value;
+            else if (what == 1)
+                lamp.position[0] = 2.0 * value;
+            else if (what == 2)
+                place.center[1] = 0.5 * value;
+            assert_int_equal(glint_material_set(w.materials[1], &paint, NULL), GLINT_OK);
+            assert_int_equal(glint_light_set(w.lights[0], &lamp, NULL), GLINT_OK);
+            assert_int_equal(glint_shape_set(w.shapes[4], &place, NULL), GLINT_OK);
+            assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
+            assert_int_equal(glint_render(reusing, plan, &a, NULL, NULL), GLINT_OK);
+            assert_int_equal(glint_render(fresh, plan, &b, NULL, NULL), GLINT_OK);
+            if (!same_pixels(a, b, w.render.passes) || !same_codes(a, b))
+                fail_msg("round %d, frame %d: the reused frame differs from the fresh one", round, frame);
+            glint_image_release(a);
+            glint_image_release(b);
+            glint_plan_destroy(plan);
+        }
+        free_world(&w);
+        glint_renderer_destroy(reusing);
+        glint_renderer_destroy(fresh);
+    }
+}
+
 static double reused_share(const glint_frame_stats *stats, const char *stage)
 {
     for (int i = 0; i < stats->stage_count; i++)
@@ -879,6 +928,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tables_name_every_field),
         cmocka_unit_test(a_lamp_that_reaches_nothing),
+        cmocka_unit_test(frames_that_come_back),
         cmocka_unit_test(a_highlight_that_a_tile_does_not_show),
         cmocka_unit_test(hits_are_read_or_found_anew),
         cmocka_unit_test(the_quicker_way_is_taken),
