@@ -36,6 +36,8 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->transparent_shadow = glint_transparent_shadow_create()) && good;
     if (plan->together && !tile->samples)
         good = (tile->samples = glint_samples_create()) && good;
+    if (plan->base && plan->together && !tile->gathered)
+        good = (tile->gathered = glint_gathered_create()) && good;
     if (plan->facets && !tile->facets)
         good = (tile->facets = glint_alloc(1, sizeof *tile->facets)) && good;
     if (plan->derivatives && !tile->derivative)
@@ -63,6 +65,7 @@ void glint_tile_destroy(glint_tile *tile)
     glint_bounce_destroy(tile->bounce);
     glint_transparent_shadow_destroy(tile->transparent_shadow);
     glint_differ_work_destroy(tile->differ);
+    glint_gathered_destroy(tile->gathered);
     glint_vertex_destroy(tile->vertex);
     glint_raster_rest_destroy(tile->raster_rest);
     glint_visible_light_destroy(tile->visible_light);

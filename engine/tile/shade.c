@@ -190,3 +190,38 @@ void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame)
     tile->counts.runs[GLINT_STAGE_SHADE] += count - 1;
     glint_tile_count_stage(tile, frame, GLINT_STAGE_RESOLVE, false);
 }
+
+/// The light in arrays of which the sample's part begins at group g.
+static glint_shade_light light_from(const glint_shade_light *light, uint32_t g)
+{
+    glint_shade_light out = *light;
+    const float **const arrays[] = { &out.cosine, &out.attenuation, &out.log2_specular, &out.highlight };
+    out.lit += g;
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+        if (*arrays[i])
+            *arrays[i] += (size_t)g * GLINT_GROUP;
+    return out;
+}
+
+void glint_tile_resolve_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, float *const beauty[3])
+{
+    const uint32_t count = (uint32_t)frame->plan->desc.samples, groups = tile->group_count / count;
+    struct glint_samples *samples = tile->samples;
+    glint_shade_light lights[GLINT_LIGHT_CHUNK];
+    glint_shade_args all = glint_tile_shade_args(tile, frame, 0, light_count, lights, NULL);
+    all.group_count = groups;
+    memcpy(all.beauty, beauty, sizeof all.beauty);
+    for (uint32_t k = 0; k < count; k++) {
+        glint_shade_args *shade = &samples->shade[k];
+        *shade = all;
+        shade->hits += k * groups;
+        shade->material += (size_t)k * groups * GLINT_GROUP;
+        shade->lights = samples->lights + k * all.light_count;
+        for (uint32_t i = 0; i < all.light_count; i++)
+            samples->lights[k * all.light_count + i] = light_from(&lights[i], k * groups);
+    }
+    glint_tile_count_powers(tile, frame, 0, light_count);
+    frame->stages->resolve_samples(samples->shade, count);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_SHADE, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_RESOLVE, false);
+}

@@ -178,6 +178,7 @@ typedef struct glint_tile {
     struct glint_raster_rest *raster_rest; ///< of tile/raster.c: what is cast because it is no triangle; likewise
     struct glint_visible_light
         *visible_light; ///< of tile/visible_lights.c; NULL unless the frame has lights that are seen
+    struct glint_gathered *gathered; ///< of tile/gather.c; NULL until a frame is adaptive
     struct glint_differ_work *differ; ///< of tile/differ.c; NULL until a frame is a base
     struct glint_indirect *indirect; ///< memory of tile/indirect/; likewise
     struct glint_environment *environment; ///< of tile/environment.c; NULL unless a program gives the background
@@ -314,6 +315,8 @@ struct glint_samples *glint_samples_create(void);
 void glint_samples_destroy(struct glint_samples *samples);
 void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count);
 void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame);
+/// The same where all samples of the tile's pixels are in its groups, one sample's after the other's. beauty: of the pixels.
+void glint_tile_resolve_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, float *const beauty[3]);
 /// Counts a stage's call and, when stages are timed, its time; `reused`: its result was at hand.
 void glint_tile_count_stage(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused);
 uint64_t glint_tile_now_ns(void);
@@ -384,6 +387,23 @@ void glint_differ_work_destroy(struct glint_differ_work *work); ///< NULL: nothi
 /// Where the numbers of its objects and normals go, in the order of groups.
 float *glint_differ_values(struct glint_differ_work *work, int value);
 void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
+
+/// tile/gather.c: the chosen pixels of a tile, apart from the others.
+struct glint_gathered *glint_gathered_create(void);
+void glint_gathered_destroy(struct glint_gathered *gathered); ///< NULL: nothing
+/// Lists the places of the active pixels in the tile where that pays and the frame lets it be done; returns how many they are, 0: all
+/// samples are to be taken where they are.
+uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame, uint16_t place[GLINT_TILE_SAMPLES]);
+/// The most pixels whose samples are walked together.
+static inline uint32_t glint_tile_most_gathered(const glint_plan *plan)
+{
+    return GLINT_TILE_GROUPS / (uint32_t)plan->desc.samples * GLINT_GROUP;
+}
+/// Makes the groups of the tile those of all samples of `count` listed pixels, sample by sample, and their rays.
+void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count);
+/// After the stages before it: shades and resolves them into their places. The tile is as it was.
+void glint_tile_resolve_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
+                                 uint32_t count);
 
 /// tile/refine.c: whether some pixels of the tile get all samples.
 bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame);

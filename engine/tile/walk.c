@@ -130,7 +130,7 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     } else if (known) {
         glint_tile_count_stage(tile, frame, GLINT_STAGE_CAST, true);
     } else {
-        if (glint_tile_in_sight(tile, frame))
+        if (!w->rays && glint_tile_in_sight(tile, frame))
             need_rays(tile, frame, w);
         glint_tile_cast(tile, frame);
     }
@@ -388,6 +388,40 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     find_rest(tile, frame, &w, any, shading_points);
 }
 
+/// All samples of `count` pixels that are gathered.
+static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count)
+{
+    walk w = { .rays = true };
+    tile->own_lights = 0;
+    glint_tile_gather(tile, frame, place, count);
+    const bool any = find_hits(tile, frame, &w);
+    const uint32_t lights = any ? frame->plan->light_count : 0;
+    find_lights(tile, frame, &w, 0, lights);
+    need_shading(tile, frame, &w, any, any, 0);
+    glint_tile_resolve_gathered(tile, frame, lights, place, count);
+}
+
+/// All samples of the active pixels; false: they are given up.
+static bool take_samples(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    uint16_t place[GLINT_TILE_SAMPLES];
+    const uint32_t gathered = glint_tile_list_gathered(tile, frame, place);
+    for (uint32_t i = 0, most = glint_tile_most_gathered(plan); i < gathered && !glint_tile_cancelled(frame); i += most)
+        sample_gathered(tile, frame, place + i, gathered - i < most ? gathered - i : most);
+    for (uint32_t k = 0; !gathered && k < (uint32_t)plan->desc.samples && !glint_tile_cancelled(frame); k++)
+        sample(tile, frame, k);
+    if (glint_tile_cancelled(frame))
+        return false;
+    if (plan->runs[GLINT_STAGE_DEPTH_CUE])
+        glint_tile_take_faded(tile, plan);
+    if (plan->together && !gathered)
+        glint_tile_resolve_samples(tile, frame);
+    else if (plan->accumulate && !gathered && !tile->direct)
+        glint_tile_resolve(tile, frame);
+    return true;
+}
+
 /// The geometry that a pinhole in the middle of the lens sees; of it nothing is kept.
 static void find_geometry(glint_tile *tile, const glint_tile_frame *frame)
 {
@@ -456,19 +490,10 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     if (refined)
         begin_cached(tile, frame);
     glint_tile_prefetch_output(tile, frame);
-    for (uint32_t k = 0; refined && k < (uint32_t)plan->desc.samples; k++) {
-        sample(tile, frame, k);
-        if (glint_tile_cancelled(frame))
-            return;
-    }
+    if (refined && !take_samples(tile, frame))
+        return;
     if (refined)
         glint_tile_sign_cached(tile, frame);
-    if (plan->runs[GLINT_STAGE_DEPTH_CUE] && refined)
-        glint_tile_take_faded(tile, plan);
-    if (plan->together && refined)
-        glint_tile_resolve_samples(tile, frame);
-    else if (plan->accumulate && refined && !tile->direct)
-        glint_tile_resolve(tile, frame);
     if (plan->derivatives)
         glint_tile_store_derivatives(tile, frame);
     if (frame->base)

@@ -8,7 +8,7 @@ enum { CASES = 300 };
 
 static void camera_case(int precision, bool odd)
 {
-    const uint32_t across = 1 + below(GLINT_TILE_WIDTH / 4), down = 1 + below(GLINT_TILE_HEIGHT / 4);
+    const uint32_t across = one_in(4) ? 1 : 1 + below(GLINT_TILE_WIDTH / 4), down = 1 + below(GLINT_TILE_HEIGHT / 4);
     const uint32_t n = across * down * GLINT_GROUP;
     glint_camera_args args = { .group_count = across * down, .groups_across = across, .orthographic = one_in(2) };
     args.x0 = GLINT_TILE_WIDTH * below(2000);
@@ -29,6 +29,8 @@ static void camera_case(int precision, bool odd)
         lens.bend[i / GLINT_GROUP][i % GLINT_GROUP] = maybe_odd(odd, either_sign(power_of_ten(-6, 3)));
     }
     args.lens = one_in(2) ? &lens : NULL;
+    if (across == 1 && !args.lens && !args.orthographic)
+        scatter_pixels(&args);
     FOR_EACH_TESTED
     {
         output3(args.origin, "origin", real_kind(precision), n);
@@ -75,8 +77,8 @@ static void check_sight(const ray_case *c, glint_cast_view *view)
 /// views: one for each instruction set, or NULL.
 static void cast_with(const ray_case *c, glint_cast_view views[])
 {
-    static const char *const names[RAY_KINDS] = { "cast_bundle", "cast_rays, orthographic", "cast_rays, lens",
-                                                  "cast_rays, parallel", "cast_rays" };
+    static const char *const names[RAY_KINDS] = { "cast_bundle",     "cast_bundle, pixels", "cast_rays, orthographic",
+                                                  "cast_rays, lens", "cast_rays, parallel", "cast_rays" };
     glint_cast_args args = c->cast;
     const uint32_t n = args.group_count * GLINT_GROUP;
     FOR_EACH_TESTED
@@ -534,7 +536,7 @@ static uint32_t make_surface_case(ray_case *c, glint_surface_args *args, int pre
                                    .mixed = c->plan.triangles || c->plan.solids,
                                    .scale = c->scene->table.scale,
                                    .solids = c->scene->solids,
-                                   .camera = c->kind == RAYS_OF_EYE ? &c->camera : NULL,
+                                   .camera = is_from_eye(c->kind) ? &c->camera : NULL,
                                    .t = c->cast.t };
     memcpy(args->origin, c->origin, sizeof args->origin);
     memcpy(args->direction, c->direction, sizeof args->direction);
@@ -626,7 +628,7 @@ static void make_lamp(const ray_case *c, glint_light_args *light)
     *light = (glint_light_args) { .group_count = c->cast.group_count,
                                   .hits = c->cast.hits,
                                   .materials = materials,
-                                  .camera = c->kind == RAYS_OF_EYE ? &c->camera : NULL,
+                                  .camera = is_from_eye(c->kind) ? &c->camera : NULL,
                                   .directional = one_in(3),
                                   .scale = one_in(2) ? 1 : 0x1p-3,
                                   .sample_count = 1,

@@ -40,6 +40,23 @@ static void R(camera_perspective)(const glint_camera_args *args)
     }
 }
 
+/// Of pixels wherever they are: each row of groups has whole directions, to which the column adds nothing, not even a sign.
+static void R(camera_pixels)(const glint_camera_args *args)
+{
+    _Alignas(64) real s[GLINT_GROUP], t[GLINT_GROUP];
+    for (int i = 0; i < 3 * GLINT_GROUP; i += VR)
+        r_store((real *)args->across + i, r_set(-0.0));
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        real *down = (real *)args->down + (size_t)g * 3 * GLINT_GROUP;
+        R(pixel_axis)(0, args->pixel[0] + (size_t)g * GLINT_GROUP, args->offset[0], args->width, false, s);
+        R(pixel_axis)(0, args->pixel[1] + (size_t)g * GLINT_GROUP, args->offset[1], args->height, true, t);
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < GLINT_GROUP; i += VR)
+                r_store(down + c * GLINT_GROUP + i, (r_set(args->forward[c]) + r_load(s + i) * r_set(args->right[c])) +
+                                                        r_load(t + i) * r_set(args->up[c]));
+    }
+}
+
 static void R(camera_orthographic)(const glint_camera_args *args)
 {
     _Alignas(64) real s[GLINT_GROUP], t[GLINT_GROUP];
@@ -106,6 +123,8 @@ static void R(camera)(const glint_camera_args *args)
 {
     if (GLINT_WITH_LENS && args->lens)
         R(camera_lens)(args);
+    else if (args->pixel[0])
+        R(camera_pixels)(args);
     else if (args->orthographic)
         R(camera_orthographic)(args);
     else

@@ -22,11 +22,15 @@ typedef struct glint_camera_args {
     bool orthographic;
     double eye[3], forward[3], right[3], up[3]; ///< right and up are scaled to half a pixel
     const glint_lens *lens; ///< NULL: all rays of a perspective camera start at the eye
+    const double *pixel[2]; ///< column and row of each lane's pixel, wherever it is; NULL: that of its place in the tile. Only of a
+        ///< perspective camera without a lens; then groups_across is 1, no pixel is before (x0, y0)
+    double end[2]; ///< and none is from (end[0], end[1]) on
     void *across, *down; ///< out, real, perspective: 3 times 16 numbers a column and a row of groups; see below
     void *origin[3], *direction[3]; ///< out, real, orthographic or with a lens: one a ray
 } glint_camera_args;
 // lane i of group (gx, gy): px = (x0 + 4 gx + i % 4) + offset[0], py likewise with i / 4
 // sx = 2 px - width, sy = height - 2 py                             (all of that in double, then rounded to real)
+// where pixels are given: px = pixel[0][16 g + i] + offset[0], py likewise; across holds -0, and down the whole direction
 // perspective:  direction = (forward + sx right) + sy up, of which across is the first term and down the second:
 //               component c of lane i of group (gx, gy) is across[(3 gx + c) 16 + i] + down[(3 gy + c) 16 + i]
 // orthographic: direction = forward, origin = (eye + sx right) + sy up

@@ -78,8 +78,8 @@ static void NAME(camera_sample)(const glint_camera_args *args, uint32_t i)
 {
     uint32_t lane = i % GLINT_GROUP, column = i / GLINT_GROUP % args->groups_across;
     uint32_t row = i / GLINT_GROUP / args->groups_across;
-    double px = (args->x0 + 4 * column + lane % 4) + args->offset[0];
-    double py = (args->y0 + 4 * row + lane / 4) + args->offset[1];
+    double px = (args->pixel[0] ? args->pixel[0][i] : args->x0 + 4 * column + lane % 4) + args->offset[0];
+    double py = (args->pixel[1] ? args->pixel[1][i] : args->y0 + 4 * row + lane / 4) + args->offset[1];
     REAL sx = (REAL)(2 * px - args->width);
     REAL sy = (REAL)(args->height - 2 * py);
     NAME(vec3) across = NAME(times)(NAME(rounded)(args->right), sx);
@@ -87,6 +87,9 @@ static void NAME(camera_sample)(const glint_camera_args *args, uint32_t i)
     NAME(vec3) origin = NAME(rounded)(args->eye), direction = NAME(rounded)(args->forward);
     if (args->orthographic) {
         origin = NAME(add)(NAME(add)(origin, across), upward);
+    } else if (args->pixel[0]) {
+        NAME(store_part)(args->across, 0, lane, NAME(vec)(-(REAL)0, -(REAL)0, -(REAL)0));
+        NAME(store_part)(args->down, row, lane, NAME(add)(NAME(add)(direction, across), upward));
     } else {
         NAME(store_part)(args->across, column, lane, NAME(add)(direction, across));
         NAME(store_part)(args->down, row, lane, upward);

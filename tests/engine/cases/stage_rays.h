@@ -7,6 +7,7 @@
 
 typedef enum ray_kind {
     RAYS_OF_EYE, ///< cast_bundle
+    RAYS_OF_PIXELS, ///< likewise, of pixels wherever they are
     RAYS_OF_ORTHOGRAPHIC_CAMERA, ///< cast_rays, parallel
     RAYS_OF_LENS, ///< cast_rays, of either projection
     RAYS_PARALLEL, ///< likewise, another direction for each group
@@ -25,6 +26,8 @@ typedef struct ray_case {
     glint_cast_args cast;
     const void *origin[3], *direction[3]; ///< of rays that are in arrays
 } ray_case;
+
+static inline bool is_from_eye(ray_kind kind) { return kind == RAYS_OF_EYE || kind == RAYS_OF_PIXELS; }
 
 // ---- Cameras -----------------------------------------------------------------------------------------------------
 
@@ -94,11 +97,26 @@ static inline void random_lens(double size, double distance, glint_camera_args *
     camera->lens = lens;
 }
 
+/// Some pixels of a tile in any order, one a lane.
+static inline void scatter_pixels(glint_camera_args *camera)
+{
+    const double first[2] = { camera->x0, camera->y0 };
+    const uint32_t size[2] = { 1 + below(GLINT_TILE_WIDTH), 1 + below(GLINT_TILE_HEIGHT) };
+    camera->groups_across = 1;
+    for (int k = 0; k < 2; k++) {
+        double *pixel = input(KIND_DOUBLE, camera->group_count * GLINT_GROUP);
+        for (uint32_t i = 0; i < camera->group_count * GLINT_GROUP; i++)
+            pixel[i] = first[k] + below(size[k]);
+        camera->pixel[k] = pixel;
+        camera->end[k] = first[k] + size[k];
+    }
+}
+
 /// Pixels of the tile that are in the image; now and then any.
 static inline uint16_t *active_pixels(const glint_camera_args *camera)
 {
     uint16_t *active = masks(camera->group_count);
-    if (one_in(4))
+    if (camera->pixel[0] || one_in(4))
         return active;
     for (uint32_t i = 0; i < camera->group_count * GLINT_GROUP; i++) {
         const uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP, bit = 1u << lane;
@@ -139,7 +157,7 @@ static inline void get3(const void *const array[3], int precision, uint32_t i, d
 
 static inline void get_ray(const ray_case *c, uint32_t i, double origin[3], double direction[3])
 {
-    if (c->kind != RAYS_OF_EYE) {
+    if (!is_from_eye(c->kind)) {
         get3(c->origin, c->precision, i, origin);
         get3(c->direction, c->precision, i, direction);
         return;
@@ -218,10 +236,12 @@ static inline void start_rays(ray_case *c, ray_kind kind, int precision)
     double length = random_camera(&c->plan, orthographic, &c->camera);
     if (kind == RAYS_OF_LENS)
         random_lens(c->plan.size, length, &c->camera, &c->lens);
+    if (kind == RAYS_OF_PIXELS)
+        scatter_pixels(&c->camera);
     const uint32_t n = c->camera.group_count * GLINT_GROUP;
     c->cast = (glint_cast_args) { .group_count = c->camera.group_count };
     c->cast.active = active_pixels(&c->camera);
-    if (kind == RAYS_OF_EYE) {
+    if (is_from_eye(kind)) {
         make_axes(&c->camera, precision);
     } else {
         input3(c->origin, real_kind(precision), n);
@@ -246,7 +266,7 @@ static inline void end_rays(ray_case *c) { free_scene(c->scene); }
 /// Casts on one instruction set.
 static inline void cast_on(const glint_stages *stages, const ray_case *c, const glint_cast_args *args)
 {
-    if (c->kind == RAYS_OF_EYE)
+    if (is_from_eye(c->kind))
         stages->geometry[c->precision].cast_bundle(args);
     else
         stages->geometry[c->precision].cast_rays(args);
