@@ -141,17 +141,20 @@ static void note_borders(const glint_tile *tile, const glint_refine *refine, con
                          (float *const[2]) { own->side[0][v], own->side[1][v] });
 }
 
-/// The range of a row of groups. none: nothing is hit, and no light is seen.
-static void find_range(const glint_tile *tile, const glint_refine *refine, const tile_values *values, uint32_t row, bool none,
-                       glint_refine_range *range)
+/// The range of `rows` rows of groups from `row` on; of several objects no more than that they are. none: nothing is hit, and no light
+/// is seen.
+static void find_range(const glint_tile *tile, const glint_refine *refine, const tile_values *values, uint32_t row, uint32_t rows,
+                       bool none, glint_refine_range *range)
 {
     const size_t length = (size_t)tile->groups_across * GLINT_GROUP, at = row * length;
     _Alignas(64) float light[GLINT_GROUP] = { 0 }, code[GLINT_GROUP];
-    glint_range_args args = { .count = (uint32_t)length, .gain = 1, .top = HUGE_VALF };
+    glint_range_args args = { .count = rows * (uint32_t)length, .gain = 1, .top = HUGE_VALF };
     *range = (glint_refine_range) { .id = { 0 } };
     args.numbers = values->of[GLINT_DIFFER_ID] + at;
     if (!none)
         refine->stages->range(&args, range->id);
+    if (range->id[0] < range->id[1])
+        return;
     args.floor = -1;
     args.top = 1;
     for (int c = 0; c < 3 && range->id[1] > 0; c++) {
@@ -168,31 +171,21 @@ static void find_range(const glint_tile *tile, const glint_refine *refine, const
     memcpy(range->code, code, sizeof range->code);
 }
 
-static void widen(float range[2], const float more[2])
+/// From the lower of the two least to the higher of the two most: how far these are apart. No call: fminf is one.
+static inline float spread_of(const float a[2], const float b[2])
 {
-    range[0] = fminf(range[0], more[0]);
-    range[1] = fmaxf(range[1], more[1]);
-}
-
-/// Makes a range that of more pixels.
-static void add_range(glint_refine_range *range, const glint_refine_range *more)
-{
-    widen(range->id, more->id);
-    for (int c = 0; c < 3; c++) {
-        widen(range->normal[c], more->normal[c]);
-        widen(range->code[c], more->code[c]);
-    }
+    return (a[1] > b[1] ? a[1] : b[1]) - (a[0] < b[0] ? a[0] : b[0]);
 }
 
 bool glint_refine_alike(const glint_refine *refine, const glint_refine_range *a, const glint_refine_range *b)
 {
     float bend = 0, sum = 0;
-    if (fminf(a->id[0], b->id[0]) < fmaxf(a->id[1], b->id[1]))
+    if (spread_of(a->id, b->id) > 0)
         return false;
     for (int c = 0; c < 3; c++) {
-        const float turn = fmaxf(a->normal[c][1], b->normal[c][1]) - fminf(a->normal[c][0], b->normal[c][0]);
+        const float turn = spread_of(a->normal[c], b->normal[c]);
         bend += turn * turn;
-        sum += fmaxf(a->code[c][1], b->code[c][1]) - fminf(a->code[c][0], b->code[c][0]);
+        sum += spread_of(a->code[c], b->code[c]);
     }
     return bend < 2 * (1 - GLINT_REFINE_NORMAL) - 0.01f && sum <= refine->low; // normals are unit but for rounding
 }
@@ -206,12 +199,12 @@ static uint32_t find_open_rows(const glint_tile *tile, const glint_tile_frame *f
     const bool none = shows_nothing(tile, frame);
     glint_refine_range range[GLINT_TILE_HEIGHT / 4];
     uint32_t open = 0;
+    find_range(tile, refine, values, 0, groups_down, none, all);
+    if (glint_refine_alike(refine, all, all))
+        return 0;
+    for (uint32_t y = 0; y < groups_down; y++)
+        find_range(tile, refine, values, y, 1, none, &range[y]);
     for (uint32_t y = 0; y < groups_down; y++) {
-        find_range(tile, refine, values, y, none, &range[y]);
-        *all = y ? *all : range[0];
-        add_range(all, &range[y]);
-    }
-    for (uint32_t y = 0; y < groups_down && !glint_refine_alike(refine, all, all); y++) {
         if (!glint_refine_alike(refine, &range[y], &range[y]))
             open |= 15u << 4 * y;
         if (y + 1 < groups_down && !glint_refine_alike(refine, &range[y], &range[y + 1]))
