@@ -128,6 +128,16 @@ static void copy_borders(const glint_tile *tile, const float *from, float *const
     }
 }
 
+void glint_tile_prefetch_borders(const glint_tile *tile, const glint_refine *refine)
+{
+    glint_refine_tile *own = &refine->tiles[tile->index];
+    const uint32_t row = tile->y0 / GLINT_TILE_HEIGHT;
+    glint_prefetch(own, sizeof *own);
+    for (int v = 0; v < (refine->coded ? GLINT_DIFFER_CODE + refine->base->channels : GLINT_DIFFER_CODE + 3); v++)
+        for (int last = 0; last < 2; last++)
+            glint_prefetch(glint_refine_edge(refine, row, last, v) + tile->x0, tile->width * sizeof(float));
+}
+
 /// What the tiles around this one read.
 static void note_borders(const glint_tile *tile, const glint_refine *refine, const tile_values *values)
 {

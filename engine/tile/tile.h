@@ -386,6 +386,7 @@ struct glint_differ_work *glint_differ_work_create(void);
 void glint_differ_work_destroy(struct glint_differ_work *work); ///< NULL: nothing
 /// Where the numbers of its objects and normals go, in the order of groups.
 float *glint_differ_values(struct glint_differ_work *work, int value);
+void glint_tile_prefetch_borders(const glint_tile *tile, const glint_refine *refine);
 void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
 
 /// tile/gather.c: the chosen pixels of a tile, apart from the others.

@@ -490,6 +490,8 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     if (refined)
         begin_cached(tile, frame);
     glint_tile_prefetch_output(tile, frame);
+    if (plan->is_base)
+        glint_tile_prefetch_borders(tile, frame->refine);
     if (refined && !take_samples(tile, frame))
         return;
     if (refined)
