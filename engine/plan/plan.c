@@ -107,9 +107,8 @@ static void choose_visibility(glint_plan *plan)
     plan->needs_index = !plan->raster || needs_index || glint_plan_cuts(plan);
 }
 
-/// Whether the samples of a tile can be shaded in one: what was found for each fits the tile, and light comes from
-/// nowhere else.
-static bool shades_together(const glint_plan *plan)
+/// Whether light comes from nowhere but the stage shade, in one call a sample.
+static bool is_local(const glint_plan *plan)
 {
     static const glint_stage_id other[] = { GLINT_STAGE_BOUNCE,    GLINT_STAGE_INDIRECT, GLINT_STAGE_VISIBLE_LIGHT,
                                             GLINT_STAGE_DEPTH_CUE, GLINT_STAGE_VERTEX,   GLINT_STAGE_FACET,
@@ -117,8 +116,14 @@ static bool shades_together(const glint_plan *plan)
     for (size_t i = 0; i < sizeof other / sizeof *other; i++)
         if (plan->runs[other[i]])
             return false;
-    return !plan->derivatives && plan->desc.samples > 1 && plan->desc.samples <= GLINT_LIGHT_CHUNK &&
-           plan->desc.samples * plan->light_count <= GLINT_LIGHT_CHUNK && !plan->tints;
+    return !plan->derivatives && !plan->tints && plan->light_count <= GLINT_LIGHT_CHUNK;
+}
+
+/// Whether the samples of a tile can be shaded in one: what was found for each fits the tile.
+static bool shades_together(const glint_plan *plan)
+{
+    return plan->local && plan->desc.samples > 1 && plan->desc.samples <= GLINT_LIGHT_CHUNK &&
+           plan->desc.samples * plan->light_count <= GLINT_LIGHT_CHUNK;
 }
 
 /// Lists the stages this frame needs.
@@ -148,6 +153,7 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_VERTEX] = lit && plan->geometry->table.shading_point_count > 0;
     plan->runs[GLINT_STAGE_SHADE] = true;
     plan->runs[GLINT_STAGE_DERIVATIVE] = plan->derivatives;
+    plan->local = is_local(plan);
     plan->together = shades_together(plan);
     plan->runs[GLINT_STAGE_REFINE] = plan->desc.adaptive > 0 && plan->desc.samples > 1;
     plan->runs[GLINT_STAGE_RESOLVE] = plan->accumulate;

@@ -1,5 +1,5 @@
 /// Adaptive sampling: the chosen pixels of a tile, gathered. They lie along edges, so that the tile's own groups are mostly empty. Here a
-/// group is one sample of 16 of them, wherever they are in the tile, and one walk has all samples of as many as fit.
+/// group is one sample of 16 of them, wherever they are in the tile, and one walk has up to 16 samples of as many as fit.
 #include "engine/base/alloc.h"
 #include "engine/tile/tile.h"
 
@@ -20,11 +20,11 @@ struct glint_gathered *glint_gathered_create(void) { return glint_alloc(1, sizeo
 
 void glint_gathered_destroy(struct glint_gathered *gathered) { free(gathered); }
 
-/// Whether samples are shaded together, of few primitives, and nothing else asks where in its group, or in its tile, a pixel is.
+/// Whether light is local, primitives are few, and nothing asks where in its group, or in its tile, a pixel is.
 static bool may_gather(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
-    if (!frame->base || !plan->together || plan->runs[GLINT_STAGE_PATTERN] || plan->camera.orthographic || plan->lens ||
+    if (!frame->base || !plan->local || plan->runs[GLINT_STAGE_PATTERN] || plan->camera.orthographic || plan->lens ||
         plan->desc.passes & GLINT_LIGHT_PASSES || glint_tile_wants_coverage(plan) || tile->cached || frame->raster ||
         frame->geometry.prim_count > FEW_PRIMS)
         return false;
@@ -68,10 +68,11 @@ static void place_pixels(glint_tile *tile, const uint16_t *place, uint32_t count
     }
 }
 
-void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count)
+void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
+                       uint32_t samples)
 {
     struct glint_gathered *gathered = tile->gathered;
-    const uint32_t samples = (uint32_t)frame->plan->desc.samples, blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP;
+    const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP;
     const size_t real = frame->plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
     memcpy(gathered->active, tile->active, sizeof gathered->active);
     gathered->group_count = tile->group_count;
@@ -81,7 +82,7 @@ void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const ui
     tile->groups_across = tile->camera.groups_across = 1;
     tile->camera.group_count = blocks;
     for (uint32_t k = 0; k < samples; k++) {
-        glint_plan_sample_offset(frame->plan, k, tile->camera.offset);
+        glint_plan_sample_offset(frame->plan, first + k, tile->camera.offset);
         tile->camera.down = (char *)tile->rays.direction + k * blocks * 3 * GLINT_GROUP * real;
         glint_tile_make_rays(tile, frame);
     }
@@ -93,16 +94,17 @@ void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const ui
     }
 }
 
-void glint_tile_resolve_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
-                                 uint32_t count)
+void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
+                               uint32_t count, uint32_t first, uint32_t samples)
 {
     struct glint_gathered *gathered = tile->gathered;
     float *const beauty[3] = { gathered->beauty[0], gathered->beauty[1], gathered->beauty[2] };
-    glint_tile_resolve_stacked(tile, frame, light_count, beauty);
+    const bool last = first + samples == (uint32_t)frame->plan->desc.samples;
+    glint_tile_shade_stacked(tile, frame, light_count, first, samples, beauty);
     memcpy(tile->active, gathered->active, sizeof tile->active);
     tile->group_count = gathered->group_count;
     tile->groups_across = gathered->groups_across;
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3 && last; c++)
         for (uint32_t i = 0; i < count; i++)
             tile->film.beauty[c][place[i]] = beauty[c][i];
 }

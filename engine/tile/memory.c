@@ -36,7 +36,7 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->transparent_shadow = glint_transparent_shadow_create()) && good;
     if (plan->together && !tile->samples)
         good = (tile->samples = glint_samples_create()) && good;
-    if (plan->base && plan->together && !tile->gathered)
+    if (plan->base && plan->local && !tile->gathered)
         good = (tile->gathered = glint_gathered_create()) && good;
     if (plan->facets && !tile->facets)
         good = (tile->facets = glint_alloc(1, sizeof *tile->facets)) && good;

@@ -203,25 +203,74 @@ static glint_shade_light light_from(const glint_shade_light *light, uint32_t g)
     return out;
 }
 
-void glint_tile_resolve_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, float *const beauty[3])
+/// The k-th of the samples that `all` has the first of, each in so many groups. lights: to be filled in.
+static glint_shade_args stacked_sample(const glint_shade_args *all, uint32_t k, glint_shade_light *lights)
 {
-    const uint32_t count = (uint32_t)frame->plan->desc.samples, groups = tile->group_count / count;
-    struct glint_samples *samples = tile->samples;
+    const uint32_t g = k * all->group_count;
+    glint_shade_args args = *all;
+    args.hits += g;
+    args.material += (size_t)g * GLINT_GROUP;
+    args.lights = lights;
+    for (uint32_t i = 0; i < all->light_count; i++)
+        lights[i] = light_from(&all->lights[i], g);
+    return args;
+}
+
+/// Without sums.
+static void resolve_stacked(const glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *all, uint32_t samples)
+{
+    struct glint_samples *memory = tile->samples;
+    for (uint32_t k = 0; k < samples; k++)
+        memory->shade[k] = stacked_sample(all, k, memory->lights + k * all->light_count);
+    frame->stages->resolve_samples(memory->shade, samples);
+}
+
+/// Adds the samples to the sums.
+static void add_stacked(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *all, uint32_t samples, bool begins)
+{
+    glint_shade_light lights[GLINT_LIGHT_CHUNK];
+    const size_t size = all->group_count * GLINT_GROUP * sizeof(double);
+    for (int k = 0; k < GLINT_TERM_LOCAL && begins; k++)
+        for (int c = 0; c < 3 && glint_plan_has_term(frame->plan, (glint_term)k); c++)
+            memset(tile->film.sum[k][c], 0, size);
+    for (uint32_t k = 0; k < samples; k++) {
+        glint_shade_args args = stacked_sample(all, k, lights);
+        for (int term = 0; term < GLINT_TERM_COUNT; term++)
+            for (int c = 0; c < 3; c++)
+                args.sum[term][c] = tile->film.sum[term][c];
+        frame->stages->shade(&args);
+    }
+}
+
+/// The means of the sums of so many groups.
+static void resolve_sums(glint_tile *tile, const glint_tile_frame *frame, uint32_t groups, float *const beauty[3])
+{
+    glint_resolve_args args = { .group_count = groups, .samples = frame->plan->desc.samples };
+    for (int k = 0; k < GLINT_TERM_COUNT; k++)
+        for (int c = 0; c < 3; c++)
+            args.sum[k][c] = glint_plan_has_term(frame->plan, (glint_term)k) ? tile->film.sum[k][c] : NULL;
+    memcpy(args.beauty, beauty, sizeof args.beauty);
+    frame->stages->resolve(&args);
+}
+
+void glint_tile_shade_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, uint32_t first, uint32_t samples,
+                              float *const beauty[3])
+{
+    const glint_plan *plan = frame->plan;
+    const bool last = first + samples == (uint32_t)plan->desc.samples;
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
     glint_shade_args all = glint_tile_shade_args(tile, frame, 0, light_count, lights, NULL);
-    all.group_count = groups;
+    all.group_count /= samples;
     memcpy(all.beauty, beauty, sizeof all.beauty);
-    for (uint32_t k = 0; k < count; k++) {
-        glint_shade_args *shade = &samples->shade[k];
-        *shade = all;
-        shade->hits += k * groups;
-        shade->material += (size_t)k * groups * GLINT_GROUP;
-        shade->lights = samples->lights + k * all.light_count;
-        for (uint32_t i = 0; i < all.light_count; i++)
-            samples->lights[k * all.light_count + i] = light_from(&lights[i], k * groups);
-    }
+    if (plan->together)
+        resolve_stacked(tile, frame, &all, samples);
+    else
+        add_stacked(tile, frame, &all, samples, first == 0);
     glint_tile_count_powers(tile, frame, 0, light_count);
-    frame->stages->resolve_samples(samples->shade, count);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_SHADE, false);
+    if (!last)
+        return;
+    if (!plan->together)
+        resolve_sums(tile, frame, all.group_count, beauty);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_RESOLVE, false);
 }

@@ -315,8 +315,10 @@ struct glint_samples *glint_samples_create(void);
 void glint_samples_destroy(struct glint_samples *samples);
 void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count);
 void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame);
-/// The same where all samples of the tile's pixels are in its groups, one sample's after the other's. beauty: of the pixels.
-void glint_tile_resolve_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, float *const beauty[3]);
+/// Shades `samples` samples that the tile has one after the other in its groups, the first of which is number `first` of their pixels:
+/// together, or into the tile's sums; after the last resolves them. beauty: of the pixels.
+void glint_tile_shade_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, uint32_t first, uint32_t samples,
+                              float *const beauty[3]);
 /// Counts a stage's call and, when stages are timed, its time; `reused`: its result was at hand.
 void glint_tile_count_stage(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused);
 uint64_t glint_tile_now_ns(void);
@@ -395,16 +397,23 @@ void glint_gathered_destroy(struct glint_gathered *gathered); ///< NULL: nothing
 /// Lists the places of the active pixels in the tile where that pays and the frame lets it be done; returns how many they are, 0: all
 /// samples are to be taken where they are.
 uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame, uint16_t place[GLINT_TILE_SAMPLES]);
-/// The most pixels whose samples are walked together.
+/// How many samples of gathered pixels are walked together; and of how many pixels, at most.
+static inline uint32_t glint_tile_gathered_samples(const glint_plan *plan)
+{
+    const uint32_t samples = (uint32_t)plan->desc.samples, walks = (samples + GLINT_LIGHT_CHUNK - 1) / GLINT_LIGHT_CHUNK;
+    return (samples + walks - 1) / walks;
+}
 static inline uint32_t glint_tile_most_gathered(const glint_plan *plan)
 {
-    return GLINT_TILE_GROUPS / (uint32_t)plan->desc.samples * GLINT_GROUP;
+    return GLINT_TILE_GROUPS / glint_tile_gathered_samples(plan) * GLINT_GROUP;
 }
-/// Makes the groups of the tile those of all samples of `count` listed pixels, sample by sample, and their rays.
-void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count);
-/// After the stages before it: shades and resolves them into their places. The tile is as it was.
-void glint_tile_resolve_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
-                                 uint32_t count);
+/// Makes the groups of the tile those of `samples` samples from number `first` on of `count` listed pixels, sample by sample, and their
+/// rays.
+void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
+                       uint32_t samples);
+/// After the stages before it: shades them, and resolves the last into their places. The tile is as it was.
+void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
+                               uint32_t count, uint32_t first, uint32_t samples);
 
 /// tile/refine.c: whether some pixels of the tile get all samples.
 bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame);

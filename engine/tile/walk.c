@@ -388,17 +388,28 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     find_rest(tile, frame, &w, any, shading_points);
 }
 
-/// All samples of `count` pixels that are gathered.
-static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count)
+/// Some samples, from number `first` on, of `count` pixels that are gathered.
+static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first)
 {
+    const uint32_t left = (uint32_t)frame->plan->desc.samples - first, most = glint_tile_gathered_samples(frame->plan);
+    const uint32_t samples = left < most ? left : most;
     walk w = { .rays = true };
     tile->own_lights = 0;
-    glint_tile_gather(tile, frame, place, count);
+    glint_tile_gather(tile, frame, place, count, first, samples);
     const bool any = find_hits(tile, frame, &w);
     const uint32_t lights = any ? frame->plan->light_count : 0;
     find_lights(tile, frame, &w, 0, lights);
     need_shading(tile, frame, &w, any, any, 0);
-    glint_tile_resolve_gathered(tile, frame, lights, place, count);
+    glint_tile_shade_gathered(tile, frame, lights, place, count, first, samples);
+}
+
+/// All samples of pixels that are gathered.
+static void take_gathered(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count)
+{
+    const uint32_t most = glint_tile_most_gathered(frame->plan), samples = (uint32_t)frame->plan->desc.samples;
+    for (uint32_t i = 0; i < count; i += most)
+        for (uint32_t k = 0; k < samples && !glint_tile_cancelled(frame); k += glint_tile_gathered_samples(frame->plan))
+            sample_gathered(tile, frame, place + i, count - i < most ? count - i : most, k);
 }
 
 /// All samples of the active pixels; false: they are given up.
@@ -407,8 +418,7 @@ static bool take_samples(glint_tile *tile, const glint_tile_frame *frame)
     const glint_plan *plan = frame->plan;
     uint16_t place[GLINT_TILE_SAMPLES];
     const uint32_t gathered = glint_tile_list_gathered(tile, frame, place);
-    for (uint32_t i = 0, most = glint_tile_most_gathered(plan); i < gathered && !glint_tile_cancelled(frame); i += most)
-        sample_gathered(tile, frame, place + i, gathered - i < most ? gathered - i : most);
+    take_gathered(tile, frame, place, gathered);
     for (uint32_t k = 0; !gathered && k < (uint32_t)plan->desc.samples && !glint_tile_cancelled(frame); k++)
         sample(tile, frame, k);
     if (glint_tile_cancelled(frame))
