@@ -26,12 +26,25 @@ static void forget(glint_cached_tile *cached, uint32_t light_count)
     }
 }
 
+/// Whether hits and lights are those of the last frame, so that shading alone may be left to do.
+static bool is_settled(const glint_reuse *reuse, const glint_plan *plan)
+{
+    bool settled = reuse->keep_cast && plan->light_count == reuse->light_count;
+    for (uint32_t i = 0; i < reuse->light_count; i++)
+        settled = settled && reuse->keep_light[i];
+    return settled;
+}
+
 void glint_tile_fit_cached(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_cached_tile *cached = tile->cached;
     const uint64_t pixels = pixels_of(tile, frame);
     if (!cached)
         return;
+    if (pixels && glint_tile_may_gather(frame) && !is_settled(frame->reuse, frame->plan)) {
+        tile->cached = NULL;
+        return;
+    }
     const bool again = !pixels || cached->last_pixels == pixels;
     cached->last_pixels = pixels;
     if (cached->pixels == pixels)

@@ -20,12 +20,11 @@ struct glint_gathered *glint_gathered_create(void) { return glint_alloc(1, sizeo
 
 void glint_gathered_destroy(struct glint_gathered *gathered) { free(gathered); }
 
-/// Whether light is local, primitives are few, and nothing asks where in its group, or in its tile, a pixel is.
-static bool may_gather(const glint_tile *tile, const glint_tile_frame *frame)
+bool glint_tile_may_gather(const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
     if (!frame->base || !plan->local || plan->runs[GLINT_STAGE_PATTERN] || plan->camera.orthographic || plan->lens ||
-        plan->desc.passes & GLINT_LIGHT_PASSES || glint_tile_wants_coverage(plan) || tile->cached || frame->raster ||
+        plan->desc.passes & GLINT_LIGHT_PASSES || glint_tile_wants_coverage(plan) || frame->raster ||
         frame->geometry.prim_count > FEW_PRIMS)
         return false;
     for (uint32_t i = 0; i < plan->light_count; i++)
@@ -37,7 +36,7 @@ static bool may_gather(const glint_tile *tile, const glint_tile_frame *frame)
 uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame, uint16_t place[GLINT_TILE_SAMPLES])
 {
     uint32_t count = 0, groups = 0;
-    if (!may_gather(tile, frame))
+    if (tile->cached || !glint_tile_may_gather(frame))
         return 0;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         groups += tile->active[g] != 0;

@@ -261,7 +261,7 @@ typedef struct glint_film_counts {
 void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before, bool sampled);
 
 /// tile/cached.c: forgets what is kept where that is of other pixels, from the second frame on that has these; in the first nothing is
-/// kept.
+/// kept, nor where they may be gathered and are not shaded alone.
 void glint_tile_fit_cached(glint_tile *tile, const glint_tile_frame *frame);
 /// Of a tile that is to run and whose hits are known, chooses whether to read them or to find them anew, by what its
 /// frames took; afterwards notes what this one took.
@@ -394,6 +394,8 @@ void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_f
 /// tile/gather.c: the chosen pixels of a tile, apart from the others.
 struct glint_gathered *glint_gathered_create(void);
 void glint_gathered_destroy(struct glint_gathered *gathered); ///< NULL: nothing
+/// Whether light is local, primitives are few, and nothing asks where in its group, or in its tile, a pixel is.
+bool glint_tile_may_gather(const glint_tile_frame *frame);
 /// Lists the places of the active pixels in the tile where that pays and the frame lets it be done; returns how many they are, 0: all
 /// samples are to be taken where they are.
 uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame, uint16_t place[GLINT_TILE_SAMPLES]);
