@@ -442,15 +442,12 @@ static R(sphere_lanes) R(sort_by_sphere)(const R(shadow_tile) * tile, const R(ra
 #endif
 }
 
-/// Of the lanes in `wanted`, those whose segments pass near a solid, or one that is combined: by the sphere around it, then by its box.
+/// Of the lanes in `wanted`, those whose segments pass near a solid, or one that is combined: by its box.
 static unsigned R(segments_near)(const R(shadow_tile) * tile, const glint_prim *prim, R(shadow_group) * group, unsigned wanted)
 {
     const glint_geometry_table *table = tile->args->geometry;
     if (!group->made)
         R(make_shadow_rays)(tile, group);
-    wanted &= R(near_rays)(&group->rays, prim);
-    if (!wanted)
-        return 0;
     if (prim->kind == GLINT_PRIM_SOLID) {
         const glint_solid *solid = &table->solids[prim->item];
         return wanted & R(rays_to_box)(&group->rays, group->inverse, solid->lower, solid->upper);
@@ -475,15 +472,18 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
         return R(blocked_by_triangle)(args, prim, tile->position, group->at, own, wanted);
     }
     if (prim->kind == GLINT_PRIM_SOLID) {
-        wanted &= own | R(segments_near)(tile, prim, group, wanted);
+        const unsigned others = wanted & ~own;
+        wanted &= own;
+        if (others)
+            wanted |= R(segments_near)(tile, prim, group, others);
         if (!wanted)
             return 0;
         return R(blocked_by_solid)(args, prim, tile->position, group->at, own, wanted, occluder.sides.outside);
     }
     if (prim->kind == GLINT_PRIM_COMBINED) {
-        wanted = R(segments_near)(tile, prim, group, wanted);
+        wanted = R(stay_in_combined)(args, prim, group->at, wanted);
         if (wanted)
-            wanted = R(stay_in_combined)(args, prim, group->at, wanted);
+            wanted = R(segments_near)(tile, prim, group, wanted);
         return wanted ? R(blocked_by_combined)(args, prim, tile->position, group->at, wanted) : 0;
     }
     if (own && sphere)
