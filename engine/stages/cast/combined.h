@@ -476,26 +476,44 @@ static __attribute__((noinline)) bool R(cast_combined_left)(const glint_cast_arg
     return any;
 }
 
+/// Those in group (x, y) of a tile, of a simple whole; kind: its own, a constant.
+INNER bool R(cast_simple_pixels)(const glint_cast_args *args, const glint_combined *whole, const R(simple_kind) kind,
+                                 const R(eye_parts) * parts, int x, int y, size_t at, unsigned near)
+{
+    const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
+    R(simple_hits) hits[GLINT_GROUP / VR];
+    bool any = false;
+    R(meet_group_of)(kind, args->geometry, whole, parts, args, directions, near, hits);
+#pragma GCC unroll 8
+    for (int v = 0; v < GLINT_GROUP / VR; v++) {
+        const unsigned lanes = near >> v * VR & ((1u << VR) - 1);
+        if (lanes && R(keep_simple)(args, whole, at + (size_t)(v * VR), lanes, &hits[v]))
+            any = true;
+        if (lanes)
+            near &= ~(rm_bits(rm_or(hits[v].hit, hits[v].missed)) << v * VR);
+    }
+    return (near && R(cast_combined_left)(args, whole, directions, at, near)) || any;
+}
+
+/// Apart, so that what it knows of two vectors stays in registers.
+static __attribute__((noinline)) bool R(cast_box_less_ball)(const glint_cast_args *args, const glint_combined *whole,
+                                                            const R(eye_parts) * parts, int x, int y, size_t at, unsigned near)
+{
+    return R(cast_simple_pixels)(args, whole, R(BOX_LESS_BALL), parts, x, y, at, near);
+}
+
 /// The eye's rays in group (x, y) of a tile. parts: of a simple whole, else NULL.
 static __attribute__((noinline)) bool R(cast_combined_pixels)(const glint_cast_args *args, const glint_prim *prim,
                                                               const R(eye_parts) * parts, int x, int y, size_t at,
                                                               unsigned near)
 {
     const glint_combined *whole = &args->geometry->combined[prim->item];
-    const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
-    bool any = false;
     count_tests(args->tests, near);
-    if (parts) {
-        R(simple_hits) hits[GLINT_GROUP / VR];
-        (whole->count == 2 ? R(meet_group_of_two) : R(meet_group_of_more))(args->geometry, whole, parts, args, directions, near,
-                                                                         hits);
-        for (int v = 0; v < GLINT_GROUP / VR; v++) {
-            const unsigned lanes = near >> v * VR & ((1u << VR) - 1);
-            if (lanes && R(keep_simple)(args, whole, at + (size_t)(v * VR), lanes, &hits[v]))
-                any = true;
-            if (lanes)
-                near &= ~(rm_bits(rm_or(hits[v].hit, hits[v].missed)) << v * VR);
-        }
-    }
-    return (near && R(cast_combined_left)(args, whole, directions, at, near)) || any;
+    if (!parts)
+        return R(cast_combined_left)(args, whole, R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y), at, near);
+    if (parts->kind == R(BOX_LESS_BALL))
+        return R(cast_box_less_ball)(args, whole, parts, x, y, at, near);
+    if (parts->kind == R(PARTS_TWO))
+        return R(cast_simple_pixels)(args, whole, R(PARTS_TWO), parts, x, y, at, near);
+    return R(cast_simple_pixels)(args, whole, R(PARTS_ANY), parts, x, y, at, near);
 }

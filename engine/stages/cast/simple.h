@@ -12,11 +12,19 @@ typedef struct R(eye_part) {
     real f[3], height[6]; ///< see solid_start
     real slack; ///< see side_at
     R(eye_slabs) slabs; ///< of a box
-    bool level; ///< the map to the unit shape is along the axes
+    bool level; ///< the map to the unit shape is along the axes, and face numbers of a box are, in order
 } R(eye_part);
+
+/// Wholes that have code of their own for rays from one eye.
+typedef enum R(simple_kind) {
+    R(PARTS_ANY),
+    R(PARTS_TWO),
+    R(BOX_LESS_BALL) ///< along the axes, and the eye is before the box
+} R(simple_kind);
 
 /// Those of a simple whole, in its order; or a box.
 typedef struct R(eye_parts) {
+    R(simple_kind) kind;
     R(eye_part) part[GLINT_SIMPLE_PARTS];
 } R(eye_parts);
 
@@ -31,31 +39,55 @@ static inline void R(see_part)(const glint_solid *solid, const glint_prim *prim,
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
             part->level = part->level && (i == k || solid->inverse[i][k] == 0);
+    for (int i = 0; i < 3 && solid->form == GLINT_FORM_BOX; i++)
+        part->level = part->level && solid->faces[2 * i].axis == (uint32_t)i;
+}
+
+/// The parts of a simple whole.
+static inline void R(see_parts)(const glint_geometry_table *table, const glint_combined *whole, const double eye[3],
+                                R(eye_parts) * parts)
+{
+    const glint_prim *first = &table->prims[table->prim_count + whole->first];
+    for (uint32_t j = 0; j < whole->count; j++)
+        R(see_part)(&table->solids[first[j].item], &first[j], eye, &parts->part[j]);
+    parts->kind = whole->count == 2 ? R(PARTS_TWO) : R(PARTS_ANY);
+    if (whole->count == 2 && whole->program[2] == GLINT_COMBINE_DIFFERENCE &&
+        table->solids[first[0].item].form == GLINT_FORM_BOX && table->solids[first[1].item].form == GLINT_FORM_BALL &&
+        parts->part[0].slabs.before && parts->part[0].level && parts->part[1].level)
+        parts->kind = R(BOX_LESS_BALL);
 }
 
 /// A box, ball or cylinder before a vector of rays. Below, `at_eye`, a constant: these start at one eye.
 typedef struct R(convex) {
     const R(eye_part) *eye; ///< what is here holds instead of the start and the heights below
     const glint_solid *solid;
+    uint32_t form;
+    bool level; ///< of one eye: see eye_part
     R(box_slabs) slabs; ///< of a cylinder the first
     vr f[3], e[3]; ///< start and direction, where the shape is the unit one; of a box not used
 } R(convex);
 
-INNER void R(begin_convex)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
-                           const bool at_eye, R(convex) * x)
+/// With `solid`, `eye`, `form` and `level` set.
+INNER void R(begin_convex)(const glint_prim *part, const vr o[3], const vr d[3], const bool at_eye, R(convex) * x)
 {
-    const glint_solid *solid = x->solid = &table->solids[part->item];
-    for (int i = 0; i < glint_slab_count(solid->form) && at_eye; i++)
+    const glint_solid *solid = x->solid;
+    const bool level = at_eye && x->level;
+    if (x->form == GLINT_FORM_BOX && level) {
+        for (int i = 0; i < 3; i++)
+            x->slabs.rise[i] = R(over_level_slab)(solid->faces + 2 * i, i, NULL, d, NULL);
+        return;
+    }
+    for (int i = 0; i < glint_slab_count(x->form) && at_eye; i++)
         x->slabs.rise[i] = R(face_rise)(solid->faces + 2 * i, d);
-    for (int i = 0; i < glint_slab_count(solid->form) && !at_eye; i++)
+    for (int i = 0; i < glint_slab_count(x->form) && !at_eye; i++)
         R(begin_slab)(solid->faces, o, d, i, &x->slabs);
-    if (solid->form == GLINT_FORM_BOX)
+    if (x->form == GLINT_FORM_BOX)
         return;
     if (!at_eye)
         R(unit_offset)(solid, part, o, x->f);
-    if (!at_eye || !x->eye->level)
+    if (!level)
         R(to_unit)(solid, d, x->e);
-    for (int k = 0; at_eye && x->eye->level && k < 3; k++) // what the other columns add is 0
+    for (int k = 0; level && k < 3; k++) // what the other columns add is 0
         x->e[k] = r_set(solid->inverse[k][k]) * d[k];
 }
 
@@ -84,7 +116,7 @@ INNER void R(side_at)(const R(convex) * x, const bool at_eye, vr t, rm *in, rm *
     R(start_of)(x, at_eye, f);
     const vr k[3] = { f[0] + t * x->e[0], f[1] + t * x->e[1], f[2] + t * x->e[2] };
     vr over = k[0] * k[0] + k[1] * k[1] - r_set(1), slack;
-    if (x->solid->form == GLINT_FORM_BALL)
+    if (x->form == GLINT_FORM_BALL)
         over = over + k[2] * k[2];
     if (at_eye)
         slack = r_set(x->eye->slack);
@@ -99,9 +131,9 @@ INNER void R(convex_at)(const R(convex) * x, const bool at_eye, vr t, rm *in, rm
 {
     *in = rm_from_bits((1u << VR) - 1);
     *out = rm_from_bits(0);
-    if (x->solid->form != GLINT_FORM_BOX)
+    if (x->form != GLINT_FORM_BOX)
         R(side_at)(x, at_eye, t, in, out);
-    for (int i = 0; i < glint_slab_count(x->solid->form); i++) {
+    for (int i = 0; i < glint_slab_count(x->form); i++) {
         const vr low = R(over_low)(x, at_eye, i), high = R(over_high)(x, at_eye, i), moved = t * x->slabs.rise[i];
         const vr slack = R(slab_slack)(low, high), least = r_min(low + moved, -(high + moved));
         *in = rm_and(*in, r_lt(slack, least));
@@ -128,20 +160,20 @@ INNER void R(way_into_box)(const R(convex) * x, const bool at_eye, vr *t, rm *hi
 INNER void R(way_into)(const R(convex) * x, const bool at_eye, vr *t, rm *hit, rm *missed)
 {
     const glint_solid *solid = x->solid;
-    if (solid->form == GLINT_FORM_BOX) {
+    if (x->form == GLINT_FORM_BOX) {
         R(way_into_box)(x, at_eye, t, hit, missed);
         return;
     }
     const vr zero = r_set(0);
     vr f[3];
     R(start_of)(x, at_eye, f);
-    const R(quadratic) round = R(quadratic_of)(f, x->e, solid->form == GLINT_FORM_BALL, solid->places);
+    const R(quadratic) round = R(quadratic_of)(f, x->e, x->form == GLINT_FORM_BALL, solid->places);
     const vr side = r_select(round.ahead, round.c, round.q) / r_select(round.ahead, round.q, round.a);
     rm past = rm_andnot(r_lt(round.disc, zero), round.along);
     rm before = r_lt(r_set(SIMPLE_CHORD) * R(abs)(round.b), round.s);
     rm told = rm_andnot(rm_from_bits((1u << VR) - 1), round.along);
     *t = side;
-    if (solid->form == GLINT_FORM_CYLINDER) { // by an end: within the side or not
+    if (x->form == GLINT_FORM_CYLINDER) { // by an end: within the side or not
         rm in, out;
         const vr rise = x->slabs.rise[0], low = R(over_low)(x, at_eye, 0), high = R(over_high)(x, at_eye, 0);
         const rm within = rm_and(r_lt(zero, low), r_lt(high, zero)), rising = r_lt(zero, rise);
@@ -167,14 +199,14 @@ INNER rm R(way_out_of)(const R(convex) * x, const bool at_eye, vr *t)
     const glint_solid *solid = x->solid;
     rm told = rm_from_bits((1u << VR) - 1);
     *t = r_set(HUGE_VAL);
-    if (solid->form != GLINT_FORM_BOX) {
+    if (x->form != GLINT_FORM_BOX) {
         vr f[3];
         R(start_of)(x, at_eye, f);
-        const R(quadratic) round = R(quadratic_of)(f, x->e, solid->form == GLINT_FORM_BALL, solid->places);
+        const R(quadratic) round = R(quadratic_of)(f, x->e, x->form == GLINT_FORM_BALL, solid->places);
         *t = r_select(round.ahead, round.q, round.c) / r_select(round.ahead, round.a, round.q);
         told = rm_andnot(r_lt(r_set(SIMPLE_CHORD) * R(abs)(round.b), round.s), round.along);
     }
-    for (int i = 0; i < glint_slab_count(solid->form); i++) {
+    for (int i = 0; i < glint_slab_count(x->form); i++) {
         const vr rise = x->slabs.rise[i];
         told = rm_andnot(told, r_eq(rise, r_set(0)));
         *t = r_min(r_select(r_lt(r_set(0), rise), R(over_high)(x, at_eye, i), R(over_low)(x, at_eye, i)) / -rise, *t);
@@ -275,12 +307,17 @@ INNER void R(meet_union)(const R(convex) x[], uint32_t count, const bool at_eye,
     hits->hit = rm_and(told, r_lt(hits->t * r_set(1 + SIMPLE_SLACK), next));
 }
 
-/// The part of a whole, before a vector of rays. eye: of those that start at one eye.
-INNER void R(begin_part)(const glint_geometry_table *table, const glint_combined *whole, uint32_t j, const vr o[3],
-                         const vr d[3], const bool at_eye, const R(eye_parts) * eye, R(convex) * x)
+/// The part of a whole, before a vector of rays. eye: of those that start at one eye; kind: of the whole for these, a constant.
+INNER void R(begin_part)(const glint_geometry_table *table, const glint_combined *whole, const R(simple_kind) kind, uint32_t j,
+                         const vr o[3], const vr d[3], const bool at_eye, const R(eye_parts) * eye, R(convex) * x)
 {
+    const bool known = kind == R(BOX_LESS_BALL);
+    const glint_prim *part = &table->prims[table->prim_count + whole->first + j];
+    x->solid = &table->solids[part->item];
     x->eye = at_eye ? &eye->part[j] : NULL;
-    R(begin_convex)(table, &table->prims[table->prim_count + whole->first + j], o, d, at_eye, x);
+    x->form = !known ? x->solid->form : j == 0 ? GLINT_FORM_BOX : GLINT_FORM_BALL;
+    x->level = known || (at_eye && x->eye->level);
+    R(begin_convex)(part, o, d, at_eye, x);
 }
 
 /// How many parts of a simple whole, which is no union, are met before the others are taken away.
@@ -312,51 +349,81 @@ static unsigned R(meet_from_anywhere)(const glint_geometry_table *table, const g
 {
     R(convex) x[GLINT_SIMPLE_PARTS];
     for (uint32_t j = 0; j < whole->count; j++)
-        R(begin_part)(table, whole, j, o, d, false, NULL, &x[j]);
+        R(begin_part)(table, whole, R(PARTS_ANY), j, o, d, false, NULL, &x[j]);
     const rm in = R(meet_simple)(whole, whole->count, false, x, hits);
     if (rm_bits(in))
         R(look_behind_cutter)(x, whole->count, false, in, hits);
     return rm_bits(rm_or(hits->missed, hits->hit));
 }
 
+/// The parts of a whole of `count`, before vector v of a group from one eye. kind: a constant.
+INNER void R(begin_eye_parts)(const glint_geometry_table *table, const glint_combined *whole, const R(simple_kind) kind,
+                              const uint32_t count, const R(eye_parts) * eye, const glint_cast_args *args,
+                              R(group_directions) directions, int v, R(convex) x[])
+{
+    vr d[3];
+    R(load_direction)(directions, args->direction, 0, v * VR, d);
+    R(begin_part)(table, whole, kind, 0, NULL, d, true, eye, &x[0]); // two parts are in registers
+    R(begin_part)(table, whole, kind, 1, NULL, d, true, eye, &x[1]);
+    for (uint32_t j = 2; j < count; j++)
+        R(begin_part)(table, whole, kind, j, NULL, d, true, eye, &x[j]);
+}
+
 /// What the vectors of a group from one eye meet of a whole; no branch is taken by what one of them does, so that they are worked
-/// on together. count: of parts; 0: any, else a constant. near: lanes that are wanted.
-INNER void R(meet_group)(const glint_geometry_table *table, const glint_combined *whole, const uint32_t count,
+/// on together. kind: a constant. near: lanes that are wanted.
+INNER void R(meet_group)(const glint_geometry_table *table, const glint_combined *whole, const R(simple_kind) kind,
                          const R(eye_parts) * eye, const glint_cast_args *args, R(group_directions) directions, unsigned near,
                          R(simple_hits) hits[])
 {
-    rm in[GLINT_GROUP / VR];
-    for (int pass = 0; pass < 2; pass++)
-        for (int v = 0; v < GLINT_GROUP / VR; v++) {
-            const unsigned lanes = near >> v * VR & ((1u << VR) - 1);
-            R(convex) x[count ? count : GLINT_SIMPLE_PARTS];
-            vr d[3];
-            if (!lanes || (pass && !(rm_bits(in[v]) & lanes)))
-                continue;
-            R(load_direction)(directions, args->direction, 0, v * VR, d);
-            R(begin_part)(table, whole, 0, NULL, d, true, eye, &x[0]); // two parts are in registers
-            R(begin_part)(table, whole, 1, NULL, d, true, eye, &x[1]);
-            for (uint32_t j = 2; j < (count ? count : whole->count); j++)
-                R(begin_part)(table, whole, j, NULL, d, true, eye, &x[j]);
-            if (pass)
-                R(look_behind_cutter)(x, count ? count : whole->count, true, in[v], &hits[v]);
-            else
-                in[v] = R(meet_simple)(whole, count ? count : whole->count, true, x, &hits[v]);
-        }
+    const uint32_t count = kind == R(PARTS_ANY) ? whole->count : 2;
+    unsigned in[GLINT_GROUP / VR];
+#pragma GCC unroll 8
+    for (int v = 0; v < GLINT_GROUP / VR; v++) {
+        const unsigned lanes = near >> v * VR & ((1u << VR) - 1);
+        R(convex) x[GLINT_SIMPLE_PARTS];
+        in[v] = 0;
+        if (!lanes && kind != R(BOX_LESS_BALL))
+            continue;
+        R(begin_eye_parts)(table, whole, kind, count, eye, args, directions, v, x);
+        if (kind == R(BOX_LESS_BALL))
+            in[v] = lanes & rm_bits(R(meet_difference)(x, 1, 2, true, &hits[v]));
+        else
+            in[v] = lanes & rm_bits(R(meet_simple)(whole, count, true, x, &hits[v]));
+    }
+    for (int v = 0; v < GLINT_GROUP / VR; v++) {
+        R(convex) x[GLINT_SIMPLE_PARTS];
+        if (!in[v])
+            continue;
+        R(begin_eye_parts)(table, whole, kind, count, eye, args, directions, v, x);
+        R(look_behind_cutter)(x, count, true, rm_from_bits(in[v]), &hits[v]);
+    }
+}
+
+static __attribute__((noinline)) void R(meet_group_of_any)(const glint_geometry_table *table, const glint_combined *whole,
+                                                           const R(eye_parts) * eye, const glint_cast_args *args,
+                                                           R(group_directions) directions, unsigned near, R(simple_hits) hits[])
+{
+    R(meet_group)(table, whole, R(PARTS_ANY), eye, args, directions, near, hits);
 }
 
 static __attribute__((noinline)) void R(meet_group_of_two)(const glint_geometry_table *table, const glint_combined *whole,
                                                            const R(eye_parts) * eye, const glint_cast_args *args,
                                                            R(group_directions) directions, unsigned near, R(simple_hits) hits[])
 {
-    R(meet_group)(table, whole, 2, eye, args, directions, near, hits);
+    R(meet_group)(table, whole, R(PARTS_TWO), eye, args, directions, near, hits);
 }
 
-static __attribute__((noinline)) void R(meet_group_of_more)(const glint_geometry_table *table, const glint_combined *whole,
-                                                            const R(eye_parts) * eye, const glint_cast_args *args,
-                                                            R(group_directions) directions, unsigned near, R(simple_hits) hits[])
+/// The same; kind: a constant.
+INNER void R(meet_group_of)(const R(simple_kind) kind, const glint_geometry_table *table, const glint_combined *whole,
+                            const R(eye_parts) * eye, const glint_cast_args *args, R(group_directions) directions,
+                            unsigned near, R(simple_hits) hits[])
 {
-    R(meet_group)(table, whole, 0, eye, args, directions, near, hits);
+    if (kind == R(BOX_LESS_BALL))
+        R(meet_group)(table, whole, R(BOX_LESS_BALL), eye, args, directions, near, hits);
+    else if (kind == R(PARTS_TWO))
+        R(meet_group_of_two)(table, whole, eye, args, directions, near, hits);
+    else
+        R(meet_group_of_any)(table, whole, eye, args, directions, near, hits);
 }
 
 // ---- Rays that start on a part ----
@@ -368,7 +435,7 @@ static void R(meet_through_cutter)(const glint_geometry_table *table, const glin
 {
     R(convex) x;
     rm in, out;
-    R(begin_part)(table, whole, on, o, d, false, NULL, &x);
+    R(begin_part)(table, whole, R(PARTS_ANY), on, o, d, false, NULL, &x);
     const rm told = R(way_out_of)(&x, false, &hits->t);
     hits->t = r_max(hits->t, r_set(GLINT_LEAST_WAY));
     hits->missed = rm_from_bits(0);
@@ -376,7 +443,7 @@ static void R(meet_through_cutter)(const glint_geometry_table *table, const glin
     for (uint32_t j = 0; j < whole->count; j++) {
         if (j == on)
             continue;
-        R(begin_part)(table, whole, j, o, d, false, NULL, &x);
+        R(begin_part)(table, whole, R(PARTS_ANY), j, o, d, false, NULL, &x);
         R(convex_at)(&x, false, hits->t, &in, &out);
         hits->hit = rm_and(hits->hit, j < met ? in : out);
         if (j < met)
@@ -392,7 +459,7 @@ static void R(meet_other_parts)(const glint_geometry_table *table, const glint_c
     uint32_t others = 0;
     for (uint32_t j = 0; j < whole->count; j++)
         if (j != on)
-            R(begin_part)(table, whole, j, o, d, false, NULL, &x[others++]);
+            R(begin_part)(table, whole, R(PARTS_ANY), j, o, d, false, NULL, &x[others++]);
     R(meet_union)(x, others, false, hits);
 }
 

@@ -257,9 +257,10 @@ static void R(see_candidate)(const glint_cast_args *args, R(candidate) * candida
     const glint_combined *whole = prim->kind == GLINT_PRIM_COMBINED ? &table->combined[prim->item] : NULL;
     if (GLINT_REAL == 32 || (whole ? !whole->simple : table->solids[prim->item].form != GLINT_FORM_BOX))
         return;
-    const glint_prim *first = whole ? &table->prims[table->prim_count + whole->first] : prim;
-    for (uint32_t j = 0; j < (whole ? whole->count : 1); j++)
-        R(see_part)(&table->solids[first[j].item], &first[j], args->camera->eye, &out->part[j]);
+    if (whole)
+        R(see_parts)(table, whole, args->camera->eye, out);
+    else
+        R(see_part)(&table->solids[prim->item], prim, args->camera->eye, &out->part[0]);
     candidate->parts = out;
 }
 
