@@ -17,14 +17,18 @@ typedef struct R(lit_call) {
     bool scaled;
 } R(lit_call);
 
-/// VR lanes of it, of a sphere near the eye, a plane or a solid; `kind`, `normals` and `slack` are constants.
-INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
-                       const glint_prim_kind kind, const bool normals, const bool slack, const glint_shade_material *material,
-                       R(group_directions) directions, size_t at, int j, R(point_box) * box, R(lit_whole) * whole)
+/// What a call says of all its groups, as constants.
+typedef struct R(lit_wants) {
+    bool normals, slack;
+} R(lit_wants);
+
+/// VR lanes of it, at p, where n is the outward normal, seen along d.
+INNER void R(light_part)(const glint_surface_args *surface, const glint_light_args *light, const R(lit_call) * call,
+                         const R(lit_wants) wants, const glint_shade_material *material, const vr d[3], const vr n[3],
+                         const vr p[3], size_t at, int j, R(point_box) * box, R(lit_whole) * whole)
 {
     const int i = j * VR;
-    vr d[3], n[3], p[3], l[3];
-    R(find_whole)(surface, &call->walk, kind, directions, at, i, d, n, p);
+    vr l[3];
     for (int k = 0; k < 3; k++) {
         r_store((real *)surface->point[k] + at + i, p[k]);
         l[k] = r_set(call->position[k]);
@@ -35,11 +39,11 @@ INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args
     }
     if (surface->box)
         R(enclose)(box, p, true, rm_from_bits(0));
-    if (slack)
+    if (wants.slack)
         r_store((real *)surface->slack + at + i, r_set(-GLINT_POINT_SLACK) * R(largest)(p));
     const vr away = DOT(n, d), l2 = DOT(l, l);
     const rm back = r_lt(r_set(0), away);
-    for (int k = 0; normals && k < 3; k++)
+    for (int k = 0; wants.normals && k < 3; k++)
         r_store((real *)surface->normal[k] + at + i, r_select(back, -n[k], n[k]));
     vr nl = DOT(n, l);
     nl = r_select(back, -nl, nl); // as of the normal that is turned to the viewer
@@ -62,6 +66,54 @@ INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args
     }
     const rm spared = r_lt(whole->num[j], r_set(light->sparing ? material->least : 0) * whole->den[j]);
     whole->some |= rm_bits(rm_and(ahead, rm_andnot(some, spared))) << i;
+}
+
+/// The parts of a group of one sphere near the eye, plane or solid; `kind`, of these, is a constant.
+INNER void R(light_parts)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
+                          const R(lit_wants) wants, const glint_prim_kind kind, const glint_shade_material *material,
+                          R(group_directions) directions, size_t at, R(point_box) * box, R(lit_whole) * whole)
+{
+#pragma GCC unroll 8
+    for (int j = 0; j < LIT_PARTS; j++) {
+        vr d[3], n[3], p[3];
+        R(find_whole)(surface, &call->walk, kind, directions, at, j * VR, d, n, p);
+        R(light_part)(surface, light, call, wants, material, d, n, p, at, j, box, whole);
+    }
+}
+
+/// Those of a group of one face of a level box. Returns whether it is one; else nothing is done.
+INNER bool R(light_face)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
+                         const R(lit_wants) wants, const glint_shade_material *material, R(group_directions) directions,
+                         size_t at, R(point_box) * box, R(lit_whole) * whole)
+{
+    R(seen_slot) *slot = call->walk.last;
+    const glint_prim *prim = slot->prim.prim;
+    const glint_solid *solid = &surface->solids[prim->item];
+    R(level_lanes) lanes = { { 0, 0, 0 }, { 0, 0, 0 }, 0 };
+    vr d[LIT_PARTS][3], p[LIT_PARTS][3], k[3], n[3];
+    if (!slot->view.level || prim->turned)
+        return false;
+#pragma GCC unroll 8
+    for (int j = 0; j < LIT_PARTS; j++) {
+        const vr t = r_load((const real *)surface->t + at + (size_t)(j * VR));
+        R(load_direction)(directions, surface->direction, at, j * VR, d[j]);
+        R(place_in_level)(solid, prim, slot->prim.f, d[j], t, k, p[j]);
+        R(sort_in_level)(&slot->view, k, t, j * VR, &lanes);
+    }
+    const unsigned face = R(face_of_level)(&lanes);
+    if (face == 6)
+        return false;
+    if (!(slot->faces.known >> face & 1))
+        R(learn_face)(solid, (int)face, &slot->faces);
+    for (int c = 0; c < 3; c++) {
+        n[c] = r_set(slot->faces.normal[face][c]);
+        for (int j = 0; j < LIT_PARTS && face / 2 == (unsigned)c; j++)
+            p[j][c] = r_set(solid->faces[face].at[c]);
+    }
+#pragma GCC unroll 8
+    for (int j = 0; j < LIT_PARTS; j++)
+        R(light_part)(surface, light, call, wants, material, d[j], n, p[j], at, j, box, whole);
+    return true;
 }
 
 INNER vf R(join)(const vr *x)
@@ -129,9 +181,9 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     if (!surface->only && lanes_equal(surface->prim + at, id) != 0xffff)
         return false;
     R(look_at)(surface, &call->walk, id);
-    const glint_prim *prim = call->walk.seen.prim;
+    const glint_prim *prim = call->walk.last->prim.prim;
     const bool sphere = prim->kind == GLINT_PRIM_SPHERE, solid = mixed && prim->kind == GLINT_PRIM_SOLID;
-    if (!prim->two_sided || !(solid || R(is_near_or_plane)(&call->walk.seen)))
+    if (!prim->two_sided || !(solid || R(is_near_or_plane)(&call->walk.last->prim)))
         return false;
     const glint_shade_material *material = &light->materials[prim->material];
     if (!light->highlights || (material->highlight != GLINT_HIGHLIGHT_PHONG &&
@@ -140,16 +192,13 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     const R(group_directions) directions = R(directions_of)(surface->camera, place.x, place.y);
     R(lit_whole) whole;
     whole.lit = whole.back = whole.some = 0;
-    const bool slack = mixed && surface->slack;
-#pragma GCC unroll 8
-    for (int j = 0; j < LIT_PARTS; j++) {
-        if (sphere)
-            R(lit_part)(surface, light, call, GLINT_PRIM_SPHERE, normals, slack, material, directions, at, j, box, &whole);
-        else if (solid)
-            R(lit_part)(surface, light, call, GLINT_PRIM_SOLID, normals, slack, material, directions, at, j, box, &whole);
-        else
-            R(lit_part)(surface, light, call, GLINT_PRIM_PLANE, normals, slack, material, directions, at, j, box, &whole);
-    }
+    const R(lit_wants) wants = { normals, mixed && surface->slack };
+    if (sphere)
+        R(light_parts)(surface, light, call, wants, GLINT_PRIM_SPHERE, material, directions, at, box, &whole);
+    else if (!solid)
+        R(light_parts)(surface, light, call, wants, GLINT_PRIM_PLANE, material, directions, at, box, &whole);
+    else if (!R(light_face)(surface, light, call, wants, material, directions, at, box, &whole))
+        R(light_parts)(surface, light, call, wants, GLINT_PRIM_SOLID, material, directions, at, box, &whole);
     lanes_put(surface->material + at, 0xffff, prim->material);
     surface->back[place.g] = (uint16_t)whole.back;
     surface->dark[place.g] = 0;
@@ -164,7 +213,11 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
 static bool R(light_balls)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
                            bool normals, R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest);
 
-/// The same, by copies: what groups after each other gather stays in registers.
+/// Any group of a scene without meshes, see there too.
+static void R(light_pieces)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
+                            R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest);
+
+/// The first, by copies: what groups after each other gather stays in registers.
 INNER bool R(try_balls)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
                         bool normals, R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest)
 {
@@ -174,6 +227,17 @@ INNER bool R(try_balls)(const glint_surface_args *surface, const glint_light_arg
     *box = around;
     *brightest = most;
     return done;
+}
+
+/// The second likewise.
+INNER void R(use_pieces)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
+                         R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest)
+{
+    R(point_box) around = *box;
+    vf most = *brightest;
+    R(light_pieces)(surface, light, walk, place, &around, point, &most);
+    *box = around;
+    *brightest = most;
 }
 
 /// mixed, normals: constants.
@@ -197,9 +261,12 @@ INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_
         if (!surface->hits[g]) {
             surface->back[g] = surface->dark[g] = 0;
             light->lit[0][g] = 0;
-        } else if (!R(light_whole)(surface, light, &call, mixed, normals, place, &box, &group.brightest) &&
-                   (mixed ||
-                    !R(try_balls)(surface, light, &call.walk, normals, place, &box, &point, &group.brightest))) {
+        } else if (R(light_whole)(surface, light, &call, mixed, normals, place, &box, &group.brightest) ||
+                   (!mixed && R(try_balls)(surface, light, &call.walk, normals, place, &box, &point, &group.brightest))) {
+            continue;
+        } else if (mixed && !surface->slack) {
+            R(use_pieces)(surface, light, &call.walk, place, &box, &point, &group.brightest);
+        } else {
             R(surface_group)(surface, &call.walk, &box, place, mixed ? R(MIXED) : R(BALLS_AND_PLANES));
             R(light_group)(light, LIGHT_PLAIN, 1, NULL, place, &point, &group);
             light->lit[0][g] = (uint16_t)group.lit;

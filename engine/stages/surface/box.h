@@ -5,17 +5,18 @@ typedef struct R(box_view) {
     real height[6]; ///< of the eye over the faces
     real near[6]; ///< what is no higher is on a face
     bool level; ///< it is along the axes of the world
+    real within[3]; ///< level: what is less far from the centre along an axis, where the box is the unit one, is on no face across it
 } R(box_view);
 
 /// A share of the eye's height over a face, of which nothing but rounding is left there.
 #define BOX_ON (GLINT_REAL == 64 ? 0x1p-40 : 0x1p-14)
 
-/// Fills the rest.
-static void R(view_box)(const glint_solid *solid, R(box_view) * view)
+/// Fills the rest; of another solid it is not level. f: from the centre to the eye, where it is the unit one.
+static void R(view_box)(const glint_solid *solid, const real f[3], R(box_view) * view)
 {
-    if (solid->form != GLINT_FORM_BOX)
+    view->level = solid->form == GLINT_FORM_BOX;
+    if (!view->level)
         return;
-    view->level = true;
     for (int i = 0; i < 6; i++)
         view->near[i] = (real)BOX_ON * (view->height[i] < 0 ? -view->height[i] : view->height[i]);
     for (int i = 0; i < 3; i++)
@@ -23,6 +24,12 @@ static void R(view_box)(const glint_solid *solid, R(box_view) * view)
             view->level = view->level && (i == k || (solid->inverse[i][k] == 0 && solid->forward[i][k] == 0));
     for (int i = 0; i < 6; i++)
         view->level = view->level && solid->faces[i].axis == (uint32_t)i / 2;
+    for (int k = 0; k < 3; k++) { // what `near` lets a place be off, and several times what rounding does
+        const glint_face *low = &solid->faces[2 * k];
+        const real across = R(size)(view->height[2 * k] - view->height[2 * k + 1]);
+        const real places = (real)(low[0].places + low[1].places) / across;
+        view->within[k] = 1 - 4 * (real)BOX_ON * ((1 + R(size)(f[k])) + 2 * places);
+    }
 }
 
 /// Sorts rays by the face that they are on at t. Returns whether each of `lanes` is on one alone: that is the face that t was
@@ -49,15 +56,25 @@ INNER bool R(lanes_on_faces)(const glint_solid *solid, const R(box_view) * view,
     return (lanes & ~once) == 0;
 }
 
+/// Where rays are that meet a level box at t. k: where it is the unit one.
+INNER void R(place_in_level)(const glint_solid *solid, const glint_prim *prim, const real f[3], const vr d[3], vr t, vr k[3],
+                             vr p[3])
+{
+    for (int c = 0; c < 3; c++) { // what the other columns of the maps add is 0
+        k[c] = r_set(f[c]) + t * (r_set(solid->inverse[c][c]) * d[c]);
+        p[c] = r_set(prim->center[c]) + r_set(solid->forward[c][c]) * k[c];
+    }
+}
+
 /// Points of a box before those on faces that are square to an axis of the world are put there. on: lanes of each face.
 INNER void R(place_on_box)(const glint_solid *solid, const glint_prim *prim, const real f[3], const bool level,
                            const vr d[3], vr t, const unsigned on[6], vr p[3])
 {
     vr e[3], k[3];
-    for (int c = 0; c < 3 && level; c++) // what the other columns add is 0
-        p[c] = r_set(prim->center[c]) + r_set(solid->forward[c][c]) * (r_set(f[c]) + t * (r_set(solid->inverse[c][c]) * d[c]));
-    if (level)
+    if (level) {
+        R(place_in_level)(solid, prim, f, d, t, k, p);
         return;
+    }
     R(to_unit)(solid, d, e);
     for (int c = 0; c < 3; c++) {
         k[c] = r_set(f[c]) + t * e[c];
@@ -66,6 +83,34 @@ INNER void R(place_on_box)(const glint_solid *solid, const glint_prim *prim, con
     for (int c = 0; c < 3; c++)
         p[c] = r_set(prim->center[c]) + ((r_set(solid->forward[c][0]) * k[0] + r_set(solid->forward[c][1]) * k[1]) +
                                          r_set(solid->forward[c][2]) * k[2]);
+}
+
+/// Lanes of a group by where they are in a level box: within, along each axis, and on the lower side of its centre.
+typedef struct R(level_lanes) {
+    unsigned within[3], low[3];
+    unsigned ahead; ///< not at GLINT_LEAST_WAY
+} R(level_lanes);
+
+/// Sorts lanes i .. of it.
+INNER void R(sort_in_level)(const R(box_view) * view, const vr k[3], vr t, int i, R(level_lanes) * lanes)
+{
+    for (int c = 0; c < 3; c++) {
+        lanes->within[c] |= rm_bits(r_lt(R(abs)(k[c]), r_set(view->within[c]))) << i;
+        lanes->low[c] |= rm_bits(r_lt(k[c], r_set(0))) << i;
+    }
+    lanes->ahead |= rm_bits(r_lt(r_set(0x1p-100), t)) << i;
+}
+
+/// The face that all lanes of the group meet away from its edges: that is the one that each t was made of. 6: there is none such.
+static inline unsigned R(face_of_level)(const R(level_lanes) * lanes)
+{
+    const unsigned all = 0xffff;
+    for (unsigned c = 0; c < 3; c++) {
+        const unsigned low = lanes->low[c];
+        if (!lanes->within[c] && (lanes->within[(c + 1) % 3] & lanes->within[(c + 2) % 3] & lanes->ahead) == all)
+            return low == all ? 2 * c : low == 0 ? 2 * c + 1 : 6;
+    }
+    return 6;
 }
 
 /// As below; level: view->level, a constant.

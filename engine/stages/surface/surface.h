@@ -63,11 +63,19 @@ static inline void R(see_prim)(const glint_surface_args *args, uint32_t id, R(se
     seen->range = R(range_of)(seen->f);
 }
 
+/// One, and what is known of it.
+typedef struct R(seen_slot) {
+    R(seen_prim) prim;
+    R(box_view) view; ///< where it is a box; of another solid the heights
+    R(box_faces) faces; ///< likewise
+} R(seen_slot);
+
+#define SEEN_SLOTS 8 ///< a tile's groups come back to the same few
+
 /// What is known while the groups of a tile are gone through.
 typedef struct R(surface_walk) {
-    R(seen_prim) seen; ///< the last primitive
-    R(box_view) view; ///< of it, where it is a box; of another solid the heights
-    R(box_faces) faces; ///< likewise
+    R(seen_slot) slots[SEEN_SLOTS]; ///< by the lowest bits of their numbers
+    R(seen_slot) * last; ///< the last primitive's
     uint32_t only; ///< the only primitive so far, GLINT_MISS: none
     bool several, turned; ///< there are others; some lane is seen from behind
 } R(surface_walk);
@@ -91,16 +99,17 @@ INNER void R(face_viewer)(const vr n[3], R(found) * found)
 INNER void R(find_on_solid)(const glint_surface_args *args, R(surface_walk) * walk, const vr from[3], const vr d[3], vr t,
                             unsigned lanes, vr n[3], vr p[3])
 {
-    const R(seen_prim) *seen = &walk->seen;
+    R(seen_slot) *slot = walk->last;
+    const R(seen_prim) *seen = &slot->prim;
     const glint_solid *solid = &args->solids[seen->prim->item];
     const bool box = args->camera && solid->form == GLINT_FORM_BOX;
-    if (!box || !R(box_surface)(solid, seen->prim, seen->f, &walk->view, d, t, lanes, &walk->faces, n, p)) {
-        R(solid_start) start = { .place = from, .height = args->camera ? walk->view.height : NULL };
+    if (!box || !R(box_surface)(solid, seen->prim, seen->f, &slot->view, d, t, lanes, &slot->faces, n, p)) {
+        R(solid_start) start = { .place = from, .height = args->camera ? slot->view.height : NULL };
         for (int k = 0; k < 3; k++)
             start.f[k] = r_set(seen->f[k]);
         if (!args->camera)
             R(unit_offset)(solid, seen->prim, from, start.f);
-        R(solid_surface)(solid, seen->prim, &start, d, t, lanes, &walk->faces, n, p);
+        R(solid_surface)(solid, seen->prim, &start, d, t, lanes, &slot->faces, n, p);
     }
     for (int k = 0; seen->prim->turned && k < 3; k++)
         n[k] = -n[k];
@@ -110,7 +119,7 @@ INNER void R(find_on_solid)(const glint_surface_args *args, R(surface_walk) * wa
 INNER void R(find_lanes)(const glint_surface_args *args, R(surface_walk) * walk, R(group_directions) directions, size_t at,
                          int i, unsigned lanes, bool mixed, R(found) * found)
 {
-    const R(seen_prim) *seen = &walk->seen;
+    const R(seen_prim) *seen = &walk->last->prim;
     const glint_prim *prim = seen->prim;
     const bool smooth = mixed && prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS;
     vr *d = found->direction, *p = found->point, n[3], from[3], f[3], w[3] = { r_set(0), r_set(0), r_set(0) };
@@ -255,7 +264,9 @@ static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
 
 INNER void R(begin_walk)(R(surface_walk) * walk)
 {
-    walk->seen = (R(seen_prim)) { .id = GLINT_MISS };
+    for (int i = 0; i < SEEN_SLOTS; i++)
+        walk->slots[i].prim.id = GLINT_MISS;
+    walk->last = walk->slots;
     walk->only = GLINT_MISS;
     walk->several = walk->turned = false;
 }
@@ -264,17 +275,20 @@ INNER void R(begin_walk)(R(surface_walk) * walk)
 static __attribute__((noinline)) void R(look_at_other)(const glint_surface_args *args, R(surface_walk) * walk,
                                                        uint32_t id)
 {
-    R(see_prim)(args, id, &walk->seen, &walk->view);
-    walk->faces.known = 0;
-    if (walk->seen.prim->kind == GLINT_PRIM_SOLID && args->camera)
-        R(view_box)(&args->solids[walk->seen.prim->item], &walk->view);
+    R(seen_slot) *slot = walk->last = &walk->slots[id % SEEN_SLOTS];
     walk->several = walk->several || (walk->only != GLINT_MISS && walk->only != id);
     walk->only = id;
+    if (slot->prim.id == id)
+        return;
+    R(see_prim)(args, id, &slot->prim, &slot->view);
+    slot->faces.known = 0;
+    if (slot->prim.prim->kind == GLINT_PRIM_SOLID && args->camera)
+        R(view_box)(&args->solids[slot->prim.prim->item], slot->prim.f, &slot->view);
 }
 
 INNER void R(look_at)(const glint_surface_args *args, R(surface_walk) * walk, uint32_t id)
 {
-    if (walk->seen.id != id)
+    if (walk->last->prim.id != id)
         R(look_at_other)(args, walk, id);
 }
 
@@ -317,7 +331,7 @@ static inline bool R(is_near_or_plane)(const R(seen_prim) * seen)
 INNER void R(find_whole)(const glint_surface_args *args, R(surface_walk) * walk, const glint_prim_kind kind,
                          R(group_directions) directions, size_t at, int i, vr d[3], vr n[3], vr p[3])
 {
-    const R(seen_prim) *seen = &walk->seen;
+    const R(seen_prim) *seen = &walk->last->prim;
     R(load_direction)(directions, args->direction, at, i, d);
     const vr t = r_load((const real *)args->t + at + i);
     if (kind == GLINT_PRIM_SOLID) {
@@ -372,7 +386,7 @@ INNER void R(place_lanes)(const glint_surface_args *args, R(surface_walk) * walk
 /// The points alone of such a group.
 INNER void R(place_whole)(const glint_surface_args *args, R(surface_walk) * walk, R(group_directions) directions, size_t at)
 {
-    const R(seen_prim) *seen = &walk->seen;
+    const R(seen_prim) *seen = &walk->last->prim;
     if (seen->prim->kind == GLINT_PRIM_SPHERE)
         R(place_lanes)(args, walk, GLINT_PRIM_SPHERE, directions, at);
     else if (seen->level == 0)
@@ -403,7 +417,7 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
         left &= ~mesh;
     }
     while (left) {
-        uint32_t id = walk->seen.id; // what the group before has shown last need not be looked at anew
+        uint32_t id = walk->last->prim.id; // what the group before has shown last need not be looked at anew
         unsigned lanes = lanes_equal(args->prim + at, id) & left, behind = 0;
         if (!lanes) {
             id = args->prim[at + (unsigned)__builtin_ctz(left)];
@@ -411,7 +425,7 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
             R(look_at)(args, walk, id);
         }
         const bool placed =
-            way == R(POINTS_ALONE) && args->camera && lanes == 0xffff && R(is_near_or_plane)(&walk->seen);
+            way == R(POINTS_ALONE) && args->camera && lanes == 0xffff && R(is_near_or_plane)(&walk->last->prim);
         if (placed)
             R(place_whole)(args, walk, directions, at);
         for (int i = placed ? GLINT_GROUP : 0; i < GLINT_GROUP; i += VR) {
@@ -423,9 +437,9 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
             behind |= R(put_found)(args, &found, at + (size_t)i, here, way, box) << i;
         }
         if (way != R(POINTS_ALONE))
-            lanes_put(args->material + at, lanes, walk->seen.prim->material);
+            lanes_put(args->material + at, lanes, walk->last->prim.prim->material);
         back |= behind;
-        if (!walk->seen.prim->two_sided)
+        if (!walk->last->prim.prim->two_sided)
             dark |= behind;
         left &= ~lanes;
     }
