@@ -146,6 +146,26 @@ bool glint_combined_simple(const glint_geometry *geometry, const glint_combined 
     return simple;
 }
 
+static bool is_level(const glint_solid *solid)
+{
+    bool level = true;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            level = level && (i == k || (solid->inverse[i][k] == 0 && solid->forward[i][k] == 0));
+    for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
+        level = level && solid->faces[i].axis == (uint32_t)i / 2;
+    return level;
+}
+
+bool glint_combined_cut_box(const glint_geometry *geometry, const glint_combined *combined)
+{
+    if (!combined->simple || combined->count != 2 || combined->program[2] != GLINT_COMBINE_DIFFERENCE)
+        return false;
+    const glint_prim *parts = &geometry->members[combined->first];
+    const glint_solid *box = &geometry->solids[parts[0].item], *ball = &geometry->solids[parts[1].item];
+    return box->form == GLINT_FORM_BOX && ball->form == GLINT_FORM_BALL && is_level(box) && is_level(ball);
+}
+
 /// Along any way as good as along another; this one is along no face or edge that is likely.
 static bool hull_holds(const glint_geometry *geometry, const glint_prim *part, const double place[3])
 {

@@ -197,6 +197,7 @@ glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glin
     if (!status) {
         glint_combined_roles(m.combined);
         m.combined->simple = glint_combined_simple(geometry, m.combined);
+        m.combined->cut_box = glint_combined_cut_box(geometry, m.combined);
         glint_combined_box(geometry, m.combined, prim->corner);
     }
     f->object_count++;

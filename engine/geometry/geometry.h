@@ -148,6 +148,9 @@ void glint_combined_box(const glint_geometry *geometry, const glint_combined *co
 void glint_combined_roles(glint_combined *combined);
 /// Whether it is simple, see glint_combined.
 bool glint_combined_simple(const glint_geometry *geometry, const glint_combined *combined);
+
+/// Whether one that is simple is a cut box, see there.
+bool glint_combined_cut_box(const glint_geometry *geometry, const glint_combined *combined);
 /// Whether a place is inside the combined solid.
 bool glint_combined_holds(const glint_geometry *geometry, const glint_combined *combined, const double place[3]);
 

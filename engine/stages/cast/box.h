@@ -19,6 +19,15 @@ INNER void R(begin_slab)(const glint_face *faces, const vr *place, const vr d[3]
     slabs->high[i] = height[1];
 }
 
+/// The same of faces that are square to axis i, a constant.
+INNER void R(begin_level_slab)(const glint_face *faces, const vr *place, const vr d[3], const int i, R(box_slabs) * slabs)
+{
+    vr height[2] = { r_set(0), r_set(0) };
+    slabs->rise[i] = R(over_level_slab)(faces + 2 * i, i, place, d, height);
+    slabs->low[i] = height[0];
+    slabs->high[i] = height[1];
+}
+
 INNER vr R(slab_slack)(vr low, vr high) { return r_set(BOX_SLACK) * (R(abs)(low) + R(abs)(high)); }
 
 /// hit and missed: rays that go into it ahead, at t, or pass it, both for certain.
@@ -79,8 +88,8 @@ static inline void R(see_slabs)(const real height[6], R(eye_slabs) * eye)
     }
 }
 
-/// As into_box.
-INNER void R(into_eye_box)(const R(eye_slabs) * eye, const vr rise[3], vr *t, rm *hit, rm *missed)
+/// As into_box; *per_way: 1 / t, but for rounding.
+INNER void R(into_eye_box)(const R(eye_slabs) * eye, const vr rise[3], vr *t, vr *per_way, rm *hit, rm *missed)
 {
     const vr zero = r_set(0);
     vr in[3], out = zero, least = r_set(HUGE_VAL);
@@ -89,6 +98,7 @@ INNER void R(into_eye_box)(const R(eye_slabs) * eye, const vr rise[3], vr *t, rm
         least = r_min(in[i], least);
         out = r_max(r_max(rise[i] * r_set(eye->out[i]), rise[i] * r_set(eye->back[i])), out);
     }
+    *per_way = least;
     const vr more = least * r_set(1 + BOX_SLACK), less = least * r_set(1 - BOX_SLACK);
     const rm own[3] = { r_le(in[0], more), r_le(in[1], more), r_le(in[2], more) };
     const rm two = rm_or(rm_and(own[0], rm_or(own[1], own[2])), rm_and(own[1], own[2])); // within rounding of an edge

@@ -496,10 +496,10 @@ INNER bool R(cast_simple_pixels)(const glint_cast_args *args, const glint_combin
 }
 
 /// Apart, so that what it knows of two vectors stays in registers.
-static __attribute__((noinline)) bool R(cast_box_less_ball)(const glint_cast_args *args, const glint_combined *whole,
+static __attribute__((noinline)) bool R(cast_cut_box)(const glint_cast_args *args, const glint_combined *whole,
                                                             const R(eye_parts) * parts, int x, int y, size_t at, unsigned near)
 {
-    return R(cast_simple_pixels)(args, whole, R(BOX_LESS_BALL), parts, x, y, at, near);
+    return R(cast_simple_pixels)(args, whole, R(CUT_BOX), parts, x, y, at, near);
 }
 
 /// The eye's rays in group (x, y) of a tile. parts: of a simple whole, else NULL.
@@ -511,8 +511,8 @@ static __attribute__((noinline)) bool R(cast_combined_pixels)(const glint_cast_a
     count_tests(args->tests, near);
     if (!parts)
         return R(cast_combined_left)(args, whole, R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y), at, near);
-    if (parts->kind == R(BOX_LESS_BALL))
-        return R(cast_box_less_ball)(args, whole, parts, x, y, at, near);
+    if (parts->kind == R(CUT_BOX))
+        return R(cast_cut_box)(args, whole, parts, x, y, at, near);
     if (parts->kind == R(PARTS_TWO))
         return R(cast_simple_pixels)(args, whole, R(PARTS_TWO), parts, x, y, at, near);
     return R(cast_simple_pixels)(args, whole, R(PARTS_ANY), parts, x, y, at, near);

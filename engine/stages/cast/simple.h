@@ -12,14 +12,14 @@ typedef struct R(eye_part) {
     real f[3], height[6]; ///< see solid_start
     real slack; ///< see side_at
     R(eye_slabs) slabs; ///< of a box
-    bool level; ///< the map to the unit shape is along the axes, and face numbers of a box are, in order
+    bool level; ///< the map to the unit shape is along the axes
 } R(eye_part);
 
-/// Wholes that have code of their own for rays from one eye.
+/// Wholes that have code of their own.
 typedef enum R(simple_kind) {
     R(PARTS_ANY),
     R(PARTS_TWO),
-    R(BOX_LESS_BALL) ///< along the axes, and the eye is before the box
+    R(CUT_BOX) ///< see glint_combined; of rays from one eye, that is before a face of the box
 } R(simple_kind);
 
 /// Those of a simple whole, in its order; or a box.
@@ -39,8 +39,6 @@ static inline void R(see_part)(const glint_solid *solid, const glint_prim *prim,
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
             part->level = part->level && (i == k || solid->inverse[i][k] == 0);
-    for (int i = 0; i < 3 && solid->form == GLINT_FORM_BOX; i++)
-        part->level = part->level && solid->faces[2 * i].axis == (uint32_t)i;
 }
 
 /// The parts of a simple whole.
@@ -50,11 +48,7 @@ static inline void R(see_parts)(const glint_geometry_table *table, const glint_c
     const glint_prim *first = &table->prims[table->prim_count + whole->first];
     for (uint32_t j = 0; j < whole->count; j++)
         R(see_part)(&table->solids[first[j].item], &first[j], eye, &parts->part[j]);
-    parts->kind = whole->count == 2 ? R(PARTS_TWO) : R(PARTS_ANY);
-    if (whole->count == 2 && whole->program[2] == GLINT_COMBINE_DIFFERENCE &&
-        table->solids[first[0].item].form == GLINT_FORM_BOX && table->solids[first[1].item].form == GLINT_FORM_BALL &&
-        parts->part[0].slabs.before && parts->part[0].level && parts->part[1].level)
-        parts->kind = R(BOX_LESS_BALL);
+    parts->kind = whole->cut_box && parts->part[0].slabs.before ? R(CUT_BOX) : whole->count == 2 ? R(PARTS_TWO) : R(PARTS_ANY);
 }
 
 /// A box, ball or cylinder before a vector of rays. Below, `at_eye`, a constant: these start at one eye.
@@ -62,7 +56,7 @@ typedef struct R(convex) {
     const R(eye_part) *eye; ///< what is here holds instead of the start and the heights below
     const glint_solid *solid;
     uint32_t form;
-    bool level; ///< of one eye: see eye_part
+    bool level; ///< of a cut box, or see eye_part
     R(box_slabs) slabs; ///< of a cylinder the first
     vr f[3], e[3]; ///< start and direction, where the shape is the unit one; of a box not used
 } R(convex);
@@ -71,10 +65,12 @@ typedef struct R(convex) {
 INNER void R(begin_convex)(const glint_prim *part, const vr o[3], const vr d[3], const bool at_eye, R(convex) * x)
 {
     const glint_solid *solid = x->solid;
-    const bool level = at_eye && x->level;
+    const bool level = x->level;
     if (x->form == GLINT_FORM_BOX && level) {
-        for (int i = 0; i < 3; i++)
+        for (int i = 0; i < 3 && at_eye; i++)
             x->slabs.rise[i] = R(over_level_slab)(solid->faces + 2 * i, i, NULL, d, NULL);
+        for (int i = 0; i < 3 && !at_eye; i++)
+            R(begin_level_slab)(solid->faces, o, d, i, &x->slabs);
         return;
     }
     for (int i = 0; i < glint_slab_count(x->form) && at_eye; i++)
@@ -83,12 +79,15 @@ INNER void R(begin_convex)(const glint_prim *part, const vr o[3], const vr d[3],
         R(begin_slab)(solid->faces, o, d, i, &x->slabs);
     if (x->form == GLINT_FORM_BOX)
         return;
-    if (!at_eye)
+    if (!at_eye && !level)
         R(unit_offset)(solid, part, o, x->f);
     if (!level)
         R(to_unit)(solid, d, x->e);
-    for (int k = 0; level && k < 3; k++) // what the other columns add is 0
+    for (int k = 0; level && k < 3; k++) { // what the other columns add is 0
         x->e[k] = r_set(solid->inverse[k][k]) * d[k];
+        if (!at_eye)
+            x->f[k] = r_set(solid->inverse[k][k]) * (o[k] - r_set(part->center[k]));
+    }
 }
 
 /// The start, where the shape is the unit one.
@@ -149,7 +148,8 @@ INNER void R(way_into_box)(const R(convex) * x, const bool at_eye, vr *t, rm *hi
         return;
     }
     if (x->eye->slabs.before) {
-        R(into_eye_box)(&x->eye->slabs, x->slabs.rise, t, hit, missed);
+        vr per_way;
+        R(into_eye_box)(&x->eye->slabs, x->slabs.rise, t, &per_way, hit, missed);
         return;
     }
     *t = r_set(0);
@@ -285,6 +285,21 @@ INNER void R(look_behind_cutter)(const R(convex) x[], const uint32_t count, cons
     hits->part = r_select(second, r_set(count - 1), hits->part);
 }
 
+/// As meet_difference, of a cut box before rays from one eye. Whether a ray is in the ball where it goes into the box is told by
+/// places over t, so that it need not wait for the division: what 1 / t is off is far below the slack, as is all other rounding.
+INNER rm R(meet_cut_box)(const R(convex) x[2], R(simple_hits) * hits)
+{
+    vr per_way, q[3];
+    rm hit;
+    R(into_eye_box)(&x[0].eye->slabs, x[0].slabs.rise, &hits->t, &per_way, &hit, &hits->missed);
+    for (int k = 0; k < 3; k++)
+        q[k] = r_set(x[1].eye->f[k]) * per_way + x[1].e[k];
+    const vr unit = per_way * per_way, over = DOT(q, q) - unit, slack = r_set(x[1].eye->slack) * unit;
+    hits->part = r_set(0);
+    hits->hit = rm_and(hit, r_lt(slack, over));
+    return rm_and(hit, r_lt(over, -slack));
+}
+
 /// All parts together begin where the first of them does.
 INNER void R(meet_union)(const R(convex) x[], uint32_t count, const bool at_eye, R(simple_hits) * hits)
 {
@@ -311,7 +326,7 @@ INNER void R(meet_union)(const R(convex) x[], uint32_t count, const bool at_eye,
 INNER void R(begin_part)(const glint_geometry_table *table, const glint_combined *whole, const R(simple_kind) kind, uint32_t j,
                          const vr o[3], const vr d[3], const bool at_eye, const R(eye_parts) * eye, R(convex) * x)
 {
-    const bool known = kind == R(BOX_LESS_BALL);
+    const bool known = kind == R(CUT_BOX);
     const glint_prim *part = &table->prims[table->prim_count + whole->first + j];
     x->solid = &table->solids[part->item];
     x->eye = at_eye ? &eye->part[j] : NULL;
@@ -343,11 +358,25 @@ INNER rm R(meet_simple)(const glint_combined *whole, const uint32_t count, const
     return R(meet_difference)(x, count > 2 ? met : 2, count, at_eye, hits);
 }
 
+static __attribute__((noinline)) unsigned R(meet_cut_box_from)(const glint_geometry_table *table, const glint_combined *whole,
+                                                               const vr o[3], const vr d[3], R(simple_hits) * hits)
+{
+    R(convex) x[2];
+    R(begin_part)(table, whole, R(CUT_BOX), 0, o, d, false, NULL, &x[0]);
+    R(begin_part)(table, whole, R(CUT_BOX), 1, o, d, false, NULL, &x[1]);
+    const rm in = R(meet_difference)(x, 1, 2, false, hits);
+    if (rm_bits(in))
+        R(look_behind_cutter)(x, 2, false, in, hits);
+    return rm_bits(rm_or(hits->missed, hits->hit));
+}
+
 /// Returns the lanes that are decided.
 static unsigned R(meet_from_anywhere)(const glint_geometry_table *table, const glint_combined *whole, const vr o[3],
                                       const vr d[3], R(simple_hits) * hits)
 {
     R(convex) x[GLINT_SIMPLE_PARTS];
+    if (whole->cut_box)
+        return R(meet_cut_box_from)(table, whole, o, d, hits);
     for (uint32_t j = 0; j < whole->count; j++)
         R(begin_part)(table, whole, R(PARTS_ANY), j, o, d, false, NULL, &x[j]);
     const rm in = R(meet_simple)(whole, whole->count, false, x, hits);
@@ -382,11 +411,11 @@ INNER void R(meet_group)(const glint_geometry_table *table, const glint_combined
         const unsigned lanes = near >> v * VR & ((1u << VR) - 1);
         R(convex) x[GLINT_SIMPLE_PARTS];
         in[v] = 0;
-        if (!lanes && kind != R(BOX_LESS_BALL))
+        if (!lanes && kind != R(CUT_BOX))
             continue;
         R(begin_eye_parts)(table, whole, kind, count, eye, args, directions, v, x);
-        if (kind == R(BOX_LESS_BALL))
-            in[v] = lanes & rm_bits(R(meet_difference)(x, 1, 2, true, &hits[v]));
+        if (kind == R(CUT_BOX))
+            in[v] = lanes & rm_bits(R(meet_cut_box)(x, &hits[v]));
         else
             in[v] = lanes & rm_bits(R(meet_simple)(whole, count, true, x, &hits[v]));
     }
@@ -418,8 +447,8 @@ INNER void R(meet_group_of)(const R(simple_kind) kind, const glint_geometry_tabl
                             const R(eye_parts) * eye, const glint_cast_args *args, R(group_directions) directions,
                             unsigned near, R(simple_hits) hits[])
 {
-    if (kind == R(BOX_LESS_BALL))
-        R(meet_group)(table, whole, R(BOX_LESS_BALL), eye, args, directions, near, hits);
+    if (kind == R(CUT_BOX))
+        R(meet_group)(table, whole, R(CUT_BOX), eye, args, directions, near, hits);
     else if (kind == R(PARTS_TWO))
         R(meet_group_of_two)(table, whole, eye, args, directions, near, hits);
     else
@@ -429,21 +458,22 @@ INNER void R(meet_group_of)(const R(simple_kind) kind, const glint_geometry_tabl
 // ---- Rays that start on a part ----
 
 /// Those that go into cutter `on` are in it up to its other side. There they meet what is left of the first `met` parts, if they are
-/// in all of these; what these have in common is convex, so that those that are out of it do not come back.
-static void R(meet_through_cutter)(const glint_geometry_table *table, const glint_combined *whole, uint32_t met, uint32_t on,
-                                   const vr o[3], const vr d[3], R(simple_hits) * hits)
+/// in all of these; what these have in common is convex, so that those that are out of it do not come back. kind: a constant.
+INNER void R(meet_through_cutter)(const glint_geometry_table *table, const glint_combined *whole, const R(simple_kind) kind,
+                                  const uint32_t count, const uint32_t met, const uint32_t on, const vr o[3], const vr d[3],
+                                  R(simple_hits) * hits)
 {
     R(convex) x;
     rm in, out;
-    R(begin_part)(table, whole, R(PARTS_ANY), on, o, d, false, NULL, &x);
+    R(begin_part)(table, whole, kind, on, o, d, false, NULL, &x);
     const rm told = R(way_out_of)(&x, false, &hits->t);
     hits->t = r_max(hits->t, r_set(GLINT_LEAST_WAY));
     hits->missed = rm_from_bits(0);
     hits->hit = told;
-    for (uint32_t j = 0; j < whole->count; j++) {
+    for (uint32_t j = 0; j < count; j++) {
         if (j == on)
             continue;
-        R(begin_part)(table, whole, R(PARTS_ANY), j, o, d, false, NULL, &x);
+        R(begin_part)(table, whole, kind, j, o, d, false, NULL, &x);
         R(convex_at)(&x, false, hits->t, &in, &out);
         hits->hit = rm_and(hits->hit, j < met ? in : out);
         if (j < met)
@@ -474,8 +504,10 @@ static unsigned R(meet_from_part)(const glint_geometry_table *table, const glint
     hits->t = r_set(HUGE_VAL);
     hits->hit = rm_from_bits(0);
     hits->missed = rm_from_bits((1u << VR) - 1); // nothing is left of what all of the whole is in
-    if (cutter)
-        R(meet_through_cutter)(table, whole, met, on, o, d, hits);
+    if (whole->cut_box && cutter)
+        R(meet_through_cutter)(table, whole, R(CUT_BOX), 2, 1, 1, o, d, hits);
+    else if (cutter)
+        R(meet_through_cutter)(table, whole, R(PARTS_ANY), whole->count, met, on, o, d, hits);
     else if (united)
         R(meet_other_parts)(table, whole, on, o, d, hits);
     return rm_bits(rm_or(hits->missed, hits->hit)) & (cutter ? into : ~into);

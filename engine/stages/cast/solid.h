@@ -272,13 +272,13 @@ INNER bool R(meet_box)(const glint_solid *solid, const vr place[3], const vr d[3
 /// The same of rays from one eye.
 INNER bool R(meet_eye_box)(const glint_solid *solid, const R(eye_slabs) * eye, const vr d[3], unsigned lanes, vr *t, rm *hit)
 {
-    vr rise[3];
+    vr rise[3], per_way;
     rm missed;
     if (!eye->before)
         return false;
     for (int i = 0; i < 3; i++)
         rise[i] = R(face_rise)(solid->faces + 2 * i, d);
-    R(into_eye_box)(eye, rise, t, hit, &missed);
+    R(into_eye_box)(eye, rise, t, &per_way, hit, &missed);
     return (lanes & ~rm_bits(rm_or(*hit, missed))) == 0;
 }
 

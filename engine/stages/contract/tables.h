@@ -172,6 +172,7 @@ typedef struct glint_combined {
     float lower[3], upper[3]; ///< a box around it, as of a solid
     bool simple; ///< it has two parts or a few more, each a box, ball or cylinder, and one operation joins each to those before it, or
                  ///< the first few are met and the others taken away
+    bool cut_box; ///< a box less a ball, both along the axes of the world; it is simple, too
     // sets of parts, a bit each:
     uint64_t all; ///< every part, where the program has no empty set; else 0
     uint64_t needs; ///< those without any of which the whole is nothing

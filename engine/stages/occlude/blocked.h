@@ -305,12 +305,19 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
     return blocked;
 }
 
+/// Lanes of a group that are on parts of a combined solid.
+static inline unsigned R(lanes_on_parts)(const glint_occlude_args *args, const glint_combined *whole, size_t at)
+{
+    const uint32_t first = args->geometry->prim_count + whole->first;
+    return lanes_below(args->prim + at, first + whole->count) & ~lanes_below(args->prim + at, first);
+}
+
 /// Without the lanes of `wanted` whose segments leave a combined solid: those that go out of a part that all of it is in.
 static unsigned R(stay_in_combined)(const glint_occlude_args *args, const glint_prim *prim, size_t at, unsigned wanted)
 {
     const glint_combined *whole = &args->geometry->combined[prim->item];
     const uint32_t first = args->geometry->prim_count + whole->first;
-    if (!(lanes_below(args->prim + at, first + whole->count) & ~lanes_below(args->prim + at, first)))
+    if (!R(lanes_on_parts)(args, whole, at))
         return wanted; // no lane is on a part, and those need not come from memory
     const unsigned back = args->back[at / GLINT_GROUP];
     for (uint64_t left = whole->all & whole->needs; left && wanted; left &= left - 1) {
@@ -321,15 +328,12 @@ static unsigned R(stay_in_combined)(const glint_occlude_args *args, const glint_
     return wanted;
 }
 
-/// Decides a simple whole for `lanes` of segments where that takes little. Returns those that are left; *blocked: of the others.
+/// Decides a simple whole for `lanes` of segments, from lane i of the group at `at` on, where that takes little; own: those that begin
+/// on it. Returns those that are left; *blocked: of the others.
 static unsigned R(settle_simple)(const glint_occlude_args *args, const glint_combined *whole, const R(whole_rays) * rays,
-                                 unsigned lanes, unsigned *blocked)
+                                 size_t at, int i, unsigned own, unsigned lanes, unsigned *blocked)
 {
     const uint32_t first = args->geometry->prim_count + whole->first;
-    unsigned own = 0;
-    for (int i = 0; i < VR; i++)
-        own |= (unsigned)(rays->on[i] - first < whole->count) << i;
-    own &= lanes;
     for (unsigned left = lanes, here, told; left; left &= ~here) {
         R(simple_hits) hits;
         here = left & ~own;
@@ -338,7 +342,7 @@ static unsigned R(settle_simple)(const glint_occlude_args *args, const glint_com
         } else {
             const uint32_t on = rays->on[__builtin_ctz(left)];
             const unsigned into = args->geometry->prims[on].turned ? ~rays->inward : rays->inward;
-            here = R(vector_lanes)(rays->on, on) & left;
+            here = lanes_equal(args->prim + at, on) >> i & left;
             told = R(meet_from_part)(args->geometry, whole, on - first, into, rays->o, rays->d, &hits);
         }
         told &= here;
@@ -357,7 +361,7 @@ static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const gli
                                        const real position[3][GLINT_GROUP], size_t at, unsigned wanted)
 {
     const glint_combined *whole = &args->geometry->combined[prim->item];
-    const unsigned back = args->back[at / GLINT_GROUP];
+    const unsigned back = args->back[at / GLINT_GROUP], own = wanted & R(lanes_on_parts)(args, whole, at);
     unsigned blocked = 0;
     count_tests(args->tests, wanted);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
@@ -371,7 +375,7 @@ static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const gli
         const R(whole_rays) rays = { p, d, args->prim + at + i, back >> i, lanes };
         unsigned left = lanes, met = 0, hit;
         if (GLINT_REAL == 64 && whole->simple)
-            left = R(settle_simple)(args, whole, &rays, lanes, &met);
+            left = R(settle_simple)(args, whole, &rays, at, i, own >> i & lanes, lanes, &met);
         blocked |= met << i;
         while (left) {
             left = R(next_change)(args->geometry, whole, &rays, left, &from, &s, &t, &hit);
