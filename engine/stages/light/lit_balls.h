@@ -156,25 +156,61 @@ INNER void R(begin_parts)(const glint_surface_args *surface, R(group_directions)
     }
 }
 
+/// Puts what was found of lanes in `here`, of part j, among the parts. Returns those seen from behind.
+INNER unsigned R(put_piece)(const R(found) * found, unsigned here, R(plain_part) * part)
+{
+    const rm mask = rm_from_bits(here);
+    for (int k = 0; k < 3; k++) {
+        part->point[k] = r_select(mask, found->point[k], part->point[k]);
+        part->normal[k] = r_select(mask, found->normal[k], part->normal[k]);
+    }
+    part->nv = r_select(mask, r_select(found->back, found->away, -found->away), part->nv);
+    return rm_bits(found->back) & here;
+}
+
+/// Of a level box, where all of them meet one face. Returns whether they do; else nothing is done.
+INNER bool R(find_face_piece)(const glint_surface_args *surface, R(seen_slot) * slot, size_t at, unsigned lanes,
+                              R(plain_part) * parts, unsigned *back)
+{
+    const glint_prim *prim = slot->prim.prim;
+    const glint_solid *solid = &surface->solids[prim->item];
+    R(level_lanes) sorted = { { 0, 0, 0 }, { 0, 0, 0 }, 0 };
+    R(found) found[LIT_PARTS];
+    vr k[3], n[3];
+    for (int j = 0; j < LIT_PARTS; j++) {
+        const vr t = r_load((const real *)surface->t + at + (size_t)(j * VR));
+        R(place_in_level)(solid, prim, slot->prim.f, parts[j].direction, t, k, found[j].point);
+        R(sort_in_level)(&slot->view, k, t, j * VR, &sorted);
+    }
+    const unsigned face = R(face_of_level)(&sorted, lanes);
+    if (face == 6)
+        return false;
+    R(normal_of_face)(solid, face, &slot->faces, n);
+    for (int j = 0; j < LIT_PARTS; j++) {
+        R(put_on_face)(solid, face, found[j].point);
+        for (int c = 0; c < 3; c++)
+            found[j].direction[c] = parts[j].direction[c];
+        R(face_viewer)(n, &found[j]);
+        *back |= R(put_piece)(&found[j], lanes >> j * VR & ((1u << VR) - 1), &parts[j]) << j * VR;
+    }
+    return true;
+}
+
 /// Finds points and normals of `lanes`, which show the last primitive looked at. Returns those seen from behind.
-INNER unsigned R(find_piece)(const glint_surface_args *surface, R(surface_walk) * walk, R(group_directions) directions, size_t at,
+INNER unsigned R(find_piece)(const glint_surface_args *surface, R(seen_slot) * slot, R(group_directions) directions, size_t at,
                              unsigned lanes, R(plain_part) * parts)
 {
     unsigned back = 0;
+    const bool level = slot->prim.prim->kind == GLINT_PRIM_SOLID && surface->camera && slot->view.level && !slot->prim.prim->turned;
+    if (level && R(find_face_piece)(surface, slot, at, lanes, parts, &back))
+        return back;
     for (int j = 0; j < LIT_PARTS; j++) {
         const unsigned here = lanes >> j * VR & ((1u << VR) - 1);
-        const rm mask = rm_from_bits(here);
         R(found) found;
         if (!here)
             continue;
-        R(find_lanes)(surface, walk, directions, at, j * VR, here, true, &found);
-        for (int k = 0; k < 3; k++) {
-            parts[j].point[k] = r_select(mask, found.point[k], parts[j].point[k]);
-            parts[j].normal[k] = r_select(mask, found.normal[k], parts[j].normal[k]);
-        }
-        const vr nv = r_select(found.back, found.away, -found.away);
-        parts[j].nv = r_select(mask, nv, parts[j].nv);
-        back |= (rm_bits(found.back) & here) << j * VR;
+        R(find_lanes)(surface, slot, directions, at, j * VR, here, true, &found);
+        back |= R(put_piece)(&found, here, &parts[j]) << j * VR;
     }
     return back;
 }
@@ -197,9 +233,10 @@ static __attribute__((noinline)) void R(light_pieces)(const glint_surface_args *
     for (unsigned left = hits, lanes; left; left &= ~lanes) {
         const uint32_t id = surface->prim[at + (unsigned)__builtin_ctz(left)];
         lanes = lanes_equal(surface->prim + at, id) & left;
-        R(look_at)(surface, walk, id);
-        const glint_prim *prim = walk->last->prim.prim;
-        const unsigned behind = R(find_piece)(surface, walk, directions, at, lanes, parts);
+        R(look_at)(surface, walk, true, id);
+        R(seen_slot) *slot = walk->last;
+        const glint_prim *prim = slot->prim.prim;
+        const unsigned behind = R(find_piece)(surface, slot, directions, at, lanes, parts);
         lanes_put(surface->material + at, lanes, prim->material);
         if (light->highlights)
             R(sort_lanes)(light, &light->materials[prim->material], lanes, point);

@@ -12,9 +12,9 @@ typedef struct R(lit_whole) {
 
 /// What all groups of a call read, as real; in memory as what is seen is.
 typedef struct R(lit_call) {
-    R(surface_walk) walk;
     real position[3], scale;
     bool scaled;
+    R(surface_walk) walk;
 } R(lit_call);
 
 /// What a call says of all its groups, as constants.
@@ -69,24 +69,23 @@ INNER void R(light_part)(const glint_surface_args *surface, const glint_light_ar
 }
 
 /// The parts of a group of one sphere near the eye, plane or solid; `kind`, of these, is a constant.
-INNER void R(light_parts)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
-                          const R(lit_wants) wants, const glint_prim_kind kind, const glint_shade_material *material,
+INNER void R(light_parts)(const glint_surface_args *surface, const glint_light_args *light, const R(lit_call) * call,
+                          R(seen_slot) * slot, const R(lit_wants) wants, const glint_prim_kind kind, const glint_shade_material *material,
                           R(group_directions) directions, size_t at, R(point_box) * box, R(lit_whole) * whole)
 {
 #pragma GCC unroll 8
     for (int j = 0; j < LIT_PARTS; j++) {
         vr d[3], n[3], p[3];
-        R(find_whole)(surface, &call->walk, kind, directions, at, j * VR, d, n, p);
+        R(find_whole)(surface, slot, kind, directions, at, j * VR, d, n, p);
         R(light_part)(surface, light, call, wants, material, d, n, p, at, j, box, whole);
     }
 }
 
 /// Those of a group of one face of a level box. Returns whether it is one; else nothing is done.
-INNER bool R(light_face)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
-                         const R(lit_wants) wants, const glint_shade_material *material, R(group_directions) directions,
+INNER bool R(light_face)(const glint_surface_args *surface, const glint_light_args *light, const R(lit_call) * call,
+                         R(seen_slot) * slot, const R(lit_wants) wants, const glint_shade_material *material, R(group_directions) directions,
                          size_t at, R(point_box) * box, R(lit_whole) * whole)
 {
-    R(seen_slot) *slot = call->walk.last;
     const glint_prim *prim = slot->prim.prim;
     const glint_solid *solid = &surface->solids[prim->item];
     R(level_lanes) lanes = { { 0, 0, 0 }, { 0, 0, 0 }, 0 };
@@ -100,19 +99,15 @@ INNER bool R(light_face)(const glint_surface_args *surface, const glint_light_ar
         R(place_in_level)(solid, prim, slot->prim.f, d[j], t, k, p[j]);
         R(sort_in_level)(&slot->view, k, t, j * VR, &lanes);
     }
-    const unsigned face = R(face_of_level)(&lanes);
+    const unsigned face = R(face_of_level)(&lanes, 0xffff);
     if (face == 6)
         return false;
-    if (!(slot->faces.known >> face & 1))
-        R(learn_face)(solid, (int)face, &slot->faces);
-    for (int c = 0; c < 3; c++) {
-        n[c] = r_set(slot->faces.normal[face][c]);
-        for (int j = 0; j < LIT_PARTS && face / 2 == (unsigned)c; j++)
-            p[j][c] = r_set(solid->faces[face].at[c]);
-    }
+    R(normal_of_face)(solid, face, &slot->faces, n);
 #pragma GCC unroll 8
-    for (int j = 0; j < LIT_PARTS; j++)
+    for (int j = 0; j < LIT_PARTS; j++) {
+        R(put_on_face)(solid, face, p[j]);
         R(light_part)(surface, light, call, wants, material, d[j], n, p[j], at, j, box, whole);
+    }
     return true;
 }
 
@@ -180,10 +175,11 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     const uint32_t id = surface->only ? *surface->only : surface->prim[at];
     if (!surface->only && lanes_equal(surface->prim + at, id) != 0xffff)
         return false;
-    R(look_at)(surface, &call->walk, id);
-    const glint_prim *prim = call->walk.last->prim.prim;
+    R(look_at)(surface, &call->walk, mixed, id);
+    R(seen_slot) *slot = R(last_seen)(&call->walk, mixed);
+    const glint_prim *prim = slot->prim.prim;
     const bool sphere = prim->kind == GLINT_PRIM_SPHERE, solid = mixed && prim->kind == GLINT_PRIM_SOLID;
-    if (!prim->two_sided || !(solid || R(is_near_or_plane)(&call->walk.last->prim)))
+    if (!prim->two_sided || !(solid || R(is_near_or_plane)(&slot->prim)))
         return false;
     const glint_shade_material *material = &light->materials[prim->material];
     if (!light->highlights || (material->highlight != GLINT_HIGHLIGHT_PHONG &&
@@ -194,11 +190,11 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     whole.lit = whole.back = whole.some = 0;
     const R(lit_wants) wants = { normals, mixed && surface->slack };
     if (sphere)
-        R(light_parts)(surface, light, call, wants, GLINT_PRIM_SPHERE, material, directions, at, box, &whole);
+        R(light_parts)(surface, light, call, slot, wants, GLINT_PRIM_SPHERE, material, directions, at, box, &whole);
     else if (!solid)
-        R(light_parts)(surface, light, call, wants, GLINT_PRIM_PLANE, material, directions, at, box, &whole);
-    else if (!R(light_face)(surface, light, call, wants, material, directions, at, box, &whole))
-        R(light_parts)(surface, light, call, wants, GLINT_PRIM_SOLID, material, directions, at, box, &whole);
+        R(light_parts)(surface, light, call, slot, wants, GLINT_PRIM_PLANE, material, directions, at, box, &whole);
+    else if (!R(light_face)(surface, light, call, slot, wants, material, directions, at, box, &whole))
+        R(light_parts)(surface, light, call, slot, wants, GLINT_PRIM_SOLID, material, directions, at, box, &whole);
     lanes_put(surface->material + at, 0xffff, prim->material);
     surface->back[place.g] = (uint16_t)whole.back;
     surface->dark[place.g] = 0;
@@ -248,7 +244,7 @@ INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_
     R(point_box) box;
     R(lit_point) point = { 0 };
     R(lit_group) group;
-    R(begin_walk)(&call.walk);
+    R(begin_walk)(surface, &call.walk);
     R(empty_box)(&box);
     for (int k = 0; k < 3; k++) {
         call.position[k] = (real)light->position[k];
@@ -278,10 +274,16 @@ INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_
     R(say_brightest)(light, 0, group.brightest);
 }
 
+/// Apart, so that it takes no registers from what balls and planes need.
+static __attribute__((noinline)) void R(lit_mixed)(const glint_surface_args *surface, const glint_light_args *light)
+{
+    R(lit_surfaces)(surface, light, true, true);
+}
+
 static void R(lit_surface)(const glint_surface_args *surface, const glint_light_args *light)
 {
     if (surface->mixed)
-        R(lit_surfaces)(surface, light, true, true);
+        R(lit_mixed)(surface, light);
     else if (surface->all_normals)
         R(lit_surfaces)(surface, light, false, true);
     else

@@ -101,16 +101,31 @@ INNER void R(sort_in_level)(const R(box_view) * view, const vr k[3], vr t, int i
     lanes->ahead |= rm_bits(r_lt(r_set(0x1p-100), t)) << i;
 }
 
-/// The face that all lanes of the group meet away from its edges: that is the one that each t was made of. 6: there is none such.
-static inline unsigned R(face_of_level)(const R(level_lanes) * lanes)
+/// The face that lanes in `all` meet away from its edges: that is the one that each t was made of. 6: there is none such.
+static inline unsigned R(face_of_level)(const R(level_lanes) * lanes, unsigned all)
 {
-    const unsigned all = 0xffff;
     for (unsigned c = 0; c < 3; c++) {
-        const unsigned low = lanes->low[c];
-        if (!lanes->within[c] && (lanes->within[(c + 1) % 3] & lanes->within[(c + 2) % 3] & lanes->ahead) == all)
+        const unsigned low = lanes->low[c] & all;
+        if (!(lanes->within[c] & all) && (all & lanes->within[(c + 1) % 3] & lanes->within[(c + 2) % 3] & lanes->ahead) == all)
             return low == all ? 2 * c : low == 0 ? 2 * c + 1 : 6;
     }
     return 6;
+}
+
+/// Its normal, and the points of lanes that are on it.
+INNER void R(normal_of_face)(const glint_solid *solid, unsigned face, R(box_faces) * faces, vr n[3])
+{
+    if (!(faces->known >> face & 1))
+        R(learn_face)(solid, (int)face, faces);
+    for (int c = 0; c < 3; c++)
+        n[c] = r_set(faces->normal[face][c]);
+}
+
+INNER void R(put_on_face)(const glint_solid *solid, unsigned face, vr p[3])
+{
+    for (unsigned c = 0; c < 3; c++)
+        if (face / 2 == c)
+            p[c] = r_set(solid->faces[face].at[c]);
 }
 
 /// As below; level: view->level, a constant.

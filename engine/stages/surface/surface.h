@@ -70,15 +70,18 @@ typedef struct R(seen_slot) {
     R(box_faces) faces; ///< likewise
 } R(seen_slot);
 
-#define SEEN_SLOTS 8 ///< a tile's groups come back to the same few
+#define SEEN_SLOTS 4 ///< a tile's groups come back to the same few
 
 /// What is known while the groups of a tile are gone through.
 typedef struct R(surface_walk) {
-    R(seen_slot) slots[SEEN_SLOTS]; ///< by the lowest bits of their numbers
-    R(seen_slot) * last; ///< the last primitive's
     uint32_t only; ///< the only primitive so far, GLINT_MISS: none
     bool several, turned; ///< there are others; some lane is seen from behind
+    R(seen_slot) * last; ///< the last primitive's
+    R(seen_slot) slots[SEEN_SLOTS]; ///< by the lowest bits of their numbers; of balls and planes alone one, which is soon made
 } R(surface_walk);
+
+/// The last primitive's; mixed: a constant, see glint_surface_args.
+INNER R(seen_slot) *R(last_seen)(R(surface_walk) * walk, const bool mixed) { return mixed ? walk->last : walk->slots; }
 
 /// One vector of lanes of one primitive.
 typedef struct R(found) {
@@ -96,10 +99,9 @@ INNER void R(face_viewer)(const vr n[3], R(found) * found)
         found->normal[k] = r_select(found->back, -n[k], n[k]);
 }
 
-INNER void R(find_on_solid)(const glint_surface_args *args, R(surface_walk) * walk, const vr from[3], const vr d[3], vr t,
+INNER void R(find_on_solid)(const glint_surface_args *args, R(seen_slot) * slot, const vr from[3], const vr d[3], vr t,
                             unsigned lanes, vr n[3], vr p[3])
 {
-    R(seen_slot) *slot = walk->last;
     const R(seen_prim) *seen = &slot->prim;
     const glint_solid *solid = &args->solids[seen->prim->item];
     const bool box = args->camera && solid->form == GLINT_FORM_BOX;
@@ -116,10 +118,10 @@ INNER void R(find_on_solid)(const glint_surface_args *args, R(surface_walk) * wa
 }
 
 /// Of lanes from i on those in `lanes`; what the others get is of no use.
-INNER void R(find_lanes)(const glint_surface_args *args, R(surface_walk) * walk, R(group_directions) directions, size_t at,
+INNER void R(find_lanes)(const glint_surface_args *args, R(seen_slot) * slot, R(group_directions) directions, size_t at,
                          int i, unsigned lanes, bool mixed, R(found) * found)
 {
-    const R(seen_prim) *seen = &walk->last->prim;
+    const R(seen_prim) *seen = &slot->prim;
     const glint_prim *prim = seen->prim;
     const bool smooth = mixed && prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS;
     vr *d = found->direction, *p = found->point, n[3], from[3], f[3], w[3] = { r_set(0), r_set(0), r_set(0) };
@@ -146,7 +148,7 @@ INNER void R(find_lanes)(const glint_surface_args *args, R(surface_walk) * walk,
             R(corners_of)(prim, corner);
             R(triangle_point)(corner, args->scale, from, d, w, p, &found->slack);
         } else if (mixed && prim->kind == GLINT_PRIM_SOLID)
-            R(find_on_solid)(args, walk, from, d, t, lanes, n, p);
+            R(find_on_solid)(args, slot, from, d, t, lanes, n, p);
     }
     if (prim->kind == GLINT_PRIM_PLANE && seen->level == 3)
         R(onto_plane_of)(prim, n, p);
@@ -262,9 +264,9 @@ static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
         lanes_put(args->material + at, 0xffff, 0);
 }
 
-INNER void R(begin_walk)(R(surface_walk) * walk)
+INNER void R(begin_walk)(const glint_surface_args *args, R(surface_walk) * walk)
 {
-    for (int i = 0; i < SEEN_SLOTS; i++)
+    for (int i = 0; i < (args->mixed ? SEEN_SLOTS : 1); i++)
         walk->slots[i].prim.id = GLINT_MISS;
     walk->last = walk->slots;
     walk->only = GLINT_MISS;
@@ -275,7 +277,7 @@ INNER void R(begin_walk)(R(surface_walk) * walk)
 static __attribute__((noinline)) void R(look_at_other)(const glint_surface_args *args, R(surface_walk) * walk,
                                                        uint32_t id)
 {
-    R(seen_slot) *slot = walk->last = &walk->slots[id % SEEN_SLOTS];
+    R(seen_slot) *slot = walk->last = &walk->slots[args->mixed ? id % SEEN_SLOTS : 0];
     walk->several = walk->several || (walk->only != GLINT_MISS && walk->only != id);
     walk->only = id;
     if (slot->prim.id == id)
@@ -286,9 +288,9 @@ static __attribute__((noinline)) void R(look_at_other)(const glint_surface_args 
         R(view_box)(&args->solids[slot->prim.prim->item], slot->prim.f, &slot->view);
 }
 
-INNER void R(look_at)(const glint_surface_args *args, R(surface_walk) * walk, uint32_t id)
+INNER void R(look_at)(const glint_surface_args *args, R(surface_walk) * walk, const bool mixed, uint32_t id)
 {
-    if (walk->last->prim.id != id)
+    if (R(last_seen)(walk, mixed)->prim.id != id)
         R(look_at_other)(args, walk, id);
 }
 
@@ -328,16 +330,16 @@ static inline bool R(is_near_or_plane)(const R(seen_prim) * seen)
 
 /// Directions, outward normals and points of lanes i .. of a group that shows one plane, or one sphere that the camera is not far
 /// from, or one solid, in every lane; `kind`, of these, is a constant.
-INNER void R(find_whole)(const glint_surface_args *args, R(surface_walk) * walk, const glint_prim_kind kind,
+INNER void R(find_whole)(const glint_surface_args *args, R(seen_slot) * slot, const glint_prim_kind kind,
                          R(group_directions) directions, size_t at, int i, vr d[3], vr n[3], vr p[3])
 {
-    const R(seen_prim) *seen = &walk->last->prim;
+    const R(seen_prim) *seen = &slot->prim;
     R(load_direction)(directions, args->direction, at, i, d);
     const vr t = r_load((const real *)args->t + at + i);
     if (kind == GLINT_PRIM_SOLID) {
         const double *eye = args->camera->eye;
         const vr from[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
-        R(find_on_solid)(args, walk, from, d, t, (1u << VR) - 1, n, p);
+        R(find_on_solid)(args, slot, from, d, t, (1u << VR) - 1, n, p);
         return;
     }
     if (kind == GLINT_PRIM_SPHERE) {
@@ -372,23 +374,23 @@ INNER void R(place_level)(const glint_surface_args *args, const R(seen_prim) * s
 }
 
 /// The points alone of such a group of another plane or of a sphere; `kind` is a constant.
-INNER void R(place_lanes)(const glint_surface_args *args, R(surface_walk) * walk, const glint_prim_kind kind,
+INNER void R(place_lanes)(const glint_surface_args *args, R(seen_slot) * slot, const glint_prim_kind kind,
                           R(group_directions) directions, size_t at)
 {
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         vr d[3], n[3], p[3];
-        R(find_whole)(args, walk, kind, directions, at, i, d, n, p);
+        R(find_whole)(args, slot, kind, directions, at, i, d, n, p);
         for (int k = 0; k < 3; k++)
             r_store((real *)args->point[k] + at + i, p[k]);
     }
 }
 
 /// The points alone of such a group.
-INNER void R(place_whole)(const glint_surface_args *args, R(surface_walk) * walk, R(group_directions) directions, size_t at)
+INNER void R(place_whole)(const glint_surface_args *args, R(seen_slot) * slot, R(group_directions) directions, size_t at)
 {
-    const R(seen_prim) *seen = &walk->last->prim;
+    const R(seen_prim) *seen = &slot->prim;
     if (seen->prim->kind == GLINT_PRIM_SPHERE)
-        R(place_lanes)(args, walk, GLINT_PRIM_SPHERE, directions, at);
+        R(place_lanes)(args, slot, GLINT_PRIM_SPHERE, directions, at);
     else if (seen->level == 0)
         R(place_level)(args, seen, directions, at, 0);
     else if (seen->level == 1)
@@ -396,7 +398,7 @@ INNER void R(place_whole)(const glint_surface_args *args, R(surface_walk) * walk
     else if (seen->level == 2)
         R(place_level)(args, seen, directions, at, 2);
     else
-        R(place_lanes)(args, walk, GLINT_PRIM_PLANE, directions, at);
+        R(place_lanes)(args, slot, GLINT_PRIM_PLANE, directions, at);
 }
 
 /// One group that is hit: its triangles together, where there are several, and the rest primitive by primitive.
@@ -417,29 +419,30 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
         left &= ~mesh;
     }
     while (left) {
-        uint32_t id = walk->last->prim.id; // what the group before has shown last need not be looked at anew
+        R(seen_slot) *slot = R(last_seen)(walk, way == R(MIXED));
+        uint32_t id = slot->prim.id; // what the group before has shown last need not be looked at anew
         unsigned lanes = lanes_equal(args->prim + at, id) & left, behind = 0;
         if (!lanes) {
             id = args->prim[at + (unsigned)__builtin_ctz(left)];
             lanes = lanes_equal(args->prim + at, id) & left;
-            R(look_at)(args, walk, id);
+            R(look_at)(args, walk, way == R(MIXED), id);
+            slot = R(last_seen)(walk, way == R(MIXED));
         }
-        const bool placed =
-            way == R(POINTS_ALONE) && args->camera && lanes == 0xffff && R(is_near_or_plane)(&walk->last->prim);
+        const bool placed = way == R(POINTS_ALONE) && args->camera && lanes == 0xffff && R(is_near_or_plane)(&slot->prim);
         if (placed)
-            R(place_whole)(args, walk, directions, at);
+            R(place_whole)(args, slot, directions, at);
         for (int i = placed ? GLINT_GROUP : 0; i < GLINT_GROUP; i += VR) {
             const unsigned here = lanes >> i & ((1u << VR) - 1);
             if (!here)
                 continue;
             R(found) found;
-            R(find_lanes)(args, walk, directions, at, i, here, way == R(MIXED), &found);
+            R(find_lanes)(args, slot, directions, at, i, here, way == R(MIXED), &found);
             behind |= R(put_found)(args, &found, at + (size_t)i, here, way, box) << i;
         }
         if (way != R(POINTS_ALONE))
-            lanes_put(args->material + at, lanes, walk->last->prim.prim->material);
+            lanes_put(args->material + at, lanes, slot->prim.prim->material);
         back |= behind;
-        if (!walk->last->prim.prim->two_sided)
+        if (!slot->prim.prim->two_sided)
             dark |= behind;
         left &= ~lanes;
     }
@@ -454,7 +457,7 @@ INNER void R(surface_groups)(const glint_surface_args *args, R(surface_way) way)
 {
     R(surface_walk) walk;
     R(point_box) box;
-    R(begin_walk)(&walk);
+    R(begin_walk)(args, &walk);
     R(empty_box)(&box);
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
         if (args->hits[place.g])
