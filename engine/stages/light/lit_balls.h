@@ -1,6 +1,6 @@
-// lit_balls: surface and the light of one plain lamp of groups that show several primitives, or some in a part of their lanes. Of
-// spheres alone the lanes are worked off together, each with the sphere of its own; else primitive by primitive, but lit together. The
-// arithmetic is that of surface.h and plain.h. Contract: stages.h.
+// lit_balls: surface and the light of one plain lamp of groups that show nothing but spheres, in some of their lanes or in all:
+// the lanes are worked off together, each with the sphere of its own. The arithmetic is that of surface.h and plain.h.
+// Contract: stages.h.
 
 /// The spheres of a group, a lane each; of lanes without a hit 0.
 typedef struct R(ball_lanes) {
@@ -104,8 +104,8 @@ INNER bool R(find_ball_parts)(const glint_surface_args *surface, const R(ball_la
 }
 
 /// Writes them, lanes without a hit as 0.
-INNER void R(store_parts)(const glint_surface_args *surface, const R(plain_part) * parts, size_t at, unsigned hits,
-                          bool normals, R(point_box) * box)
+INNER void R(store_ball_parts)(const glint_surface_args *surface, const R(plain_part) * parts, size_t at, unsigned hits,
+                               bool normals, R(point_box) * box)
 {
 #pragma GCC unroll 8
     for (int j = 0; j < LIT_PARTS; j++) {
@@ -134,118 +134,10 @@ static __attribute__((noinline)) bool R(light_balls)(const glint_surface_args *s
     if (!R(find_balls)(surface, light, at, hits, walk, &balls, point) ||
         !R(find_ball_parts)(surface, &balls, place, hits, parts, &back))
         return false;
-    R(store_parts)(surface, parts, at, hits, normals, box);
+    R(store_ball_parts)(surface, parts, at, hits, normals, box);
     surface->back[place.g] = (uint16_t)back;
     surface->dark[place.g] = 0;
     walk->turned = walk->turned || back;
     R(plain_light)(light, kind, true, place, point, parts, hits & light->hits[place.g], 0, brightest);
     return true;
-}
-
-// ---- Primitives of all kinds but triangles of meshes ----
-
-/// Parts of a group as far as they are known before any primitive is looked at.
-INNER void R(begin_parts)(const glint_surface_args *surface, R(group_directions) directions, size_t at, R(plain_part) * parts)
-{
-    for (int j = 0; j < LIT_PARTS; j++) {
-        R(load_direction)(directions, surface->direction, at, j * VR, parts[j].direction);
-        parts[j].a = DOT(parts[j].direction, parts[j].direction);
-        parts[j].nv = r_set(0);
-        for (int k = 0; k < 3; k++)
-            parts[j].point[k] = parts[j].normal[k] = r_set(0);
-    }
-}
-
-/// Puts what was found of lanes in `here`, of part j, among the parts. Returns those seen from behind.
-INNER unsigned R(put_piece)(const R(found) * found, unsigned here, R(plain_part) * part)
-{
-    const rm mask = rm_from_bits(here);
-    for (int k = 0; k < 3; k++) {
-        part->point[k] = r_select(mask, found->point[k], part->point[k]);
-        part->normal[k] = r_select(mask, found->normal[k], part->normal[k]);
-    }
-    part->nv = r_select(mask, r_select(found->back, found->away, -found->away), part->nv);
-    return rm_bits(found->back) & here;
-}
-
-/// Of a level box, where all of them meet one face. Returns whether they do; else nothing is done.
-INNER bool R(find_face_piece)(const glint_surface_args *surface, R(seen_slot) * slot, size_t at, unsigned lanes,
-                              R(plain_part) * parts, unsigned *back)
-{
-    const glint_prim *prim = slot->prim.prim;
-    const glint_solid *solid = &surface->solids[prim->item];
-    R(level_lanes) sorted = { { 0, 0, 0 }, { 0, 0, 0 }, 0 };
-    R(found) found[LIT_PARTS];
-    vr k[3], n[3];
-    for (int j = 0; j < LIT_PARTS; j++) {
-        const vr t = r_load((const real *)surface->t + at + (size_t)(j * VR));
-        R(place_in_level)(solid, prim, slot->prim.f, parts[j].direction, t, k, found[j].point);
-        R(sort_in_level)(&slot->view, k, t, j * VR, &sorted);
-    }
-    const unsigned face = R(face_of_level)(&sorted, lanes);
-    if (face == 6)
-        return false;
-    R(normal_of_face)(solid, face, &slot->faces, n);
-    for (int j = 0; j < LIT_PARTS; j++) {
-        R(put_on_face)(solid, face, found[j].point);
-        for (int c = 0; c < 3; c++)
-            found[j].direction[c] = parts[j].direction[c];
-        R(face_viewer)(n, &found[j]);
-        *back |= R(put_piece)(&found[j], lanes >> j * VR & ((1u << VR) - 1), &parts[j]) << j * VR;
-    }
-    return true;
-}
-
-/// Finds points and normals of `lanes`, which show the last primitive looked at. Returns those seen from behind.
-INNER unsigned R(find_piece)(const glint_surface_args *surface, R(seen_slot) * slot, R(group_directions) directions, size_t at,
-                             unsigned lanes, R(plain_part) * parts)
-{
-    unsigned back = 0;
-    const bool level = slot->prim.prim->kind == GLINT_PRIM_SOLID && surface->camera && slot->view.level && !slot->prim.prim->turned;
-    if (level && R(find_face_piece)(surface, slot, at, lanes, parts, &back))
-        return back;
-    for (int j = 0; j < LIT_PARTS; j++) {
-        const unsigned here = lanes >> j * VR & ((1u << VR) - 1);
-        R(found) found;
-        if (!here)
-            continue;
-        R(find_lanes)(surface, slot, directions, at, j * VR, here, true, &found);
-        back |= R(put_piece)(&found, here, &parts[j]) << j * VR;
-    }
-    return back;
-}
-
-/// A group of a scene without meshes, of which nothing has been written yet.
-static __attribute__((noinline)) void R(light_pieces)(const glint_surface_args *surface, const glint_light_args *light,
-                                                      R(surface_walk) * walk, R(group_place) place, R(point_box) * box,
-                                                      R(lit_point) * point, vf *brightest)
-{
-    const size_t at = (size_t)place.g * GLINT_GROUP;
-    const R(group_directions) directions = R(directions_of)(surface->camera, place.x, place.y);
-    const unsigned hits = surface->hits[place.g];
-    const int kind = light->directional ? R(PLAIN_AFAR) : R(PLAIN_SCALED);
-    R(plain_part) parts[LIT_PARTS];
-    unsigned back = 0, dark = 0;
-    point->phong = point->blinn = 0;
-    if (hits != 0xffff)
-        lanes_put(surface->material + at, 0xffff, 0);
-    R(begin_parts)(surface, directions, at, parts);
-    for (unsigned left = hits, lanes; left; left &= ~lanes) {
-        const uint32_t id = surface->prim[at + (unsigned)__builtin_ctz(left)];
-        lanes = lanes_equal(surface->prim + at, id) & left;
-        R(look_at)(surface, walk, true, id);
-        R(seen_slot) *slot = walk->last;
-        const glint_prim *prim = slot->prim.prim;
-        const unsigned behind = R(find_piece)(surface, slot, directions, at, lanes, parts);
-        lanes_put(surface->material + at, lanes, prim->material);
-        if (light->highlights)
-            R(sort_lanes)(light, &light->materials[prim->material], lanes, point);
-        back |= behind;
-        dark |= prim->two_sided ? 0 : behind;
-    }
-    R(store_parts)(surface, parts, at, hits, true, box);
-    surface->back[place.g] = (uint16_t)back;
-    surface->dark[place.g] = (uint16_t)dark;
-    walk->turned = walk->turned || back;
-    R(plain_light)(light, kind, true, place, point, parts, hits & light->hits[place.g] & ~dark, 0, brightest);
 }

@@ -209,11 +209,7 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
 static bool R(light_balls)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
                            bool normals, R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest);
 
-/// Any group of a scene without meshes, see there too.
-static void R(light_pieces)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
-                            R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest);
-
-/// The first, by copies: what groups after each other gather stays in registers.
+/// The same, by copies: what groups after each other gather stays in registers.
 INNER bool R(try_balls)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
                         bool normals, R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest)
 {
@@ -223,17 +219,6 @@ INNER bool R(try_balls)(const glint_surface_args *surface, const glint_light_arg
     *box = around;
     *brightest = most;
     return done;
-}
-
-/// The second likewise.
-INNER void R(use_pieces)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
-                         R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest)
-{
-    R(point_box) around = *box;
-    vf most = *brightest;
-    R(light_pieces)(surface, light, walk, place, &around, point, &most);
-    *box = around;
-    *brightest = most;
 }
 
 /// mixed, normals: constants.
@@ -260,8 +245,6 @@ INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_
         } else if (R(light_whole)(surface, light, &call, mixed, normals, place, &box, &group.brightest) ||
                    (!mixed && R(try_balls)(surface, light, &call.walk, normals, place, &box, &point, &group.brightest))) {
             continue;
-        } else if (mixed && !surface->slack) {
-            R(use_pieces)(surface, light, &call.walk, place, &box, &point, &group.brightest);
         } else {
             R(surface_group)(surface, &call.walk, &box, place, mixed ? R(MIXED) : R(BALLS_AND_PLANES));
             R(light_group)(light, LIGHT_PLAIN, 1, NULL, place, &point, &group);
