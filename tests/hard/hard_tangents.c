@@ -8,12 +8,13 @@
 #define NODES 12
 #define STEP ((quad)1e-12)
 #define PARAMETERS 3
+#define OPERANDS 3 ///< the most that these operations have
 
 /// A formula: each node of operations on nodes before it; the first are the inputs and the numbers.
 typedef struct formula {
     int count;
     glint_op op[NODES];
-    int operand[NODES][GLINT_OPERANDS_MAX];
+    int operand[NODES][OPERANDS];
 } formula;
 
 enum { INPUTS = 3, LEAVES = INPUTS + PARAMETERS };
@@ -66,11 +67,20 @@ static quad apply(glint_op op, quad a, quad b, quad c)
     }
 }
 
-/// Where an operation has no slope, or one without a bound.
-static bool is_steep(glint_op op, quad a, quad b)
+/// Where an operation has no slope, or one without a bound, or where rounding decides which of two values it has.
+static bool is_steep(glint_op op, quad a, quad b, quad c)
 {
-    const quad size = a < 0 ? -a : a, other = b < 0 ? -b : b, width = a < b ? b - a : a - b;
+    const quad size = a < 0 ? -a : a, other = b < 0 ? -b : b, width = a < b ? b - a : a - b, tie = 1e-9;
+    const quad part = a - floorf128(a), over = most(a, b) - c;
     switch (op) {
+    case GLINT_OP_ABS: return size < tie;
+    case GLINT_OP_MIN:
+    case GLINT_OP_MAX:
+    case GLINT_OP_LESS:
+    case GLINT_OP_STEP: return width < tie;
+    case GLINT_OP_FRACT: return part < tie || part > 1 - tie;
+    case GLINT_OP_SELECT: return size > 0 && size < tie;
+    case GLINT_OP_CLAMP: return width < tie || (over < tie && over > -tie);
     case GLINT_OP_SQRT:
     case GLINT_OP_LOG2:
     case GLINT_OP_POW: return !(a > 1e-4);
@@ -88,7 +98,7 @@ static bool evaluate(const formula *f, const quad *leaves, quad value[LEAVES + N
     memcpy(value, leaves, LEAVES * sizeof *leaves);
     for (int i = 0; i < f->count; i++) {
         const int *at = f->operand[i];
-        if (is_steep(f->op[i], value[at[0]], value[at[1]]))
+        if (is_steep(f->op[i], value[at[0]], value[at[1]], value[at[2]]))
             return false;
         value[LEAVES + i] = apply(f->op[i], value[at[0]], value[at[1]], value[at[2]]);
         if (!(value[LEAVES + i] > -100 && value[LEAVES + i] < 100))
@@ -102,7 +112,7 @@ static formula random_formula(void)
     formula f = { .count = 3 + (int)uniform(0, NODES - 3) };
     for (int i = 0; i < f.count; i++) {
         f.op[i] = ops[(size_t)uniform(0, sizeof ops / sizeof *ops)];
-        for (int k = 0; k < GLINT_OPERANDS_MAX; k++) // mostly what is new
+        for (int k = 0; k < OPERANDS; k++) // mostly what is new
             f.operand[i][k] = uniform(0, 1) < 0.5 && i > 0 ? LEAVES + i - 1 : (int)uniform(0, LEAVES + i);
     }
     return f;
@@ -110,7 +120,7 @@ static formula random_formula(void)
 
 static glint_program *make_program(const formula *f, const double *numbers, const double *slopes)
 {
-    glint_value values[LEAVES + NODES], operands[GLINT_OPERANDS_MAX];
+    glint_value values[LEAVES + NODES], operands[OPERANDS];
     glint_builder *builder;
     glint_program *program;
     glint_error error;
@@ -120,7 +130,7 @@ static glint_program *make_program(const formula *f, const double *numbers, cons
     for (int i = 0; i < PARAMETERS; i++)
         must(glint_builder_parameter(builder, numbers[i], &slopes[i], 1, &values[INPUTS + i], &error), &error);
     for (int i = 0; i < f->count; i++) {
-        for (int k = 0; k < GLINT_OPERANDS_MAX; k++)
+        for (int k = 0; k < OPERANDS; k++)
             operands[k] = values[f->operand[i][k]];
         must(glint_builder_op(builder, f->op[i], operands, &values[LEAVES + i], &error), &error);
     }
