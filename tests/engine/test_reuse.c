@@ -518,6 +518,36 @@ static bool stamps_hold(const glint_image *a, const glint_image *b)
     return true;
 }
 
+/// One that keeps what it finds, as `desc` has it, and one that keeps nothing.
+static void open_both(glint_renderer_desc desc, glint_renderer *both[2])
+{
+    for (int i = 0; i < 2; i++) {
+        desc.no_reuse = i;
+        assert_int_equal(glint_renderer_create(&desc, &both[i], NULL), GLINT_OK);
+    }
+}
+
+/// Renders a frame with both, which must give the same picture. stats: of the first; may be NULL.
+static void render_both(const world *w, glint_renderer *const both[2], glint_frame_stats *stats, int frame)
+{
+    glint_plan *plan;
+    glint_image *image[2];
+    assert_int_equal(glint_plan_create(w->scene, &w->render, &plan, NULL), GLINT_OK);
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(glint_render(both[i], plan, &image[i], i ? NULL : stats, NULL), GLINT_OK);
+    if (!same_pixels(image[0], image[1], w->render.passes) || !same_codes(image[0], image[1]))
+        fail_msg("frame %d: the reused frame differs from the fresh one", frame);
+    for (int i = 0; i < 2; i++)
+        glint_image_release(image[i]);
+    glint_plan_destroy(plan);
+}
+
+static void close_both(glint_renderer *const both[2])
+{
+    for (int i = 0; i < 2; i++)
+        glint_renderer_destroy(both[i]);
+}
+
 static double seconds(void)
 {
     struct timespec t;
@@ -679,52 +709,53 @@ static void a_lamp_that_reaches_nothing(void **unused)
     glint_renderer_destroy(fresh);
 }
 
+/// Changes one or two of a lamp's place, a ball's and a colour, each to one of few, and whether there is a second lamp.
+static void go_back(world *w)
+{
+    glint_material_desc paint = *glint_material_get(w->materials[1]);
+    glint_shape_desc place = *glint_shape_get(w->shapes[4]);
+    glint_light_desc lamp = *glint_light_get(w->lights[0]);
+    for (uint32_t left = 1 + draw(2); left > 0; left--) {
+        const uint32_t what = draw(5), value = draw(2);
+        if (what == 4) {
+            w->shining[1] = !w->shining[1];
+            assert_int_equal((w->shining[1] ? glint_scene_add_light : glint_scene_remove_light)(w->scene, w->lights[1], NULL),
+                             GLINT_OK);
+        } else if (what == 0)
+            place.center[1] = 0.5 * value;
+        else if (what == 1)
+            lamp.position[0] = 4.0 * value;
+        else
+            paint.diffuse[0] = 0.9 * value;
+    }
+    assert_int_equal(glint_material_set(w->materials[1], &paint, NULL), GLINT_OK);
+    assert_int_equal(glint_light_set(w->lights[0], &lamp, NULL), GLINT_OK);
+    assert_int_equal(glint_shape_set(w->shapes[4], &place, NULL), GLINT_OK);
+}
+
 /// Frames of a few places and colours that come back in any order, so that all that is kept of one is met again.
 static void frames_that_come_back(void **unused)
 {
     (void)unused;
     for (int round = 0; round < 6; round++) {
         world w;
-        glint_renderer *reusing, *fresh;
-        glint_renderer_desc desc = glint_renderer_desc_default();
-        assert_int_equal(glint_renderer_create(&desc, &reusing, NULL), GLINT_OK);
-        desc.no_reuse = true;
-        assert_int_equal(glint_renderer_create(&desc, &fresh, NULL), GLINT_OK);
+        glint_renderer *both[2];
+        open_both(glint_renderer_desc_default(), both);
         state = 700 + (uint64_t)round;
         make_world(&w);
-        for (int i = 1; i < LIGHTS && round >= 2; i++) // where one lamp is all light, little changes what is chosen
+        for (int i = 1; i < LIGHTS && round >= 2; i++) { // where one lamp is all light, little changes what is chosen
             assert_int_equal(glint_scene_remove_light(w.scene, w.lights[i], NULL), GLINT_OK);
+            w.shining[i] = false;
+        }
         w.render.samples = 4;
         w.render.adaptive = round % 2 ? 0.03 : 0.3;
         w.render.codes = round % 3 < 2;
         for (int frame = 0; frame < 60; frame++) {
-            glint_plan *plan;
-            glint_image *a, *b;
-            glint_material_desc paint = *glint_material_get(w.materials[1]);
-            glint_shape_desc place = *glint_shape_get(w.shapes[4]);
-            glint_light_desc lamp = *glint_light_get(w.lights[0]);
-            const uint32_t what = draw(4), value = draw(3);
-            if (what == 0)
-                paint.diffuse[0] = 0.3 * value;
-            else if (what == 1)
-                lamp.position[0] = 2.0 * value;
-            else if (what == 2)
-                place.center[1] = 0.5 * value;
-            assert_int_equal(glint_material_set(w.materials[1], &paint, NULL), GLINT_OK);
-            assert_int_equal(glint_light_set(w.lights[0], &lamp, NULL), GLINT_OK);
-            assert_int_equal(glint_shape_set(w.shapes[4], &place, NULL), GLINT_OK);
-            assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
-            assert_int_equal(glint_render(reusing, plan, &a, NULL, NULL), GLINT_OK);
-            assert_int_equal(glint_render(fresh, plan, &b, NULL, NULL), GLINT_OK);
-            if (!same_pixels(a, b, w.render.passes) || !same_codes(a, b))
-                fail_msg("round %d, frame %d: the reused frame differs from the fresh one", round, frame);
-            glint_image_release(a);
-            glint_image_release(b);
-            glint_plan_destroy(plan);
+            go_back(&w);
+            render_both(&w, both, NULL, frame);
         }
         free_world(&w);
-        glint_renderer_destroy(reusing);
-        glint_renderer_destroy(fresh);
+        close_both(both);
     }
 }
 
@@ -820,12 +851,10 @@ static void a_highlight_that_a_tile_does_not_show(void **unused)
 static void move_the_light(glint_hits_choice hits, double adaptive, int frames, glint_frame_stats *stats)
 {
     world w;
-    glint_renderer *reusing, *fresh;
+    glint_renderer *both[2];
     glint_renderer_desc desc = glint_renderer_desc_default();
     desc.hits = hits;
-    assert_int_equal(glint_renderer_create(&desc, &reusing, NULL), GLINT_OK);
-    desc.no_reuse = true;
-    assert_int_equal(glint_renderer_create(&desc, &fresh, NULL), GLINT_OK);
+    open_both(desc, both);
     state = 6;
     make_world(&w);
     for (int i = 0; i < SHAPES; i++) { // no mirrors, no glass: those tiles have one way
@@ -835,23 +864,13 @@ static void move_the_light(glint_hits_choice hits, double adaptive, int frames, 
     w.render.adaptive = adaptive;
     w.render.samples = adaptive > 0 ? 4 : w.render.samples;
     for (int frame = 0; frame < frames; frame++) {
-        glint_plan *plan;
-        glint_image *a, *b;
         glint_light_desc lamp = *glint_light_get(w.lights[0]);
         lamp.position[0] = lamp.direction[0] = 0.01 * frame;
         assert_int_equal(glint_light_set(w.lights[0], &lamp, NULL), GLINT_OK);
-        assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
-        assert_int_equal(glint_render(reusing, plan, &a, stats, NULL), GLINT_OK);
-        assert_int_equal(glint_render(fresh, plan, &b, NULL, NULL), GLINT_OK);
-        if (!same_pixels(a, b, w.render.passes))
-            fail_msg("frame %d: the reused frame differs from the fresh one", frame);
-        glint_image_release(a);
-        glint_image_release(b);
-        glint_plan_destroy(plan);
+        render_both(&w, both, stats, frame);
     }
     free_world(&w);
-    glint_renderer_destroy(reusing);
-    glint_renderer_destroy(fresh);
+    close_both(both);
 }
 
 static void hits_are_read_or_found_anew(void **unused)

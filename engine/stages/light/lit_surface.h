@@ -99,7 +99,7 @@ INNER bool R(light_face)(const glint_surface_args *surface, const glint_light_ar
         R(place_in_level)(solid, prim, slot->prim.f, d[j], t, k, p[j]);
         R(sort_in_level)(&slot->view, k, t, j * VR, &lanes);
     }
-    const unsigned face = R(face_of_level)(&lanes, 0xffff);
+    const unsigned face = R(face_of_level)(&lanes);
     if (face == 6)
         return false;
     R(normal_of_face)(solid, face, &slot->faces, n);

@@ -101,14 +101,12 @@ INNER void R(sort_in_level)(const R(box_view) * view, const vr k[3], vr t, int i
     lanes->ahead |= rm_bits(r_lt(r_set(0x1p-100), t)) << i;
 }
 
-/// The face that lanes in `all` meet away from its edges: that is the one that each t was made of. 6: there is none such.
-static inline unsigned R(face_of_level)(const R(level_lanes) * lanes, unsigned all)
+/// The face that all lanes meet away from its edges: that is the one that each t was made of. 6: there is none such.
+static inline unsigned R(face_of_level)(const R(level_lanes) * lanes)
 {
-    for (unsigned c = 0; c < 3; c++) {
-        const unsigned low = lanes->low[c] & all;
-        if (!(lanes->within[c] & all) && (all & lanes->within[(c + 1) % 3] & lanes->within[(c + 2) % 3] & lanes->ahead) == all)
-            return low == all ? 2 * c : low == 0 ? 2 * c + 1 : 6;
-    }
+    for (unsigned c = 0; c < 3; c++)
+        if (!lanes->within[c] && (lanes->within[(c + 1) % 3] & lanes->within[(c + 2) % 3] & lanes->ahead) == 0xffff)
+            return lanes->low[c] == 0xffff ? 2 * c : lanes->low[c] == 0 ? 2 * c + 1 : 6;
     return 6;
 }
 
