@@ -339,10 +339,13 @@ static void R(occlude_light_sample)(const glint_occlude_args *args)
             lit[g] |= args->lit[s][g];
     }
     R(begin_shadows)(args, lit, &tile);
-    if (tile.count > GLINT_OCCLUDERS)
-        R(occlude_walking)(&tile);
-    else
+    const bool many = tile.count > GLINT_OCCLUDERS;
+    if (many)
+        tile.count = tile.unbounded;
+    if (tile.count <= GLINT_OCCLUDERS)
         R(occlude_listed)(&tile, lit);
+    if (many && (tile.unbounded > GLINT_OCCLUDERS || !R(occlude_by_layers)(&tile, lit)))
+        R(occlude_walking)(&tile);
 }
 
 static void R(occlude)(const glint_occlude_args *args)

@@ -39,12 +39,11 @@ static inline void R(close_points)(R(beam) * beam, const uint16_t *from, unsigne
         far[stale] = R(farthest_in)(beam, stale);
 }
 
-/// What is known of a point, as lane n of these arrays. Triangles need the ray that found it.
-static inline void R(copy_point)(const R(beam) * beam, uint32_t i, bool triangle, int n, real *const point[3],
+/// What is known of the point at `at`, as lane n of these arrays. Triangles need the ray that found it.
+static inline void R(copy_point)(const glint_occlude_args *args, uint32_t at, bool triangle, int n, real *const point[3],
                                  real *const direction[3], real *slack)
 {
-    const glint_occlude_args *args = beam->tile->args;
-    const uint32_t at = beam->at[i], g = at / GLINT_GROUP, lane = at % GLINT_GROUP;
+    const uint32_t g = at / GLINT_GROUP, lane = at % GLINT_GROUP;
     for (int k = 0; k < 3; k++)
         point[k][n] = ((const real *)args->point[k])[at];
     if (!triangle)
@@ -141,7 +140,7 @@ static inline void R(add_beam_pair)(R(beam) * beam, int slot, uint32_t i, bool o
     leaf->from[n] = (uint16_t)i;
     leaf->own |= (unsigned)own << n;
     leaf->back |= (unsigned)((beam->own[i] & BEAM_BACK) != 0) << n;
-    R(copy_point)(beam, i, true, n, point, direction, leaf->slack);
+    R(copy_point)(beam->tile->args, beam->at[i], true, n, point, direction, leaf->slack);
     if (leaf->count == GLINT_BEAM_PAIRS)
         R(decide_beam_pairs)(beam);
 }

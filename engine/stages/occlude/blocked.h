@@ -27,7 +27,7 @@ typedef struct R(shadow_tile) {
     _Alignas(64) float local_light[3][GLINT_GROUP]; ///< the same in the index's frame
     bool far; ///< that may overflow, or what is made of it
     R(occluder) occluders[GLINT_OCCLUDERS];
-    int count; ///< more than GLINT_OCCLUDERS: too many for a list
+    int count, unbounded; ///< of these, first, those without an end; more than GLINT_OCCLUDERS: too many for a list
     float lower[3], upper[3]; ///< a box around the lit points, in the index's frame
 } R(shadow_tile);
 

@@ -64,6 +64,7 @@ static void R(find_occluders)(R(shadow_tile) * tile, uint32_t only)
     for (uint32_t i = 0; i < geometry->unbounded_count; i++)
         if (geometry->unbounded[i] != only && !R(note_occluder)(tile, geometry->unbounded[i]))
             return;
+    tile->unbounded = tile->count;
     if (!geometry->nodes)
         return;
     make_shaft(tile->lower, tile->upper, &tile->light, &shaft);
@@ -267,6 +268,7 @@ static inline void R(begin_shadows)(const glint_occlude_args *args, const uint16
     unsigned any = 0;
     tile->args = args;
     tile->count = 0;
+    tile->unbounded = GLINT_OCCLUDERS + 1;
     for (uint32_t g = 0; g < args->group_count; g++)
         any |= lit[g];
     if (!any)

@@ -3,16 +3,15 @@
 
 // ---- The decision ----
 
-static unsigned R(batch_blocked)(const R(beam) * beam, const glint_prim *prim, unsigned wanted)
+/// The lanes of `wanted` that a primitive keeps from the light at `position`, which has these sides.
+static unsigned R(batch_blocked)(const R(beam_batch) * batch, const glint_prim *prim, const real position[3][GLINT_GROUP],
+                                 R(light_sides) sides, unsigned wanted)
 {
-    const R(beam_batch) *batch = &beam->batch;
-    const R(shadow_tile) *tile = beam->tile;
     const unsigned own = batch->own;
-    const R(light_sides) sides = R(seen_sides)(tile, NULL, prim);
     if (prim->kind == GLINT_PRIM_SOLID)
-        return R(blocked_by_solid)(&batch->args, prim, tile->position, 0, own, wanted, sides.outside);
+        return R(blocked_by_solid)(&batch->args, prim, position, 0, own, wanted, sides.outside);
     if (prim->kind == GLINT_PRIM_COMBINED)
-        return R(blocked_by_combined)(&batch->args, prim, tile->position, 0, wanted);
+        return R(blocked_by_combined)(&batch->args, prim, position, 0, wanted);
     unsigned blocked = own & batch->back & sides.outside;
     wanted &= ~own;
     count_tests(batch->args.tests, wanted);
@@ -22,7 +21,7 @@ static unsigned R(batch_blocked)(const R(beam) * beam, const glint_prim *prim, u
         vr d[3];
         if (!lanes)
             continue;
-        R(directions_to)(&batch->args, tile->position, 0, i, d);
+        R(directions_to)(&batch->args, position, 0, i, d);
         blocked |= (R(lanes_blocked)(&batch->args, prim, &ball, sides, 0, i, d) & lanes) << i;
     }
     return blocked;
@@ -33,7 +32,9 @@ static void R(decide_batch)(R(beam) * beam, const glint_prim *prim)
     R(beam_batch) *batch = &beam->batch;
     if (!batch->count)
         return;
-    R(close_points)(beam, batch->from, R(batch_blocked)(beam, prim, (1u << batch->count) - 1));
+    const R(light_sides) sides = R(seen_sides)(beam->tile, NULL, prim);
+    const unsigned all = (1u << batch->count) - 1;
+    R(close_points)(beam, batch->from, R(batch_blocked)(batch, prim, beam->tile->position, sides, all));
     batch->count = 0;
     batch->own = 0;
     batch->back = 0;
@@ -48,7 +49,7 @@ static inline void R(add_to_batch)(R(beam) * beam, const glint_prim *prim, uint3
     batch->on[n] = on & ~BEAM_BACK;
     batch->own |= (unsigned)own << n;
     batch->back |= (uint16_t)((unsigned)((on & BEAM_BACK) != 0) << n);
-    R(copy_point)(beam, i, false, n, point, NULL, NULL);
+    R(copy_point)(beam->tile->args, beam->at[i], false, n, point, NULL, NULL);
     if (batch->count == GLINT_GROUP)
         R(decide_batch)(beam, prim);
 }

@@ -41,6 +41,7 @@
 #include "engine/stages/occlude/beam_leaf.h"
 #include "engine/stages/occlude/grid.h"
 #include "engine/stages/occlude/through_beam.h"
+#include "engine/stages/occlude/through_layers.h"
 #include "engine/stages/light/caps.h"
 #include "engine/stages/light/soft.h"
 #include "engine/stages/light/soft_light.h"

@@ -1,0 +1,552 @@
+// occlude_by_layers: which samples of an area light reach the points, where too much lies between for a list. The index is walked
+// once for all of them; what it finds is cut into layers (layer.h) and tested there. What float says is certain stays so; the rest is
+// decided from point to sample as everywhere. Contract: stages.h, occlude.
+#if GLINT_REAL == 64
+
+#define LAYER_PRIMS 1024 ///< that are tested at once
+#define LAYERS_MOST 16
+
+/// A primitive in the frame.
+typedef struct layer_prim {
+    uint32_t id;
+    float low[3], high[3]; ///< of its box
+    float corner[3][3]; ///< of a triangle
+} layer_prim;
+
+typedef struct R(layers) {
+    const R(shadow_tile) * tile;
+    layer_frame frame;
+    layer_rays rays;
+    int count;
+    layer_prim prim[LAYER_PRIMS];
+    uint16_t order[LAYER_PRIMS]; ///< by layer
+    uint32_t open; ///< segments
+    R(beam_batch) batch;
+    _Alignas(64) real light[3][GLINT_GROUP]; ///< of the batch: the samples,
+    _Alignas(64) real direction[3][GLINT_GROUP], slack[GLINT_GROUP]; ///< and what found the points
+} R(layers);
+
+// ---- The frame ----
+
+/// Grows two bounds by the places of lanes.
+static inline void bound_places(const float (*place)[GLINT_GROUP], unsigned lanes, vf least[3], vf most[3])
+{
+    for (int j = 0; j < 3; j++)
+        widen(place[j], lanes, &least[j], &most[j]);
+}
+
+/// Places the points of lit groups, and bounds them.
+static void R(place_points)(const R(shadow_tile) * tile, const uint16_t *lit, layer_frame *frame, vf least[3], vf most[3])
+{
+    for (uint32_t g = 0; g < tile->args->group_count; g++) {
+        const size_t at = (size_t)g * GLINT_GROUP;
+        _Alignas(64) float local[3][GLINT_GROUP], placed[3][GLINT_GROUP];
+        if (!lit[g])
+            continue;
+        R(points_from)(tile->args->point, at, tile->args->geometry, frame->exact, local);
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            const vf x[3] = { f_load(local[0] + i), f_load(local[1] + i), f_load(local[2] + i) };
+            for (int j = 0; j < 3; j++)
+                f_store(placed[j] + i, along_axis(frame->axis[j], x));
+        }
+        for (int j = 0; j < 3; j++)
+            memcpy(frame->point[j] + at, placed[j], sizeof placed[j]);
+        bound_places((const float(*)[GLINT_GROUP])placed, lit[g], least, most);
+    }
+}
+
+/// Places the samples, and bounds them.
+static void R(place_samples)(const R(shadow_tile) * tile, layer_frame *frame, vf least[3], vf most[3])
+{
+    const glint_geometry_table *geometry = tile->args->geometry;
+    for (uint32_t s = 0; s < tile->args->sample_count; s++) {
+        _Alignas(64) float local[3][GLINT_GROUP];
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < GLINT_GROUP; i++) {
+                const double x = tile->args->light_sample[s]->position[k][i];
+                local[k][i] = (float)((x - geometry->reference[k]) * geometry->scale - frame->exact[k]);
+            }
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            const vf x[3] = { f_load(local[0] + i), f_load(local[1] + i), f_load(local[2] + i) };
+            for (int j = 0; j < 3; j++)
+                f_store(frame->light[s][j] + i, along_axis(frame->axis[j], x));
+        }
+        bound_places((const float(*)[GLINT_GROUP])frame->light[s], 0xffff, least, most);
+    }
+}
+
+/// Makes the frame. False: points and samples lie beside each other along the way, or too steep.
+static bool R(aim_layers)(const R(shadow_tile) * tile, const uint16_t *lit, layer_frame *frame)
+{
+    const glint_geometry_table *geometry = tile->args->geometry;
+    vf least[2][3], most[2][3]; // of the points, of the samples
+    float low[2][3], high[2][3], size = 0, steepest = 0;
+    if (!make_layer_axes(tile->lower, tile->upper, &tile->light, frame))
+        return false;
+    for (int n = 0; n < 2; n++)
+        for (int j = 0; j < 3; j++) {
+            least[n][j] = f_set(HUGE_VALF);
+            most[n][j] = f_set(-HUGE_VALF);
+        }
+    R(place_points)(tile, lit, frame, least[0], most[0]);
+    R(place_samples)(tile, frame, least[1], most[1]);
+    for (int n = 0; n < 2; n++)
+        for (int j = 0; j < 3; j++) {
+            low[n][j] = f_min_all(least[n][j]);
+            high[n][j] = f_max_all(most[n][j]);
+            size += largest_of(low[n][j], high[n][j]);
+        }
+    const float way = low[1][2] - high[0][2], longest = high[1][2] - low[0][2];
+    if (!(way > 0.125f * longest) || !(size < 0x1p60f))
+        return false;
+    for (int j = 0; j < 2; j++) {
+        const float right = high[1][j] - low[0][j], left = low[1][j] - high[0][j];
+        frame->slope[j][0] = (left < 0 ? left / way : left / longest) - 1e-5f;
+        frame->slope[j][1] = (right > 0 ? right / way : right / longest) + 1e-5f;
+        steepest = larger(steepest, largest_of(frame->slope[j][0], frame->slope[j][1]));
+    }
+    if (!(steepest < LAYER_STEEPEST))
+        return false;
+    frame->lowest = low[0][2];
+    frame->highest = high[0][2];
+    frame->nearest = low[1][2];
+    frame->farthest = high[1][2];
+    frame->per_way = 1 / way;
+    frame->slack = LAYER_SLACK * size + (float)(16 * GLINT_POINT_SLACK * geometry->extent * geometry->scale);
+    return true;
+}
+
+// ---- What is between ----
+
+/// Places the corners of the triangles in the slots of `mask`.
+static inline void R(place_corners)(const R(layers) * l, const glint_node *node, unsigned mask, float to[3][3][GLINT_NODE_WIDTH])
+{
+    const glint_geometry_table *geometry = l->tile->args->geometry;
+    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH] = { { { 0 } } }, moved[GLINT_NODE_WIDTH];
+    _Alignas(64) float local[3][GLINT_NODE_WIDTH];
+    R(load_node_corners)(geometry, node, mask, corner);
+    for (int j = 0; j < 3; j++) {
+        for (int k = 0; k < 3; k++) {
+            const vr reference = r_set(geometry->reference[k]), scale = r_set(geometry->scale);
+            for (int i = 0; i < GLINT_NODE_WIDTH; i += VR)
+                r_store(moved + i, (r_load(corner[j][k] + i) - reference) * scale - r_set(l->frame.exact[k]));
+            R(narrow)(moved, local[k]);
+        }
+        for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+            const vf x[3] = { f_load(local[0] + i), f_load(local[1] + i), f_load(local[2] + i) };
+            for (int k = 0; k < 3; k++)
+                f_store(to[j][k] + i, along_axis(l->frame.axis[k], x));
+        }
+    }
+}
+
+/// Notes the primitives in the slots of `mask` that may be between points and samples. There is room.
+static void R(note_prims)(R(layers) * l, const glint_node *node, unsigned mask)
+{
+    const layer_frame *frame = &l->frame;
+    const unsigned triangles = triangles_in(l->tile->args->geometry, node, mask);
+    _Alignas(64) float low[3][GLINT_NODE_WIDTH], high[3][GLINT_NODE_WIDTH], corner[3][3][GLINT_NODE_WIDTH];
+    unsigned between = 0;
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        vf middle[3], half[3], least[3], most[3];
+        for (int k = 0; k < 3; k++)
+            box_axis(node, k, i, frame->origin[k], frame->slack, &middle[k], &half[k]);
+        for (int j = 0; j < 3; j++) {
+            box_along(middle, half, frame->axis[j], &least[j], &most[j]);
+            if (j == 2) { // what is beyond the ends of segments does not matter
+                least[j] = f_max(least[j], f_set(frame->lowest - frame->slack));
+                most[j] = f_min(most[j], f_set(frame->farthest + frame->slack));
+            }
+            f_store(low[j] + i, least[j]);
+            f_store(high[j] + i, most[j]);
+        }
+        between |= fm_bits(f_le(least[2], most[2])) << i;
+    }
+    mask &= between;
+    if (mask & triangles)
+        R(place_corners)(l, node, mask & triangles, corner);
+    for (; mask; mask &= mask - 1) {
+        const int slot = __builtin_ctz(mask);
+        layer_prim *to = &l->prim[l->count++];
+        to->id = node->child[slot] & ~GLINT_NODE_PRIM;
+        for (int j = 0; j < 3; j++) {
+            to->low[j] = low[j][slot];
+            to->high[j] = high[j][slot];
+            for (int k = 0; k < 3 && triangles >> slot & 1; k++)
+                to->corner[j][k] = corner[j][k][slot];
+        }
+    }
+}
+
+// ---- The decision ----
+
+static inline void R(close_segment)(R(layers) * l, uint32_t i)
+{
+    const uint32_t at = l->rays.at[i], s = at / GLINT_TILE_SAMPLES, point = at % GLINT_TILE_SAMPLES;
+    if (l->rays.from[i] == HUGE_VALF)
+        return;
+    l->rays.from[i] = HUGE_VALF;
+    l->tile->args->open[s][point / GLINT_GROUP] &= (uint16_t) ~(1u << point % GLINT_GROUP);
+    l->open--;
+}
+
+/// Decides the batch: pairs of a segment and one primitive.
+static void R(decide_segments)(R(layers) * l, const glint_prim *prim)
+{
+    R(beam_batch) *batch = &l->batch;
+    const real(*light)[GLINT_GROUP] = (const real(*)[GLINT_GROUP])l->light;
+    if (!batch->count)
+        return;
+    unsigned blocked = (1u << batch->count) - 1;
+    if (prim->kind == GLINT_PRIM_TRIANGLE)
+        blocked = R(blocked_by_triangle)(&batch->args, prim, light, 0, batch->own, blocked);
+    else
+        blocked = R(batch_blocked)(batch, prim, light, R(seen_sides)(l->tile, light, prim), blocked);
+    for (; blocked; blocked &= blocked - 1)
+        R(close_segment)(l, batch->from[__builtin_ctz(blocked)]);
+    batch->count = 0;
+    batch->own = 0;
+    batch->back = 0;
+}
+
+static inline void R(add_segment)(R(layers) * l, const glint_prim *prim, uint32_t i, bool own)
+{
+    R(beam_batch) *batch = &l->batch;
+    const glint_occlude_args *args = l->tile->args;
+    const uint32_t on = l->rays.on[i], at = l->rays.at[i] % GLINT_TILE_SAMPLES, s = l->rays.at[i] / GLINT_TILE_SAMPLES;
+    real *const point[3] = { batch->point[0], batch->point[1], batch->point[2] };
+    real *const direction[3] = { l->direction[0], l->direction[1], l->direction[2] };
+    const int n = batch->count++;
+    batch->from[n] = (uint16_t)i;
+    batch->on[n] = on & ~BEAM_BACK;
+    batch->own |= (unsigned)own << n;
+    batch->back |= (uint16_t)((unsigned)((on & BEAM_BACK) != 0) << n);
+    for (int k = 0; k < 3; k++)
+        l->light[k][n] = args->light_sample[s]->position[k][at % GLINT_GROUP];
+    R(copy_point)(args, at, prim->kind == GLINT_PRIM_TRIANGLE, n, point, direction, l->slack);
+    if (batch->count == GLINT_GROUP)
+        R(decide_segments)(l, prim);
+}
+
+// ---- The filter ----
+
+/// Segments of a run: what may be blocked, and what surely is.
+typedef struct layer_lanes_met {
+    unsigned near, certain;
+} layer_lanes_met;
+
+/// What the segments of a run are tested against.
+typedef struct R(layer_blocker) {
+    const layer_prim *at;
+    const glint_prim *prim;
+    bool torus, clear; ///< clear: no sample is as near to the points as it is, or in it
+    float center[3], reach2, inner2; ///< of a sphere: squares of how far off its middle a segment may pass, and surely meets it
+    float above; ///< h that a point is surely below of: of a triangle all of it, of a sphere its middle
+    float doubt; ///< of a triangle: what an edge's number may be off by
+} R(layer_blocker);
+
+/// A segment passes a triangle where it has all corners, as seen along it, on one side.
+INNER layer_lanes_met R(meet_corners)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
+{
+    const vf base[2] = { f_load_any(rays->base[0] + i), f_load_any(rays->base[1] + i) };
+    const vf slope[2] = { f_load_any(rays->slope[0] + i), f_load_any(rays->slope[1] + i) };
+    const vf from = f_load_any(rays->from + i), doubt = f_set(b->doubt);
+    vf x[3], y[3], e[3];
+    for (int j = 0; j < 3; j++) {
+        const float *corner = b->at->corner[j];
+        x[j] = f_set(corner[0]) - (base[0] + slope[0] * f_set(corner[2]));
+        y[j] = f_set(corner[1]) - (base[1] + slope[1] * f_set(corner[2]));
+    }
+    for (int j = 0; j < 3; j++)
+        e[j] = x[(j + 1) % 3] * y[(j + 2) % 3] - x[(j + 2) % 3] * y[(j + 1) % 3];
+    const vf least = f_min(f_min(e[0], e[1]), e[2]), most = f_max(f_max(e[0], e[1]), e[2]);
+    const fm apart = fm_and(f_lt(least, -doubt), f_lt(doubt, most)), front = f_lt(doubt, least), back = f_lt(most, -doubt);
+    const vi owner = f_bits(f_load_any((const float *)(rays->on + i))), id = i_set(b->at->id);
+    const fm own = i_eq(i_and(owner, i_set(~BEAM_BACK)), id), seen_behind = i_eq(owner, i_set(b->at->id | BEAM_BACK));
+    // its own points are dark where light and viewer are on different sides
+    const vf area = (e[0] + e[1]) + e[2], of_area = f_set(3) * doubt;
+    const fm lit = fm_or(fm_andnot(f_lt(of_area, area), seen_behind), fm_and(f_lt(area, -of_area), seen_behind));
+    const fm there = f_le(from, f_set(b->at->high[2]));
+    layer_lanes_met out;
+    out.near = fm_bits(fm_and(there, fm_or(fm_andnot(fm_from_bits((1u << VF) - 1), fm_or(apart, own)), fm_andnot(own, lit))));
+    out.certain = b->clear ? fm_bits(fm_andnot(fm_and(fm_or(front, back), f_lt(from, f_set(b->above))), own)) : 0;
+    return out;
+}
+
+/// A segment meets a sphere for certain where it is inside of it as high as its middle is.
+INNER layer_lanes_met R(meet_middle)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
+{
+    const vf slope[2] = { f_load_any(rays->slope[0] + i), f_load_any(rays->slope[1] + i) };
+    const vf x = (f_load_any(rays->base[0] + i) + slope[0] * f_set(b->center[2])) - f_set(b->center[0]);
+    const vf y = (f_load_any(rays->base[1] + i) + slope[1] * f_set(b->center[2])) - f_set(b->center[1]);
+    const vf from = f_load_any(rays->from + i), turn = x * slope[1] - y * slope[0], beside2 = x * x + y * y;
+    const vf stretch = (f_set(1) + slope[0] * slope[0]) + slope[1] * slope[1];
+    const vi owner = f_bits(f_load_any((const float *)(rays->on + i)));
+    const fm front = i_eq(owner, i_set(b->at->id)), own = i_eq(i_and(owner, i_set(~BEAM_BACK)), i_set(b->at->id));
+    const fm there = f_le(from, f_set(b->at->high[2]));
+    const fm away = f_lt(f_set(b->reach2) * stretch, beside2 + turn * turn);
+    layer_lanes_met out;
+    out.near = fm_bits(fm_andnot(there, fm_or(away, front)));
+    out.certain = b->clear ? fm_bits(fm_andnot(fm_and(f_lt(beside2, f_set(b->inner2)), f_lt(from, f_set(b->above))), own)) : 0;
+    return out;
+}
+
+/// Other primitives are as large as their boxes.
+INNER layer_lanes_met R(meet_extent)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
+{
+    const float *low = b->at->low, *high = b->at->high;
+    const vf from = f_load_any(rays->from + i), start = f_max(f_set(low[2]), f_min(from, f_set(high[2])));
+    fm in = f_le(from, f_set(high[2]));
+    for (int j = 0; j < 2; j++) {
+        const vf base = f_load_any(rays->base[j] + i), slope = f_load_any(rays->slope[j] + i);
+        const vf x = base + slope * start, y = base + slope * f_set(high[2]);
+        in = fm_and(in, fm_and(f_le(f_min(x, y), f_set(high[j])), f_le(f_set(low[j]), f_max(x, y))));
+    }
+    const vi owner = f_bits(f_load_any((const float *)(rays->on + i)));
+    if (!b->torus)
+        in = fm_andnot(in, i_eq(owner, i_set(b->at->id)));
+    return (layer_lanes_met) { fm_bits(in), 0 };
+}
+
+INNER void R(block_segments)(R(layers) * l, const R(layer_blocker) * b, uint32_t i, uint32_t end)
+{
+    for (; i < end; i += VF) {
+        const unsigned in_run = end - i < VF ? (1u << (end - i)) - 1 : (1u << VF) - 1;
+        layer_lanes_met met;
+        if (b->prim->kind == GLINT_PRIM_TRIANGLE)
+            met = R(meet_corners)(&l->rays, b, i);
+        else if (b->prim->kind == GLINT_PRIM_SPHERE)
+            met = R(meet_middle)(&l->rays, b, i);
+        else
+            met = R(meet_extent)(&l->rays, b, i);
+        for (unsigned left = met.certain & in_run; left; left &= left - 1)
+            R(close_segment)(l, i + (unsigned)__builtin_ctz(left));
+        for (unsigned left = met.near & ~met.certain & in_run; left; left &= left - 1) {
+            const uint32_t n = i + (unsigned)__builtin_ctz(left);
+            R(add_segment)(l, b->prim, n, (l->rays.on[n] & ~BEAM_BACK) == b->at->id);
+        }
+    }
+}
+
+/// What rounding may have moved a segment and a primitive by. `least`, `most`: heights that the segment is asked for; it is known between
+/// its ends, and off that by how far it is drawn on.
+static inline float R(slack_at)(const layer_frame *frame, const layer_prim *prim, float least, float most)
+{
+    float size = 0;
+    for (int j = 0; j < 3; j++)
+        size += largest_of(prim->low[j], prim->high[j]);
+    const float beyond = larger(larger(frame->lowest - least, most - frame->nearest), 0);
+    return (frame->slack + LAYER_SLACK * (size + largest_of(least, most))) * (1 + 2 * beyond * frame->per_way);
+}
+
+/// Where segments that meet a primitive cross a plane at h, along axis j.
+static inline void R(cross_plane)(const layer_frame *frame, const layer_prim *prim, float h, int j, float *least, float *most)
+{
+    const float up = h - prim->low[2], down = h - prim->high[2]; // up >= down
+    const float left = frame->slope[j][0], right = frame->slope[j][1], slack = R(slack_at)(frame, prim, h, h);
+    *least = prim->low[j] + smaller(smaller(up * left, up * right), smaller(down * left, down * right)) - slack;
+    *most = prim->high[j] + larger(larger(up * left, up * right), larger(down * left, down * right)) + slack;
+}
+
+static void R(make_ball)(const R(layers) * l, R(layer_blocker) * out)
+{
+    const layer_frame *frame = &l->frame;
+    const glint_prim *prim = out->prim;
+    float size = 0;
+    for (int j = 0; j < 3; j++) {
+        float x[3];
+        for (int k = 0; k < 3; k++)
+            x[k] = prim->filter_center[k] - frame->origin[k];
+        size += fabsf(prim->filter_center[j]) + fabsf(frame->origin[j]);
+        out->center[j] = DOT(frame->axis[j], x);
+    }
+    const float h = out->center[2], slack = 2 * R(slack_at)(frame, out->at, h, h) + 4 * WALK_SLACK * size;
+    const float reach = (prim->filter_bound + slack) * 1.00001f;
+    const float inner = (float)(prim->radius * l->tile->args->geometry->scale) * 0.99999f - slack;
+    out->reach2 = reach * reach;
+    out->inner2 = inner > 0 ? inner * inner : 0;
+    out->above = h - slack;
+    out->clear = out->clear && h < frame->nearest && R(light_outside)(l->tile, prim);
+}
+
+/// wide: bounds the distance across the way between a segment and a corner of the primitive, along both axes.
+static void R(make_blocker)(const R(layers) * l, const layer_prim *at, float wide, R(layer_blocker) * out)
+{
+    const glint_geometry_table *geometry = l->tile->args->geometry;
+    const glint_prim *prim = &geometry->prims[at->id];
+    *out = (R(layer_blocker)) { .at = at, .prim = prim, .torus = is_torus(geometry, prim) };
+    out->clear = at->high[2] < l->frame.nearest;
+    if (prim->kind == GLINT_PRIM_SPHERE)
+        R(make_ball)(l, out);
+    if (prim->kind != GLINT_PRIM_TRIANGLE)
+        return;
+    const float a = at->corner[0][2], b = at->corner[1][2], c = at->corner[2][2];
+    const float least = smaller(smaller(a, b), c), most = larger(larger(a, b), c);
+    const float beyond = larger(larger(at->low[2] - least, most - at->high[2]), 0);
+    const float slack = R(slack_at)(&l->frame, at, least, most);
+    out->doubt = 8 * slack * (wide + 4 * LAYER_STEEPEST * beyond);
+    out->above = least - slack;
+    out->clear = most < l->frame.nearest - slack;
+}
+
+/// Tests the segments in the cells that a primitive may be in.
+static void R(block_layer)(R(layers) * l, const layer_prim *prim, float h)
+{
+    const layer_rays *rays = &l->rays;
+    uint32_t first[2], last[2];
+    float wide = 0;
+    for (int j = 0; j < 2; j++) {
+        float least, most;
+        R(cross_plane)(&l->frame, prim, h, j, &least, &most);
+        const float a = (least - rays->first[j]) * rays->cells[j], b = (most - rays->first[j]) * rays->cells[j];
+        first[j] = (uint32_t)smaller(larger(a, 0), LAYER_ACROSS - 1);
+        last[j] = (uint32_t)smaller(larger(b, 0), LAYER_ACROSS - 1);
+        const float off = larger(fabsf(h - prim->low[2]), fabsf(h - prim->high[2]));
+        wide += (most - least) + 2 / rays->cells[j] + 2 * LAYER_STEEPEST * off;
+    }
+    R(layer_blocker) blocker;
+    R(make_blocker)(l, prim, wide, &blocker);
+    for (uint32_t row = first[1]; row <= last[1]; row++)
+        R(block_segments)(l, &blocker, rays->begin[row * LAYER_ACROSS + first[0]], rays->begin[row * LAYER_ACROSS + last[0] + 1]);
+    R(decide_segments)(l, blocker.prim);
+}
+
+// ---- Layers ----
+
+/// Into how many layers of what height the noted primitives are best cut: sorting a segment takes as long as testing a third of a vector of them.
+static int R(count_layers)(const R(layers) * l, float low, float high)
+{
+    const layer_frame *frame = &l->frame;
+    float size = 0, spread = 0;
+    for (int n = 0; n < l->count; n++)
+        size += 0.5f * ((l->prim[n].high[0] - l->prim[n].low[0]) + (l->prim[n].high[1] - l->prim[n].low[1]));
+    size /= (float)l->count;
+    for (int j = 0; j < 2; j++)
+        spread += 0.5f * (frame->slope[j][1] - frame->slope[j][0]);
+    const float thick = (high - low) * spread;
+    int layers = 1;
+    while (layers < LAYERS_MOST && layers * size < thick)
+        layers *= 2;
+    return layers;
+}
+
+/// Tests the primitives of one layer: `count` of the order from `from` on.
+static void R(block_one_layer)(R(layers) * l, int from, int count)
+{
+    layer_rays *rays = &l->rays;
+    float low = HUGE_VALF, high = -HUGE_VALF;
+    for (int n = from; n < from + count; n++) {
+        low = smaller(low, l->prim[l->order[n]].low[2]);
+        high = larger(high, l->prim[l->order[n]].high[2]);
+    }
+    const float h = 0.5f * (low + high);
+    for (int j = 0; j < 2; j++) {
+        rays->first[j] = HUGE_VALF;
+        rays->last[j] = -HUGE_VALF;
+        for (int n = from; n < from + count; n++) {
+            float least, most;
+            R(cross_plane)(&l->frame, &l->prim[l->order[n]], h, j, &least, &most);
+            rays->first[j] = smaller(rays->first[j], least);
+            rays->last[j] = larger(rays->last[j], most);
+        }
+        const float width = rays->last[j] - rays->first[j];
+        rays->cells[j] = width > 0x1p-100f ? LAYER_ACROSS / width : 0;
+    }
+    if (!sort_layer(l->tile->args, &l->frame, h, rays))
+        return;
+    for (int n = from; n < from + count; n++)
+        R(block_layer)(l, &l->prim[l->order[n]], h);
+}
+
+/// Tests the noted primitives.
+static void R(block_noted)(R(layers) * l)
+{
+    uint16_t begin[LAYERS_MOST + 1] = { 0 };
+    float low = HUGE_VALF, high = -HUGE_VALF;
+    for (int n = 0; n < l->count; n++) {
+        const float middle = 0.5f * (l->prim[n].low[2] + l->prim[n].high[2]);
+        low = smaller(low, middle);
+        high = larger(high, middle);
+    }
+    const int layers = l->count ? R(count_layers)(l, low, high) : 0;
+    const float per_h = high > low ? (float)layers / (high - low) : 0;
+    for (int pass = 0; pass < 2; pass++) { // counts, then places
+        for (int n = 0; n < l->count; n++) {
+            const float middle = 0.5f * (l->prim[n].low[2] + l->prim[n].high[2]);
+            const int layer = (int)smaller((middle - low) * per_h, (float)(layers - 1));
+            if (pass)
+                l->order[begin[layer]++] = (uint16_t)n;
+            else
+                begin[layer + 1]++;
+        }
+        for (int n = 0; n < layers && !pass; n++)
+            begin[n + 1] = (uint16_t)(begin[n + 1] + begin[n]);
+    }
+    for (int n = 0, from = 0; n < layers && l->open; from = begin[n++])
+        if (begin[n] > from)
+            R(block_one_layer)(l, from, begin[n] - from);
+    l->count = 0;
+}
+
+/// Walks the index with all segments of the tile.
+static void R(walk_layers)(R(layers) * l)
+{
+    const R(shadow_tile) *tile = l->tile;
+    const glint_geometry_table *geometry = tile->args->geometry;
+    uint32_t stack[WALK_STACK];
+    int height = 0;
+    light_shaft shaft;
+    make_shaft(tile->lower, tile->upper, &tile->light, &shaft);
+    stack[height++] = 0;
+    while (height > 0 && l->open && !is_stopped(tile->args->stop)) {
+        const glint_node *node = &geometry->nodes[stack[--height]];
+        const unsigned inside = boxes_in_shaft(node, &shaft), prims = prims_of_node(node);
+        for (unsigned left = inside & ~prims; left; left &= left - 1)
+            stack[height++] = node->child[__builtin_ctz(left)];
+        if (!(inside & prims))
+            continue;
+        if (l->count + GLINT_NODE_WIDTH > LAYER_PRIMS)
+            R(block_noted)(l);
+        R(note_prims)(l, node, inside & prims);
+    }
+    R(block_noted)(l);
+}
+
+static void R(begin_segments)(R(layers) * l)
+{
+    R(begin_batch)(l->tile->args, &l->batch);
+    memset(l->light, 0, sizeof l->light);
+    memset(l->direction, 0, sizeof l->direction);
+    memset(l->slack, 0, sizeof l->slack);
+    l->batch.args.slack = l->slack;
+    for (int k = 0; k < 3; k++)
+        l->batch.args.direction[k] = l->direction[k];
+}
+
+/// Takes out of args->open what the index blocks. False: no frame can be made of these points and samples, and nothing is done.
+static bool R(occlude_by_layers)(const R(shadow_tile) * tile, const uint16_t *lit)
+{
+    const glint_occlude_args *args = tile->args;
+    R(layers) l;
+    if (R(is_cone)(args->light_sample[0]) || !R(aim_layers)(tile, lit, &l.frame))
+        return false;
+    l.tile = tile;
+    l.count = 0;
+    l.open = 0;
+    for (uint32_t s = 0; s < args->sample_count; s++)
+        for (uint32_t g = 0; g < args->group_count; g++)
+            l.open += (unsigned)__builtin_popcount(args->open[s][g]);
+    *args->rays += l.open;
+    R(begin_segments)(&l);
+    R(walk_layers)(&l);
+    return true;
+}
+#else // float decides: see occlude_walking
+
+static bool R(occlude_by_layers)(const R(shadow_tile) * tile, const uint16_t *lit)
+{
+    (void)tile;
+    (void)lit;
+    return false;
+}
+#endif
