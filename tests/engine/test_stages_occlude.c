@@ -5,8 +5,16 @@
 
 enum { CASES = 3000 };
 
+/// What the primitives of a case and its light are.
+typedef enum shadow_kind {
+    SHADOWS, ///< any
+    SHADOWS_OF_SMALL, ///< small spheres in the main
+    SHADOWS_IN_LAYERS ///< many, between points that lie together and an area light that is off them
+} shadow_kind;
+
 typedef struct shadow_case {
     int precision;
+    shadow_kind kind;
     scene_plan plan;
     test_scene *scene;
     glint_occlude_args args;
@@ -23,7 +31,9 @@ typedef struct shadow_case {
 static double place_light(shadow_case *c)
 {
     const double size = c->plan.size;
-    const double distance = size * (one_in(3) ? between(0, 1) : one_in(3) ? power_of_ten(1, 12) : between(1, 10));
+    const bool apart = c->kind == SHADOWS_IN_LAYERS;
+    const double distance =
+        size * (apart ? between(2, 8) : one_in(3) ? between(0, 1) : one_in(3) ? power_of_ten(1, 12) : between(1, 10));
     double direction[3];
     random_unit(direction);
     if (one_in(4)) {
@@ -31,7 +41,7 @@ static double place_light(shadow_case *c)
         direction[below(3)] = either_sign(1);
     }
     c->args.scale = 1;
-    c->args.directional = one_in(3);
+    c->args.directional = !apart && one_in(3);
     if (c->args.directional) {
         memcpy(c->args.position, direction, sizeof direction);
         return size;
@@ -64,8 +74,9 @@ static void place_sample(const shadow_case *c, const double axis[3], double radi
 /// Makes an area light of the light: a ball, or a patch of a plane, of any size.
 static void place_lamps(shadow_case *c, double distance)
 {
-    c->cone = (case_seed >> 4) % 3 == 0; // of whatever precision, and odd or not
-    const double radius = !c->cone && one_in(8) ? 0 : distance * power_of_ten(-6, 0.5);
+    const bool apart = c->kind == SHADOWS_IN_LAYERS;
+    c->cone = !apart && (case_seed >> 4) % 3 == 0; // of whatever precision, and odd or not
+    const double radius = !c->cone && one_in(8) ? 0 : distance * (apart ? power_of_ten(-3, -0.3) : power_of_ten(-6, 0.5));
     const bool flat = !c->cone && one_in(2);
     double axis[3], lower[3], upper[3];
     random_unit(axis);
@@ -98,7 +109,9 @@ static void place_lamps(shadow_case *c, double distance)
 static void place_points(shadow_case *c, double light_distance)
 {
     const scene_plan *plan = &c->plan;
-    const double width = plan->size * (one_in(3) ? 1 : power_of_ten(-6, 0)), deep = one_in(8) ? 100 : 1;
+    const bool apart = c->kind == SHADOWS_IN_LAYERS;
+    const double width = plan->size * (apart ? power_of_ten(-3, -0.5) : one_in(3) ? 1 : power_of_ten(-6, 0));
+    const double deep = apart ? 0.5 : one_in(8) ? 100 : 1;
     double near[3], point[3];
     for (int k = 0; k < 3; k++)
         near[k] = plan->middle[k] + deep * plan->size * between(-1, 1);
@@ -138,35 +151,58 @@ static void place_on_triangle(shadow_case *c, uint32_t i, const glint_prim *prim
     put(c->slack, c->precision, i, slack * ((f + g) + far));
 }
 
+/// Puts a point that went far off, perhaps beyond the light, back to where it was.
+static void keep_near(shadow_case *c, uint32_t i, const double was[3])
+{
+    double off[3];
+    for (int k = 0; k < 3; k++)
+        off[k] = get(c->args.point[k], c->precision, i) - c->plan.middle[k];
+    if (c->kind != SHADOWS_IN_LAYERS || length3(off) < c->plan.size)
+        return;
+    put3(c->args.point, c->precision, i, was);
+    c->prim[i] = GLINT_MISS;
+    c->back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP);
+}
+
+/// Puts a point onto a primitive, or says that it is on none that could shadow it. few: how much of the scene is not for that.
+static void place_on_surface(shadow_case *c, uint32_t i, uint32_t few)
+{
+    const test_scene *scene = c->scene;
+    double out[3], point[3];
+    c->prim[i] = below(one_in(4) ? scene->table.prim_count : (few + scene->table.prim_count) / (few + 1));
+    const glint_prim *prim = &scene->prims[c->prim[i]];
+    if (one_in(3)) {
+        c->back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP);
+        if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_SOLID)
+            c->prim[i] = GLINT_MISS; // their rules ask where on them a point is
+        return;
+    }
+    if (prim->kind == GLINT_PRIM_TRIANGLE) {
+        place_on_triangle(c, i, prim);
+        return;
+    }
+    if (prim->kind == GLINT_PRIM_SOLID) {
+        place_on_solid(scene, prim, point);
+    } else if (prim->kind == GLINT_PRIM_SPHERE) {
+        random_unit(out);
+        along3(prim->center, prim->radius, out, point);
+    } else {
+        random_across(prim->normal, out);
+        along3(prim->center, c->plan.size * between(-1, 1), out, point);
+    }
+    put3(c->args.point, c->precision, i, point);
+}
+
 /// Some of the points go onto the primitive they are said to be on; the others are on none that could shadow them.
 static void place_on_surfaces(shadow_case *c)
 {
-    const test_scene *scene = c->scene;
     const uint32_t few = below(4);
-    double out[3], point[3];
     for (uint32_t i = 0; i < c->args.group_count * GLINT_GROUP; i++) {
-        c->prim[i] = below(one_in(4) ? scene->table.prim_count : (few + scene->table.prim_count) / (few + 1));
-        const glint_prim *prim = &scene->prims[c->prim[i]];
-        if (one_in(3)) {
-            c->back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP);
-            if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_SOLID)
-                c->prim[i] = GLINT_MISS; // their rules ask where on them a point is
-            continue;
-        }
-        if (prim->kind == GLINT_PRIM_TRIANGLE) {
-            place_on_triangle(c, i, prim);
-            continue;
-        }
-        if (prim->kind == GLINT_PRIM_SOLID) {
-            place_on_solid(scene, prim, point);
-        } else if (prim->kind == GLINT_PRIM_SPHERE) {
-            random_unit(out);
-            along3(prim->center, prim->radius, out, point);
-        } else {
-            random_across(prim->normal, out);
-            along3(prim->center, c->plan.size * between(-1, 1), out, point);
-        }
-        put3(c->args.point, c->precision, i, point);
+        double was[3];
+        for (int k = 0; k < 3; k++)
+            was[k] = get(c->args.point[k], c->precision, i);
+        place_on_surface(c, i, few);
+        keep_near(c, i, was);
     }
 }
 
@@ -189,11 +225,11 @@ static void shrink(shadow_case *c)
     finish_scene(&c->plan, c->scene);
 }
 
-/// `small`: the scene is of small spheres in the main.
-static void start_shadows(shadow_case *c, int precision, bool odd, bool small)
+static void start_shadows(shadow_case *c, int precision, bool odd, shadow_kind kind)
 {
     memset(c, 0, sizeof *c);
     c->precision = precision;
+    c->kind = kind;
     random_place(&c->plan, precision == GLINT_DOUBLE); // there are no points where float overflows
     const uint32_t groups = c->args.group_count = 1 + below(GLINT_TILE_GROUPS), n = groups * GLINT_GROUP;
     c->args.sample_count = 1;
@@ -201,6 +237,8 @@ static void start_shadows(shadow_case *c, int precision, bool odd, bool small)
     c->args.back = c->back = masks(groups);
     for (uint32_t g = 0; g < groups; g++)
         c->back[g] = one_in(2) ? 0 : c->back[g];
+    if (kind == SHADOWS_IN_LAYERS)
+        c->plan.count = 30 + below(300);
     // float takes what rounding makes of them for hits far away from them, which the index does not look up
     c->plan.triangles = precision == GLINT_DOUBLE && !odd && one_in(2);
     c->plan.solids = precision == GLINT_DOUBLE && !odd && one_in(3);
@@ -216,13 +254,13 @@ static void start_shadows(shadow_case *c, int precision, bool odd, bool small)
         put(c->slack, precision, i, one_in(2) ? 0 : -1e-15 * length3(c->plan.middle));
     }
     const double distance = place_light(c);
-    if (!c->args.directional && one_in(2))
+    if (kind == SHADOWS_IN_LAYERS || (!c->args.directional && one_in(2)))
         place_lamps(c, distance);
     for (uint32_t s = 0; s < c->args.sample_count; s++)
         c->args.lit[s] = masks(groups);
     place_points(c, distance);
     c->scene = random_scene(&c->plan);
-    if (small)
+    if (kind == SHADOWS_OF_SMALL)
         shrink(c);
     c->args.geometry = &c->scene->table;
     place_on_surfaces(c);
@@ -447,7 +485,7 @@ static void soft_light_all(const shadow_case *c, bool odd)
 static void soft_light_case(int precision, bool odd)
 {
     shadow_case c;
-    start_shadows(&c, precision, odd, false);
+    start_shadows(&c, precision, odd, SHADOWS);
     if (c.soft)
         soft_light_all(&c, odd);
     free_scene(c.scene);
@@ -464,7 +502,7 @@ static void test_soft_light(void **state)
 static void occlude_case(int precision, bool odd)
 {
     shadow_case c;
-    start_shadows(&c, precision, odd, false);
+    start_shadows(&c, precision, odd, SHADOWS);
     for (uint32_t i = 0; odd && i < c.args.group_count * GLINT_GROUP; i++)
         for (int k = 0; k < 3 && one_in(8); k++) {
             c.back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP); // it is on nothing any more
@@ -489,7 +527,7 @@ static void occlude_grid_case(int precision, bool odd)
 {
     shadow_case c;
     (void)precision;
-    start_shadows(&c, GLINT_DOUBLE, odd, true);
+    start_shadows(&c, GLINT_DOUBLE, odd, SHADOWS_OF_SMALL);
     occlude_all(&c);
     count_lanes(&c);
     free_scene(c.scene);
@@ -501,6 +539,25 @@ static void test_occlude_grid(void **state)
     gridded = open_lanes = dark_lanes = 0;
     run_cases(CASES, 300000, occlude_grid_case);
     assert_true(gridded * case_step() > 200);
+    assert_true(open_lanes * case_step() > 10000 && dark_lanes * case_step() > 10000);
+}
+
+/// Area lights behind more than a list holds.
+static void occlude_layers_case(int precision, bool odd)
+{
+    shadow_case c;
+    (void)precision;
+    start_shadows(&c, GLINT_DOUBLE, odd, SHADOWS_IN_LAYERS);
+    occlude_all(&c);
+    count_lanes(&c);
+    free_scene(c.scene);
+}
+
+static void test_occlude_layers(void **state)
+{
+    (void)state;
+    open_lanes = dark_lanes = 0;
+    run_cases(CASES / 3, 600000, occlude_layers_case);
     assert_true(open_lanes * case_step() > 10000 && dark_lanes * case_step() > 10000);
 }
 
@@ -530,6 +587,7 @@ int main(void)
 {
     find_tested();
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_occlude), cmocka_unit_test(test_occlude_grid),
+                                        cmocka_unit_test(test_occlude_layers),
                                         cmocka_unit_test(test_occlude_found),
                                         cmocka_unit_test(test_soft_light) };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

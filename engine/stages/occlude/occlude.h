@@ -82,12 +82,13 @@ static void R(find_occluders)(R(shadow_tile) * tile, uint32_t only)
     }
 }
 
-/// Whether all of the light is outside the sphere for certain, by what the filter knows.
+/// Whether all of the light is outside the sphere or solid for certain, by what the filter knows.
 static inline bool R(light_outside)(const R(shadow_tile) * tile, const glint_prim *prim)
 {
+    const bool ball = prim->kind == GLINT_PRIM_SPHERE || prim->kind == GLINT_PRIM_SOLID;
     float distance2 = 0, size = 0;
-    if (prim->kind != GLINT_PRIM_SPHERE || tile->args->directional)
-        return prim->kind == GLINT_PRIM_SPHERE;
+    if (!ball || tile->args->directional)
+        return ball;
     for (int k = 0; k < 3; k++) {
         const float lower = tile->light.lower[k], upper = tile->light.upper[k], center = prim->filter_center[k];
         const float d = larger(larger(lower - center, center - upper), 0);

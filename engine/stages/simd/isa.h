@@ -14,7 +14,7 @@
 #include "engine/stages/index/eye_box.h"
 #include "engine/stages/index/leaf.h"
 #include "engine/stages/occlude/beam.h"
-#include "engine/stages/occlude/layer.h"
+#include "engine/stages/light/layer.h"
 #include "engine/stages/shade/sequence.h"
 
 #define GLINT_REAL 64

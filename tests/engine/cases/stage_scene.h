@@ -21,6 +21,7 @@ typedef struct scene_plan {
     double middle[3], size; ///< where primitives are that no line attracts
     double spread; ///< radii are smaller than `size` by up to so many powers of ten
     bool triangles, solids; ///< some are
+    uint32_t count; ///< of primitives; 0: any
     uint32_t line_count;
     test_line lines[MOST_LINES];
 } scene_plan;
@@ -505,7 +506,7 @@ static inline uint32_t random_count(void)
 static inline test_scene *random_scene(const scene_plan *plan)
 {
     static test_scene scene;
-    const uint32_t count = scene.table.prim_count = random_count();
+    const uint32_t count = scene.table.prim_count = plan->count ? plan->count : random_count();
     for (uint32_t i = 0; i < count; i++)
         random_prim(plan, &scene, i, count);
     if (one_in(6))
@@ -529,6 +530,7 @@ static inline void random_place(scene_plan *plan, bool beyond)
     for (int c = 0; c < 3; c++)
         plan->middle[c] = (extreme ? plan->size : 1) * either_sign(offset) * between(0.5, 1);
     plan->triangles = plan->solids = false;
+    plan->count = 0;
     plan->line_count = 0;
 }
 

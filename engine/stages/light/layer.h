@@ -21,6 +21,7 @@ typedef struct layer_frame {
     float lowest, highest; ///< least and largest h of a point
     float nearest, farthest; ///< of a sample
     float per_way; ///< 1 / (nearest - highest)
+    float width[2]; ///< of the segments, halfway
     float slope[2][2]; ///< least and largest
     _Alignas(64) float point[3][GLINT_TILE_SAMPLES]; ///< of lit groups
     _Alignas(64) float light[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];

@@ -1,0 +1,58 @@
+// soft_shadow: occlude of an area light: by a tile's list (soft.h); by layers (layers.h); or, where these have no frame, where each point
+// has samples of its own, and where float decides, sample by sample as of a light without size. Contract: stages.h, occlude.
+
+/// Too many occluders for a list: every group walks for every sample.
+static void R(occlude_walking)(R(shadow_tile) * tile)
+{
+    const glint_occlude_args *args = tile->args;
+    const bool cone = R(is_cone)(args->light_sample[0]);
+    R(light_sample_set) light_samples;
+    for (uint32_t s = 0; s < args->sample_count; s++) {
+        R(shadow_group) group = { .last_blocker = GLINT_MISS };
+        const double(*place)[GLINT_GROUP] =
+            cone ? (const double(*)[GLINT_GROUP])light_samples.place[0] : args->light_sample[s]->position;
+        if (!cone)
+            R(aim_at)(tile, place);
+        for (uint32_t g = 0; g < args->group_count; g++) {
+            unsigned open = args->lit[s][g];
+            *args->rays += (unsigned)__builtin_popcount(open);
+            if (open) {
+                R(begin_group)(g, &group);
+                if (cone) {
+                    R(place_in_cone)
+                    (&args->light_sample[s], 1, args->scale, args->point, args->normal, group.at, &light_samples);
+                    R(aim_at)(tile, place);
+                }
+                open = R(test_unbounded)(tile, place, &group, open);
+                open = R(walk_group)(tile, place, &group, open);
+            }
+            args->open[s][g] = (uint16_t)open;
+        }
+    }
+}
+
+static void R(occlude_light_sample)(const glint_occlude_args *args)
+{
+    R(shadow_tile) tile;
+    uint16_t lit[GLINT_TILE_GROUPS];
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        lit[g] = 0;
+        for (uint32_t s = 0; s < args->sample_count; s++)
+            lit[g] |= args->lit[s][g];
+    }
+    R(begin_shadows)(args, lit, &tile);
+    if (tile.count <= GLINT_OCCLUDERS)
+        R(occlude_listed)(&tile, lit);
+    else if (!R(occlude_by_layers)(&tile, lit))
+        R(occlude_walking)(&tile);
+}
+
+static void R(occlude)(const glint_occlude_args *args)
+{
+    if (GLINT_WITH_CAPS && args->visible)
+        R(occlude_caps)(args);
+    else if (GLINT_WITH_AREA && args->light_sample[0])
+        R(occlude_light_sample)(args);
+    else
+        R(occlude_point)(args);
+}
