@@ -1,6 +1,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "tests/bench/glint_side.h"
@@ -62,6 +63,16 @@ static void give_up(int signal)
     _exit(written > 0 ? 0 : 1);
 }
 
+/// Peak of the process, which has the described scene beside what it came from, and what describes its spheres.
+static void say_memory(const bench_scene *scene)
+{
+    struct rusage usage;
+    const size_t sphere = 4 * sizeof *scene->spheres + sizeof *scene->sphere_material;
+    if (getrusage(RUSAGE_SELF, &usage) == 0)
+        bench_say("peak", "MB", (double)usage.ru_maxrss * 1024 / 1e6);
+    bench_say("data", "MB", (double)(scene->sphere_count * sphere) / 1e6);
+}
+
 void side_run_frame(const bench_options *options)
 {
     bench_options fresh = *options;
@@ -80,6 +91,7 @@ void side_run_frame(const bench_options *options)
     bench_say("codes", "ms", bench_median(time_codes, &f));
     bench_say("rays", "M/s", rays / ms / 1e3);
     bench_say("shadow_rays", "rays", (double)f.stats.rays.shadow);
+    say_memory(&scene.plain);
     glint_plan_destroy(f.plan);
     glint_renderer_destroy(f.renderer);
     side_scene_free(&scene);

@@ -57,15 +57,16 @@ static void add_shape(side_scene *s, glint_shape *shape)
     glint_shape_release(shape);
 }
 
-/// A few spheres are shapes of their own, as a script would have them; many are one shape.
+/// A few spheres are shapes of their own, as a script would have them; many but the last are one shape.
 static void add_spheres(side_scene *s)
 {
     const bench_scene *p = &s->plain;
+    const size_t many = p->sphere_count > 100 ? p->sphere_count - 1 : 0;
     glint_error error;
     glint_shape *shape;
-    if (p->sphere_count > 100) {
+    if (many) {
         glint_spheres_desc d = { .data = p->spheres,
-                                 .count = p->sphere_count,
+                                 .count = many,
                                  .is_float = true,
                                  .materials = s->materials,
                                  .material_count = (size_t)p->material_count,
@@ -73,9 +74,8 @@ static void add_spheres(side_scene *s)
                                  .two_sided = true };
         side_must(glint_spheres_create(&d, &shape, &error), &error);
         add_shape(s, shape);
-        return;
     }
-    for (size_t i = 0; i < p->sphere_count; i++) {
+    for (size_t i = many; i < p->sphere_count; i++) {
         glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
         widen(p->spheres + 4 * i, d.center);
         d.radius = (double)p->spheres[4 * i + 3];
@@ -106,8 +106,23 @@ static void add_part(side_scene *s, glint_shape *whole, glint_shape *part)
     glint_shape_release(part);
 }
 
+/// A cylinder or a cone.
+static void add_rod(side_scene *s, const bench_solid *rod)
+{
+    glint_shape_desc d = glint_shape_desc_default(rod->kind == BENCH_ROD ? GLINT_SHAPE_CYLINDER : GLINT_SHAPE_CONE);
+    widen(rod->center, d.base);
+    widen(rod->ball, d.top);
+    d.radius = (double)rod->size;
+    d.material = s->materials[rod->material];
+    add_shape(s, new_shape(&d));
+}
+
 static void add_solid(side_scene *s, const bench_solid *solid)
 {
+    if (solid->kind == BENCH_ROD || solid->kind == BENCH_TIP) {
+        add_rod(s, solid);
+        return;
+    }
     glint_shape_desc box = glint_shape_desc_default(GLINT_SHAPE_BOX), ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
     glint_shape_desc torus = glint_shape_desc_default(GLINT_SHAPE_TORUS), cut = glint_shape_desc_default(GLINT_SHAPE_DIFFERENCE);
     box.material = ball.material = torus.material = cut.material = s->materials[solid->material];

@@ -1,6 +1,6 @@
 /// Writes a scene to stdout for POV-Ray 3.7 or Tachyon 0.99, so that they render what the other sides do.
 ///
-///   peers povray|tachyon [scene=workshop|glassball|1k|1M|glass|box|floor100|mesh100k|cut1k|pieces1k|tori] [shadows=0] [lens=1] [samples=N]
+///   peers povray|tachyon [scene=NAME] [shadows=0] [lens=1] [samples=N]
 ///       [area=1] [lamps=N] [change=light|shininess]
 ///       [pattern=NAME]
 ///
@@ -99,10 +99,24 @@ static void povray_torus(const bench_solid *t)
     printf(" texture { M%u } }\n", (unsigned)t->material);
 }
 
+static void povray_rod(const bench_solid *rod)
+{
+    const bool cone = rod->kind == BENCH_TIP;
+    print3(cone ? "cone { <%.9g, %.9g, %.9g>," : "cylinder { <%.9g, %.9g, %.9g>,", rod->center);
+    if (cone)
+        printf(" %.9g,", (double)rod->size);
+    print3(" <%.9g, %.9g, %.9g>,", rod->ball);
+    printf(" %.9g texture { M%u } }\n", cone ? 0.0 : (double)rod->size, (unsigned)rod->material);
+}
+
 static void povray_solid(const bench_solid *solid)
 {
     if (solid->kind == BENCH_TORUS) {
         povray_torus(solid);
+        return;
+    }
+    if (solid->kind == BENCH_ROD || solid->kind == BENCH_TIP) {
+        povray_rod(solid);
         return;
     }
     const float *at = solid->center, *ball = solid->ball, r = solid->size;
@@ -127,7 +141,7 @@ static void povray_mesh(const bench_scene *s)
         const uint32_t *corner = s->triangles + 3 * i;
         printf(",\n<%u, %u, %u>", (unsigned)corner[0], (unsigned)corner[1], (unsigned)corner[2]);
     }
-    puts(" } texture { M0 } }");
+    puts(s->materials[0].transmission > 0 ? " } texture { M0 } interior { ior 1.5 } }" : " } texture { M0 } }");
 }
 
 static void write_povray(const bench_scene *s, const bench_options *o)

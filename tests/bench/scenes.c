@@ -144,6 +144,51 @@ static void make_box(bench_scene *s, size_t count)
     s->height = 18;
 }
 
+/// The same, seen and lit from within.
+static void make_inside(bench_scene *s, size_t count)
+{
+    make_cloud(s, count);
+    set3(s->eye, 0, 0, 0);
+    set3(s->at, 1, 0.1F, 0.2F);
+    s->fov_y_degrees = 70;
+    set3(s->light, 2, 1, 0.5F);
+}
+
+/// A chain of balls with a rod between each two; every fourth carries a tip.
+static void make_molecule(bench_scene *s, size_t count)
+{
+    uint64_t state = count;
+    float at[3] = { 0, 0, 0 }, next[3];
+    make_palette(s, &state);
+    make_spheres(s, count);
+    s->solids = need(count + count / 4, sizeof *s->solids);
+    for (size_t i = 0; i < count; i++) {
+        float *ball = s->spheres + 4 * i, far;
+        do {
+            far = 0;
+            for (int c = 0; c < 3; c++) {
+                next[c] = at[c] + 1.6F * (random_unit(&state) - 0.5F);
+                far += next[c] * next[c];
+            }
+        } while (!(far < 81));
+        s->sphere_material[i] = (uint32_t)i % BENCH_MATERIALS;
+        set3(ball, next[0], next[1], next[2]);
+        ball[3] = 0.3F + 0.15F * random_unit(&state);
+        bench_solid rod = { .kind = BENCH_ROD, .material = s->sphere_material[i], .size = 0.12F }, tip = { .kind = BENCH_TIP, .size = 0.3F };
+        memcpy(rod.center, at, sizeof at);
+        memcpy(rod.ball, next, sizeof next);
+        memcpy(tip.center, next, sizeof next);
+        set3(tip.ball, next[0] + random_unit(&state), next[1] + random_unit(&state), next[2]);
+        s->solids[s->solid_count++] = rod;
+        if (i % 4 == 3)
+            s->solids[s->solid_count++] = tip;
+        memcpy(at, next, sizeof at);
+    }
+    set3(s->eye, 0, 4, 26);
+    s->fov_y_degrees = 40;
+    set3(s->light, 15, 20, 20);
+}
+
 // ---- Spheres that rest on a floor, and throw shadows on it and on each other ----
 
 /// The floor is 40 x 40 of a large ball's top; the radii go with the spacing, as in a cloud.
@@ -236,6 +281,12 @@ static void make_mesh(bench_scene *s, size_t quadrangles)
     set3(s->light, 9, 14, 4);
 }
 
+static void make_glass_mesh(bench_scene *s, size_t quadrangles)
+{
+    make_mesh(s, quadrangles);
+    s->materials[0] = (bench_material) { .transmission = 0.9F };
+}
+
 static const struct {
     const char *name;
     void (*make)(bench_scene *s, size_t count);
@@ -254,6 +305,10 @@ static const struct {
                { "pieces1k", make_pieces, 1000 },
                { "tori", make_tori, 24 },
                { "box", make_box, 100000 },
+               { "inside", make_inside, 100000 },
+               { "cloud17k", make_cloud, 17000 },
+               { "molecule", make_molecule, 1000 },
+               { "glassmesh", make_glass_mesh, 10000 },
                { "mesh", make_mesh, 250000 },
                { "mesh100k", make_mesh, 50176 } };
 

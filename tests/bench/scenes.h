@@ -19,15 +19,18 @@ typedef struct bench_material {
 typedef enum bench_solid_kind {
     BENCH_CUT, ///< a box less a ball
     BENCH_PIECES, ///< that box and that ball, each by itself
-    BENCH_TORUS
+    BENCH_TORUS,
+    BENCH_ROD, ///< a cylinder
+    BENCH_TIP ///< a cone
 } bench_solid_kind;
 
 /// For glint and POV-Ray alone.
 typedef struct bench_solid {
     bench_solid_kind kind;
     uint32_t material;
-    float center[3], size; ///< of the box, half its width; of the torus, the radius of its ring
-    float ball[4]; ///< centre and radius; of a torus its axis, unit, and the radius of its tube
+    float center[3], size; ///< of the box, half its width; of the torus, the radius of its ring; of rod and tip the middle of the base,
+        ///< and its radius
+    float ball[4]; ///< centre and radius; of a torus its axis, unit, and the radius of its tube; of rod and tip the other end
 } bench_solid;
 
 typedef struct bench_scene {
@@ -57,7 +60,11 @@ typedef struct bench_scene {
 ///   cut1k, pieces1k          1,000 boxes less a ball on such a floor; these boxes and balls, each by itself
 ///   tori                     24 tori on such a floor
 ///   box                      100,000 spheres, an orthographic view
+///   inside                   100,000 spheres around the eye
+///   cloud17k                 17,000 spheres
+///   molecule                 1,000 balls, 1,000 rods and 250 tips
 ///   mesh, mesh100k           500,000 and 100,000 triangles
+///   glassmesh                20,000 triangles, of glass
 bool bench_scene_create(const char *name, bench_scene *out);
 void bench_scene_free(bench_scene *scene);
 
