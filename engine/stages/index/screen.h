@@ -65,13 +65,15 @@ typedef struct node_on_screen {
     _Alignas(64) uint32_t cells[GLINT_NODE_WIDTH]; ///< see screen_cells
 } node_on_screen;
 
-/// Places between which boxes are whose k is between nearest and farthest: anywhere where they reach the eye.
+/// Places between which boxes are whose k is between nearest and farthest. Those that reach the eye go on to one side without end,
+/// or, where the eye is between low and high, to both: what is met of them has 0 < k.
 static inline void places_of_boxes(vf low, vf high, vf nearest, vf farthest, vf *least, vf *most)
 {
-    const fm ahead = f_lt(f_set(0), nearest);
+    const fm ahead = f_lt(f_set(0), nearest), right = f_lt(f_set(0), low), left = f_lt(high, f_set(0));
     const vf near = f_set(1) / nearest, far = f_set(1) / farthest;
-    *least = f_select(ahead, f_min(low * near, low * far), f_set(-HUGE_VALF));
-    *most = f_select(ahead, f_max(high * near, high * far), f_set(HUGE_VALF));
+    const vf lowest = low * far, highest = high * far;
+    *least = f_select(ahead, f_min(low * near, lowest), f_select(right, lowest, f_set(-HUGE_VALF)));
+    *most = f_select(ahead, f_max(high * near, highest), f_select(left, highest, f_set(HUGE_VALF)));
 }
 
 /// Rays that do not start at one eye but on a lens around it: at w they are up to `reach` |1 - per_focus w| beside those of the
