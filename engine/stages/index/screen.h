@@ -65,13 +65,15 @@ typedef struct node_on_screen {
     _Alignas(64) uint32_t cells[GLINT_NODE_WIDTH]; ///< see screen_cells
 } node_on_screen;
 
-/// Places between which boxes are whose k is between nearest and farthest. Those that reach the eye go on to one side without end,
-/// or, where the eye is between low and high, to both: what is met of them has 0 < k.
-static inline void places_of_boxes(vf low, vf high, vf nearest, vf farthest, vf *least, vf *most)
+/// Places between which boxes are whose k is between nearest and farthest. Of those that reach the eye: anywhere, or, where they lie
+/// to one side of it, from where they are farthest on. There the lines of all rays must miss them behind the eye, too, for where a
+/// triangle is seen edge-on, rounding may turn what is met behind into what is met ahead. start, end: of the screen's places.
+static inline void places_of_boxes(vf low, vf high, vf nearest, vf farthest, vf start, vf end, vf *least, vf *most)
 {
-    const fm ahead = f_lt(f_set(0), nearest), right = f_lt(f_set(0), low), left = f_lt(high, f_set(0));
-    const vf near = f_set(1) / nearest, far = f_set(1) / farthest;
-    const vf lowest = low * far, highest = high * far;
+    const fm ahead = f_lt(f_set(0), nearest);
+    const vf near = f_set(1) / nearest, far = f_set(1) / farthest, lowest = low * far, highest = high * far;
+    const fm right = fm_and(f_lt(f_set(0), low), f_lt(low * near, start));
+    const fm left = fm_and(f_lt(high, f_set(0)), f_lt(end, high * near));
     *least = f_select(ahead, f_min(low * near, lowest), f_select(right, lowest, f_set(-HUGE_VALF)));
     *most = f_select(ahead, f_max(high * near, highest), f_select(left, highest, f_set(HUGE_VALF)));
 }
@@ -105,19 +107,29 @@ INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const
         }
         const vf nearest = f_set(view->base) + low[2] * f_set(view->inverse);
         const vf farthest = f_set(view->base) + high[2] * f_set(view->inverse);
-        vf beside = f_set(0);
-        if (lens)
-            beside = f_max(lens_share(lens, low[2], f_set(1) / nearest), lens_share(lens, high[2], f_set(1) / farthest));
+        vf beside = f_set(0), around = f_set(0);
+        if (lens) {
+            const fm ahead = f_lt(f_set(0), nearest);
+            beside = f_select(
+                ahead,
+                f_max(lens_share(lens, low[2], f_set(1) / nearest), lens_share(lens, high[2], f_set(1) / farthest)),
+                f_set(0));
+            around = f_select(ahead, f_set(0),
+                              f_max(lens_share(lens, low[2], f_set(1)), lens_share(lens, high[2], f_set(1))));
+        }
         vi cells = i_set(0);
         fm away = fm_or(f_lt(f_set(view->far), low[2]), f_lt(farthest, f_set(0)));
         f_store(out->near + i, f_max(low[2], f_set(-FLT_MAX)));
         for (int j = 1; j >= 0; j--) {
             const vf start = f_set(view->first[j]), end = f_set(view->last[j]);
             vf margin = f_set(view->margin);
-            if (lens)
+            if (lens) {
                 margin = margin + f_set(lens->reach[j]) * beside;
+                low[j] = low[j] - f_set(lens->reach[j]) * around;
+                high[j] = high[j] + f_set(lens->reach[j]) * around;
+            }
             if (!parallel)
-                places_of_boxes(low[j], high[j], nearest, farthest, &low[j], &high[j]);
+                places_of_boxes(low[j], high[j], nearest, farthest, start - margin, end + margin, &low[j], &high[j]);
             least = low[j] - margin;
             most = high[j] + margin;
             away = fm_or(away, fm_or(f_lt(most, start), f_lt(end, least)));
