@@ -1,5 +1,7 @@
-/// Adaptive sampling: the chosen pixels of a tile, gathered. They lie along edges, so that the tile's own groups are mostly empty. Here a
-/// group is one sample of 16 of them, wherever they are in the tile, and one walk has up to 16 samples of as many as fit.
+/// Adaptive sampling: the chosen pixels of a tile, gathered. They lie along edges, so that the tile's own groups are mostly empty. One
+/// walk has up to 16 samples of as many as fit. Where primitives are few a group is one sample of 16 of them, wherever they are in the
+/// tile. Else it is the samples of one pixel, or of a few that are side by side: so little of the picture that little may show there,
+/// and that its lanes mostly show the same. Shading adds up samples in their order, and has them one after the other in both cases.
 #include "engine/base/alloc.h"
 #include "engine/tile/tile.h"
 
@@ -7,11 +9,13 @@
 #include <string.h>
 
 #define FEW_PRIMS 16 ///< of more, rays are cast faster where they lie beside each other
+#define BLOCK 2 ///< groups along a side of the squares that pixels are listed by
 #define FULL 0.9 ///< of the lanes of the groups that have any: from there on gathering saves nothing
 
 struct glint_gathered {
     _Alignas(64) double pixel[2][GLINT_TILE_SAMPLES]; ///< columns and rows of the picture
     _Alignas(64) float beauty[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t numbers[GLINT_TILE_SAMPLES]; ///< a result while it is put in another order
     uint16_t active[GLINT_TILE_GROUPS]; ///< as they are in the tile, and the following
     uint32_t group_count, groups_across;
 };
@@ -24,8 +28,7 @@ bool glint_tile_may_gather(const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
     if (!frame->base || !plan->local || plan->runs[GLINT_STAGE_PATTERN] || plan->camera.orthographic || plan->lens ||
-        plan->desc.passes & GLINT_LIGHT_PASSES || glint_tile_wants_coverage(plan) || frame->raster ||
-        frame->geometry.prim_count > FEW_PRIMS)
+        plan->desc.passes & GLINT_LIGHT_PASSES || glint_tile_wants_coverage(plan) || frame->raster)
         return false;
     for (uint32_t i = 0; i < plan->light_count; i++)
         if (plan->lights[i].light_samples) // one a lane
@@ -33,32 +36,55 @@ bool glint_tile_may_gather(const glint_tile_frame *frame)
     return true;
 }
 
+/// Whether a group is samples of one pixel.
+static bool groups_samples(const glint_tile_frame *frame) { return frame->geometry.prim_count > FEW_PRIMS; }
+
 uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame, uint16_t place[GLINT_TILE_SAMPLES])
 {
+    const uint32_t across = tile->groups_across, down = tile->group_count / across;
     uint32_t count = 0, groups = 0;
     if (tile->cached || !glint_tile_may_gather(frame))
         return 0;
-    for (uint32_t g = 0; g < tile->group_count; g++) {
-        groups += tile->active[g] != 0;
-        for (unsigned left = tile->active[g]; left; left &= left - 1)
-            place[count++] = (uint16_t)(g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
-    }
+    for (uint32_t y = 0; y < down; y += BLOCK)
+        for (uint32_t x = 0; x < across; x += BLOCK)
+            for (uint32_t i = 0; i < BLOCK * BLOCK; i++) {
+                const uint32_t column = x + i % BLOCK, row = y + i / BLOCK, g = row * across + column;
+                if (column >= across || row >= down)
+                    continue;
+                groups += tile->active[g] != 0;
+                for (unsigned left = tile->active[g]; left; left &= left - 1)
+                    place[count++] = (uint16_t)(g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+            }
     return count < FULL * GLINT_GROUP * groups ? count : 0;
 }
 
-/// Tells the camera the pixels at these places; lanes that are left over have the first of them once more, and are not active.
-static void place_pixels(glint_tile *tile, const uint16_t *place, uint32_t count, double (*pixel)[GLINT_TILE_SAMPLES])
+/// Column and row of the picture's pixel at a place in the tile.
+static void pixel_at(const glint_tile *tile, uint32_t place, double out[2])
 {
-    double first[2] = { tile->x0 + tile->width, tile->y0 + tile->height }, end[2] = { 0, 0 };
-    for (uint32_t i = 0; i < (count + GLINT_GROUP - 1) / GLINT_GROUP * GLINT_GROUP; i++) {
-        const uint32_t at = place[i < count ? i : 0], g = at / GLINT_GROUP, lane = at % GLINT_GROUP;
-        pixel[0][i] = tile->x0 + 4 * (g % tile->groups_across) + lane % 4;
-        pixel[1][i] = tile->y0 + 4 * (g / tile->groups_across) + lane / 4;
+    const uint32_t g = place / GLINT_GROUP, lane = place % GLINT_GROUP;
+    out[0] = tile->x0 + 4 * (g % tile->groups_across) + lane % 4;
+    out[1] = tile->y0 + 4 * (g / tile->groups_across) + lane / 4;
+}
+
+/// Tells the camera where the rays of the pixels at these places are: `samples` lanes each, `offset` from its corner. Lanes that are
+/// left over have the first pixel once more, and are not active.
+static void place_pixels(glint_tile *tile, const uint16_t *place, uint32_t count, const double (*offset)[GLINT_LIGHT_CHUNK],
+                         uint32_t samples, double (*pixel)[GLINT_TILE_SAMPLES])
+{
+    double first[2], end[2] = { 0, 0 }, at[2];
+    pixel_at(tile, place[0], first);
+    for (uint32_t i = 0; i < count; i++) {
+        pixel_at(tile, place[i], at);
         for (int c = 0; c < 2; c++) {
-            first[c] = pixel[c][i] < first[c] ? pixel[c][i] : first[c];
-            end[c] = pixel[c][i] + 1 > end[c] ? pixel[c][i] + 1 : end[c];
+            first[c] = at[c] < first[c] ? at[c] : first[c];
+            end[c] = at[c] + 1 > end[c] ? at[c] + 1 : end[c];
+            for (uint32_t k = 0; k < samples; k++)
+                pixel[c][i * samples + k] = at[c] + offset[c][k];
         }
     }
+    for (int c = 0; c < 2; c++)
+        for (uint32_t i = count * samples; i % GLINT_GROUP; i++)
+            pixel[c][i] = pixel[c][0];
     tile->camera.x0 = first[0];
     tile->camera.y0 = first[1];
     for (int c = 0; c < 2; c++) {
@@ -67,18 +93,15 @@ static void place_pixels(glint_tile *tile, const uint16_t *place, uint32_t count
     }
 }
 
-void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
-                       uint32_t samples)
+/// The rays of one sample after the other.
+static void make_stacked_rays(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
+                              uint32_t samples)
 {
-    struct glint_gathered *gathered = tile->gathered;
+    static const double corner[2][GLINT_LIGHT_CHUNK] = { { 0 } };
     const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP;
     const size_t real = frame->plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
-    memcpy(gathered->active, tile->active, sizeof gathered->active);
-    gathered->group_count = tile->group_count;
-    gathered->groups_across = tile->groups_across;
-    glint_tile_aim(tile, frame, 0);
-    place_pixels(tile, place, count, gathered->pixel);
-    tile->groups_across = tile->camera.groups_across = 1;
+    place_pixels(tile, place, count, corner, 1, tile->gathered->pixel);
+    tile->camera.groups_across = 1;
     tile->camera.group_count = blocks;
     for (uint32_t k = 0; k < samples; k++) {
         glint_plan_sample_offset(frame->plan, first + k, tile->camera.offset);
@@ -86,11 +109,136 @@ void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const ui
         glint_tile_make_rays(tile, frame);
     }
     tile->camera.down = tile->rays.direction;
-    tile->group_count = tile->camera.group_count = samples * blocks;
+}
+
+/// The rays of one pixel after the other.
+static void make_pixel_rays(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
+                            uint32_t samples)
+{
+    double offset[2][GLINT_LIGHT_CHUNK], at[2];
+    for (uint32_t k = 0; k < samples; k++) {
+        glint_plan_sample_offset(frame->plan, first + k, at);
+        offset[0][k] = at[0];
+        offset[1][k] = at[1];
+    }
+    place_pixels(tile, place, count, (const double(*)[GLINT_LIGHT_CHUNK])offset, samples, tile->gathered->pixel);
+    tile->camera.groups_across = 1;
+    tile->camera.group_count = (count * samples + GLINT_GROUP - 1) / GLINT_GROUP;
+    tile->camera.offset[0] = tile->camera.offset[1] = 0; // they are in the places
+    tile->camera.down = tile->rays.direction;
+    glint_tile_make_rays(tile, frame);
+}
+
+/// Lanes of groups that repeat after `every` of them, the first `count` of all of which are active.
+static void activate_lanes(glint_tile *tile, uint32_t every, uint32_t count)
+{
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        const uint32_t left = count - g % blocks * GLINT_GROUP;
+        const uint32_t left = count - g % every * GLINT_GROUP;
         tile->active[g] = left < GLINT_GROUP ? (uint16_t)((1u << left) - 1) : 0xffff;
     }
+}
+
+void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
+                       uint32_t samples)
+{
+    struct glint_gathered *gathered = tile->gathered;
+    const bool by_pixel = groups_samples(frame);
+    const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP, lanes = by_pixel ? count * samples : count;
+    const uint32_t every = (lanes + GLINT_GROUP - 1) / GLINT_GROUP;
+    memcpy(gathered->active, tile->active, sizeof gathered->active);
+    gathered->group_count = tile->group_count;
+    gathered->groups_across = tile->groups_across;
+    glint_tile_aim(tile, frame, 0);
+    if (by_pixel)
+        make_pixel_rays(tile, frame, place, count, first, samples);
+    else
+        make_stacked_rays(tile, frame, place, count, first, samples);
+    tile->groups_across = 1;
+    tile->group_count = tile->camera.group_count = by_pixel ? every : samples * blocks;
+    activate_lanes(tile, every, lanes);
+}
+
+// ---- From one pixel after the other to one sample after the other ----
+
+/// Of 16 pixels with 16 samples each.
+static void stack_square(const uint32_t *from, uint32_t *to, size_t stride)
+{
+    for (size_t k = 0; k < GLINT_GROUP; k++)
+        for (size_t p = 0; p < GLINT_GROUP; p++)
+            to[k * stride + p] = from[p * GLINT_GROUP + k];
+}
+
+/// Numbers, one a lane.
+static void stack_numbers(struct glint_gathered *gathered, void *numbers, uint32_t count, uint32_t samples)
+{
+    const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP, *from = gathered->numbers;
+    uint32_t *to = numbers;
+    memcpy(gathered->numbers, numbers, count * samples * sizeof *from);
+    if (samples == GLINT_GROUP) {
+        for (size_t b = 0; b < blocks; b++)
+            stack_square(from + b * GLINT_GROUP * GLINT_GROUP, to + b * GLINT_GROUP, blocks * GLINT_GROUP);
+        return;
+    }
+    for (uint32_t p = 0; p < count; p++)
+        for (uint32_t k = 0; k < samples; k++)
+            to[k * blocks * GLINT_GROUP + p] = *from++;
+}
+
+/// The bits of 16 groups: those of one lane become a group.
+static void turn_lanes(uint16_t lanes[GLINT_GROUP])
+{
+    unsigned low = 0x00ff;
+    for (unsigned j = GLINT_GROUP / 2; j; j /= 2, low ^= low << j)
+        for (unsigned g = 0; g < GLINT_GROUP; g = ((g | j) + 1) & ~j) {
+            const unsigned other = (lanes[g] >> j ^ lanes[g | j]) & low;
+            lanes[g] ^= (uint16_t)(other << j);
+            lanes[g | j] ^= (uint16_t)other;
+        }
+}
+
+/// Bits, one a lane.
+static void stack_lanes(uint16_t *lanes, uint32_t groups, uint32_t count, uint32_t samples)
+{
+    const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP;
+    uint16_t from[GLINT_TILE_GROUPS + GLINT_GROUP] = { 0 }, to[GLINT_TILE_GROUPS] = { 0 };
+    memcpy(from, lanes, groups * sizeof *from);
+    for (uint32_t b = 0; samples == GLINT_GROUP && b < blocks; b++) {
+        turn_lanes(from + b * GLINT_GROUP);
+        for (uint32_t k = 0; k < samples; k++)
+            to[k * blocks + b] = from[b * GLINT_GROUP + k];
+    }
+    for (uint32_t p = 0, i = 0; samples != GLINT_GROUP && p < count; p++)
+        for (uint32_t k = 0; k < samples; k++, i++)
+            to[k * blocks + p / GLINT_GROUP] |= (uint16_t)((from[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) << p % GLINT_GROUP);
+    memcpy(lanes, to, samples * blocks * sizeof *lanes);
+}
+
+/// What shade reads.
+static void stack_samples(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, uint32_t count, uint32_t samples)
+{
+    const glint_plan *plan = frame->plan;
+    const uint32_t groups = tile->group_count;
+    stack_lanes(tile->at.hits, groups, count, samples);
+    if (!tile->at.only) // else they are not read
+        stack_numbers(tile->gathered, tile->surface.material, count, samples);
+    for (uint32_t i = 0; i < light_count; i++) {
+        const glint_plan_light *light = &plan->lights[i];
+        uint16_t *lit = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit;
+        if (!glint_has_lanes(lit, groups)) {
+            memset(lit, 0, sizeof tile->lights[0].lit);
+            continue;
+        }
+        stack_lanes(lit, groups, count, samples);
+        stack_numbers(tile->gathered, tile->at.light[i].cosine, count, samples);
+        if (plan->highlights)
+            stack_numbers(tile->gathered, tile->at.light[i].log2_specular, count, samples);
+        if (light->attenuated)
+            stack_numbers(tile->gathered, tile->at.light[i].attenuation, count, samples);
+        if (light->cap)
+            stack_numbers(tile->gathered, tile->at.light[i].visible, count, samples);
+    }
+    tile->group_count = (count + GLINT_GROUP - 1) / GLINT_GROUP * samples;
+    activate_lanes(tile, tile->group_count / samples, count);
 }
 
 void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
@@ -99,6 +247,8 @@ void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, 
     struct glint_gathered *gathered = tile->gathered;
     float *const beauty[3] = { gathered->beauty[0], gathered->beauty[1], gathered->beauty[2] };
     const bool last = first + samples == (uint32_t)frame->plan->desc.samples;
+    if (groups_samples(frame) && samples > 1)
+        stack_samples(tile, frame, light_count, count, samples);
     glint_tile_shade_stacked(tile, frame, light_count, first, samples, beauty);
     memcpy(tile->active, gathered->active, sizeof tile->active);
     tile->group_count = gathered->group_count;

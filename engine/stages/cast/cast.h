@@ -328,10 +328,18 @@ static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node
         R(cast_slot_as)(tile, node, seen, slot, false, NULL, NULL);
 }
 
+/// Casts primitives to pixels wherever they are: pixels.h.
+static void R(cast_prims_to_pixels)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node, const node_on_screen *seen,
+                                    unsigned mask);
+
 /// Casts the primitives in the slots of `mask`.
 static void R(cast_prims)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node, const node_on_screen *seen,
                           unsigned mask)
 {
+    if (tile->pixels) {
+        R(cast_prims_to_pixels)(tile, leaf, node, seen, mask);
+        return;
+    }
     const unsigned triangles = tile->parallel && !tile->lens ? 0 : triangles_in(tile->args->geometry, node, mask);
     int order[GLINT_NODE_WIDTH];
     const int count = sort_slots(mask & ~triangles, seen->near, order);
@@ -405,6 +413,7 @@ static void R(cast_few)(const glint_cast_args *args, const R(cast_view) * view)
     tile.args = args;
     tile.scaled = tile.deep = tile.parallel = false;
     tile.lens = NULL;
+    tile.pixels = NULL;
     tile.rr = view->rr;
     tile.uu = view->uu;
     tile.spread = view->spread;

@@ -185,7 +185,11 @@ INNER void R(decide_pairs_of)(R(tile_cast) * tile, R(cast_leaf) * leaf, bool len
     }
     for (; moved; moved &= moved - 1) {
         const int g = __builtin_ctzll(moved);
-        tile->far[g / tile->across][g % tile->across] = group_highest(tile->depth[g]);
+        const float far = group_highest(tile->depth[g]);
+        if (tile->pixels)
+            R(note_cells)(tile, g, far);
+        else
+            tile->far[g / tile->across][g % tile->across] = far;
     }
     leaf->count = 0;
 }

@@ -2,6 +2,7 @@
 // that filters are linear over the picture. Contract: stages.h, cast.
 
 #define GLINT_FIRST_CANDIDATES 24 ///< a node's worth and some planes
+#define GLINT_PIXEL_CELL 2 ///< pixels along a side of a cell, of pixels that are gathered
 
 /// The lens that a tile's rays start on.
 typedef struct R(tile_lens) {
@@ -18,6 +19,7 @@ typedef struct R(tile_cast) {
     bool parallel; ///< the rays do not start at one eye but beside each other, or on a lens; they are in arrays
     const R(tile_lens) * lens; ///< NULL: they do not start on one
     bool deep; ///< more than the first candidates are in sight: worth knowing what hides what
+    struct R(pixel_groups) * pixels; ///< pixels.h: the groups' pixels lie anywhere, and cells are smaller; NULL: they lie in rows
     float rr, uu; ///< squares of the lengths of right and up
     float longest; ///< no direction is longer
     float spread; ///< by how much the lengths within a group differ from that in its middle, at most
@@ -26,7 +28,7 @@ typedef struct R(tile_cast) {
     ///< |direction|^2 = ss + tt
     // deep: depth of the hits, in the index's units and rounded up; infinite where there is none so far
     _Alignas(64) float depth[GLINT_TILE_GROUPS][GLINT_GROUP];
-    _Alignas(64) float far[GLINT_TILE_HEIGHT / 4][SCREEN_ACROSS]; ///< of each group the farthest
+    _Alignas(64) float far[GLINT_TILE_HEIGHT / GLINT_PIXEL_CELL][SCREEN_ACROSS]; ///< of each group, or cell, the farthest
 } R(tile_cast);
 
 /// A primitive that some of the tile's rays may hit, and what it is to all of them.
@@ -282,23 +284,25 @@ static void R(make_candidate)(const R(tile_cast) * tile, uint32_t id, R(candidat
     }
 }
 
+/// Lanes that pass near the candidate, at places s and t; length2: |direction|^2.
+INNER unsigned R(near_places)(const R(candidate) * candidate, vf s, vf t, vf length2)
+{
+    vf v[3];
+    for (int k = 0; k < 3; k++)
+        v[k] = (f_set(candidate->base[k]) + t * f_set(candidate->along_t[k])) + s * f_set(candidate->along_s[k]);
+    if (candidate->prim->kind == GLINT_PRIM_TRIANGLE || candidate->prim->kind == GLINT_PRIM_PLANE)
+        return ~fm_bits(f_lt(f_min(f_min(v[0], v[1]), v[2]), f_set(-candidate->limit))) & ((1u << VF) - 1);
+    return ~fm_bits(f_lt(f_set(candidate->limit) * length2, DOT(v, v))) & ((1u << VF) - 1);
+}
+
 /// Lanes of group (x, y) that pass near the candidate.
 INNER unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y)
 {
-    const bool flat = candidate->prim->kind == GLINT_PRIM_TRIANGLE || candidate->prim->kind == GLINT_PRIM_PLANE;
     unsigned near = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const vf s = f_load(tile->s[x] + i), t = f_load(tile->t[y] + i);
-        vf v[3];
-        for (int k = 0; k < 3; k++)
-            v[k] = (f_set(candidate->base[k]) + t * f_set(candidate->along_t[k])) + s * f_set(candidate->along_s[k]);
-        if (flat) {
-            near |= (~fm_bits(f_lt(f_min(f_min(v[0], v[1]), v[2]), f_set(-candidate->limit))) & ((1u << VF) - 1)) << i;
-            continue;
-        }
-        const vf reach2 = f_set(candidate->limit) * (f_load(tile->ss[x] + i) + f_load(tile->tt[y] + i));
-        near |= (~fm_bits(f_lt(reach2, DOT(v, v))) & ((1u << VF) - 1)) << i;
-    }
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        near |= R(near_places)(candidate, f_load(tile->s[x] + i), f_load(tile->t[y] + i),
+                               f_load(tile->ss[x] + i) + f_load(tile->tt[y] + i))
+                << i;
     return near;
 }
 
@@ -390,10 +394,9 @@ INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * cand
     return any;
 }
 
-/// Notes how deep the hits of group (x, y) are.
-static inline void R(note_depth)(R(tile_cast) * tile, int x, int y)
+/// Notes how deep the hits of a group are. Returns the farthest.
+static inline float R(depth_of_group)(R(tile_cast) * tile, int g)
 {
-    const int g = y * tile->across + x;
     const real scale = (real)tile->args->geometry->scale;
     _Alignas(64) real t[GLINT_GROUP];
     for (int i = 0; i < GLINT_GROUP; i += VR)
@@ -401,8 +404,17 @@ static inline void R(note_depth)(R(tile_cast) * tile, int x, int y)
     R(narrow)(t, tile->depth[g]);
     for (int i = 0; i < GLINT_GROUP; i += VF)
         f_store(tile->depth[g] + i, f_load(tile->depth[g] + i) * f_set(1 + 0x1p-22f));
-    tile->far[y][x] = group_highest(tile->depth[g]);
+    return group_highest(tile->depth[g]);
 }
+
+/// The same of group (x, y).
+static inline void R(note_depth)(R(tile_cast) * tile, int x, int y)
+{
+    tile->far[y][x] = R(depth_of_group)(tile, y * tile->across + x);
+}
+
+/// The same where the groups' pixels lie anywhere, whose farthest is known.
+static void R(note_cells)(R(tile_cast) * tile, int g, float far);
 
 /// Tests candidates, group by group.
 static void R(cast_candidates)(R(tile_cast) * tile, const R(candidate) * candidates, int count)
@@ -424,6 +436,7 @@ static void R(aim_tile)(const glint_cast_args *args, R(tile_cast) * tile)
     tile->args = args;
     tile->scaled = tile->deep = tile->parallel = false;
     tile->lens = NULL;
+    tile->pixels = NULL;
     R(aim_screen)(args->camera, args->geometry, &tile->view);
     tile->rr = (float)DOT(args->camera->right, args->camera->right);
     tile->uu = (float)DOT(args->camera->up, args->camera->up);
