@@ -107,12 +107,12 @@ static void choose_visibility(glint_plan *plan)
     plan->needs_index = !plan->raster || needs_index || glint_plan_cuts(plan);
 }
 
-/// Whether light comes from nowhere but the stage shade, in one call a sample.
+/// Whether light comes from nowhere but the stages shade, in one call a sample, and vertex.
 static bool is_local(const glint_plan *plan)
 {
     static const glint_stage_id other[] = { GLINT_STAGE_BOUNCE,    GLINT_STAGE_INDIRECT, GLINT_STAGE_VISIBLE_LIGHT,
-                                            GLINT_STAGE_DEPTH_CUE, GLINT_STAGE_VERTEX,   GLINT_STAGE_FACET,
-                                            GLINT_STAGE_SHADER,    GLINT_STAGE_ENVIRONMENT };
+                                            GLINT_STAGE_DEPTH_CUE, GLINT_STAGE_FACET,    GLINT_STAGE_SHADER,
+                                            GLINT_STAGE_ENVIRONMENT };
     for (size_t i = 0; i < sizeof other / sizeof *other; i++)
         if (plan->runs[other[i]])
             return false;
@@ -122,7 +122,7 @@ static bool is_local(const glint_plan *plan)
 /// Whether the samples of a tile can be shaded in one: what was found for each fits the tile.
 static bool shades_together(const glint_plan *plan)
 {
-    return plan->local && plan->desc.samples > 1 && plan->desc.samples <= GLINT_LIGHT_CHUNK &&
+    return plan->local && !plan->runs[GLINT_STAGE_VERTEX] && plan->desc.samples > 1 && plan->desc.samples <= GLINT_LIGHT_CHUNK &&
            plan->desc.samples * plan->light_count <= GLINT_LIGHT_CHUNK;
 }
 

@@ -197,7 +197,7 @@ struct glint_plan {
     bool raster; ///< triangles are found by projecting them, not by casting
     bool needs_index; ///< some stage walks it
     bool accumulate; ///< sums over samples or over chunks of lights
-    bool local; ///< light comes from nowhere but the stage shade, in one call a sample
+    bool local; ///< light comes from nowhere but the stages shade, in one call a sample, and vertex
     bool together; ///< all samples of a tile are shaded in one, by what was found for each: they need no sums
 
     glint_stage_info stage_list[GLINT_STAGE_COUNT];

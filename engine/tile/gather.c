@@ -16,6 +16,8 @@ struct glint_gathered {
     _Alignas(64) double pixel[2][GLINT_TILE_SAMPLES]; ///< columns and rows of the picture
     _Alignas(64) float beauty[3][GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t numbers[GLINT_TILE_SAMPLES]; ///< a result while it is put in another order
+    _Alignas(64) double sites[2][3][GLINT_TILE_SAMPLES]; ///< their light, diffuse and specular, of each sample
+    bool has_sites;
     uint16_t active[GLINT_TILE_GROUPS]; ///< as they are in the tile, and the following
     uint32_t group_count, groups_across;
 };
@@ -37,7 +39,10 @@ bool glint_tile_may_gather(const glint_tile_frame *frame)
 }
 
 /// Whether a group is samples of one pixel.
-static bool groups_samples(const glint_tile_frame *frame) { return frame->geometry.prim_count > FEW_PRIMS; }
+static bool groups_samples(const glint_tile_frame *frame)
+{
+    return frame->geometry.prim_count > FEW_PRIMS || frame->plan->runs[GLINT_STAGE_VERTEX];
+}
 
 uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame, uint16_t place[GLINT_TILE_SAMPLES])
 {
@@ -146,6 +151,7 @@ void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const ui
     const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP, lanes = by_pixel ? count * samples : count;
     const uint32_t every = (lanes + GLINT_GROUP - 1) / GLINT_GROUP;
     memcpy(gathered->active, tile->active, sizeof gathered->active);
+    gathered->has_sites = false;
     gathered->group_count = tile->group_count;
     gathered->groups_across = tile->groups_across;
     glint_tile_aim(tile, frame, 0);
@@ -241,6 +247,15 @@ static void stack_samples(glint_tile *tile, const glint_tile_frame *frame, uint3
     activate_lanes(tile, tile->group_count / samples, count);
 }
 
+void glint_tile_vertex_gathered(glint_tile *tile, const glint_tile_frame *frame)
+{
+    struct glint_gathered *gathered = tile->gathered;
+    double(*const sum[2])[GLINT_TILE_SAMPLES] = { gathered->sites[0], gathered->sites[1] };
+    gathered->has_sites = true;
+    memset(gathered->sites, 0, sizeof gathered->sites);
+    glint_tile_vertex_to(tile, frame, sum);
+}
+
 void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
                                uint32_t count, uint32_t first, uint32_t samples)
 {
@@ -249,7 +264,8 @@ void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, 
     const bool last = first + samples == (uint32_t)frame->plan->desc.samples;
     if (groups_samples(frame) && samples > 1)
         stack_samples(tile, frame, light_count, count, samples);
-    glint_tile_shade_stacked(tile, frame, light_count, first, samples, beauty);
+    glint_tile_shade_stacked(tile, frame, light_count, first, samples,
+                             gathered->has_sites ? (const double(*)[3][GLINT_TILE_SAMPLES])gathered->sites : NULL, count, beauty);
     memcpy(tile->active, gathered->active, sizeof tile->active);
     tile->group_count = gathered->group_count;
     tile->groups_across = gathered->groups_across;

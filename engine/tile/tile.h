@@ -316,9 +316,10 @@ void glint_samples_destroy(struct glint_samples *samples);
 void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count);
 void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame);
 /// Shades `samples` samples that the tile has one after the other in its groups, the first of which is number `first` of their pixels:
-/// together, or into the tile's sums; after the last resolves them. beauty: of the pixels.
+/// together, or into the tile's sums; after the last resolves them. sites: diffuse and specular light that each has from elsewhere, one
+/// pixel's samples after another's, `count` pixels; NULL: none. beauty: of the pixels.
 void glint_tile_shade_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, uint32_t first, uint32_t samples,
-                              float *const beauty[3]);
+                              const double (*sites)[3][GLINT_TILE_SAMPLES], uint32_t count, float *const beauty[3]);
 /// Counts a stage's call and, when stages are timed, its time; `reused`: its result was at hand.
 void glint_tile_count_stage(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused);
 uint64_t glint_tile_now_ns(void);
@@ -413,6 +414,8 @@ static inline uint32_t glint_tile_most_gathered(const glint_plan *plan)
 /// rays.
 void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
                        uint32_t samples);
+/// The light of sites, where any is seen, whose points are found.
+void glint_tile_vertex_gathered(glint_tile *tile, const glint_tile_frame *frame);
 /// After the stages before it: shades them, and resolves the last into their places. The tile is as it was.
 void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
                                uint32_t count, uint32_t first, uint32_t samples);
@@ -547,6 +550,8 @@ bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame);
 bool glint_tile_has_shading_points(const glint_tile *tile);
 /// Adds the light of sites to the sums of these others, whose points are found; after `shade`.
 void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
+/// The same, added to others: diffuse and specular.
+void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES]);
 
 /// tile/raster.c: scan conversion.
 struct glint_raster_rest *glint_raster_rest_create(void);

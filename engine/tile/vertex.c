@@ -337,8 +337,8 @@ bool glint_tile_has_shading_points(const glint_tile *tile)
     return any;
 }
 
-/// What the sites of each sample's triangle give to it.
-static void spread(glint_tile *tile, const glint_tile_frame *frame)
+/// What the sites of each sample's triangle give to it, added to `sum`: diffuse and specular.
+static void spread(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES])
 {
     const glint_plan *plan = frame->plan;
     const glint_shading_points_cached *shading_points = frame->shading_points;
@@ -357,20 +357,26 @@ static void spread(glint_tile *tile, const glint_tile_frame *frame)
         args.origin[c] = tile->rays.origin[c];
         args.direction[c] = tile->rays.direction[c];
         for (int term = 0; term < (plan->highlights || plan->runs[GLINT_STAGE_SHADER] ? 2 : 1); term++)
-            args.sum[term][c] = tile->film.sum[GLINT_TERM_DIFFUSE + term][c];
+            args.sum[term][c] = sum[term][c];
     }
     frame->stages->geometry[plan->desc.precision].vertex(&args);
 }
 
-void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame)
+void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES])
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
         tile->vertex->wanted[g] = (uint16_t)(tile->at.hits[g] & ~(tile->own_light[g] | tile->hit.dark[g]));
     each_block(tile, frame, ask_for);
     each_block(tile, frame, wait_for);
-    spread(tile, frame);
+    spread(tile, frame, sum);
     if (frame->plan->derivatives)
         glint_derive_vertex(tile, frame, tile->vertex->wanted);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_VERTEX, false);
     tile->counts.runs[GLINT_STAGE_VERTEX]--; // blocks are counted, not calls
+}
+
+void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame)
+{
+    double(*const sum[2])[GLINT_TILE_SAMPLES] = { tile->film.sum[GLINT_TERM_DIFFUSE], tile->film.sum[GLINT_TERM_SPECULAR] };
+    glint_tile_vertex_to(tile, frame, sum);
 }

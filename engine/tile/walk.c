@@ -397,9 +397,15 @@ static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, con
     tile->own_lights = 0;
     glint_tile_gather(tile, frame, place, count, first, samples);
     const bool any = find_hits(tile, frame, &w);
-    const uint32_t lights = any ? frame->plan->light_count : 0;
+    const bool shading_points = any && frame->plan->runs[GLINT_STAGE_VERTEX];
+    const bool lit = shading_points ? glint_tile_choose_sampled(tile, frame) : any;
+    const uint32_t lights = lit ? frame->plan->light_count : 0;
     find_lights(tile, frame, &w, 0, lights);
-    need_shading(tile, frame, &w, any, any, 0);
+    need_shading(tile, frame, &w, any, lit, 0);
+    if (shading_points && glint_tile_has_shading_points(tile)) {
+        need_points(tile, frame, &w);
+        glint_tile_vertex_gathered(tile, frame);
+    }
     glint_tile_shade_gathered(tile, frame, lights, place, count, first, samples);
 }
 
