@@ -290,7 +290,9 @@ static void each_block(glint_tile *tile, const glint_tile_frame *frame,
                        void (*act)(glint_tile *, const glint_tile_frame *, uint32_t))
 {
     uint32_t last = GLINT_MISS, last_side = 0;
-    for (uint32_t g = 0; g < tile->group_count; g++)
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        if (glint_all_are(tile->at.prim + (size_t)g * GLINT_GROUP, last) && tile->hit.back[g] == (last_side ? 0xffff : 0))
+            continue;
         for (unsigned left = tile->vertex->wanted[g]; left; left &= left - 1) {
             const uint32_t lane = (uint32_t)__builtin_ctz(left), prim = tile->at.prim[g * GLINT_GROUP + lane];
             const uint32_t side = tile->hit.back[g] >> lane & 1;
@@ -298,10 +300,12 @@ static void each_block(glint_tile *tile, const glint_tile_frame *frame,
                 continue;
             const uint32_t *at = frame->geometry.shading_points[frame->geometry.prims[prim].shading_points].at;
             for (int j = 0; j < 3; j++)
-                act(tile, frame, side * frame->shading_points->blocks + at[j] / GLINT_SHADING_POINT_BLOCK);
+                if (j == 0 || at[j] / GLINT_SHADING_POINT_BLOCK != at[j - 1] / GLINT_SHADING_POINT_BLOCK)
+                    act(tile, frame, side * frame->shading_points->blocks + at[j] / GLINT_SHADING_POINT_BLOCK);
             last = prim;
             last_side = side;
         }
+    }
 }
 
 static bool has_shading_points(const glint_prim *prim)
@@ -315,8 +319,9 @@ bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame)
     unsigned any = 0;
     bool shading_points = false;
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        tile->own_light[g] = 0;
-        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+        const bool same = last != GLINT_MISS && glint_all_are(tile->at.prim + (size_t)g * GLINT_GROUP, last);
+        tile->own_light[g] = same && !shading_points ? tile->at.hits[g] : 0;
+        for (unsigned left = same ? 0 : tile->at.hits[g]; left; left &= left - 1) {
             const uint32_t prim = tile->at.prim[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)];
             if (prim != last)
                 shading_points = has_shading_points(&frame->geometry.prims[prim]);

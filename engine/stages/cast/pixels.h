@@ -23,6 +23,8 @@ INNER void R(decide_ball)(const glint_cast_args *args, const R(candidate) * ball
 
 // ---- Of few primitives ----
 
+#define PIXEL_CANDIDATES 16 ///< more are not tested against every ray
+
 /// Decides a candidate for all rays of pixels wherever they are.
 static void R(cast_to_pixels)(R(tile_cast) * tile, const R(candidate) * candidate)
 {
@@ -308,7 +310,7 @@ static void R(cast_pixels)(const glint_cast_args *args)
     around.group_count = around.groups_across * ((uint32_t)(camera->end[1] - camera->y0 + 3) / 4);
     tile_args.camera = &around;
     const R(cast_view) *view = R(view_of)(&tile_args, &own);
-    if (view->few)
+    if (view->few && view->count <= PIXEL_CANDIDATES)
         R(cast_few_to_pixels)(args, view, &around);
     else
         R(cast_many_to_pixels)(args, &around);

@@ -22,8 +22,8 @@ typedef struct glint_camera_args {
     bool orthographic;
     double eye[3], forward[3], right[3], up[3]; ///< right and up are scaled to half a pixel
     const glint_lens *lens; ///< NULL: all rays of a perspective camera start at the eye
-    const double *pixel[2]; ///< column and row of each lane's pixel, wherever it is; NULL: that of its place in the tile. Only of a
-        ///< perspective camera without a lens; then groups_across is 1, no pixel is before (x0, y0)
+    const double *pixel[2]; ///< column and row of each lane's pixel, wherever it is, or, where `offset` is 0, of a place in it; NULL:
+        ///< that of its place in the tile. Only of a perspective camera without a lens; then groups_across is 1, no pixel is before (x0, y0)
     double end[2]; ///< and none is from (end[0], end[1]) on
     void *across, *down; ///< out, real, perspective: 3 times 16 numbers a column and a row of groups; see below
     void *origin[3], *direction[3]; ///< out, real, orthographic or with a lens: one a ray
