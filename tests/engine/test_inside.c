@@ -28,7 +28,7 @@ static void add(glint_scene *scene, glint_shape *shape)
     glint_shape_release(shape);
 }
 
-/// A ball, box, cylinder or cone; some reach around the eye.
+/// A ball, box, cylinder or cone; some go by the eye.
 static void add_solid(glint_scene *scene, double reach)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER,
@@ -39,6 +39,8 @@ static void add_solid(glint_scene *scene, double reach)
     d.radius = reach * between(0.005, 0.08);
     place(reach, d.center);
     place(0.1 * reach, size);
+    if (one_in(3)) // from behind the eye far ahead
+        size[below(3)] *= 20;
     for (int c = 0; c < 3; c++) {
         d.base[c] = d.min[c] = d.center[c];
         d.top[c] = d.center[c] + size[c];
@@ -85,6 +87,10 @@ static void aim(glint_scene *scene, double reach)
     glint_light *light;
     place(0.3 * reach, c.eye);
     place(reach, c.at);
+    if (below(2)) { // along an axis, where boxes are as tight on the screen as in the world
+        memcpy(c.at, c.eye, sizeof c.at);
+        c.at[2 * below(2)] += reach;
+    }
     c.fov_y_rad = below(2) ? between(0.05, 1.2) : between(1.2, 2.9);
     if (below(3) == 0) {
         c.aperture = reach * between(0.001, 0.1);
