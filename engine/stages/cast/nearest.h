@@ -209,6 +209,8 @@ static inline void R(load_lone_rays)(const R(ray_group) * rays, R(lone_rays) * o
 typedef struct R(lone_ray) {
     float origin[3], direction[3], inverse[3], length, per_a;
     float enter[3], leave[3]; ///< the origin, moved by its rounding to where boxes begin earlier and end later
+    int first[3]; ///< where in a node, in floats, the sides of boxes are by which it may enter
+    int last[3]; ///< and by which it may leave
     uint32_t leaving;
     float far; ///< what is met is not beyond, in the index's units
     float way[2], next; ///< ways to the first two spheres that it may enter, and to the third
@@ -230,8 +232,11 @@ static inline void R(load_lone_ray)(const glint_cast_args *args, size_t at, cons
         ray->origin[k] = x;
         ray->direction[k] = rays->direction[k][lane];
         ray->inverse[k] = lone->inverse[k][lane];
-        ray->enter[k] = ray->inverse[k] < 0 ? x - moved : x + moved;
-        ray->leave[k] = ray->inverse[k] < 0 ? x + moved : x - moved;
+        const bool back = ray->inverse[k] < 0;
+        ray->enter[k] = back ? x - moved : x + moved;
+        ray->leave[k] = back ? x + moved : x - moved;
+        ray->first[k] = (back ? k + 3 : k) * GLINT_NODE_WIDTH;
+        ray->last[k] = (back ? k : k + 3) * GLINT_NODE_WIDTH;
     }
 }
 
@@ -244,8 +249,7 @@ static inline unsigned R(boxes_of_lone_ray)(const glint_node *node, const R(lone
     for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
         vf enter = f_set(0), leave = f_set(ray->far);
         for (int k = 0; k < 3; k++) {
-            const bool back = ray->inverse[k] < 0;
-            const float *first = back ? node->upper[k] : node->lower[k], *last = back ? node->lower[k] : node->upper[k];
+            const float *first = (const float *)node + ray->first[k], *last = (const float *)node + ray->last[k];
             const vf inverse = f_set(ray->inverse[k]);
             enter = f_max((f_load(first + i) - f_set(ray->enter[k])) * inverse, enter); // NaN, 0 times infinity, keeps
             leave = f_min((f_load(last + i) - f_set(ray->leave[k])) * inverse, leave); // what there was
@@ -333,6 +337,16 @@ static inline void R(note_ball)(R(lone_ray) * ray, uint32_t id, float way, float
         ray->next = smaller(ray->next, way);
     }
     ray->far = smaller(ray->far, sure);
+}
+
+/// Notes the spheres of a node in the slots of `mask`.
+static inline void R(note_balls)(const glint_node *node, unsigned mask, R(lone_ray) * ray)
+{
+    R(balls_on_ray) balls;
+    for (mask &= R(meet_balls)(node, ray, &balls); mask; mask &= mask - 1) {
+        const int slot = __builtin_ctz(mask);
+        R(note_ball)(ray, node->child[slot] & ~GLINT_NODE_PRIM, balls.way[slot], balls.sure[slot]);
+    }
 }
 
 /// What remains to be decided of a ray.

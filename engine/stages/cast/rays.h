@@ -1,5 +1,6 @@
 // cast_rays: the nearest hit of rays that start anywhere. In small scenes groups meet all primitives, else each ray walks the
-// index; those of a tile of an orthographic camera, or of one with a lens, walk it together (parallel.h). Contract: stages.h.
+// index, among spheres alone, among others in rounds (rounds.h); those of a tile of an orthographic camera, or of one with a lens, walk
+// it together (parallel.h). Contract: stages.h.
 
 /// Where rays that go in through a sphere or solid come out of it: surely somewhere, for it is convex; of a form without an
 /// inside, perhaps by the other side.
@@ -169,33 +170,11 @@ static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_gro
     }
 }
 
-/// The primitives of a node in the slots of `mask`: spheres are noted, others decided.
-static inline void R(meet_node)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays, int lane,
-                                const glint_node *node, unsigned mask, R(lone_ray) * ray)
-{
-    const glint_geometry_table *geometry = args->geometry;
-    const bool mixed = geometry->triangles || geometry->solids;
-    R(balls_on_ray) balls;
-    unsigned spheres = R(meet_balls)(node, ray, &balls) & mask;
-    for (unsigned left = mixed ? mask : spheres; left; left &= left - 1) {
-        const int slot = __builtin_ctz(left);
-        const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
-        if (!mixed || geometry->prims[id].kind == GLINT_PRIM_SPHERE) {
-            if (spheres >> slot & 1)
-                R(note_ball)(ray, id, balls.way[slot], balls.sure[slot]);
-        } else if (R(near_rays)(rays, &geometry->prims[id]) >> lane & 1 && R(decide_rays)(args, g, id, 1u << lane)) {
-            const size_t at = (size_t)g * GLINT_GROUP + (size_t)lane;
-            ray->far = smaller(ray->far, R(reach_in_index)(args, ((const real *)args->t)[at]));
-        }
-    }
-}
-
-/// Walks the index with one ray, by float as far as spheres are concerned.
+/// Walks the index, which has spheres alone, with one ray, by float.
 static void R(walk_lone_ray)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays,
                              const R(lone_rays) * lone, int lane, R(ray_pairs) * pairs)
 {
     const glint_geometry_table *geometry = args->geometry;
-    const bool mixed = geometry->triangles || geometry->solids;
     const size_t at = (size_t)g * GLINT_GROUP + (size_t)lane;
     R(lone_ray) ray;
     walk_entry stack[WALK_STACK];
@@ -209,16 +188,18 @@ static void R(walk_lone_ray)(const glint_cast_args *args, uint32_t g, const R(ra
         _Alignas(64) float depth[GLINT_NODE_WIDTH];
         int order[GLINT_NODE_WIDTH];
         const glint_node *node = &geometry->nodes[top.node];
-        const unsigned prims = prims_of_node(node), leaf = mixed ? 0 : prims | lanes_equal(node->child, 0); // 0: no child
+        const unsigned prims = prims_of_node(node), leaf = prims | lanes_equal(node->child, 0); // 0: no child
         const unsigned mask = leaf == 0xffff ? prims : R(boxes_of_lone_ray)(node, &ray, depth);
         if (mask & prims)
-            R(meet_node)(args, g, rays, lane, node, mask & prims, &ray);
+            R(note_balls)(node, mask & prims, &ray);
         for (int i = sort_slots(mask & ~prims, depth, order); i-- > 0;)
             stack[height++] = (walk_entry) { node->child[order[i]], depth[order[i]] };
     }
     R(pair_ray)(args, &ray, (uint32_t)at, pairs);
 }
 
+static void R(walk_in_rounds)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays,
+                              const R(lone_rays) * lone, unsigned lanes, R(ray_pairs) * pairs);
 static void R(cast_parallel)(const glint_cast_args *args);
 
 #define LENS_BEAM 8 ///< radius over focus, above which the rays of a tile have little in common
@@ -327,11 +308,17 @@ static void R(cast_many_rays)(const glint_cast_args *args)
     R(ray_group) rays;
     R(lone_rays) lone;
     R(ray_pairs) pairs = { .count = 0 };
+    const bool mixed = args->geometry->triangles || args->geometry->solids;
     for (uint32_t g = 0; g < args->group_count; g++) {
         if (!R(begin_rays)(args, g, local, &rays))
             continue;
         R(load_lone_rays)(&rays, &lone);
-        for (unsigned lanes = args->active[g]; lanes; lanes &= lanes - 1)
+        unsigned lanes = args->active[g];
+        if (GLINT_REAL == 64 && mixed) {
+            R(walk_in_rounds)(args, g, &rays, &lone, lanes & lone.usual, &pairs);
+            lanes &= ~lone.usual;
+        }
+        for (; lanes; lanes &= lanes - 1)
             if (GLINT_REAL == 64 && lone.usual & lanes & -lanes)
                 R(walk_lone_ray)(args, g, &rays, &lone, __builtin_ctz(lanes), &pairs);
             else

@@ -160,12 +160,18 @@ static inline bool R(is_still_on)(const R(flat) * from, const real d[3], real sl
     return way * R(size_of)(DOT(from->m, d)) <= R(spread_of)(from) * slack;
 }
 
-/// Lanes that may be at the triangle, give or take what their beginning is off by.
-static inline unsigned R(may_be_near)(const glint_geometry_table *table, const R(seen_edges) * edges, vr t)
+/// Lanes whose lines are at the triangle, give or take what their beginning is off by.
+static inline unsigned R(at_triangle)(const glint_geometry_table *table, const R(seen_edges) * edges)
 {
     // above every `loose`: the sizes it is made of are at most 12 extents
     const vr move = R(abs)(edges->dz) * r_set((real)(13 * GLINT_POINT_SLACK * table->extent * table->scale));
-    return rm_bits(rm_and(r_lt(r_set(0), t), R(within)(edges, move * (edges->reach + r_set(2) * move))));
+    return rm_bits(R(within)(edges, move * (edges->reach + r_set(2) * move)));
+}
+
+/// Those of them that may come to it.
+static inline unsigned R(may_be_near)(const glint_geometry_table *table, const R(seen_edges) * edges, vr t)
+{
+    return R(at_triangle)(table, edges) & rm_bits(r_lt(r_set(0), t));
 }
 
 /// Decides anew for the lanes that are in the plane of the triangle which they leave and of this one at once, and for those that

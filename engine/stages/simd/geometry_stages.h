@@ -18,6 +18,7 @@
 #include "engine/stages/cast/leaf.h"
 #include "engine/stages/cast/nearest.h"
 #include "engine/stages/cast/rays.h"
+#include "engine/stages/cast/rounds.h"
 #include "engine/stages/cast/cast.h"
 #include "engine/stages/cast/pixels.h"
 #include "engine/stages/cast/parallel.h"

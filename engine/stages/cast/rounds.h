@@ -1,0 +1,334 @@
+// rounds: rays that go every way among triangles and solids. The rays of a group walk the index in rounds, a node each; the triangles
+// that they come upon are decided in double, a vector of pairs of ray and triangle at a time, each lane with its own of both. What
+// such a lane is not plain about, the rules of shared edges and faces, is left to decide_rays, as are solids, for all rays at once
+// that come upon one in the same round. Contract: stages.h, cast.
+
+#define GLINT_ROUND_PAIRS 96 ///< of a round, a multiple of any VR
+#define GLINT_ROUND_SOLIDS 64 ///< of a round
+
+/// The rays of a group as triangles see them: components in the cyclic order that has the direction's largest last, see
+/// edges_along. With that every lane of a vector has one order, and the bits are those of its own.
+typedef struct R(turned_rays) {
+    _Alignas(64) real origin[3][GLINT_GROUP], direction[3][GLINT_GROUP];
+    uint8_t axis[GLINT_GROUP]; ///< of the world, that the last is along
+} R(turned_rays);
+
+/// The nodes that a ray is still to look into, and where it enters them.
+typedef struct R(node_stack) {
+    int height;
+    uint32_t node[WALK_STACK + GLINT_NODE_WIDTH]; ///< with room for what is behind the packed
+    float depth[WALK_STACK + GLINT_NODE_WIDTH];
+} R(node_stack);
+
+typedef struct R(rounds) {
+    R(turned_rays) turned;
+    _Alignas(64) uint32_t lane[GLINT_ROUND_PAIRS], prim[GLINT_ROUND_PAIRS]; ///< the pairs
+    _Alignas(64) real corner[3][3][GLINT_ROUND_PAIRS]; ///< of each one's triangle, turned as its ray is
+    int count;
+    uint32_t solid[GLINT_ROUND_SOLIDS]; ///< solids, or what else is neither triangle nor sphere
+    uint32_t rays[GLINT_ROUND_SOLIDS]; ///< which came upon each, a bit a lane
+    int solids;
+    R(lone_ray) ray[GLINT_GROUP];
+    R(node_stack) stack[GLINT_GROUP];
+} R(rounds);
+
+/// The lanes of `lanes`; others keep what they had.
+static inline void R(turn_rays)(const glint_cast_args *args, size_t at, unsigned lanes, R(turned_rays) * out)
+{
+    for (; lanes; lanes &= lanes - 1) {
+        const int lane = __builtin_ctz(lanes);
+        real o[3], d[3];
+        for (int k = 0; k < 3; k++) {
+            o[k] = ((const real *)args->origin[k])[at + (size_t)lane];
+            d[k] = ((const real *)args->direction[k])[at + (size_t)lane];
+        }
+        const real ax = R(size_of)(d[0]), ay = R(size_of)(d[1]), az = R(size_of)(d[2]);
+        const int z = (ax < ay ? ay : ax) < az ? 2 : ax < ay ? 1 : 0;
+        out->axis[lane] = (uint8_t)z;
+        for (int k = 0; k < 3; k++) {
+            out->origin[k][lane] = o[(z + 1 + k) % 3];
+            out->direction[k][lane] = d[(z + 1 + k) % 3];
+        }
+    }
+}
+
+/// Corners of all pairs. Behind the last, to the end of its vector, are pairs of which nothing is read.
+static inline void R(load_round)(const glint_geometry_table *geometry, R(rounds) * rounds)
+{
+    for (int n = 0; n < rounds->count; n++) {
+        const double(*corner)[3] = geometry->corners[rounds->prim[n]];
+        const int z = rounds->turned.axis[rounds->lane[n]], x = z < 2 ? z + 1 : 0, y = 3 - z - x;
+        for (int j = 0; j < 3; j++) {
+            rounds->corner[j][0][n] = (real)corner[j][x];
+            rounds->corner[j][1][n] = (real)corner[j][y];
+            rounds->corner[j][2][n] = (real)corner[j][z];
+        }
+    }
+    for (int n = rounds->count; n % VR; n++) {
+        rounds->lane[n] = rounds->lane[0];
+        for (int j = 0; j < 9; j++)
+            rounds->corner[j / 3][j % 3][n] = 0;
+    }
+}
+
+/// Lanes whose rays begin off the triangle's plane for certain. As in meet_shared_edge, whose bound is twice what rounding makes of
+/// a height: the order of its terms, which is another here, is within that.
+static inline unsigned R(begins_off_plane)(const glint_geometry_table *table, vr corner[3][3], const vr o[3])
+{
+    const vr scale = r_set(table->scale), far = r_set((real)(2 * GLINT_POINT_SLACK * table->extent));
+    vr f[3], g[3], h = r_set(0), spread = h, size = h;
+    for (int k = 0; k < 3; k++) {
+        f[k] = (corner[1][k] - corner[0][k]) * scale;
+        g[k] = (corner[2][k] - corner[0][k]) * scale;
+    }
+    for (int k = 0; k < 3; k++) {
+        const int x = (k + 1) % 3, y = (k + 2) % 3;
+        const vr a = f[x] * g[y], b = f[y] * g[x], m = a - b;
+        h = h + m * (o[k] - corner[0][k]);
+        spread = spread + R(abs)(m);
+        size = size + (R(abs)(a) + R(abs)(b));
+    }
+    return rm_bits(r_lt(far * (r_set(5) * spread + r_set(2) * size), R(abs)(h)));
+}
+
+/// What is known of VR pairs of ray and triangle, a bit each.
+typedef struct R(round_lanes) {
+    _Alignas(64) real t[VR]; ///< ways to the planes of the corners
+    unsigned at; ///< the line is at the triangle, give or take what the ray's beginning is off by: others do not meet
+    unsigned plain; ///< of them, those that pass it for certain, and begin off its plane for certain
+    unsigned off; ///< all that begin so
+} R(round_lanes);
+
+/// The pairs from number i on.
+INNER void R(meet_round)(const glint_geometry_table *table, const R(rounds) * rounds, int i, R(round_lanes) * out)
+{
+    const R(turned_rays) *turned = &rounds->turned;
+    const vr scale = r_set(table->scale), zero = r_set(0);
+    vr corner[3][3], p[3][3], o[3], d[3];
+    for (int k = 0; k < 3; k++) {
+        o[k] = r_pick(turned->origin[k], rounds->lane + i);
+        d[k] = r_pick(turned->direction[k], rounds->lane + i);
+        for (int j = 0; j < 3; j++) {
+            corner[j][k] = r_load(rounds->corner[j][k] + i);
+            p[j][k] = (corner[j][k] - o[k]) * scale;
+        }
+    }
+    const R(seen_edges) edges = R(edges_along)(p, d, 2, true);
+    out->at = R(at_triangle)(table, &edges);
+    if (!out->at)
+        return;
+    const vr *e = edges.e, way = edges.depth / ((R(det)(&edges) * edges.dz) * scale);
+    const rm sure = rm_or(r_lt(zero, r_min(r_min(e[0], e[1]), e[2])), r_lt(r_max(r_max(e[0], e[1]), e[2]), zero));
+    out->off = R(begins_off_plane)(table, corner, o);
+    out->plain = out->at & out->off & rm_bits(sure);
+    if (!table->faces) // what is behind is missed
+        out->at &= rm_bits(r_lt(zero, way)) | ~out->off;
+    r_store(out->t, way);
+}
+
+/// Where a ray comes to the plane that a triangle shares with others.
+static inline real R(way_to_face)(const glint_cast_args *args, const glint_face *face, size_t ray)
+{
+    vr o[3], d[3];
+    for (int k = 0; k < 3; k++) {
+        o[k] = r_set(((const real *)args->origin[k])[ray]);
+        d[k] = r_set(((const real *)args->direction[k])[ray]);
+    }
+    return R(first_lane)(R(face_way)(face, o, d));
+}
+
+/// Decides the pairs, and brings nearer what the rays may meet. A ray that begins off the plane for certain neither leaves the
+/// triangle by a shared edge nor begins on it, if the way there is not short.
+static __attribute__((noinline)) void R(decide_triangles)(const glint_cast_args *args, uint32_t g, R(rounds) * rounds)
+{
+    const glint_geometry_table *table = args->geometry;
+    const real near = R(near_shared_edge)(table);
+    R(round_lanes) lanes;
+    R(load_round)(table, rounds);
+    if (args->tests)
+        *args->tests += (unsigned)rounds->count;
+    for (int i = 0; i < rounds->count; i += VR) {
+        const unsigned there = rounds->count - i < VR ? (1u << (rounds->count - i)) - 1 : (1u << VR) - 1;
+        R(meet_round)(table, rounds, i, &lanes);
+        for (unsigned left = lanes.at & there; left; left &= left - 1) {
+            const int j = __builtin_ctz(left);
+            const uint32_t lane = rounds->lane[i + j], id = rounds->prim[i + j], ray = g * GLINT_GROUP + lane;
+            const glint_face *face = table->faces ? R(face_of)(table, &table->prims[id]) : NULL;
+            const real t = face ? R(way_to_face)(args, face, ray) : lanes.t[j];
+            if (lanes.off >> j & 1 && !(0 < t))
+                continue;
+            if (lanes.plain >> j & 1 && near < t)
+                R(keep_ray)(args, ray, id, t);
+            else
+                R(decide_rays)(args, g, id, 1u << lane);
+            float *far = &rounds->ray[lane].far;
+            *far = smaller(*far, R(reach_in_index)(args, ((const real *)args->t)[ray]));
+        }
+    }
+    rounds->count = 0;
+}
+
+/// Decides the solids.
+static __attribute__((noinline)) void R(decide_solids)(const glint_cast_args *args, uint32_t g,
+                                                       const R(ray_group) * rays, R(rounds) * rounds)
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    unsigned nearer = 0;
+    for (int n = 0; n < rounds->solids; n++) {
+        const uint32_t id = rounds->solid[n];
+        const unsigned near = R(near_rays)(rays, &args->geometry->prims[id]) & rounds->rays[n];
+        if (near && R(decide_rays)(args, g, id, near))
+            nearer |= near;
+    }
+    for (; nearer; nearer &= nearer - 1) {
+        const int lane = __builtin_ctz(nearer);
+        float *far = &rounds->ray[lane].far;
+        *far = smaller(*far, R(reach_in_index)(args, ((const real *)args->t)[at + (size_t)lane]));
+    }
+    rounds->solids = 0;
+}
+
+/// Notes that a ray came upon a solid. There is room.
+static inline void R(add_solid)(R(rounds) * rounds, uint32_t id, int lane)
+{
+    int n = 0;
+    while (n < rounds->solids && rounds->solid[n] != id)
+        n++;
+    if (n == rounds->solids) {
+        rounds->solids++;
+        rounds->solid[n] = id;
+        rounds->rays[n] = 0;
+    }
+    rounds->rays[n] |= 1u << lane;
+}
+
+/// The primitives of a node in the slots of `mask`, which are no triangles: spheres are noted, see pair_ray.
+static inline void R(meet_others)(const glint_geometry_table *geometry, const glint_node *node, unsigned mask, int lane,
+                                  R(rounds) * rounds)
+{
+    unsigned spheres = 0;
+    for (unsigned left = mask; left; left &= left - 1) {
+        const uint32_t id = node->child[__builtin_ctz(left)] & ~GLINT_NODE_PRIM;
+        if (geometry->prims[id].kind == GLINT_PRIM_SPHERE)
+            spheres |= left & -left;
+        else
+            R(add_solid)(rounds, id, lane);
+    }
+    if (spheres)
+        R(note_balls)(node, spheres, &rounds->ray[lane]);
+}
+
+/// Pairs a ray with the triangles of a node in the slots of `mask`. Returns the slots of other primitives.
+static inline unsigned R(add_to_round)(const glint_geometry_table *geometry, const glint_node *node, unsigned mask,
+                                       int lane, R(rounds) * rounds)
+{
+    const uint32_t leaving = rounds->ray[lane].leaving; // is not met: see cast_on_own
+    unsigned others = 0;
+    int n = rounds->count;
+#ifdef GLINT_PACKS
+    const vi id = i_and(i_load(node->child), i_set(~GLINT_NODE_PRIM));
+    const unsigned triangles = mask & fm_bits(i_lt(id, i_set(geometry->triangles)));
+    const unsigned met = triangles & ~fm_bits(i_eq(id, i_set(leaving)));
+    i_pack(rounds->prim + n, id, met);
+    i_store_any(rounds->lane + n, i_set((uint32_t)lane));
+    n += __builtin_popcount(met);
+    others = mask & ~triangles;
+#else
+    for (; mask; mask &= mask - 1) {
+        const uint32_t id = node->child[__builtin_ctz(mask)] & ~GLINT_NODE_PRIM;
+        if (id >= geometry->triangles) {
+            others |= mask & -mask;
+        } else if (id != leaving) {
+            rounds->lane[n] = (uint32_t)lane;
+            rounds->prim[n++] = id;
+        }
+    }
+#endif
+    rounds->count = n;
+    return others;
+}
+
+/// Puts the nodes in the slots of `mask` on a ray's stack, the nearest on top.
+static inline void R(push_nodes)(const glint_node *node, const float depth[GLINT_NODE_WIDTH], unsigned mask,
+                                 R(node_stack) * stack)
+{
+    int n = stack->height;
+#ifdef GLINT_PACKS
+    // without a branch, also where there is none: what is above the top is not read
+    const vf own = f_select(fm_from_bits(mask), f_load(depth), f_set(HUGE_VALF));
+    const float nearest = f_min_all(own);
+    const unsigned first = mask & fm_bits(f_eq(own, f_set(nearest))), top = first & -first;
+    const int end = n + __builtin_popcount(mask), at = end - (mask != 0);
+    f_pack(stack->depth + n, own, mask & ~top);
+    i_pack(stack->node + n, i_load(node->child), mask & ~top);
+    stack->depth[at] = nearest;
+    stack->node[at] = node->child[__builtin_ctz(first | 0x8000)];
+    n = end;
+#else
+    int order[GLINT_NODE_WIDTH];
+    for (int i = sort_slots(mask, depth, order); i-- > 0; n++) {
+        stack->depth[n] = depth[order[i]];
+        stack->node[n] = node->child[order[i]];
+    }
+#endif
+    stack->height = n;
+}
+
+/// One ray goes on to the next node. Returns whether there was any.
+static inline bool R(step)(const glint_cast_args *args, int lane, R(rounds) * rounds)
+{
+    R(lone_ray) *ray = &rounds->ray[lane];
+    R(node_stack) *stack = &rounds->stack[lane];
+    _Alignas(64) float depth[GLINT_NODE_WIDTH];
+    do {
+        if (!stack->height)
+            return false;
+        stack->height--;
+    } while (ray->far < stack->depth[stack->height]);
+    const glint_node *node = &args->geometry->nodes[stack->node[stack->height]];
+    const unsigned mask = R(boxes_of_lone_ray)(node, ray, depth), prims = mask & prims_of_node(node);
+    if (prims) {
+        const unsigned others = R(add_to_round)(args->geometry, node, prims, lane, rounds);
+        if (others)
+            R(meet_others)(args->geometry, node, others, lane, rounds);
+    }
+    if (mask & ~prims)
+        R(push_nodes)(node, depth, mask & ~prims, stack);
+    return true;
+}
+
+/// Walks the index with the rays of a group in `lanes`.
+static __attribute__((noinline)) void R(walk_in_rounds)(const glint_cast_args *args, uint32_t g,
+                                                        const R(ray_group) * rays, const R(lone_rays) * lone,
+                                                        unsigned lanes, R(ray_pairs) * pairs)
+{
+    R(rounds) room, *const rounds = &room;
+    const size_t at = (size_t)g * GLINT_GROUP;
+    R(turn_rays)(args, at, lanes, &rounds->turned);
+    rounds->count = rounds->solids = 0;
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const int lane = __builtin_ctz(left);
+        R(load_lone_ray)(args, at + (size_t)lane, rays, lone, &rounds->ray[lane]);
+        rounds->stack[lane].height = 1;
+        rounds->stack[lane].node[0] = 0;
+        rounds->stack[lane].depth[0] = 0;
+    }
+    for (unsigned going = lanes; going;) {
+        for (unsigned left = going; left; left &= left - 1) {
+            if (!R(step)(args, __builtin_ctz(left), rounds))
+                going &= ~(left & -left);
+            if (rounds->count > GLINT_ROUND_PAIRS - GLINT_NODE_WIDTH)
+                R(decide_triangles)(args, g, rounds);
+            if (rounds->solids > GLINT_ROUND_SOLIDS - GLINT_NODE_WIDTH)
+                R(decide_solids)(args, g, rays, rounds);
+        }
+        if (rounds->count >= VR || !going)
+            R(decide_triangles)(args, g, rounds);
+        if (rounds->solids)
+            R(decide_solids)(args, g, rays, rounds);
+    }
+    for (; lanes; lanes &= lanes - 1) {
+        const int lane = __builtin_ctz(lanes);
+        R(pair_ray)(args, &rounds->ray[lane], (uint32_t)at + (uint32_t)lane, pairs);
+    }
+}
