@@ -44,7 +44,7 @@ static inline R(seen_edges) R(select_edges)(rm mask, const R(seen_edges) * a, co
 }
 
 /// p: the corners from where the rays start. Rays of a group nearly always have one axis.
-static inline R(seen_edges) R(see_edges)(vr p[3][3], const vr d[3], bool want_reach)
+INNER R(seen_edges) R(see_edges)(vr p[3][3], const vr d[3], bool want_reach)
 {
     const vr ax = R(abs)(d[0]), ay = R(abs)(d[1]), az = R(abs)(d[2]);
     const rm y = r_lt(ax, ay), z = r_lt(r_select(y, ay, ax), az);
