@@ -10,7 +10,7 @@
 
 // Of a worker: eight times what tiles were seen to take. Where systems choose, it is from 128 KiB (musl), which is all, to
 // 8 MiB, of which some hundred workers fill the addresses that a process may have.
-#define STACK_BYTES ((size_t)2 << 20)
+#define STACK_BYTES ((size_t)1 << 20)
 
 struct worker {
     glint_pool *pool;

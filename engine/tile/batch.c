@@ -30,6 +30,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     tile->batch = batch;
     tile->vertex = to->vertex;
     tile->facets = to->facets;
+    tile->shadow_room = to->shadow_room;
     tile->visible_light = to->visible_light;
     tile->environment = to->environment;
     tile->sample = to->sample;

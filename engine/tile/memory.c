@@ -14,6 +14,14 @@ static bool fit_pattern(glint_tile *tile, const glint_plan *plan)
     return tile->pattern || !plan->patterns;
 }
 
+static bool has_soft_shadows(const glint_plan *plan)
+{
+    for (uint32_t i = 0; i < plan->light_count; i++)
+        if (plan->lights[i].light_samples && plan->lights[i].shadows)
+            return true;
+    return false;
+}
+
 bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
 {
     bool good = true;
@@ -38,6 +46,8 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->samples = glint_samples_create()) && good;
     if (plan->base && plan->local && !tile->gathered)
         good = (tile->gathered = glint_gathered_create()) && good;
+    if (has_soft_shadows(plan) && !tile->shadow_room)
+        good = (tile->shadow_room = glint_alloc_large(1, GLINT_OCCLUDE_ROOM)) && good;
     if (plan->facets && !tile->facets)
         good = (tile->facets = glint_alloc(1, sizeof *tile->facets)) && good;
     if (plan->derivatives && !tile->derivative)
@@ -76,5 +86,6 @@ void glint_tile_destroy(glint_tile *tile)
     glint_environment_destroy(tile->environment);
     glint_derivative_destroy(tile->derivative);
     free(tile->facets);
+    free(tile->shadow_room);
     free(tile);
 }

@@ -185,6 +185,7 @@ typedef struct glint_tile {
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
     glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
+    void *shadow_room; ///< of occlude; owned; NULL until a frame has shadows of area lights
     struct glint_pattern *pattern; ///< memory of tile/pattern/pattern.c; NULL in frames without programs
     struct glint_derivative_work *derivative; ///< of tile/derivative/; NULL until a frame has derivatives
     double *unbumped[3]; ///< real: the normals that bumps have turned, as they were; NULL: there are no bumps

@@ -328,12 +328,14 @@ static glint_light_grid *make_grid(const shadow_case *c)
 
 static void occlude_all(shadow_case *c)
 {
+    static _Alignas(64) unsigned char room[GLINT_OCCLUDE_ROOM];
     glint_occlude_args args = c->args;
     glint_point_box box;
     make_box(c, &box);
     args.box = one_in(2) ? &box : NULL;
     glint_light_grid *grid = make_grid(c);
     args.grid = grid;
+    args.room = c->kind == SHADOWS_IN_LAYERS || one_in(2) ? room : NULL;
     FOR_EACH_TESTED
     {
         uint64_t rays = 5;

@@ -142,6 +142,8 @@ typedef struct glint_light_grid {
     uint32_t others[GLINT_GRID_OTHERS], other_count; ///< the bounded primitives that are in no cell
 } glint_light_grid;
 
+#define GLINT_OCCLUDE_ROOM ((size_t)512 << 10) ///< bytes
+
 typedef struct glint_occlude_args {
     uint32_t group_count;
     uint32_t sample_count; ///< as in glint_light_args
@@ -160,6 +162,7 @@ typedef struct glint_occlude_args {
     const glint_camera_args *camera; ///< the rays that found the points, of a perspective camera; NULL: in direction
     const void *direction[3];
     const void *slack; ///< of surface; read where the table has triangles
+    void *room; ///< of area lights: GLINT_OCCLUDE_ROOM bytes, which mean nothing before and after; NULL: none, and clutter takes longer
     const glint_point_box *box; ///< of surface, around all lit points and maybe others; NULL: not known
     uint16_t *open[GLINT_LIGHT_CHUNK]; ///< out: the lit lanes that nothing blocks
     uint64_t *rays; ///< added to: lit lanes; of area lights, those that no test of the whole light has settled

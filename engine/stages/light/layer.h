@@ -27,8 +27,15 @@ typedef struct layer_frame {
     _Alignas(64) float light[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];
 } layer_frame;
 
+/// Which lanes of the groups of all samples cross the rectangle, and where.
+typedef struct layer_places {
+    uint16_t within[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
+    _Alignas(64) uint32_t cell[LAYER_RAYS];
+} layer_places;
+
 /// The segments that cross a rectangle of a layer's plane, a cell's in a row, the cells row by row.
 typedef struct layer_rays {
+    layer_places places; ///< before they are sorted
     float first[2], last[2], cells[2]; ///< the rectangle; cells in a unit of it
     _Alignas(64) float base[2][LAYER_RAYS + GLINT_GROUP], slope[2][LAYER_RAYS + GLINT_GROUP];
     _Alignas(64) float from[LAYER_RAYS + GLINT_GROUP]; ///< h of the point; of blocked ones +inf
@@ -96,16 +103,11 @@ static inline vi cell_in_layer(const layer_rays *rays, int j, vf x)
     return i_from_f(f_min(f_max(cell, f_set(0)), f_set(LAYER_ACROSS - 1)));
 }
 
-/// Which lanes of the groups of all samples cross the rectangle, and where.
-typedef struct layer_places {
-    uint16_t within[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
-    _Alignas(64) uint32_t cell[LAYER_RAYS];
-} layer_places;
-
 /// Finds the cells of the open segments at h. Returns how many cross the rectangle; next[c]: of these, in cell c.
-static uint32_t find_cells(const glint_occlude_args *args, const layer_frame *frame, float h, const layer_rays *rays,
-                           uint16_t next[LAYER_ACROSS * LAYER_ACROSS], layer_places *places)
+static uint32_t find_cells(const glint_occlude_args *args, const layer_frame *frame, float h, layer_rays *rays,
+                           uint16_t next[LAYER_ACROSS * LAYER_ACROSS])
 {
+    layer_places *places = &rays->places;
     uint32_t count = 0;
     for (uint32_t s = 0; s < args->sample_count; s++)
         for (uint32_t g = 0; g < args->group_count; g++) {
@@ -137,9 +139,9 @@ static uint32_t find_cells(const glint_occlude_args *args, const layer_frame *fr
 static uint32_t sort_layer(const glint_occlude_args *args, const layer_frame *frame, float h, layer_rays *rays)
 {
     uint16_t next[LAYER_ACROSS * LAYER_ACROSS] = { 0 };
-    layer_places places;
+    const layer_places *places = &rays->places;
     uint32_t total = 0;
-    const uint32_t count = find_cells(args, frame, h, rays, next, &places);
+    const uint32_t count = find_cells(args, frame, h, rays, next);
     for (int c = 0; c < LAYER_ACROSS * LAYER_ACROSS; c++) {
         rays->begin[c] = (uint16_t)total;
         total += next[c];
@@ -150,16 +152,16 @@ static uint32_t sort_layer(const glint_occlude_args *args, const layer_frame *fr
         for (uint32_t g = 0; g < args->group_count; g++) {
             const size_t at = (size_t)g * GLINT_GROUP, from = s * GLINT_TILE_SAMPLES + at;
             _Alignas(64) float base[2][GLINT_GROUP], slope[2][GLINT_GROUP];
-            for (int i = 0; i < GLINT_GROUP && places.within[s][g]; i += VF) {
+            for (int i = 0; i < GLINT_GROUP && places->within[s][g]; i += VF) {
                 const layer_lanes lanes = lanes_of_layer(frame, s, at, i);
                 for (int j = 0; j < 2; j++) {
                     f_store(base[j] + i, lanes.base[j]);
                     f_store(slope[j] + i, lanes.slope[j]);
                 }
             }
-            for (unsigned left = places.within[s][g]; left; left &= left - 1) {
+            for (unsigned left = places->within[s][g]; left; left &= left - 1) {
                 const int lane = __builtin_ctz(left);
-                const uint32_t to = next[places.cell[from + (size_t)lane]]++;
+                const uint32_t to = next[places->cell[from + (size_t)lane]]++;
                 for (int j = 0; j < 2; j++) {
                     rays->base[j][to] = base[j][lane];
                     rays->slope[j][to] = slope[j][lane];

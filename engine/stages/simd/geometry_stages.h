@@ -44,6 +44,8 @@
 #include "engine/stages/occlude/through_beam.h"
 #include "engine/stages/light/caps.h"
 #include "engine/stages/light/soft.h"
+#include "engine/stages/light/layer_frame.h"
+#include "engine/stages/light/layer_blocker.h"
 #include "engine/stages/light/layers.h"
 #include "engine/stages/light/soft_shadow.h"
 #include "engine/stages/light/soft_light.h"

@@ -1,0 +1,117 @@
+// layer_frame: what the layers of a tile share, and its frame (layer.h) made of points and samples. Contract: stages.h, occlude.
+#if GLINT_REAL == 64
+
+#define LAYER_PRIMS 1024 ///< that are tested at once
+#define LAYERS_MOST 16
+
+/// A primitive in the frame.
+typedef struct layer_prim {
+    uint32_t id;
+    float low[3], high[3]; ///< of its box
+    float corner[3][3]; ///< of a triangle
+} layer_prim;
+
+typedef struct R(layers) {
+    const R(shadow_tile) * tile;
+    layer_frame frame;
+    layer_rays rays;
+    int count;
+    layer_prim prim[LAYER_PRIMS];
+    uint16_t order[LAYER_PRIMS]; ///< by layer
+    float least[LAYER_PRIMS][2], most[LAYER_PRIMS][2]; ///< between which segments that meet it cross the plane of its layer
+    uint8_t first[LAYER_PRIMS][2], last[LAYER_PRIMS][2]; ///< cells of these
+    uint32_t open; ///< segments
+    R(beam_batch) batch;
+    _Alignas(64) real light[3][GLINT_GROUP]; ///< of the batch: the samples,
+    _Alignas(64) real direction[3][GLINT_GROUP], slack[GLINT_GROUP]; ///< and what found the points
+} R(layers);
+
+/// Grows two bounds by the places of lanes.
+static inline void bound_places(const float (*place)[GLINT_GROUP], unsigned lanes, vf least[3], vf most[3])
+{
+    for (int j = 0; j < 3; j++)
+        widen(place[j], lanes, &least[j], &most[j]);
+}
+
+/// Places the points of lit groups, and bounds them.
+static void R(place_points)(const R(shadow_tile) * tile, const uint16_t *lit, layer_frame *frame, vf least[3], vf most[3])
+{
+    for (uint32_t g = 0; g < tile->args->group_count; g++) {
+        const size_t at = (size_t)g * GLINT_GROUP;
+        _Alignas(64) float local[3][GLINT_GROUP], placed[3][GLINT_GROUP];
+        if (!lit[g])
+            continue;
+        R(points_from)(tile->args->point, at, tile->args->geometry, frame->exact, local);
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            const vf x[3] = { f_load(local[0] + i), f_load(local[1] + i), f_load(local[2] + i) };
+            for (int j = 0; j < 3; j++)
+                f_store(placed[j] + i, along_axis(frame->axis[j], x));
+        }
+        for (int j = 0; j < 3; j++)
+            memcpy(frame->point[j] + at, placed[j], sizeof placed[j]);
+        bound_places((const float(*)[GLINT_GROUP])placed, lit[g], least, most);
+    }
+}
+
+/// Places the samples, and bounds them.
+static void R(place_samples)(const R(shadow_tile) * tile, layer_frame *frame, vf least[3], vf most[3])
+{
+    const glint_geometry_table *geometry = tile->args->geometry;
+    for (uint32_t s = 0; s < tile->args->sample_count; s++) {
+        _Alignas(64) float local[3][GLINT_GROUP];
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < GLINT_GROUP; i++) {
+                const double x = tile->args->light_sample[s]->position[k][i];
+                local[k][i] = (float)((x - geometry->reference[k]) * geometry->scale - frame->exact[k]);
+            }
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            const vf x[3] = { f_load(local[0] + i), f_load(local[1] + i), f_load(local[2] + i) };
+            for (int j = 0; j < 3; j++)
+                f_store(frame->light[s][j] + i, along_axis(frame->axis[j], x));
+        }
+        bound_places((const float(*)[GLINT_GROUP])frame->light[s], 0xffff, least, most);
+    }
+}
+
+/// Makes the frame. False: points and samples lie beside each other along the way, or too steep.
+static bool R(aim_layers)(const R(shadow_tile) * tile, const uint16_t *lit, layer_frame *frame)
+{
+    const glint_geometry_table *geometry = tile->args->geometry;
+    vf least[2][3], most[2][3]; // of the points, of the samples
+    float low[2][3], high[2][3], size = 0, steepest = 0;
+    if (!make_layer_axes(tile->lower, tile->upper, &tile->light, frame))
+        return false;
+    for (int n = 0; n < 2; n++)
+        for (int j = 0; j < 3; j++) {
+            least[n][j] = f_set(HUGE_VALF);
+            most[n][j] = f_set(-HUGE_VALF);
+        }
+    R(place_points)(tile, lit, frame, least[0], most[0]);
+    R(place_samples)(tile, frame, least[1], most[1]);
+    for (int n = 0; n < 2; n++)
+        for (int j = 0; j < 3; j++) {
+            low[n][j] = f_min_all(least[n][j]);
+            high[n][j] = f_max_all(most[n][j]);
+            size += largest_of(low[n][j], high[n][j]);
+        }
+    const float way = low[1][2] - high[0][2], longest = high[1][2] - low[0][2];
+    if (!(way > 0.125f * longest) || !(size < 0x1p60f))
+        return false;
+    for (int j = 0; j < 2; j++) {
+        const float right = high[1][j] - low[0][j], left = low[1][j] - high[0][j];
+        frame->width[j] = 0.5f * ((high[0][j] - low[0][j]) + (high[1][j] - low[1][j]));
+        frame->slope[j][0] = (left < 0 ? left / way : left / longest) - 1e-5f;
+        frame->slope[j][1] = (right > 0 ? right / way : right / longest) + 1e-5f;
+        steepest = larger(steepest, largest_of(frame->slope[j][0], frame->slope[j][1]));
+    }
+    if (!(steepest < LAYER_STEEPEST))
+        return false;
+    frame->lowest = low[0][2];
+    frame->highest = high[0][2];
+    frame->nearest = low[1][2];
+    frame->farthest = high[1][2];
+    frame->per_way = 1 / way;
+    frame->slack = LAYER_SLACK * size + (float)(16 * GLINT_POINT_SLACK * geometry->extent * geometry->scale);
+    return true;
+}
+#endif
