@@ -237,8 +237,10 @@ static void start_shadows(shadow_case *c, int precision, bool odd, shadow_kind k
     c->args.back = c->back = masks(groups);
     for (uint32_t g = 0; g < groups; g++)
         c->back[g] = one_in(2) ? 0 : c->back[g];
-    if (kind == SHADOWS_IN_LAYERS)
+    if (kind == SHADOWS_IN_LAYERS) {
         c->plan.count = 30 + below(300);
+        c->plan.spread = one_in(4) ? 0.5 : between(2, 4);
+    }
     // float takes what rounding makes of them for hits far away from them, which the index does not look up
     c->plan.triangles = precision == GLINT_DOUBLE && !odd && one_in(2);
     c->plan.solids = precision == GLINT_DOUBLE && !odd && one_in(3);
@@ -560,7 +562,7 @@ static void test_occlude_layers(void **state)
     (void)state;
     open_lanes = dark_lanes = 0;
     run_cases(CASES / 3, 600000, occlude_layers_case);
-    assert_true(open_lanes * case_step() > 10000 && dark_lanes * case_step() > 10000);
+    assert_true(open_lanes * case_step() > 2000 && dark_lanes * case_step() > 10000); // much is in the way
 }
 
 /// Cases that were wrong.
