@@ -86,12 +86,13 @@ INNER layer_lanes_met R(meet_corners)(const layer_rays *rays, const R(layer_bloc
     for (int j = 0; j < 3; j++)
         e[j] = x[(j + 1) % 3] * y[(j + 2) % 3] - x[(j + 2) % 3] * y[(j + 1) % 3];
     const vf least = f_min(f_min(e[0], e[1]), e[2]), most = f_max(f_max(e[0], e[1]), e[2]);
-    const fm apart = fm_and(f_lt(least, -doubt), f_lt(doubt, most)), front = f_lt(doubt, least), back = f_lt(most, -doubt);
+    const vf area = (e[0] + e[1]) + e[2], of_area = f_set(3) * doubt; // NaN where any edge's number is
+    const fm front_side = f_lt(of_area, area), back_side = f_lt(area, -of_area), apart = fm_and(f_lt(least, -doubt), f_lt(doubt, most));
+    const fm front = fm_and(f_lt(doubt, least), front_side), back = fm_and(f_lt(most, -doubt), back_side);
     const vi owner = f_bits(f_load_any((const float *)(rays->on + i))), id = i_set(b->at->id);
     const fm own = i_eq(i_and(owner, i_set(~BEAM_BACK)), id), seen_behind = i_eq(owner, i_set(b->at->id | BEAM_BACK));
     // its own points are dark where light and viewer are on different sides
-    const vf area = (e[0] + e[1]) + e[2], of_area = f_set(3) * doubt;
-    const fm lit = fm_or(fm_andnot(f_lt(of_area, area), seen_behind), fm_and(f_lt(area, -of_area), seen_behind));
+    const fm lit = fm_or(fm_andnot(front_side, seen_behind), fm_and(back_side, seen_behind));
     const fm there = f_le(from, f_set(b->at->high[2]));
     layer_lanes_met out;
     out.near = fm_bits(fm_and(there, fm_or(fm_andnot(fm_from_bits((1u << VF) - 1), fm_or(apart, own)), fm_andnot(own, lit))));
@@ -117,8 +118,9 @@ INNER layer_lanes_met R(meet_middle)(const layer_rays *rays, const R(layer_block
     return out;
 }
 
-/// A line meets a solid only where, in the unit shape's place, it is as near to the axis, the middle, or both of each two axes.
-INNER fm R(near_unit_shape)(const R(layer_blocker) * b, const vf x[2], const vf slope[2])
+/// A line meets a solid only where, in the unit shape's place, it is as near to the axis, the middle, or both of each two axes. Lanes
+/// that are not, for certain.
+INNER fm R(off_unit_shape)(const R(layer_blocker) * b, const vf x[2], const vf slope[2])
 {
     vf o[3], d[3];
     for (int k = 0; k < 3; k++) {
@@ -128,13 +130,13 @@ INNER fm R(near_unit_shape)(const R(layer_blocker) * b, const vf x[2], const vf 
     const vf limit = f_set(b->limit), limit2 = limit * limit, turn = o[0] * d[1] - o[1] * d[0];
     if (b->form == GLINT_FORM_CYLINDER || b->form == GLINT_FORM_CONE || b->form == GLINT_FORM_TUBE || b->form == GLINT_FORM_FUNNEL ||
         b->form == GLINT_FORM_DISK)
-        return f_le(turn * turn, limit2 * (d[0] * d[0] + d[1] * d[1]));
+        return f_lt(limit2 * (d[0] * d[0] + d[1] * d[1]), turn * turn);
     const vf c[3] = { o[1] * d[2] - o[2] * d[1], o[2] * d[0] - o[0] * d[2], turn };
     if (b->form != GLINT_FORM_BOX)
-        return f_le(DOT(c, c), limit2 * DOT(d, d));
-    fm near = f_le(f_abs(c[0]), limit * (f_abs(d[1]) + f_abs(d[2])));
-    near = fm_and(near, f_le(f_abs(c[1]), limit * (f_abs(d[2]) + f_abs(d[0]))));
-    return fm_and(near, f_le(f_abs(c[2]), limit * (f_abs(d[0]) + f_abs(d[1]))));
+        return f_lt(limit2 * DOT(d, d), DOT(c, c));
+    fm off = f_lt(limit * (f_abs(d[1]) + f_abs(d[2])), f_abs(c[0]));
+    off = fm_or(off, f_lt(limit * (f_abs(d[2]) + f_abs(d[0])), f_abs(c[1])));
+    return fm_or(off, f_lt(limit * (f_abs(d[0]) + f_abs(d[1])), f_abs(c[2])));
 }
 
 /// Other primitives are as large as their boxes.
@@ -152,7 +154,7 @@ INNER layer_lanes_met R(meet_extent)(const layer_rays *rays, const R(layer_block
         at[j] = (base + slope[j] * f_set(b->center[2])) - f_set(b->center[j]);
     }
     if (b->prim->kind == GLINT_PRIM_SOLID && fm_bits(in))
-        in = fm_and(in, R(near_unit_shape)(b, at, slope));
+        in = fm_andnot(in, R(off_unit_shape)(b, at, slope));
     const vi owner = f_bits(f_load_any((const float *)(rays->on + i)));
     if (!b->torus)
         in = fm_andnot(in, i_eq(owner, i_set(b->at->id)));
