@@ -242,7 +242,7 @@ local rows = {
   { "many", "1,000,000 spheres, index build, two threads", "g.build.2:build", "e.1M.2:build", bar = 0.6 },
   { "many", "1,000,000 spheres, scene to first ray", "g.build:ready", nil },
   { "many", "1,000,000 spheres, rays a second", "g.1M:rays", nil },
-  { "many", "1,000,000 spheres, peak of memory / what describes them", "g.1M:peak", "g.1M:data", bar = 6 },
+  { "many", "1,000,000 spheres, peak of memory / these as doubles", "g.1M:peak", "g.1M:data", bar = 6 },
   { "many", "1,000 spheres above a floor", "g.over1k:render", "e.over1k:render", bar = 0.55 },
   { "many", "1,000,000 spheres above a floor", "g.over1M:render", "e.over1M:render", bar = 0.36 },
   { "many", "1,000 spheres on a floor", "g.floor1k:render", "e.floor1k:render", bar = 0.55 },

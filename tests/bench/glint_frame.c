@@ -63,14 +63,15 @@ static void give_up(int signal)
     _exit(written > 0 ? 0 : 1);
 }
 
-/// Peak of the process, which has the described scene beside what it came from, and what describes its spheres.
+/// Peak of the process without this program's own scene, the film within; and what its spheres are as doubles, with a number of a
+/// material each.
 static void say_memory(const bench_scene *scene)
 {
     struct rusage usage;
-    const size_t sphere = 4 * sizeof *scene->spheres + sizeof *scene->sphere_material;
+    const size_t own = 4 * sizeof *scene->spheres + sizeof *scene->sphere_material, data = 4 * sizeof(double) + sizeof(uint32_t);
     if (getrusage(RUSAGE_SELF, &usage) == 0)
-        bench_say("peak", "MB", (double)usage.ru_maxrss * 1024 / 1e6);
-    bench_say("data", "MB", (double)(scene->sphere_count * sphere) / 1e6);
+        bench_say("peak", "MB", ((double)usage.ru_maxrss * 1024 - (double)(scene->sphere_count * own)) / 1e6);
+    bench_say("data", "MB", (double)(scene->sphere_count * data) / 1e6);
 }
 
 void side_run_frame(const bench_options *options)
