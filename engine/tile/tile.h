@@ -396,7 +396,7 @@ void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_f
 /// tile/gather.c: the chosen pixels of a tile, apart from the others.
 struct glint_gathered *glint_gathered_create(void);
 void glint_gathered_destroy(struct glint_gathered *gathered); ///< NULL: nothing
-/// Whether light is local, and nothing asks where in its group, or in its tile, a pixel is.
+/// Whether light is local, and no stage depends on where in its group, or in its tile, a pixel is.
 bool glint_tile_may_gather(const glint_tile_frame *frame);
 /// Lists the places of the active pixels in the tile where that pays and the frame lets it be done; returns how many they are, 0: all
 /// samples are to be taken where they are.

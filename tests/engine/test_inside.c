@@ -1,5 +1,5 @@
 /// An eye and a light inside of clutter: balls, boxes, cylinders and triangles all around them, before, beside and behind. Every
-/// instruction set against the reference, which asks everything about every ray: nothing that reaches the eye is lost, through wide
+/// instruction set against the reference, which tests every primitive against every ray: nothing that reaches the eye is lost, through wide
 /// and narrow fields of view, through a lens, and of few pixels that are gathered.
 #include <math.h>
 #include <stdarg.h>
@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "engine/glint.h"
 #include "tests/engine/cases/random.h"
+#include "tests/engine/cases/render_case.h"
 
 enum { SIZE = 48, SEEDS = 48, FACES = 120 };
 
@@ -126,37 +126,6 @@ static glint_scene *clutter(uint64_t seed)
     return scene;
 }
 
-static glint_image *render(const glint_scene *scene, const char *isa, glint_render_desc d)
-{
-    glint_renderer *renderer;
-    glint_plan *plan;
-    glint_image *image;
-    glint_error error;
-    const glint_renderer_desc r = { .threads = 1, .isa = isa };
-    const glint_status status = glint_renderer_create(&r, &renderer, &error);
-    if (status == GLINT_ERR_UNSUPPORTED)
-        return NULL;
-    assert_int_equal(status, GLINT_OK);
-    assert_int_equal(glint_plan_create(scene, &d, &plan, &error), GLINT_OK);
-    assert_int_equal(glint_render(renderer, plan, &image, NULL, &error), GLINT_OK);
-    glint_plan_destroy(plan);
-    glint_renderer_destroy(renderer);
-    return image;
-}
-
-static int differing(const glint_image *a, const glint_image *b, glint_pass pass)
-{
-    int count = 0;
-    for (int y = 0; y < SIZE; y++)
-        for (int x = 0; x < SIZE; x++) {
-            float p[3] = { 0 }, q[3] = { 0 };
-            glint_image_pixel(a, pass, x, y, p, NULL);
-            glint_image_pixel(b, pass, x, y, q, NULL);
-            count += memcmp(p, q, sizeof p) != 0;
-        }
-    return count;
-}
-
 /// samples: of each pixel; adaptive: of some.
 static void same_as_reference(uint64_t seed, int samples, double adaptive)
 {
@@ -169,13 +138,13 @@ static void same_as_reference(uint64_t seed, int samples, double adaptive)
     d.passes = 1u << GLINT_PASS_BEAUTY | 1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_OBJECT_ID;
     if (adaptive > 0)
         d.passes = 1u << GLINT_PASS_BEAUTY;
-    glint_image *want = render(scene, "ref", d);
+    glint_image *want = render_with(scene, "ref", &d);
     for (int i = 0; i < 4; i++) {
-        glint_image *got = render(scene, sets[i], d);
+        glint_image *got = render_with(scene, sets[i], &d);
         for (int pass = 0; pass < GLINT_PASS_COUNT && got; pass++)
-            if (d.passes >> pass & 1 && differing(want, got, (glint_pass)pass))
+            if (d.passes >> pass & 1 && differing(want, got, (glint_pass)pass, SIZE))
                 fail_msg("seed %d, %s, %d samples, pass %d: %d pixels", (int)seed, sets[i], samples, pass,
-                         differing(want, got, (glint_pass)pass));
+                         differing(want, got, (glint_pass)pass, SIZE));
         glint_image_release(got);
     }
     glint_image_release(want);

@@ -12,6 +12,7 @@
 
 #include "engine/glint.h"
 #include "tests/engine/cases/random.h"
+#include "tests/engine/cases/render_case.h"
 
 enum { SIDE = 22, SIZE = 40, SEEDS = 36 };
 
@@ -151,38 +152,11 @@ static glint_scene *sheets(uint64_t seed, glint_precision precision)
 
 static glint_image *render(const glint_scene *scene, const char *isa, glint_precision precision)
 {
-    glint_renderer *renderer;
-    glint_plan *plan;
-    glint_image *image;
-    glint_error error;
-    const glint_renderer_desc r = { .threads = 1, .isa = isa };
     glint_render_desc d = glint_render_desc_default();
-    d.width = SIZE;
-    d.height = SIZE;
+    d.width = d.height = SIZE;
     d.precision = precision;
     d.passes = 1u << GLINT_PASS_BEAUTY | 1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_OBJECT_ID;
-    const glint_status status = glint_renderer_create(&r, &renderer, &error);
-    if (status == GLINT_ERR_UNSUPPORTED)
-        return NULL;
-    assert_int_equal(status, GLINT_OK);
-    assert_int_equal(glint_plan_create(scene, &d, &plan, &error), GLINT_OK);
-    assert_int_equal(glint_render(renderer, plan, &image, NULL, &error), GLINT_OK);
-    glint_plan_destroy(plan);
-    glint_renderer_destroy(renderer);
-    return image;
-}
-
-static int differing(const glint_image *a, const glint_image *b, glint_pass pass)
-{
-    int count = 0;
-    for (int y = 0; y < SIZE; y++)
-        for (int x = 0; x < SIZE; x++) {
-            float p[3] = { 0 }, q[3] = { 0 };
-            glint_image_pixel(a, pass, x, y, p, NULL);
-            glint_image_pixel(b, pass, x, y, q, NULL);
-            count += memcmp(p, q, sizeof p) != 0;
-        }
-    return count;
+    return render_with(scene, isa, &d);
 }
 
 static void no_triangle_is_lost(void **unused)
@@ -197,9 +171,9 @@ static void no_triangle_is_lost(void **unused)
         for (int i = 0; i < 4; i++) {
             glint_image *got = render(scene, sets[i], precision);
             for (int k = 0; k < 3 && got; k++)
-                if (differing(want, got, passes[k]))
+                if (differing(want, got, passes[k], SIZE))
                     fail_msg("seed %d, %s, precision %d, pass %d: %d pixels", (int)seed, sets[i], (int)precision,
-                             (int)passes[k], differing(want, got, passes[k]));
+                             (int)passes[k], differing(want, got, passes[k], SIZE));
             glint_image_release(got);
         }
         glint_image_release(want);

@@ -1,7 +1,7 @@
 // rounds: rays that go every way among triangles and solids. The rays of a group walk the index in rounds, a node each; the triangles
-// that they come upon are decided in double, a vector of pairs of ray and triangle at a time, each lane with its own of both. What
-// such a lane is not plain about, the rules of shared edges and faces, is left to decide_rays, as are solids, for all rays at once
-// that come upon one in the same round. Contract: stages.h, cast.
+// that they come upon are decided in double, a vector of pairs of ray and triangle at a time, each lane with its own of both. Lanes
+// that may come under the rules of shared edges are left to decide_rays. So are solids, for all rays at once that come upon one in the
+// same round. Contract: stages.h, cast.
 
 #define GLINT_ROUND_PAIRS 96 ///< of a round, a multiple of any VR
 #define GLINT_ROUND_SOLIDS 64 ///< of a round

@@ -97,6 +97,8 @@ static inline vf along_axis(const float axis[3], const vf x[3])
     return (f_set(axis[0]) * x[0] + f_set(axis[1]) * x[1]) + f_set(axis[2]) * x[2];
 }
 
+_Static_assert(LAYER_ACROSS == 1 << 5, "find_cells makes numbers of cells of it");
+
 static inline vi cell_in_layer(const layer_rays *rays, int j, vf x)
 {
     const vf cell = (x - f_set(rays->first[j])) * f_set(rays->cells[j]);

@@ -4,6 +4,7 @@
 
 // ---- The decision ----
 
+/// Segment i of the layer does not reach its sample.
 static inline void R(close_segment)(R(layers) * l, uint32_t i)
 {
     const uint32_t at = l->rays.at[i], s = at / GLINT_TILE_SAMPLES, point = at % GLINT_TILE_SAMPLES;
@@ -68,7 +69,7 @@ typedef struct R(layer_blocker) {
     float above; ///< h that a point is surely below of: of a triangle all of it, of a sphere its middle
     float doubt; ///< of a triangle: what an edge's number may be off by
     float unit[3][3], limit; ///< of a solid: from the frame to where it is a unit shape, by axes of the frame; how large it is there, at most
-    int form;
+    int form; ///< of a solid
 } R(layer_blocker);
 
 /// A segment passes a triangle where it has all corners, as seen along it, on one side.
@@ -118,8 +119,8 @@ INNER layer_lanes_met R(meet_middle)(const layer_rays *rays, const R(layer_block
     return out;
 }
 
-/// A line meets a solid only where, in the unit shape's place, it is as near to the axis, the middle, or both of each two axes. Lanes
-/// that are not, for certain.
+/// Lanes whose lines miss a solid for certain, in the place of its unit shape. Cylinders, cones and disks lie within a cylinder around the
+/// axis, balls and tori within a ball. A box and a line are apart where an axis across the line and an edge of the box separates them.
 INNER fm R(off_unit_shape)(const R(layer_blocker) * b, const vf x[2], const vf slope[2])
 {
     vf o[3], d[3];
@@ -161,6 +162,7 @@ INNER layer_lanes_met R(meet_extent)(const layer_rays *rays, const R(layer_block
     return (layer_lanes_met) { fm_bits(in), 0 };
 }
 
+/// Tests the segments from `i` on and before `end`.
 INNER void R(block_segments)(R(layers) * l, const R(layer_blocker) * b, uint32_t i, uint32_t end)
 {
     for (; i < end; i += VF) {
@@ -181,8 +183,8 @@ INNER void R(block_segments)(R(layers) * l, const R(layer_blocker) * b, uint32_t
     }
 }
 
-/// What rounding may have moved a segment and a primitive by. `least`, `most`: heights that the segment is asked for; beyond its ends it is
-/// off by how far it is drawn on, too.
+/// What rounding may have moved a segment and a primitive by, at heights from `least` to `most`. Beyond the segment's ends that grows with
+/// how far it is extended.
 static inline float R(slack_at)(const layer_frame *frame, const layer_prim *prim, float least, float most)
 {
     float size = 0;
