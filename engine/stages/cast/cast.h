@@ -324,6 +324,8 @@ static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node
     const uint32_t kind = tile->args->geometry->prims[node->child[slot] & ~GLINT_NODE_PRIM].kind;
     if (GLINT_REAL == 64 && !tile->parallel && (kind == GLINT_PRIM_SOLID || kind == GLINT_PRIM_COMBINED))
         R(cast_boxed_slot)(tile, node, seen, slot);
+    else if (kind == GLINT_PRIM_SPHERE && !tile->lens)
+        R(cast_ball)(tile, node, seen, slot);
     else
         R(cast_slot_as)(tile, node, seen, slot, false, NULL, NULL);
 }

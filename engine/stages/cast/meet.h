@@ -43,8 +43,11 @@ INNER vr R(discriminant_afar)(const vr f[3], const vr d[3], vr ar2)
 /// Gunther, Akenine-Moller, Ray Tracing Gems ch. 7, gives the second; neither alone is accurate everywhere).
 INNER vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
 {
-    vr bb = b * b, ar2 = a * r2, inner = bb - a * c;
+    vr bb = b * b, ar2 = a * r2;
     const rm near = r_lt(bb, ar2);
+    if (!rm_bits(near))
+        return R(discriminant_afar)(f, d, ar2);
+    vr inner = bb - a * c;
     if (rm_bits(near) == (1u << VR) - 1) // a ground seen from above it: the cross product is not needed
         return inner;
     return r_select(near, inner, R(discriminant_afar)(f, d, ar2));

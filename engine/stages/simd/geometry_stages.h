@@ -19,6 +19,7 @@
 #include "engine/stages/cast/nearest.h"
 #include "engine/stages/cast/rays.h"
 #include "engine/stages/cast/rounds.h"
+#include "engine/stages/cast/balls.h"
 #include "engine/stages/cast/cast.h"
 #include "engine/stages/cast/pixels.h"
 #include "engine/stages/cast/parallel.h"
