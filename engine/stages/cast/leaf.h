@@ -15,6 +15,11 @@ typedef struct R(cast_leaf) {
     unsigned faced; ///< slots whose triangle shares its plane with others
     leaf_on_screen shown;
     _Alignas(64) uint32_t pixels[GLINT_NODE_WIDTH]; ///< of the tile, see screen_cells
+    struct {
+        uint16_t lanes; ///< of its rays, those that may meet the triangle
+        uint8_t slot, place; ///< the triangle's; the group's, see COVER_ACROSS
+    } group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS];
+    int groups;
 } R(cast_leaf);
 
 /// Loads the corners of triangles. Lanes of other slots keep what they had.
@@ -229,35 +234,44 @@ static inline void R(add_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, int sl
         R(decide_pairs)(tile, leaf);
 }
 
-/// Finds the rays that may meet the triangle in a slot.
-static void R(cast_triangle)(R(tile_cast) * tile, R(cast_leaf) * leaf, int slot)
+/// Finds the groups with rays that may meet the triangle in a slot, and these rays.
+INNER void R(find_near_groups)(const R(tile_cast) * tile, R(cast_leaf) * leaf, int slot)
 {
     const screen_cells pixels = leaf->pixels[slot];
-    const float near = leaf->shown.near[slot];
-    for (int y = first_row(pixels) / 4; y <= last_row(pixels) / 4; y++)
-        for (int x = first_column(pixels) / 4; x <= last_column(pixels) / 4; x++) {
-            unsigned lanes = 0;
-            if (tile->far[y][x] < near)
-                continue;
-            for (int i = 0; i < GLINT_GROUP; i += VF) {
-                const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[y * tile->across + x] + i)));
-                lanes |= (open & between_edges(&leaf->shown, slot, f_load(tile->s[x] + i), -f_load(tile->t[y] + i)))
-                         << i;
-            }
-            if (lanes)
-                R(add_pairs)(tile, leaf, slot, x, y, lanes);
+    const vf near = f_set(leaf->shown.near[slot]);
+    int n = leaf->groups;
+    uint64_t left = R(groups_between)(first_column(pixels) / 4, last_column(pixels) / 4, first_row(pixels) / 4,
+                                      last_row(pixels) / 4);
+    for (; left; left &= left - 1) {
+        const unsigned place = (unsigned)__builtin_ctzll(left), x = place % COVER_ACROSS, y = place / COVER_ACROSS;
+        unsigned lanes = 0;
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            const unsigned open = fm_bits(f_le(near, f_load(tile->depth[y * (unsigned)tile->across + x] + i)));
+            lanes |= (open & between_edges(&leaf->shown, slot, f_load(tile->s[x] + i), -f_load(tile->t[y] + i))) << i;
         }
+        leaf->group[n].slot = (uint8_t)slot;
+        leaf->group[n].place = (uint8_t)place;
+        leaf->group[n].lanes = (uint16_t)lanes;
+        n += lanes != 0;
+    }
+    leaf->groups = n;
 }
 
-/// Casts the triangles in the slots of `mask`.
+/// Casts the triangles in the slots of `mask`. All groups that they may show in are found before the first is paired: none waits for
+/// what another says.
 static void R(cast_triangles)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node,
                               const node_on_screen *seen, unsigned mask)
 {
     leaf->node = node;
+    leaf->groups = 0;
     R(load_leaf)(tile->args, mask, leaf);
     show_leaf(&tile->view, seen, GLINT_REAL == 32, &leaf->shown);
     for (mask = R(pixels_of_leaf)(tile, seen, mask, leaf); mask; mask &= mask - 1)
-        R(cast_triangle)(tile, leaf, __builtin_ctz(mask));
+        R(find_near_groups)(tile, leaf, __builtin_ctz(mask));
+    for (int n = 0; n < leaf->groups; n++) {
+        const int place = leaf->group[n].place;
+        R(add_pairs)(tile, leaf, leaf->group[n].slot, place % COVER_ACROSS, place / COVER_ACROSS, leaf->group[n].lanes);
+    }
     R(decide_pairs)(tile, leaf);
 }
 
