@@ -60,7 +60,7 @@ static inline void R(begin_beam_leaf)(R(beam_leaf) * leaf)
 {
     memset(leaf->corner, 0, sizeof leaf->corner);
     leaf->own = leaf->back = 0;
-    leaf->count = 0;
+    leaf->count = leaf->runs = 0;
 }
 
 /// Loads the corners. Lanes without a triangle keep what they had.
@@ -145,24 +145,39 @@ static inline void R(add_beam_pair)(R(beam) * beam, int slot, uint32_t i, bool o
         R(decide_beam_pairs)(beam);
 }
 
+/// Pairs the points found with their triangles.
+static inline void R(pair_points)(R(beam) * beam)
+{
+    R(beam_leaf) *leaf = &beam->leaf;
+    for (int n = 0; n < leaf->runs; n++) {
+        const R(near_points) run = leaf->run[n];
+        for (unsigned near = run.near; near; near &= near - 1) {
+            const unsigned lane = (unsigned)__builtin_ctz(near);
+            R(add_beam_pair)(beam, run.slot, run.first + lane, run.own >> lane & 1);
+        }
+    }
+    leaf->runs = 0;
+}
+
 // ---- The filter ----
 
 /// Tests the points from `i` on and before `end`.
-INNER void R(pair_run)(R(beam) * beam, int slot, own_side mine, uint32_t i, uint32_t end)
+INNER void R(test_run)(R(beam) * beam, int slot, own_side mine, uint32_t i, uint32_t end)
 {
     const leaf_on_screen *shown = &beam->leaf.shown;
+    int n = beam->leaf.runs;
     for (; i < end; i += VF) { // what few are behind costs less than to guess whether any is
         const unsigned in_run = end - i < VF ? (1u << (end - i)) - 1 : (1u << VF) - 1;
         const unsigned behind = fm_bits(f_le(f_set(shown->near[slot]), f_load_any(beam->w + i))) & in_run;
         const vi owner = f_bits(f_load_any((const float *)(beam->own + i)));
         const unsigned own = fm_bits(i_eq(i_and(owner, i_set(~BEAM_BACK)), i_set(mine.id)));
         const unsigned dark = mine.any ? own : fm_bits(i_eq(owner, i_set(mine.id | mine.side)));
-        unsigned near = between_edges(shown, slot, f_load_any(beam->place[0] + i), f_load_any(beam->place[1] + i));
-        for (near = behind & ((near & ~own) | dark); near; near &= near - 1) {
-            const unsigned lane = (unsigned)__builtin_ctz(near);
-            R(add_beam_pair)(beam, slot, i + lane, own >> lane & 1);
-        }
+        const unsigned near = between_edges(shown, slot, f_load_any(beam->place[0] + i), f_load_any(beam->place[1] + i));
+        const unsigned found = behind & ((near & ~own) | dark);
+        beam->leaf.run[n] = (R(near_points)) { (uint16_t)i, (uint16_t)found, (uint16_t)own, (uint16_t)slot };
+        n += found != 0;
     }
+    beam->leaf.runs = n;
 }
 
 /// Finds the points that the triangle in a slot may keep from the light.
@@ -179,11 +194,14 @@ static void R(block_triangle)(R(beam) * beam, int slot)
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
     const int first = first_column(cells), end = last_column(cells) + 1;
     const bool whole = end - first == SCREEN_ACROSS; // the cells of all rows are one run
+    if (leaf->runs > GLINT_BEAM_RUNS)
+        R(pair_points)(beam);
     for (; top <= bottom; top = whole ? bottom + 1 : top + SCREEN_ACROSS)
-        R(pair_run)(beam, slot, mine, top[first], whole ? bottom[end] : top[end]);
+        R(test_run)(beam, slot, mine, top[first], whole ? bottom[end] : top[end]);
 }
 
-/// Takes out of args->open what the triangles in the slots of `mask` block.
+/// Takes out of args->open what the triangles in the slots of `mask` block. Points are found for all of them before the first is paired:
+/// no test waits for what another says.
 static void R(block_triangles)(R(beam) * beam, const glint_node *node, const node_on_screen *seen, unsigned mask)
 {
     R(beam_leaf) *leaf = &beam->leaf;
@@ -192,5 +210,6 @@ static void R(block_triangles)(R(beam) * beam, const glint_node *node, const nod
     show_leaf(&beam->view, seen, GLINT_REAL == 32, &leaf->shown);
     for (mask = cells_of_leaf(&beam->view, seen, &leaf->shown, mask, leaf->cells); mask; mask &= mask - 1)
         R(block_triangle)(beam, __builtin_ctz(mask));
+    R(pair_points)(beam);
     R(decide_beam_pairs)(beam);
 }

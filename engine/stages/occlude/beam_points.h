@@ -14,6 +14,15 @@ typedef struct R(beam_batch) {
 
 #define GLINT_BEAM_PAIRS (2 * GLINT_GROUP)
 
+#define GLINT_BEAM_RUNS 128 ///< so many are paired before the next triangle is looked at
+
+/// Of VF points one after another in the beam those that a triangle may keep from the light.
+typedef struct R(near_points) {
+    uint16_t first, near;
+    uint16_t own; ///< those that are on it
+    uint16_t slot;
+} R(near_points);
+
 /// The triangles of a node, and pairs of one and a point that are to be decided.
 typedef struct R(beam_leaf) {
     _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< of the triangle in each slot
@@ -22,6 +31,8 @@ typedef struct R(beam_leaf) {
     uint16_t from[GLINT_BEAM_PAIRS]; ///< index in the beam
     unsigned own, back; ///< pairs whose point is on the triangle; whose point is seen from behind
     int count;
+    R(near_points) run[GLINT_BEAM_RUNS + 1 + GLINT_TILE_SAMPLES / VF + BEAM_DOWN];
+    int runs;
     const glint_node *node;
     leaf_on_screen shown;
     _Alignas(64) uint32_t cells[GLINT_NODE_WIDTH]; ///< see screen_cells
