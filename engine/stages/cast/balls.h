@@ -16,29 +16,42 @@ typedef struct R(near_ball) {
     R(near_part) part[GLINT_TILE_SAMPLES / VR];
 } R(near_ball);
 
+/// Groups of some cells in which something as far away as `near` still matters.
+static inline uint64_t R(groups_behind)(const R(tile_cast) * tile, screen_cells cells, float near)
+{
+    const unsigned columns = bit_range(first_column(cells), last_column(cells));
+    uint64_t groups = 0;
+    for (int y = first_row(cells); y <= last_row(cells); y++)
+        groups |= (uint64_t)behind_in_row((const float(*)[SCREEN_ACROSS])tile->far, y, near, columns) << y * COVER_ACROSS;
+    return groups;
+}
+
+/// Lanes of group (x, y) that may meet the shape before what they have met, from its box on, whose depth is `near`.
+INNER unsigned R(lanes_near_shape)(const R(tile_cast) * tile, const shape_on_screen *shape, float near, int x, int y)
+{
+    unsigned lanes = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[y * tile->across + x] + i)));
+        lanes |= (open & near_shape(shape, f_load(tile->s[x] + i), -f_load(tile->t[y] + i))) << i;
+    }
+    return lanes;
+}
+
 /// Of the groups whose cells its box shows in, `depth` far away, those in which it may be seen.
 INNER void R(find_near_ball)(const R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot,
                              R(near_ball) * near)
 {
-    const screen_cells cells = seen->cells[slot];
     const float depth = seen->near[slot];
-    const unsigned columns = bit_range(first_column(cells), last_column(cells));
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
     near->groups = near->parts = 0;
     near->lanes = 0;
-    uint64_t groups = 0;
-    for (int y = first_row(cells); y <= last_row(cells); y++)
-        groups |= (uint64_t)behind_in_row((const float(*)[SCREEN_ACROSS])tile->far, y, depth, columns) << y * COVER_ACROSS;
+    uint64_t groups = R(groups_behind)(tile, seen->cells[slot], depth);
     if (!groups)
         return;
     const shape_on_screen shape = shape_of(node, seen, slot, &tile->args->geometry->prims[id], &tile->view);
     for (; groups; groups &= groups - 1) {
         const int place = __builtin_ctzll(groups), x = place % COVER_ACROSS, y = place / COVER_ACROSS, g = y * tile->across + x;
-        unsigned lanes = 0;
-        for (int i = 0; i < GLINT_GROUP; i += VF) {
-            const unsigned open = fm_bits(f_le(f_set(depth), f_load(tile->depth[g] + i)));
-            lanes |= (open & near_shape(&shape, f_load(tile->s[x] + i), -f_load(tile->t[y] + i))) << i;
-        }
+        const unsigned lanes = R(lanes_near_shape)(tile, &shape, depth, x, y);
         near->column[near->groups] = (uint8_t)x;
         near->row[near->groups] = (uint8_t)y;
         near->groups += lanes != 0;

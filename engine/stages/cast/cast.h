@@ -190,19 +190,6 @@ static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, uint64_t
     return found;
 }
 
-/// Lanes of a group that may meet the shape before what they have met, from its box on, whose depth is `near`.
-static inline unsigned R(lanes_near_shape)(const R(tile_cast) * tile, const shape_on_screen *shape, float near, int x,
-                                           int y)
-{
-    unsigned lanes = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[y * tile->across + x] + i)));
-        if (open)
-            lanes |= (open & near_shape(shape, f_load(tile->s[x] + i), -f_load(tile->t[y] + i))) << i;
-    }
-    return lanes;
-}
-
 /// A sphere as parallel rays meet it; `a`: |direction|^2.
 typedef struct R(parallel_ball) {
     const glint_prim *prim; ///< NULL: what is met is not one, or by other rays
@@ -266,47 +253,54 @@ static inline unsigned R(lanes_near_box)(const R(tile_cast) * tile, const eye_bo
     return lanes & near;
 }
 
-/// Tests a primitive of a node against the groups it may show in. What it is to all rays is worked out when the first of
-/// them needs it. boxed, a constant: a solid, before rays from one eye; parts, box: room for what they know of it.
+/// Tests a primitive of a node against the groups it may show in: all are found before the first is decided. boxed, a constant: a solid,
+/// before rays from one eye; parts, box: room for what they know of it.
 INNER void R(cast_slot_as)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot, const bool boxed,
                            R(eye_parts) * parts, eye_box *box)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
-    const screen_cells cells = seen->cells[slot];
     const float depth = seen->near[slot];
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
-    const unsigned columns = bit_range(first_column(cells), last_column(cells));
-    bool shaped = false, placed = false;
-    shape_on_screen shape;
+    uint64_t left = R(groups_behind)(tile, seen->cells[slot], depth);
+    struct {
+        uint16_t near;
+        uint8_t column, row;
+    } found[GLINT_TILE_GROUPS];
+    int count = 0;
     R(candidate) candidate;
     R(parallel_ball) ball;
-    for (int y = first_row(cells); y <= last_row(cells); y++)
-        for (unsigned left = behind_in_row((const float(*)[SCREEN_ACROSS])tile->far, y, depth, columns); left;
-             left &= left - 1) {
-            const int x = __builtin_ctz(left);
-            if (!shaped)
-                shape = shape_of(node, seen, slot, &geometry->prims[id], &tile->view);
-            if (boxed && !shaped)
-                *box = see_box(tile->args->camera, &tile->view, node, slot);
-            shaped = true;
-            unsigned near = !boxed && GLINT_WITH_LENS && tile->lens
-                                ? R(lanes_through_lens)(tile, &shape, seen->middle[2][slot], depth, x, y)
-                                : R(lanes_near_shape)(tile, &shape, depth, x, y);
-            if (boxed && near)
-                near = R(lanes_near_box)(tile, box, near, x, y);
-            if (!near)
-                continue;
-            if (!placed && !tile->parallel)
-                R(place_candidate)(tile->args, id, &candidate);
-            else if (!placed)
-                R(place_parallel_ball)(tile, id, &ball);
-            if (boxed && !placed)
-                R(see_candidate)(tile->args, &candidate, parts);
-            placed = true;
-            if (!boxed && tile->parallel ? R(decide_parallel)(tile->args, &ball, (uint32_t)(y * tile->across + x), id, near)
-                                         : R(decide_pixels)(tile, &candidate, x, y, near))
-                R(note_depth)(tile, x, y);
-        }
+    if (!left)
+        return;
+    const shape_on_screen shape = shape_of(node, seen, slot, &geometry->prims[id], &tile->view);
+    if (boxed)
+        *box = see_box(tile->args->camera, &tile->view, node, slot);
+    for (; left; left &= left - 1) {
+        const int place = __builtin_ctzll(left), x = place % COVER_ACROSS, y = place / COVER_ACROSS;
+        unsigned near = !boxed && GLINT_WITH_LENS && tile->lens
+                            ? R(lanes_through_lens)(tile, &shape, seen->middle[2][slot], depth, x, y)
+                            : R(lanes_near_shape)(tile, &shape, depth, x, y);
+        if (boxed)
+            near = R(lanes_near_box)(tile, box, near, x, y);
+        found[count].near = (uint16_t)near;
+        found[count].column = (uint8_t)x;
+        found[count].row = (uint8_t)y;
+        count += near != 0;
+    }
+    if (!count)
+        return;
+    if (tile->parallel)
+        R(place_parallel_ball)(tile, id, &ball);
+    else
+        R(place_candidate)(tile->args, id, &candidate);
+    if (boxed)
+        R(see_candidate)(tile->args, &candidate, parts);
+    for (int n = 0; n < count; n++) {
+        const int x = found[n].column, y = found[n].row;
+        if (!boxed && tile->parallel
+                ? R(decide_parallel)(tile->args, &ball, (uint32_t)(y * tile->across + x), id, found[n].near)
+                : R(decide_pixels)(tile, &candidate, x, y, found[n].near))
+            R(note_depth)(tile, x, y);
+    }
 }
 
 /// Apart, so that it takes no registers from what all other surfaces do.

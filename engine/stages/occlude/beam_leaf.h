@@ -60,7 +60,7 @@ static inline void R(begin_beam_leaf)(R(beam_leaf) * leaf)
 {
     memset(leaf->corner, 0, sizeof leaf->corner);
     leaf->own = leaf->back = 0;
-    leaf->count = leaf->runs = 0;
+    leaf->count = 0;
 }
 
 /// Loads the corners. Lanes without a triangle keep what they had.
@@ -148,24 +148,23 @@ static inline void R(add_beam_pair)(R(beam) * beam, int slot, uint32_t i, bool o
 /// Pairs the points found with their triangles.
 static inline void R(pair_points)(R(beam) * beam)
 {
-    R(beam_leaf) *leaf = &beam->leaf;
-    for (int n = 0; n < leaf->runs; n++) {
-        const R(near_points) run = leaf->run[n];
+    for (int n = 0; n < beam->runs; n++) {
+        const R(near_points) run = beam->run[n];
         for (unsigned near = run.near; near; near &= near - 1) {
             const unsigned lane = (unsigned)__builtin_ctz(near);
             R(add_beam_pair)(beam, run.slot, run.first + lane, run.own >> lane & 1);
         }
     }
-    leaf->runs = 0;
+    beam->runs = 0;
 }
 
 // ---- The filter ----
 
 /// Tests the points from `i` on and before `end`.
-INNER void R(test_run)(R(beam) * beam, int slot, own_side mine, uint32_t i, uint32_t end)
+INNER void R(points_near_triangle)(R(beam) * beam, int slot, own_side mine, uint32_t i, uint32_t end)
 {
     const leaf_on_screen *shown = &beam->leaf.shown;
-    int n = beam->leaf.runs;
+    int n = beam->runs;
     for (; i < end; i += VF) { // what few are behind costs less than to guess whether any is
         const unsigned in_run = end - i < VF ? (1u << (end - i)) - 1 : (1u << VF) - 1;
         const unsigned behind = fm_bits(f_le(f_set(shown->near[slot]), f_load_any(beam->w + i))) & in_run;
@@ -174,10 +173,10 @@ INNER void R(test_run)(R(beam) * beam, int slot, own_side mine, uint32_t i, uint
         const unsigned dark = mine.any ? own : fm_bits(i_eq(owner, i_set(mine.id | mine.side)));
         const unsigned near = between_edges(shown, slot, f_load_any(beam->place[0] + i), f_load_any(beam->place[1] + i));
         const unsigned found = behind & ((near & ~own) | dark);
-        beam->leaf.run[n] = (R(near_points)) { (uint16_t)i, (uint16_t)found, (uint16_t)own, (uint16_t)slot };
+        beam->run[n] = (R(near_points)) { (uint16_t)i, (uint16_t)found, (uint16_t)own, (uint16_t)slot };
         n += found != 0;
     }
-    beam->leaf.runs = n;
+    beam->runs = n;
 }
 
 /// Finds the points that the triangle in a slot may keep from the light.
@@ -194,10 +193,10 @@ static void R(block_triangle)(R(beam) * beam, int slot)
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
     const int first = first_column(cells), end = last_column(cells) + 1;
     const bool whole = end - first == SCREEN_ACROSS; // the cells of all rows are one run
-    if (leaf->runs > GLINT_BEAM_RUNS)
+    if (beam->runs > GLINT_BEAM_RUNS)
         R(pair_points)(beam);
     for (; top <= bottom; top = whole ? bottom + 1 : top + SCREEN_ACROSS)
-        R(test_run)(beam, slot, mine, top[first], whole ? bottom[end] : top[end]);
+        R(points_near_triangle)(beam, slot, mine, top[first], whole ? bottom[end] : top[end]);
 }
 
 /// Takes out of args->open what the triangles in the slots of `mask` block. Points are found for all of them before the first is paired:

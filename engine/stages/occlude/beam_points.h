@@ -14,13 +14,12 @@ typedef struct R(beam_batch) {
 
 #define GLINT_BEAM_PAIRS (2 * GLINT_GROUP)
 
-#define GLINT_BEAM_RUNS 128 ///< so many are paired before the next triangle is looked at
+#define GLINT_BEAM_RUNS 128 ///< more are paired before the next triangle is looked at
 
-/// Of VF points one after another in the beam those that a triangle may keep from the light.
+/// Of VF points one after another in the beam those that something may keep from the light.
 typedef struct R(near_points) {
     uint16_t first, near;
-    uint16_t own; ///< those that are on it
-    uint16_t slot;
+    uint16_t own, slot; ///< of a triangle: those that are on it, and its slot
 } R(near_points);
 
 /// The triangles of a node, and pairs of one and a point that are to be decided.
@@ -31,8 +30,6 @@ typedef struct R(beam_leaf) {
     uint16_t from[GLINT_BEAM_PAIRS]; ///< index in the beam
     unsigned own, back; ///< pairs whose point is on the triangle; whose point is seen from behind
     int count;
-    R(near_points) run[GLINT_BEAM_RUNS + 1 + GLINT_TILE_SAMPLES / VF + BEAM_DOWN];
-    int runs;
     const glint_node *node;
     leaf_on_screen shown;
     _Alignas(64) uint32_t cells[GLINT_NODE_WIDTH]; ///< see screen_cells
@@ -51,6 +48,8 @@ typedef struct R(beam) {
     _Alignas(64) float far[BEAM_DOWN][SCREEN_ACROSS]; ///< largest w of each cell's open points
     R(beam_batch) batch;
     R(beam_leaf) leaf;
+    R(near_points) run[GLINT_BEAM_RUNS + 1 + GLINT_TILE_SAMPLES / VF + BEAM_DOWN]; ///< found, and not paired with what they are near
+    int runs;
 } R(beam);
 
 // ---- The points ----

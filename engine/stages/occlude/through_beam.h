@@ -65,23 +65,22 @@ typedef struct R(beam_blocker) {
     shape_on_screen shape;
 } R(beam_blocker);
 
-/// Tests the points from `i` on and before `end`. Its own are dark for that only where they are seen from behind, see blocked.h.
-INNER void R(block_run)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i, uint32_t end)
+/// Finds the points from `i` on and before `end` that it may block. Its own are dark for that only where they are seen from behind, see
+/// blocked.h.
+INNER void R(points_near)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i, uint32_t end)
 {
+    int n = beam->runs;
     for (; i < end; i += VF) {
         const vf u = f_load_any(beam->place[0] + i), v = f_load_any(beam->place[1] + i), w = f_load_any(beam->w + i);
         const unsigned in_run = end - i < VF ? (1u << (end - i)) - 1 : (1u << VF) - 1;
         const unsigned behind = fm_bits(f_le(f_set(b->near), w)) & in_run;
-        if (!behind)
-            continue;
         const vi owner = f_bits(f_load_any((const float *)(beam->own + i)));
         const unsigned front = b->torus ? 0 : fm_bits(i_eq(owner, i_set(b->id)));
-        for (unsigned near = behind & ~front & near_shape(&b->shape, u, v); near; near &= near - 1) {
-            const unsigned lane = (unsigned)__builtin_ctz(near);
-            const uint32_t on = beam->own[i + lane];
-            R(add_to_batch)(beam, b->prim, i + lane, on, (on & ~BEAM_BACK) == b->id);
-        }
+        const unsigned near = behind & ~front & near_shape(&b->shape, u, v);
+        beam->run[n] = (R(near_points)) { .first = (uint16_t)i, .near = (uint16_t)near };
+        n += near != 0;
     }
+    beam->runs = n;
 }
 
 static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on_screen *seen, int slot)
@@ -96,9 +95,15 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
     const int first = first_column(cells), end = last_column(cells) + 1;
     if (end - first == SCREEN_ACROSS) // the cells of all rows are one run
-        R(block_run)(beam, &b, *top, bottom[SCREEN_ACROSS]);
+        R(points_near)(beam, &b, *top, bottom[SCREEN_ACROSS]);
     for (; end - first < SCREEN_ACROSS && top <= bottom; top += SCREEN_ACROSS)
-        R(block_run)(beam, &b, top[first], top[end]);
+        R(points_near)(beam, &b, top[first], top[end]);
+    for (int n = 0; n < beam->runs; n++)
+        for (unsigned near = beam->run[n].near; near; near &= near - 1) {
+            const uint32_t i = beam->run[n].first + (unsigned)__builtin_ctz(near), on = beam->own[i];
+            R(add_to_batch)(beam, b.prim, i, on, (on & ~BEAM_BACK) == id);
+        }
+    beam->runs = 0;
     R(decide_batch)(beam, b.prim);
 }
 
@@ -175,6 +180,7 @@ static bool R(occlude_beam)(const R(shadow_tile) * tile)
     R(sort_points)(&beam, args->open[0], &places);
     R(begin_batch)(args, &beam.batch);
     R(begin_beam_leaf)(&beam.leaf);
+    beam.runs = 0;
     R(walk_beam)(&beam);
     return true;
 }
