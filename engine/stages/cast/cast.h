@@ -190,161 +190,35 @@ static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, uint64_t
     return found;
 }
 
-/// A sphere as parallel rays meet it; `a`: |direction|^2.
-typedef struct R(parallel_ball) {
-    const glint_prim *prim; ///< NULL: what is met is not one, or by other rays
-    R(ball) ball;
-    vr direction[3], a;
-} R(parallel_ball);
-
-/// Apart: GCC 12 does not see that what it fills is read only after it.
-static __attribute__((noinline)) void R(place_parallel_ball)(const R(tile_cast) * tile, uint32_t id, R(parallel_ball) * out)
-{
-    const glint_camera_args *camera = tile->args->camera;
-    const glint_prim *prim = &tile->args->geometry->prims[id];
-    out->prim = NULL;
-    if (!tile->parallel || tile->lens || prim->kind != GLINT_PRIM_SPHERE)
-        return;
-    out->prim = prim;
-    out->ball = R(ball_of)(prim);
-    for (int k = 0; k < 3; k++)
-        out->direction[k] = r_set(camera->forward[k]);
-    out->a = DOT(out->direction, out->direction);
-}
-
-/// Decides it for the lanes of a group in `near`. Returns whether any hit was kept.
-INNER bool R(decide_parallel_ball)(const glint_cast_args *args, const R(parallel_ball) * ball, size_t at, uint32_t id,
-                                   unsigned near)
-{
-    const vr scale = ball->ball.scale, r2 = ball->ball.r2;
-    bool any = false;
-    count_tests(args->tests, near);
-    for (int i = 0; i < GLINT_GROUP; i += VR) {
-        if (!(near >> i & ((1u << VR) - 1)))
-            continue;
-        vr f[3], t;
-        for (int k = 0; k < 3; k++)
-            f[k] = (r_load((const real *)args->origin[k] + at + i) - r_set(ball->prim->center[k])) * scale;
-        const vr c = R(exact_power)(f, r2, ball->ball.r2_low);
-        const rm hit = R(meet_ball)(f, ball->direction, ball->a, c, r2, scale, &t);
-        if (!rm_bits(hit))
-            continue;
-        R(keep_nearest)(args, at + (size_t)i, id, hit, t);
-        any = true;
-    }
-    return any;
-}
-
-/// Decides a primitive of parallel rays, or of those of a lens.
-INNER bool R(decide_parallel)(const glint_cast_args *args, const R(parallel_ball) * ball, uint32_t g, uint32_t id,
-                              unsigned near)
-{
-    if (ball->prim)
-        return R(decide_parallel_ball)(args, ball, (size_t)g * GLINT_GROUP, id, near);
-    return R(decide_rays)(args, g, id, near);
-}
-
-/// Of the lanes in `near` those that may come into the box of a solid.
-static inline unsigned R(lanes_near_box)(const R(tile_cast) * tile, const eye_box *box, unsigned near, int x, int y)
-{
-    unsigned lanes = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VF)
-        lanes |= lanes_in_box(box, f_load(tile->s[x] + i), f_load(tile->t[y] + i)) << i;
-    return lanes & near;
-}
-
-/// Tests a primitive of a node against the groups it may show in: all are found before the first is decided. boxed, a constant: a solid,
-/// before rays from one eye; parts, box: room for what they know of it.
-INNER void R(cast_slot_as)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot, const bool boxed,
-                           R(eye_parts) * parts, eye_box *box)
-{
-    const glint_geometry_table *geometry = tile->args->geometry;
-    const float depth = seen->near[slot];
-    const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
-    uint64_t left = R(groups_behind)(tile, seen->cells[slot], depth);
-    struct {
-        uint16_t near;
-        uint8_t column, row;
-    } found[GLINT_TILE_GROUPS];
-    int count = 0;
-    R(candidate) candidate;
-    R(parallel_ball) ball;
-    if (!left)
-        return;
-    const shape_on_screen shape = shape_of(node, seen, slot, &geometry->prims[id], &tile->view);
-    if (boxed)
-        *box = see_box(tile->args->camera, &tile->view, node, slot);
-    for (; left; left &= left - 1) {
-        const int place = __builtin_ctzll(left), x = place % COVER_ACROSS, y = place / COVER_ACROSS;
-        unsigned near = !boxed && GLINT_WITH_LENS && tile->lens
-                            ? R(lanes_through_lens)(tile, &shape, seen->middle[2][slot], depth, x, y)
-                            : R(lanes_near_shape)(tile, &shape, depth, x, y);
-        if (boxed)
-            near = R(lanes_near_box)(tile, box, near, x, y);
-        found[count].near = (uint16_t)near;
-        found[count].column = (uint8_t)x;
-        found[count].row = (uint8_t)y;
-        count += near != 0;
-    }
-    if (!count)
-        return;
-    if (tile->parallel)
-        R(place_parallel_ball)(tile, id, &ball);
-    else
-        R(place_candidate)(tile->args, id, &candidate);
-    if (boxed)
-        R(see_candidate)(tile->args, &candidate, parts);
-    for (int n = 0; n < count; n++) {
-        const int x = found[n].column, y = found[n].row;
-        if (!boxed && tile->parallel
-                ? R(decide_parallel)(tile->args, &ball, (uint32_t)(y * tile->across + x), id, found[n].near)
-                : R(decide_pixels)(tile, &candidate, x, y, found[n].near))
-            R(note_depth)(tile, x, y);
-    }
-}
-
-/// Apart, so that it takes no registers from what all other surfaces do.
-static __attribute__((noinline)) void R(cast_boxed_slot)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen,
-                                                         int slot)
-{
-    R(eye_parts) parts;
-    eye_box box;
-    R(cast_slot_as)(tile, node, seen, slot, true, &parts, &box);
-}
-
-/// Where float decides, no box keeps anything from it.
-static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot)
-{
-    const uint32_t kind = tile->args->geometry->prims[node->child[slot] & ~GLINT_NODE_PRIM].kind;
-    if (GLINT_REAL == 64 && !tile->parallel && (kind == GLINT_PRIM_SOLID || kind == GLINT_PRIM_COMBINED))
-        R(cast_boxed_slot)(tile, node, seen, slot);
-    else if (kind == GLINT_PRIM_SPHERE && !tile->lens)
-        R(cast_ball)(tile, node, seen, slot);
-    else
-        R(cast_slot_as)(tile, node, seen, slot, false, NULL, NULL);
-}
-
-/// Casts primitives to pixels wherever they are: pixels.h.
-static void R(cast_prims_to_pixels)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node, const node_on_screen *seen,
-                                    unsigned mask);
-
 /// Casts the primitives in the slots of `mask`.
-static void R(cast_prims)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node, const node_on_screen *seen,
-                          unsigned mask)
+INNER void R(cast_prims_as)(R(tile_cast) * tile, const bool gathered, R(cast_leaf) * leaf, const glint_node *node,
+                            const node_on_screen *seen, unsigned mask)
 {
-    if (tile->pixels) {
-        R(cast_prims_to_pixels)(tile, leaf, node, seen, mask);
-        return;
-    }
     const unsigned triangles = tile->parallel && !tile->lens ? 0 : triangles_in(tile->args->geometry, node, mask);
     int order[GLINT_NODE_WIDTH];
     const int count = sort_slots(mask & ~triangles, seen->near, order);
     for (int i = 0; i < count; i++)
-        R(cast_slot)(tile, node, seen, order[i]);
-    if (triangles && GLINT_WITH_LENS && tile->lens)
+        R(cast_slot)(tile, gathered, node, seen, order[i]);
+    if (triangles && !gathered && GLINT_WITH_LENS && tile->lens)
         R(cast_lens_triangles)(tile, leaf, node, seen, triangles);
     else if (triangles)
-        R(cast_triangles)(tile, leaf, node, seen, triangles);
+        R(cast_triangles)(tile, gathered, leaf, node, seen, triangles);
+}
+
+/// The same of pixels that lie anywhere.
+static __attribute__((noinline)) void R(cast_prims_to_pixels)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node,
+                                                              const node_on_screen *seen, unsigned mask)
+{
+    R(cast_prims_as)(tile, true, leaf, node, seen, mask);
+}
+
+static void R(cast_prims)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node, const node_on_screen *seen,
+                          unsigned mask)
+{
+    if (tile->pixels)
+        R(cast_prims_to_pixels)(tile, leaf, node, seen, mask);
+    else
+        R(cast_prims_as)(tile, false, leaf, node, seen, mask);
 }
 
 /// A node's primitives wait until the next node has been looked into: their memory is on its way meanwhile.

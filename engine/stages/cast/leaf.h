@@ -15,10 +15,8 @@ typedef struct R(cast_leaf) {
     unsigned faced; ///< slots whose triangle shares its plane with others
     leaf_on_screen shown;
     _Alignas(64) uint32_t pixels[GLINT_NODE_WIDTH]; ///< of the tile, see screen_cells
-    struct {
-        uint16_t lanes; ///< of its rays, those that may meet the triangle
-        uint8_t slot, place; ///< the triangle's; the group's, see COVER_ACROSS
-    } group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS];
+    R(near_group) group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< groups that triangles may show in
+    uint8_t slot_of_group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< the triangle's
     int groups;
 } R(cast_leaf);
 
@@ -88,6 +86,26 @@ static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_scree
         leaf->pixels[slot] = 4 * seen->cells[slot] + 0x03000300; // from the first of four to the last of them
     }
     return mask | edge_on;
+}
+
+/// The cells, where pixels lie anywhere, that a triangle may show in: seen edge-on, those of its box. False: it shows in none.
+static inline bool R(cells_of_triangle)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, const node_on_screen *seen, int slot,
+                                        screen_cells *out)
+{
+    const screen_view *view = &tile->view;
+    *out = seen->cells[slot];
+    if (!(leaf->shown.certain >> slot & 1))
+        return true;
+    for (int n = 0; n < 2; n++) {
+        const float least = leaf->shown.least[n][slot], most = leaf->shown.most[n][slot], end = (float)(view->count[n] - 1);
+        if (most < view->first[n] || view->last[n] < least)
+            return false;
+        const uint32_t first = (uint32_t)smaller(larger((least - view->first[n]) * view->cells[n], 0), end);
+        const float behind = (most - view->first[n]) * view->cells[n];
+        const uint32_t last = (uint32_t)(behind < end ? larger(behind, 0) : end);
+        *out = (*out & (n ? 0xffffu : 0xffff0000u)) | (first | last << 8) << 16 * n;
+    }
+    return true;
 }
 
 /// Where the ray of a pair starts. `lens` is a constant, here and below: whether that is the pair's own.
@@ -234,44 +252,48 @@ static inline void R(add_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, int sl
         R(decide_pairs)(tile, leaf);
 }
 
-/// Finds the groups with rays that may meet the triangle in a slot, and these rays.
-INNER void R(find_near_groups)(const R(tile_cast) * tile, R(cast_leaf) * leaf, int slot)
+/// Finds, of some groups, those with rays that may meet the triangle in a slot, and these rays.
+INNER void R(find_groups_of_triangle)(const R(tile_cast) * tile, const bool gathered, R(cast_leaf) * leaf, int slot, uint64_t left)
 {
-    const screen_cells pixels = leaf->pixels[slot];
-    const vf near = f_set(leaf->shown.near[slot]);
+    const float near = leaf->shown.near[slot];
     int n = leaf->groups;
-    uint64_t left = R(groups_between)(first_column(pixels) / 4, last_column(pixels) / 4, first_row(pixels) / 4,
-                                      last_row(pixels) / 4);
     for (; left; left &= left - 1) {
-        const unsigned place = (unsigned)__builtin_ctzll(left), x = place % COVER_ACROSS, y = place / COVER_ACROSS;
+        const R(tile_group) at = R(lowest_group)(tile, gathered, left);
         unsigned lanes = 0;
-        for (int i = 0; i < GLINT_GROUP; i += VF) {
-            const unsigned open = fm_bits(f_le(near, f_load(tile->depth[y * (unsigned)tile->across + x] + i)));
-            lanes |= (open & between_edges(&leaf->shown, slot, f_load(tile->s[x] + i), -f_load(tile->t[y] + i))) << i;
-        }
-        leaf->group[n].slot = (uint8_t)slot;
-        leaf->group[n].place = (uint8_t)place;
-        leaf->group[n].lanes = (uint16_t)lanes;
-        n += lanes != 0;
+        for (int i = 0; i < GLINT_GROUP; i += VF)
+            lanes |= (R(open_lanes)(tile, &at, i, near) &
+                      between_edges(&leaf->shown, slot, f_load(at.s + i), -f_load(at.t + i)))
+                     << i;
+        leaf->slot_of_group[n] = (uint8_t)slot;
+        n = R(note_near)(&at, lanes, leaf->group, n);
     }
     leaf->groups = n;
 }
 
-/// Casts the triangles in the slots of `mask`. All groups that they may show in are found before the first is paired: none waits for
-/// what another says.
-static void R(cast_triangles)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node,
-                              const node_on_screen *seen, unsigned mask)
+/// The groups that the triangle in a slot may show in.
+INNER uint64_t R(groups_of_triangle)(const R(tile_cast) * tile, const bool gathered, const R(cast_leaf) * leaf,
+                                     const node_on_screen *seen, int slot)
+{
+    screen_cells cells = leaf->pixels[slot];
+    if (!gathered)
+        return R(groups_between)(first_column(cells) / 4, last_column(cells) / 4, first_row(cells) / 4, last_row(cells) / 4);
+    return R(cells_of_triangle)(tile, leaf, seen, slot, &cells) ? R(groups_behind)(tile, true, cells, leaf->shown.near[slot]) : 0;
+}
+
+/// Casts the triangles in the slots of `mask`.
+INNER void R(cast_triangles)(R(tile_cast) * tile, const bool gathered, R(cast_leaf) * leaf, const glint_node *node,
+                             const node_on_screen *seen, unsigned mask)
 {
     leaf->node = node;
     leaf->groups = 0;
     R(load_leaf)(tile->args, mask, leaf);
     show_leaf(&tile->view, seen, GLINT_REAL == 32, &leaf->shown);
-    for (mask = R(pixels_of_leaf)(tile, seen, mask, leaf); mask; mask &= mask - 1)
-        R(find_near_groups)(tile, leaf, __builtin_ctz(mask));
-    for (int n = 0; n < leaf->groups; n++) {
-        const int place = leaf->group[n].place;
-        R(add_pairs)(tile, leaf, leaf->group[n].slot, place % COVER_ACROSS, place / COVER_ACROSS, leaf->group[n].lanes);
+    for (mask = gathered ? mask : R(pixels_of_leaf)(tile, seen, mask, leaf); mask; mask &= mask - 1) {
+        const int slot = __builtin_ctz(mask);
+        R(find_groups_of_triangle)(tile, gathered, leaf, slot, R(groups_of_triangle)(tile, gathered, leaf, seen, slot));
     }
+    for (int n = 0; n < leaf->groups; n++)
+        R(add_pairs)(tile, leaf, leaf->slot_of_group[n], leaf->group[n].x, leaf->group[n].y, leaf->group[n].lanes);
     R(decide_pairs)(tile, leaf);
 }
 

@@ -10,6 +10,17 @@ typedef struct R(tile_lens) {
     _Alignas(64) float across[2][GLINT_GROUP]; ///< where on it each lane's rays start, in units of place where k is 1
 } R(tile_lens);
 
+#define PIXEL_ROWS (GLINT_TILE_HEIGHT / GLINT_PIXEL_CELL)
+
+/// Groups whose pixels lie anywhere in a tile.
+typedef struct R(pixel_groups) {
+    _Alignas(64) float s[GLINT_TILE_GROUPS][GLINT_GROUP], t[GLINT_TILE_GROUPS][GLINT_GROUP]; ///< places of the rays
+    uint64_t in_cell[PIXEL_ROWS][SCREEN_ACROSS]; ///< groups with a ray in it, a bit each
+    _Alignas(64) uint32_t cell[GLINT_TILE_GROUPS][GLINT_GROUP]; ///< of each ray: SCREEN_ACROSS times the row, and the column
+    uint16_t turns[GLINT_TILE_GROUPS]; ///< lanes whose cell is another than that of the lane before; the first is
+    float far[GLINT_TILE_GROUPS]; ///< as of a tile's groups
+} R(pixel_groups);
+
 /// The tile's pixels as the filter sees them, and what is hit so far.
 typedef struct R(tile_cast) {
     const glint_cast_args *args;
@@ -19,7 +30,7 @@ typedef struct R(tile_cast) {
     bool parallel; ///< the rays do not start at one eye but beside each other, or on a lens; they are in arrays
     const R(tile_lens) * lens; ///< NULL: they do not start on one
     bool deep; ///< more than the first candidates are in sight: worth knowing what hides what
-    struct R(pixel_groups) * pixels; ///< pixels.h: the groups' pixels lie anywhere, and cells are smaller; NULL: they lie in rows
+    R(pixel_groups) * pixels; ///< NULL: the groups' pixels lie in rows, and cells are groups
     float rr, uu; ///< squares of the lengths of right and up
     float longest; ///< no direction is longer
     float spread; ///< by how much the lengths within a group differ from that in its middle, at most
@@ -414,7 +425,18 @@ static inline void R(note_depth)(R(tile_cast) * tile, int x, int y)
 }
 
 /// The same where the groups' pixels lie anywhere, whose farthest is known.
-static void R(note_cells)(R(tile_cast) * tile, int g, float far);
+static void R(note_cells)(R(tile_cast) * tile, int g, float far)
+{
+    R(pixel_groups) *pixels = tile->pixels;
+    pixels->far[g] = far;
+    for (unsigned turns = pixels->turns[g]; turns; turns &= turns - 1) {
+        const uint32_t cell = pixels->cell[g][__builtin_ctz(turns)];
+        float most = -HUGE_VALF;
+        for (uint64_t left = (&pixels->in_cell[0][0])[cell]; left; left &= left - 1)
+            most = larger(most, pixels->far[__builtin_ctzll(left)]);
+        tile->far[cell / SCREEN_ACROSS][cell % SCREEN_ACROSS] = most;
+    }
+}
 
 /// Tests candidates, group by group.
 static void R(cast_candidates)(R(tile_cast) * tile, const R(candidate) * candidates, int count)

@@ -1,0 +1,165 @@
+// slot: a primitive in a slot of a node, no triangle, against the groups of a tile that it may show in. Contract: stages.h, cast.
+
+/// The groups that come near it. boxed, a constant: a solid before rays from one eye, with the box that it is in.
+INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
+                              int slot, const bool boxed, eye_box *box, R(near_group) * out)
+{
+    const float depth = seen->near[slot];
+    const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
+    uint64_t left = R(groups_behind)(tile, gathered, seen->cells[slot], depth);
+    int count = 0;
+    if (!left)
+        return 0;
+    const shape_on_screen shape = shape_of(node, seen, slot, &tile->args->geometry->prims[id], &tile->view);
+    if (boxed)
+        *box = see_box(tile->args->camera, &tile->view, node, slot);
+    for (; left; left &= left - 1) {
+        const R(tile_group) at = R(lowest_group)(tile, gathered, left);
+        unsigned lanes = 0;
+        if (!boxed && !gathered && GLINT_WITH_LENS && tile->lens)
+            lanes = R(lanes_through_lens)(tile, &shape, seen->middle[2][slot], depth, at.x, at.y);
+        else
+            for (int i = 0; i < GLINT_GROUP; i += VF) {
+                const vf s = f_load(at.s + i), t = f_load(at.t + i);
+                const unsigned near = R(open_lanes)(tile, &at, i, depth) & near_shape(&shape, s, -t);
+                lanes |= (boxed ? near & lanes_in_box(box, s, t) : near) << i;
+            }
+        count = R(note_near)(&at, lanes, out, count);
+    }
+    return count;
+}
+
+INNER void R(count_near)(const R(tile_cast) * tile, const R(near_group) * groups, int count)
+{
+    for (int n = 0; tile->args->tests && n < count; n++)
+        *tile->args->tests += (unsigned)__builtin_popcount(groups[n].lanes);
+}
+
+// ---- A sphere ----
+
+/// VR lanes of a group that a sphere comes near.
+typedef struct R(near_part) {
+    uint16_t at; ///< the first of them, in the tile
+    uint16_t across, down; ///< where the parts of their directions are, see group_directions
+} R(near_part);
+
+/// The parts of groups that have lanes.
+INNER int R(find_near_parts)(const R(tile_cast) * tile, const R(near_group) * groups, int count, R(near_part) * out)
+{
+    int parts = 0;
+    for (int n = 0; n < count; n++)
+        for (int i = 0; i < GLINT_GROUP; i += VR) {
+            const int x = groups[n].x, y = groups[n].y, g = y * tile->across + x;
+            out[parts] = (R(near_part)) { (uint16_t)(g * GLINT_GROUP + i), (uint16_t)(x * 3 * GLINT_GROUP + i),
+                                          (uint16_t)(y * 3 * GLINT_GROUP + i) };
+            parts += (groups[n].lanes >> i & ((1u << VR) - 1)) != 0;
+        }
+    return parts;
+}
+
+/// Decides it for rays from one eye.
+INNER void R(decide_ball_of_eye)(const glint_cast_args *args, uint32_t id, const R(near_part) * parts, int count)
+{
+    R(candidate) ball;
+    R(place_candidate)(args, id, &ball);
+    const vr f[3] = { r_set(ball.f[0]), r_set(ball.f[1]), r_set(ball.f[2]) };
+    const vr c = r_set(ball.c), r2 = r_set(ball.r2), scale = r_set(ball.scale);
+    for (int n = 0; n < count; n++) {
+        const real *across = (const real *)args->camera->across + parts[n].across;
+        const real *down = (const real *)args->camera->down + parts[n].down;
+        vr d[3], t;
+        for (int k = 0; k < 3; k++)
+            d[k] = r_load(across + k * GLINT_GROUP) + r_load(down + k * GLINT_GROUP);
+        const rm hit = R(meet_ball)(f, d, DOT(d, d), c, r2, scale, &t);
+        R(keep_nearest)(args, parts[n].at, id, hit, t);
+    }
+}
+
+/// Decides it for parallel rays.
+INNER void R(decide_ball_of_parallels)(const glint_cast_args *args, uint32_t id, const R(near_part) * parts, int count)
+{
+    const glint_prim *prim = &args->geometry->prims[id];
+    const R(ball) ball = R(ball_of)(prim);
+    vr center[3], d[3];
+    for (int k = 0; k < 3; k++) {
+        center[k] = r_set(prim->center[k]);
+        d[k] = r_set(args->camera->forward[k]);
+    }
+    const vr a = DOT(d, d);
+    for (int n = 0; n < count; n++) {
+        const size_t at = parts[n].at;
+        vr f[3], t;
+        for (int k = 0; k < 3; k++)
+            f[k] = (r_load((const real *)args->origin[k] + at) - center[k]) * ball.scale;
+        const vr c = R(exact_power)(f, ball.r2, ball.r2_low);
+        const rm hit = R(meet_ball)(f, d, a, c, ball.r2, ball.scale, &t);
+        R(keep_nearest)(args, at, id, hit, t);
+    }
+}
+
+/// The rays do not start on a lens.
+INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen, int slot)
+{
+    const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
+    R(near_group) groups[GLINT_TILE_GROUPS];
+    R(near_part) parts[GLINT_TILE_SAMPLES / VR];
+    const int count = R(find_near_groups)(tile, gathered, node, seen, slot, false, NULL, groups);
+    if (!count)
+        return;
+    R(count_near)(tile, groups, count);
+    const int part_count = R(find_near_parts)(tile, groups, count, parts);
+    if (!gathered && tile->parallel)
+        R(decide_ball_of_parallels)(tile->args, id, parts, part_count);
+    else
+        R(decide_ball_of_eye)(tile->args, id, parts, part_count);
+    for (int n = 0; n < count; n++)
+        R(note_group)(tile, gathered, groups[n]);
+}
+
+// ---- Anything else, and spheres through a lens ----
+
+/// parts, box: where it is boxed, room for what its rays know of it.
+INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen, int slot,
+                         const bool boxed, R(eye_parts) * parts, eye_box *box)
+{
+    const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
+    R(near_group) groups[GLINT_TILE_GROUPS];
+    R(candidate) candidate;
+    const int count = R(find_near_groups)(tile, gathered, node, seen, slot, boxed, box, groups);
+    if (!count)
+        return;
+    if (gathered || !tile->parallel)
+        R(place_candidate)(tile->args, id, &candidate);
+    if (boxed)
+        R(see_candidate)(tile->args, &candidate, parts);
+    for (int n = 0; n < count; n++) {
+        const int x = groups[n].x, y = groups[n].y;
+        if (!boxed && !gathered && tile->parallel
+                ? R(decide_rays)(tile->args, (uint32_t)(y * tile->across + x), id, groups[n].lanes)
+                : R(decide_pixels)(tile, &candidate, x, y, groups[n].lanes))
+            R(note_group)(tile, gathered, groups[n]);
+    }
+}
+
+/// Apart, so that it takes no registers from what all other surfaces do.
+static __attribute__((noinline)) void R(cast_boxed)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot)
+{
+    R(eye_parts) parts;
+    eye_box box;
+    if (tile->pixels)
+        R(cast_other)(tile, true, node, seen, slot, true, &parts, &box);
+    else
+        R(cast_other)(tile, false, node, seen, slot, true, &parts, &box);
+}
+
+/// Where float decides, no box keeps anything from it.
+INNER void R(cast_slot)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen, int slot)
+{
+    const uint32_t kind = tile->args->geometry->prims[node->child[slot] & ~GLINT_NODE_PRIM].kind;
+    if (GLINT_REAL == 64 && (gathered || !tile->parallel) && (kind == GLINT_PRIM_SOLID || kind == GLINT_PRIM_COMBINED))
+        R(cast_boxed)(tile, node, seen, slot);
+    else if (kind == GLINT_PRIM_SPHERE && (gathered || !tile->lens))
+        R(cast_ball)(tile, gathered, node, seen, slot);
+    else
+        R(cast_other)(tile, gathered, node, seen, slot, false, NULL, NULL);
+}
