@@ -358,7 +358,6 @@ void glint_raster_clear(glint_raster *raster)
 #define PROJECT_NS 45 ///< a triangle, in view or not
 #define VISIT_NS 20 ///< what casting takes more for a triangle in view ...
 #define PIXEL_NS 1 ///< ... and for a sample
-#define PARALLEL_NS 40 ///< the same for a sample of parallel rays, whose triangles are tested one by one
 #define MERGE_NS 4 ///< a sample, where something else is to be cast beside
 #define BUILD_NS 500 ///< an index, for each primitive
 #define FRAMES_WITHOUT 8 ///< frames whose projections together are the work of building an index
@@ -402,8 +401,7 @@ bool glint_raster_pays(const glint_plan *plan, bool needs_index)
     const double triangles = geometry->table.triangles, samples = plan->desc.samples;
     const double pixels = plan->desc.width * plan->desc.height * samples;
     const double raster = triangles * PROJECT_NS + (known.alone ? 0 : pixels * MERGE_NS);
-    double cast = pixels * (plan->camera.orthographic ? PARALLEL_NS : PIXEL_NS);
-    cast += samples * VISIT_NS * triangles * known.in_view;
+    double cast = pixels * PIXEL_NS + samples * VISIT_NS * triangles * known.in_view;
     if (!needs_index && !known.indexed && atomic_load(&geometry->index->frames_without) < FRAMES_WITHOUT)
         cast += BUILD_NS * triangles;
     return cast > raster;

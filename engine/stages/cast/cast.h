@@ -194,7 +194,7 @@ static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, uint64_t
 INNER void R(cast_prims_as)(R(tile_cast) * tile, const bool gathered, R(cast_leaf) * leaf, const glint_node *node,
                             const node_on_screen *seen, unsigned mask)
 {
-    const unsigned triangles = tile->parallel && !tile->lens ? 0 : triangles_in(tile->args->geometry, node, mask);
+    const unsigned triangles = triangles_in(tile->args->geometry, node, mask);
     int order[GLINT_NODE_WIDTH];
     const int count = sort_slots(mask & ~triangles, seen->near, order);
     for (int i = 0; i < count; i++)

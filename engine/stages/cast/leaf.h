@@ -108,26 +108,26 @@ static inline bool R(cells_of_triangle)(const R(tile_cast) * tile, const R(cast_
     return true;
 }
 
-/// Where the ray of a pair starts. `lens` is a constant, here and below: whether that is the pair's own.
-INNER void R(start_of_pair)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, bool lens, int n, real place[3])
+/// Where the ray of a pair starts. own, a constant here and below: not at the eye but where it says.
+INNER void R(start_of_pair)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n, real place[3])
 {
     for (int k = 0; k < 3; k++)
-        place[k] = lens ? leaf->origin[k][n] : (real)tile->args->camera->eye[k];
+        place[k] = own ? leaf->origin[k][n] : (real)tile->args->camera->eye[k];
 }
 
 /// Whether the ray of a pair starts in the plane of a triangle.
-INNER bool R(begins_in_plane)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, bool lens, int n,
+INNER bool R(begins_in_plane)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n,
                               const glint_prim *prim)
 {
     real place[3];
-    R(start_of_pair)(tile, leaf, lens, n, place);
+    R(start_of_pair)(tile, leaf, own, n, place);
     const R(flat) flat = R(flat_of)(prim, tile->args->geometry->scale);
     return R(is_in_plane)(&flat, place, false);
 }
 
 /// The hits of pairs from i on. Triangles that share their planes with others are decided anew; `through`: lanes whose rays pass
 /// between the edges.
-INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, bool lens, int i, unsigned through,
+INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, bool own, int i, unsigned through,
                                unsigned hits)
 {
     const glint_geometry_table *table = tile->args->geometry;
@@ -138,7 +138,7 @@ INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, b
             continue;
         const glint_prim *prim = &table->prims[leaf->node->child[leaf->slot[n]] & ~GLINT_NODE_PRIM];
         real place[3];
-        R(start_of_pair)(tile, leaf, lens, n, place);
+        R(start_of_pair)(tile, leaf, own, n, place);
         const vr o[3] = { r_set(place[0]), r_set(place[1]), r_set(place[2]) };
         const vr d[3] = { r_set(leaf->direction[0][n]), r_set(leaf->direction[1][n]), r_set(leaf->direction[2][n]) };
         leaf->t[n] = R(first_lane)(R(face_way)(R(face_of)(table, prim), o, d));
@@ -148,7 +148,7 @@ INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, b
 }
 
 /// Keeps what is nearer than all before. near: beyond it no ray starts in the triangle's plane.
-INNER void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool lens, int n, real near, uint64_t *moved)
+INNER void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n, real near, uint64_t *moved)
 {
     const glint_cast_args *args = tile->args;
     const glint_prim *prims = args->geometry->prims;
@@ -156,7 +156,7 @@ INNER void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool len
     const real t = leaf->t[n];
     real *best = (real *)args->t + at;
     uint32_t *best_id = args->prim + at;
-    if (t <= near && !prims[id].face && R(begins_in_plane)(tile, leaf, lens, n, &prims[id]))
+    if (t <= near && !prims[id].face && R(begins_in_plane)(tile, leaf, own, n, &prims[id]))
         return;
     const bool tie = t == *best && t < (real)HUGE_VAL && *best_id != GLINT_MISS && prims[id].id < prims[*best_id].id;
     if (!(t < *best || tie))
@@ -169,16 +169,16 @@ INNER void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool len
 }
 
 /// The corners of VR pairs from their rays' starts, in units of the table.
-INNER void R(corners_of_pairs)(const R(cast_leaf) * leaf, bool lens, const double eye[3], int i, vr scale, vr p[3][3])
+INNER void R(corners_of_pairs)(const R(cast_leaf) * leaf, bool own, const double eye[3], int i, vr scale, vr p[3][3])
 {
     for (int k = 0; k < 3; k++) {
-        const vr from = lens ? r_load(leaf->origin[k] + i) : r_set(eye[k]);
+        const vr from = own ? r_load(leaf->origin[k] + i) : r_set(eye[k]);
         for (int j = 0; j < 3; j++)
             p[j][k] = (r_pick(leaf->corner[j][k], leaf->slot + i) - from) * scale;
     }
 }
 
-INNER void R(decide_pairs_of)(R(tile_cast) * tile, R(cast_leaf) * leaf, bool lens)
+INNER void R(decide_pairs_of)(R(tile_cast) * tile, R(cast_leaf) * leaf, bool own)
 {
     const real scale = (real)tile->args->geometry->scale, near = R(near_shared_edge)(tile->args->geometry);
     uint64_t moved = 0;
@@ -188,13 +188,13 @@ INNER void R(decide_pairs_of)(R(tile_cast) * tile, R(cast_leaf) * leaf, bool len
         leaf->slot[n] = leaf->slot[0];
         for (int k = 0; k < 3; k++) {
             leaf->direction[k][n] = leaf->direction[k][0];
-            if (lens)
+            if (own)
                 leaf->origin[k][n] = leaf->origin[k][0];
         }
     }
     for (int i = 0; i < leaf->count; i += VR) {
         vr p[3][3], d[3], t;
-        R(corners_of_pairs)(leaf, lens, tile->args->camera->eye, i, r_set(scale), p);
+        R(corners_of_pairs)(leaf, own, tile->args->camera->eye, i, r_set(scale), p);
         for (int k = 0; k < 3; k++)
             d[k] = r_load(leaf->direction[k] + i);
         const unsigned there = leaf->count - i < VR ? (1u << (leaf->count - i)) - 1 : (1u << VR) - 1;
@@ -202,9 +202,9 @@ INNER void R(decide_pairs_of)(R(tile_cast) * tile, R(cast_leaf) * leaf, bool len
         unsigned hits = rm_bits(R(meet_seen)(&edges, p, d, d, r_set(scale), NULL, &t)) & there;
         r_store(leaf->t + i, t);
         if (leaf->faced)
-            hits = R(decide_faced)(tile, leaf, lens, i, rm_bits(R(passes)(&edges, p, d)) & there, hits);
+            hits = R(decide_faced)(tile, leaf, own, i, rm_bits(R(passes)(&edges, p, d)) & there, hits);
         for (; hits; hits &= hits - 1)
-            R(keep_pair)(tile, leaf, lens, i + __builtin_ctz(hits), near, &moved);
+            R(keep_pair)(tile, leaf, own, i + __builtin_ctz(hits), near, &moved);
     }
     for (; moved; moved &= moved - 1) {
         const int g = __builtin_ctzll(moved);
@@ -218,7 +218,7 @@ INNER void R(decide_pairs_of)(R(tile_cast) * tile, R(cast_leaf) * leaf, bool len
 }
 
 static void R(decide_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf) { R(decide_pairs_of)(tile, leaf, false); }
-static void R(decide_lens_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf) { R(decide_pairs_of)(tile, leaf, true); }
+static void R(decide_own_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf) { R(decide_pairs_of)(tile, leaf, true); }
 
 /// Pairs a triangle with lanes of group (x, y).
 static inline void R(add_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, int slot, int x, int y, unsigned lanes)
@@ -250,6 +250,25 @@ static inline void R(add_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, int sl
     leaf->count = n;
     if (n > GLINT_PAIRS - GLINT_GROUP)
         R(decide_pairs)(tile, leaf);
+}
+
+/// The same of group g, whose rays have their own starts.
+static inline void R(add_own_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, int slot, uint32_t g, unsigned lanes)
+{
+    const glint_cast_args *args = tile->args;
+    int n = leaf->count;
+    for (; lanes; lanes &= lanes - 1, n++) {
+        const uint32_t at = g * GLINT_GROUP + (uint32_t)__builtin_ctz(lanes);
+        leaf->slot[n] = (uint32_t)slot;
+        leaf->at[n] = at;
+        for (int k = 0; k < 3; k++) {
+            leaf->origin[k][n] = ((const real *)args->origin[k])[at];
+            leaf->direction[k][n] = ((const real *)args->direction[k])[at];
+        }
+    }
+    leaf->count = n;
+    if (n > GLINT_PAIRS - GLINT_GROUP)
+        R(decide_own_pairs)(tile, leaf);
 }
 
 /// Finds, of some groups, those with rays that may meet the triangle in a slot, and these rays.
@@ -292,31 +311,21 @@ INNER void R(cast_triangles)(R(tile_cast) * tile, const bool gathered, R(cast_le
         const int slot = __builtin_ctz(mask);
         R(find_groups_of_triangle)(tile, gathered, leaf, slot, R(groups_of_triangle)(tile, gathered, leaf, seen, slot));
     }
-    for (int n = 0; n < leaf->groups; n++)
-        R(add_pairs)(tile, leaf, leaf->slot_of_group[n], leaf->group[n].x, leaf->group[n].y, leaf->group[n].lanes);
-    R(decide_pairs)(tile, leaf);
+    const bool parallel = !gathered && tile->parallel;
+    for (int n = 0; n < leaf->groups; n++) {
+        const R(near_group) group = leaf->group[n];
+        if (parallel)
+            R(add_own_pairs)(tile, leaf, leaf->slot_of_group[n], (uint32_t)(group.y * tile->across + group.x), group.lanes);
+        else
+            R(add_pairs)(tile, leaf, leaf->slot_of_group[n], group.x, group.y, group.lanes);
+    }
+    if (parallel)
+        R(decide_own_pairs)(tile, leaf);
+    else
+        R(decide_pairs)(tile, leaf);
 }
 
 // ---- Rays that start on a lens ----
-
-/// Pairs a triangle with lanes of group g.
-static inline void R(add_lens_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, int slot, uint32_t g, unsigned lanes)
-{
-    const glint_cast_args *args = tile->args;
-    int n = leaf->count;
-    for (; lanes; lanes &= lanes - 1, n++) {
-        const uint32_t at = g * GLINT_GROUP + (uint32_t)__builtin_ctz(lanes);
-        leaf->slot[n] = (uint32_t)slot;
-        leaf->at[n] = at;
-        for (int k = 0; k < 3; k++) {
-            leaf->origin[k][n] = ((const real *)args->origin[k])[at];
-            leaf->direction[k][n] = ((const real *)args->direction[k])[at];
-        }
-    }
-    leaf->count = n;
-    if (n > GLINT_PAIRS - GLINT_GROUP)
-        R(decide_lens_pairs)(tile, leaf);
-}
 
 /// Loads the corners. Lanes without a triangle keep what they had.
 static void R(load_lens_leaf)(const R(tile_cast) * tile, unsigned mask, R(cast_leaf) * leaf, leaf_through_lens *out)
@@ -348,7 +357,7 @@ static void R(cast_lens_triangle)(R(tile_cast) * tile, R(cast_leaf) * leaf, cons
                              << i;
             }
             if (lanes)
-                R(add_lens_pairs)(tile, leaf, slot, g, lanes);
+                R(add_own_pairs)(tile, leaf, slot, g, lanes);
         }
 }
 
@@ -363,5 +372,5 @@ static void R(cast_lens_triangles)(R(tile_cast) * tile, R(cast_leaf) * leaf, con
     R(load_lens_leaf)(tile, mask, leaf, &shown);
     for (int i = 0; i < count; i++)
         R(cast_lens_triangle)(tile, leaf, &shown, seen, order[i]);
-    R(decide_lens_pairs)(tile, leaf);
+    R(decide_own_pairs)(tile, leaf);
 }
