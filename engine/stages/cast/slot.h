@@ -1,8 +1,8 @@
 // slot: a primitive in a slot of a node, no triangle, against the groups of a tile that it may show in. Contract: stages.h, cast.
 
 /// The groups that come near it. boxed, a constant: a solid before rays from one eye, with the box that it is in.
-INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
-                              int slot, const bool boxed, eye_box *box, R(near_group) * out)
+INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, const glint_node *node,
+                              const node_on_screen *seen, int slot, const bool boxed, eye_box *box, R(near_group) * out)
 {
     const float depth = seen->near[slot];
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
@@ -98,7 +98,8 @@ INNER void R(decide_ball_of_parallels)(const glint_cast_args *args, uint32_t id,
 }
 
 /// The rays do not start on a lens.
-INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen, int slot)
+INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
+                        int slot)
 {
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
     R(near_group) groups[GLINT_TILE_GROUPS];
@@ -119,8 +120,8 @@ INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_no
 // ---- Anything else, and spheres through a lens ----
 
 /// parts, box: where it is boxed, room for what its rays know of it.
-INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen, int slot,
-                         const bool boxed, R(eye_parts) * parts, eye_box *box)
+INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
+                         int slot, const bool boxed, R(eye_parts) * parts, eye_box *box)
 {
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
     R(near_group) groups[GLINT_TILE_GROUPS];
@@ -142,7 +143,8 @@ INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_n
 }
 
 /// Apart, so that it takes no registers from what all other surfaces do.
-static __attribute__((noinline)) void R(cast_boxed)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot)
+static __attribute__((noinline)) void R(cast_boxed)(R(tile_cast) * tile, const glint_node *node,
+                                                    const node_on_screen *seen, int slot)
 {
     R(eye_parts) parts;
     eye_box box;
@@ -153,7 +155,8 @@ static __attribute__((noinline)) void R(cast_boxed)(R(tile_cast) * tile, const g
 }
 
 /// Where float decides, no box keeps anything from it.
-INNER void R(cast_slot)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen, int slot)
+INNER void R(cast_slot)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
+                        int slot)
 {
     const uint32_t kind = tile->args->geometry->prims[node->child[slot] & ~GLINT_NODE_PRIM].kind;
     if (GLINT_REAL == 64 && (gathered || !tile->parallel) && (kind == GLINT_PRIM_SOLID || kind == GLINT_PRIM_COMBINED))
