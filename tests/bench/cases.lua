@@ -64,6 +64,7 @@ local measurements = {
   { "g.lamps16", "glint", "frame lamps=16" },
   { "g.lamps64", "glint", "frame lamps=64" },
   { "g.mesh100k", "glint", "frame scene=mesh100k" },
+  { "g.mesh.level", "glint", "frame scene=levelmesh" },
   { "g.mesh", "glint", "frame scene=mesh" },
   { "g.mesh.build", "glint", "build scene=mesh threads=1" },
   { "g.box", "glint", "frame scene=box shadows=0" },
@@ -90,6 +91,8 @@ local measurements = {
   { "e.ways.1k", "embree_lone", "frame scene=1k indirect=16", runs = 3 },
   { "g.glass", "glint", "frame scene=glass" },
   { "g.glass.mesh", "glint", "frame scene=glassmesh" },
+  { "g.mirror.floor", "glint", "frame scene=mirrorfloor" },
+  { "g.glass.floor", "glint", "frame scene=glassfloor area=1" },
 
   -- all 16 samples only where they are needed
   { "g.adaptive", "glint", "frame samples=16 adaptive=1" },
@@ -151,6 +154,9 @@ local measurements = {
   { "p.mesh.area", "povray", "frame scene=mesh100k area=1", runs = 1 },
   { "p.1k.area", "povray", "frame scene=1k area=1", runs = 1 },
   { "p.glass.mesh", "povray", "frame scene=glassmesh", runs = 1 },
+  { "p.mirror.floor", "povray", "frame scene=mirrorfloor", runs = 1 },
+  { "p.glass.floor", "povray", "frame scene=glassfloor area=1", runs = 1 },
+  { "p.mesh.level", "povray", "frame scene=levelmesh", runs = 1 },
   { "p.mesh100k", "povray", "frame scene=mesh100k", runs = 3 },
   { "p.glass", "povray", "frame scene=glass", runs = 3 },
   { "p.adaptive", "povray", "frame samples=16 adaptive=1", runs = 3 },
@@ -250,6 +256,7 @@ local rows = {
   { "many", "500,000 triangles, render", "g.mesh:render", "e.mesh:render", bar = 1 },
   { "many", "100,000 triangles, render", "g.mesh100k:render", "e.mesh100k:render" },
   { "peers", "100,000 triangles, render", "g.mesh100k:render", "p.mesh100k:cpu", bar = 40, more = true },
+  { "peers", "100,000 triangles, orthographic", "g.mesh.level:render", "p.mesh.level:cpu" },
   { "peers", "100,000 spheres around eye and lamp", "g.inside:render", "p.inside:cpu" },
   { "peers", "a molecule of 2,250 balls, rods and tips", "g.molecule:render", "p.molecule:cpu", bar = 30, more = true },
   { "many", "500,000 triangles, index build", "g.mesh.build:build", "e.mesh:build" },
@@ -269,6 +276,8 @@ local rows = {
   { "ways", "indirect light, 1,000 spheres", "g.ways.1k:render", "e.ways.1k:render", bar = 1 },
   { "peers", "24 mirrors, glass and matt spheres", "g.glass:render", "p.glass:cpu", bar = 12, more = true },
   { "peers", "a mesh of 20,000 triangles, of glass", "g.glass.mesh:render", "p.glass.mesh:cpu" },
+  { "peers", "1,000 spheres on a floor that mirrors", "g.mirror.floor:render", "p.mirror.floor:cpu" },
+  { "peers", "50 spheres on a floor, half of glass, 16-sample area light", "g.glass.floor:render", "p.glass.floor:cpu" },
 
   { "All of 16 samples only where neighbours differ by more than a tenth; a glass ball among soft shadows" },
   { "peers", "workshop, adaptive", "g.adaptive:render", "p.adaptive:cpu", bar = 35, more = true },

@@ -213,6 +213,21 @@ static void make_floor(bench_scene *s, size_t count)
     set3(s->light, 9, 20, 6);
 }
 
+/// The floor, and what of its material is on it, mirrors.
+static void make_mirror_floor(bench_scene *s, size_t count)
+{
+    make_floor(s, count);
+    s->materials[0] = (bench_material) { .diffuse = { 0.1F, 0.1F, 0.12F }, .mirror = 0.8F };
+}
+
+/// Every second is of glass.
+static void make_glass_floor(bench_scene *s, size_t count)
+{
+    make_floor(s, count);
+    for (int i = 1; i < BENCH_MATERIALS; i += 2)
+        s->materials[i] = (bench_material) { .transmission = 0.9F };
+}
+
 /// Solids of one kind that stand on the floor in place of its spheres.
 static void make_solids(bench_scene *s, size_t count, bench_solid_kind kind)
 {
@@ -281,6 +296,12 @@ static void make_mesh(bench_scene *s, size_t quadrangles)
     set3(s->light, 9, 14, 4);
 }
 
+static void make_level_mesh(bench_scene *s, size_t quadrangles)
+{
+    make_mesh(s, quadrangles);
+    s->height = 16;
+}
+
 static void make_glass_mesh(bench_scene *s, size_t quadrangles)
 {
     make_mesh(s, quadrangles);
@@ -300,6 +321,8 @@ static const struct {
                { "floor100", make_floor, 100 },
                { "floor1k", make_floor, 1000 },
                { "floor1M", make_floor, 1000000 },
+               { "mirrorfloor", make_mirror_floor, 1000 },
+               { "glassfloor", make_glass_floor, 50 },
                { "glass", make_glass, 24 },
                { "cut1k", make_cut, 1000 },
                { "pieces1k", make_pieces, 1000 },
@@ -310,7 +333,8 @@ static const struct {
                { "molecule", make_molecule, 1000 },
                { "glassmesh", make_glass_mesh, 10000 },
                { "mesh", make_mesh, 250000 },
-               { "mesh100k", make_mesh, 50176 } };
+               { "mesh100k", make_mesh, 50176 },
+               { "levelmesh", make_level_mesh, 50176 } };
 
 bool bench_scene_create(const char *name, bench_scene *out)
 {

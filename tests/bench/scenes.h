@@ -55,7 +55,7 @@ typedef struct bench_scene {
 ///   workshop                 four balls on a large one
 ///   glassball                the same, one of them of glass
 ///   1k, 1M                   a cloud of so many spheres; over1k, over1M: above the top of a large ball
-///   floor100, floor1k, floor1M   so many spheres resting on such a floor
+///   floor100, floor1k, floor1M   so many spheres resting on such a floor; mirrorfloor: 1,000 on one that mirrors; glassfloor: 50, half of glass
 ///   glass                    24 mirrors, glass and matt spheres on a floor
 ///   cut1k, pieces1k          1,000 boxes less a ball on such a floor; these boxes and balls, each by itself
 ///   tori                     24 tori on such a floor
@@ -63,7 +63,7 @@ typedef struct bench_scene {
 ///   inside                   100,000 spheres around the eye
 ///   cloud17k                 17,000 spheres
 ///   molecule                 1,000 balls, 1,000 rods and 250 tips
-///   mesh, mesh100k           500,000 and 100,000 triangles
+///   mesh, mesh100k           500,000 and 100,000 triangles; levelmesh: the latter, an orthographic view
 ///   glassmesh                20,000 triangles, of glass
 bool bench_scene_create(const char *name, bench_scene *out);
 void bench_scene_free(bench_scene *scene);
