@@ -18,7 +18,7 @@ static inline uint64_t R(groups_of)(unsigned columns, unsigned rows)
 static inline uint64_t R(groups_between)(int left, int right, int top, int bottom)
 {
     const uint64_t rows = ((uint64_t)2 << (COVER_ACROSS * bottom + COVER_ACROSS - 1)) - ((uint64_t)1 << COVER_ACROSS * top);
-    return (bit_range(left, right) * 0x0101010101010101) & rows;
+    return (uint64_t)bit_range(left, right) * 0x0101010101010101 & rows;
 }
 
 static inline uint64_t R(all_groups)(const R(tile_cast) * tile)
