@@ -180,8 +180,7 @@ static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, uint64_t
         if (!(root->child[order[i]] & GLINT_NODE_PRIM))
             continue;
         const screen_cells cells = seen.cells[order[i]];
-        may[found] = R(groups_of)(bit_range(first_column(cells), last_column(cells)),
-                                  bit_range(first_row(cells), last_row(cells)));
+        may[found] = R(groups_between)(first_column(cells), last_column(cells), first_row(cells), last_row(cells));
         R(make_candidate)(tile, root->child[order[i]] & ~GLINT_NODE_PRIM, &candidates[found++]);
     }
     for (int i = count; i-- > 0;)

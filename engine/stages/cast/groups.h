@@ -1,5 +1,6 @@
 // groups: of the groups of a tile, those that something may show in, by its cells and how deep it is; and of their lanes, those that
-// come near it. All are found before the first is decided, so that none waits for what another says. Contract: stages.h, cast.
+// come near it. All groups are tested before the first is decided, and nothing branches on what a test gives: such branches are
+// mispredicted, which costs more than the tests. Contract: stages.h, cast.
 
 /// One of these groups. Where pixels lie anywhere, all are in one column.
 typedef struct R(tile_group) {

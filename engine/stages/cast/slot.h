@@ -1,6 +1,6 @@
 // slot: a primitive in a slot of a node, no triangle, against the groups of a tile that it may show in. Contract: stages.h, cast.
 
-/// The groups that come near it. boxed, a constant: a solid before rays from one eye, with the box that it is in.
+/// Finds the groups that come near it. Returns how many. boxed, a constant: a solid before rays from one eye, with the box that it is in.
 INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, const glint_node *node,
                               const node_on_screen *seen, int slot, const bool boxed, eye_box *box, R(near_group) * out)
 {
@@ -29,12 +29,6 @@ INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, co
     return count;
 }
 
-INNER void R(count_near)(const R(tile_cast) * tile, const R(near_group) * groups, int count)
-{
-    for (int n = 0; tile->args->tests && n < count; n++)
-        *tile->args->tests += (unsigned)__builtin_popcount(groups[n].lanes);
-}
-
 // ---- A sphere ----
 
 /// VR lanes of a group that a sphere comes near.
@@ -43,7 +37,7 @@ typedef struct R(near_part) {
     uint16_t across, down; ///< where the parts of their directions are, see group_directions
 } R(near_part);
 
-/// The parts of groups that have lanes.
+/// Finds the parts of groups that have lanes. Returns how many.
 INNER int R(find_near_parts)(const R(tile_cast) * tile, const R(near_group) * groups, int count, R(near_part) * out)
 {
     int parts = 0;
@@ -97,7 +91,7 @@ INNER void R(decide_ball_of_parallels)(const glint_cast_args *args, uint32_t id,
     }
 }
 
-/// The rays do not start on a lens.
+/// Casts a sphere to rays that do not start on a lens.
 INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
                         int slot)
 {
@@ -107,19 +101,20 @@ INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_no
     const int count = R(find_near_groups)(tile, gathered, node, seen, slot, false, NULL, groups);
     if (!count)
         return;
-    R(count_near)(tile, groups, count);
     const int part_count = R(find_near_parts)(tile, groups, count, parts);
     if (!gathered && tile->parallel)
         R(decide_ball_of_parallels)(tile->args, id, parts, part_count);
     else
         R(decide_ball_of_eye)(tile->args, id, parts, part_count);
-    for (int n = 0; n < count; n++)
+    for (int n = 0; n < count; n++) {
+        count_tests(tile->args->tests, groups[n].lanes);
         R(note_group)(tile, gathered, groups[n]);
+    }
 }
 
 // ---- Anything else, and spheres through a lens ----
 
-/// parts, box: where it is boxed, room for what its rays know of it.
+/// Casts anything but a triangle. parts, box: where it is boxed, room for what its rays know of it.
 INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
                          int slot, const bool boxed, R(eye_parts) * parts, eye_box *box)
 {
@@ -154,7 +149,7 @@ static __attribute__((noinline)) void R(cast_boxed)(R(tile_cast) * tile, const g
         R(cast_other)(tile, false, node, seen, slot, true, &parts, &box);
 }
 
-/// Where float decides, no box keeps anything from it.
+/// Casts what is in the slot. Where float decides, no box keeps anything from it.
 INNER void R(cast_slot)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
                         int slot)
 {

@@ -5,16 +5,9 @@
 #define COVER_ACROSS (GLINT_TILE_WIDTH / 4) ///< bit COVER_ACROSS y + x of a set of groups is group (x, y)
 #define COVER_MARGIN 1e-4 ///< of what is certain; far above the rounding of float and real
 
-/// Every group of columns and rows, a bit each.
-static inline uint64_t R(groups_of)(unsigned columns, unsigned rows)
-{
-    uint64_t groups = 0;
-    for (; rows; rows &= rows - 1)
-        groups |= (uint64_t)columns << COVER_ACROSS * __builtin_ctz(rows);
-    return groups;
-}
+_Static_assert(COVER_ACROSS == 8, "groups_between repeats a row's bits a byte each");
 
-/// Those of a rectangle, its ends included.
+/// The groups from column `left` to `right` and from row `top` to `bottom`, all included, a bit each.
 static inline uint64_t R(groups_between)(int left, int right, int top, int bottom)
 {
     const uint64_t rows = ((uint64_t)2 << (COVER_ACROSS * bottom + COVER_ACROSS - 1)) - ((uint64_t)1 << COVER_ACROSS * top);
@@ -23,7 +16,7 @@ static inline uint64_t R(groups_between)(int left, int right, int top, int botto
 
 static inline uint64_t R(all_groups)(const R(tile_cast) * tile)
 {
-    return R(groups_of)(bit_range(0, tile->across - 1), bit_range(0, tile->down - 1));
+    return R(groups_between)(0, tile->across - 1, 0, tile->down - 1);
 }
 
 INNER bool R(is_round)(const R(candidate) * candidate)

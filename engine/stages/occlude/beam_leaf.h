@@ -199,8 +199,8 @@ static void R(block_triangle)(R(beam) * beam, int slot)
         R(points_near_triangle)(beam, slot, mine, top[first], whole ? bottom[end] : top[end]);
 }
 
-/// Takes out of args->open what the triangles in the slots of `mask` block. Points are found for all of them before the first is paired:
-/// no test waits for what another says.
+/// Takes out of args->open what the triangles in the slots of `mask` block. Points are found for all of them before the first is paired,
+/// without branches, as in groups.h.
 static void R(block_triangles)(R(beam) * beam, const glint_node *node, const node_on_screen *seen, unsigned mask)
 {
     R(beam_leaf) *leaf = &beam->leaf;
