@@ -187,7 +187,8 @@ static inline void R(cast_spheres)(const glint_cast_args *args, uint32_t g, cons
 
 /// A group's rays as one after the other walks the index.
 typedef struct R(lone_rays) {
-    _Alignas(64) float inverse[3][GLINT_GROUP], length[GLINT_GROUP], per_a[GLINT_GROUP]; ///< of d: 1 / d, |d|, 1 / |d|^2
+    _Alignas(64) float inverse[3][GLINT_GROUP], length[GLINT_GROUP],
+        per_a[GLINT_GROUP]; ///< of d: 1 / d, |d|, 1 / |d|^2
     unsigned usual; ///< others are not for float
 } R(lone_rays);
 
@@ -205,16 +206,41 @@ static inline void R(load_lone_rays)(const R(ray_group) * rays, R(lone_rays) * o
     }
 }
 
-/// One ray, and what it may meet first of what it has come upon.
+/// What the rays of a group may meet first of what they have come upon, in the index's units.
+typedef struct R(first_balls) {
+    _Alignas(64) float far[GLINT_GROUP]; ///< what is met is not beyond
+    float way[2][GLINT_GROUP],
+        next[GLINT_GROUP]; ///< ways to the first two spheres that each may enter, and to the third
+    uint32_t prim[2][GLINT_GROUP]; ///< these; GLINT_MISS: none
+} R(first_balls);
+
+static inline void R(begin_balls)(const glint_cast_args *args, size_t at, R(first_balls) * first)
+{
+    const vf none = f_set(HUGE_VALF);
+    for (int lane = 0; lane < GLINT_GROUP; lane++)
+        first->far[lane] = R(reach_in_index)(args, ((const real *)args->t)[at + (size_t)lane]);
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        f_store(first->next + i, none);
+        for (int k = 0; k < 2; k++) {
+            f_store(first->way[k] + i, none);
+            i_store(first->prim[k] + i, i_set(GLINT_MISS));
+        }
+    }
+}
+
+/// Keeps what lies beyond `far` from being looked at by a ray.
+static inline void R(look_no_further)(R(first_balls) * first, int lane, float far)
+{
+    first->far[lane] = smaller(first->far[lane], far);
+}
+
+/// One ray.
 typedef struct R(lone_ray) {
     float origin[3], direction[3], inverse[3], length, per_a;
     float enter[3], leave[3]; ///< the origin, moved by its rounding to where boxes begin earlier and end later
     int first[3]; ///< where in a node, in floats, the sides of boxes are by which it may enter
     int last[3]; ///< and by which it may leave
     uint32_t leaving;
-    float far; ///< what is met is not beyond, in the index's units
-    float way[2], next; ///< ways to the first two spheres that it may enter, and to the third
-    uint32_t prim[2]; ///< these; GLINT_MISS: none
 } R(lone_ray);
 
 static inline void R(load_lone_ray)(const glint_cast_args *args, size_t at, const R(ray_group) * rays,
@@ -224,9 +250,6 @@ static inline void R(load_lone_ray)(const glint_cast_args *args, size_t at, cons
     ray->length = lone->length[lane];
     ray->per_a = lone->per_a[lane];
     ray->leaving = args->leaving ? args->leaving[at] : GLINT_MISS;
-    ray->far = R(reach_in_index)(args, ((const real *)args->t)[at]);
-    ray->way[0] = ray->way[1] = ray->next = HUGE_VALF;
-    ray->prim[0] = ray->prim[1] = GLINT_MISS;
     for (int k = 0; k < 3; k++) {
         const float x = rays->local[k][lane], moved = 0x1p-22f * fabsf(x) + FLT_MIN;
         ray->origin[k] = x;
@@ -242,12 +265,12 @@ static inline void R(load_lone_ray)(const glint_cast_args *args, size_t at, cons
 
 /// Which boxes the ray may enter before `far`, and where it enters each. As boxes_on_ray: what is rounded besides the origin is
 /// a share of the way.
-static inline unsigned R(boxes_of_lone_ray)(const glint_node *node, const R(lone_ray) * ray,
+static inline unsigned R(boxes_of_lone_ray)(const glint_node *node, const R(lone_ray) * ray, float far,
                                             float depth[GLINT_NODE_WIDTH])
 {
     unsigned inside = 0;
     for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
-        vf enter = f_set(0), leave = f_set(ray->far);
+        vf enter = f_set(0), leave = f_set(far);
         for (int k = 0; k < 3; k++) {
             const float *first = (const float *)node + ray->first[k], *last = (const float *)node + ray->last[k];
             const vf inverse = f_set(ray->inverse[k]);
@@ -289,7 +312,7 @@ INNER R(boxed_balls) R(balls_in_boxes)(const glint_node *node, const R(lone_ray)
 }
 
 /// Returns the slots whose spheres the ray may enter before `far`, or begins in.
-static inline unsigned R(meet_balls)(const glint_node *node, const R(lone_ray) * ray, R(balls_on_ray) * out)
+static inline unsigned R(meet_balls)(const glint_node *node, const R(lone_ray) * ray, float far, R(balls_on_ray) * out)
 {
     const vf d[3] = { f_set(ray->direction[0]), f_set(ray->direction[1]), f_set(ray->direction[2]) };
     const vf length = f_set(ray->length), per_a = f_set(ray->per_a), zero = f_set(0);
@@ -305,7 +328,7 @@ static inline unsigned R(meet_balls)(const glint_node *node, const R(lone_ray) *
             continue;
         const vf half = f_sqrt(f_max(room, zero)), slack = f_set(NEAREST_SLACK) * (f_abs(b) + reach);
         const vf way = f_max((b - half) - slack, zero) * per_a;
-        const fm near = fm_and(fm_and(f_le(zero, room), f_le(zero, (b + half) + slack)), f_le(way, f_set(ray->far)));
+        const fm near = fm_and(fm_and(f_le(zero, room), f_le(zero, (b + half) + slack)), f_le(way, f_set(far)));
         if (!fm_bits(near))
             continue;
         const vf inner_half = f_sqrt(f_max(inner_room, zero));
@@ -318,44 +341,51 @@ static inline unsigned R(meet_balls)(const glint_node *node, const R(lone_ray) *
     return may;
 }
 
-/// Notes a sphere that the ray may enter.
-static inline void R(note_ball)(R(lone_ray) * ray, uint32_t id, float way, float sure)
+/// Notes a sphere that a ray may enter.
+static inline void R(note_ball)(R(first_balls) * first, int lane, uint32_t id, float way, float sure)
 {
-    if (id == ray->leaving)
-        return;
-    if (way < ray->way[0]) {
-        ray->next = ray->way[1];
-        ray->way[1] = ray->way[0];
-        ray->prim[1] = ray->prim[0];
-        ray->way[0] = way;
-        ray->prim[0] = id;
-    } else if (way < ray->way[1]) {
-        ray->next = ray->way[1];
-        ray->way[1] = way;
-        ray->prim[1] = id;
+    if (way < first->way[0][lane]) {
+        first->next[lane] = first->way[1][lane];
+        first->way[1][lane] = first->way[0][lane];
+        first->prim[1][lane] = first->prim[0][lane];
+        first->way[0][lane] = way;
+        first->prim[0][lane] = id;
+    } else if (way < first->way[1][lane]) {
+        first->next[lane] = first->way[1][lane];
+        first->way[1][lane] = way;
+        first->prim[1][lane] = id;
     } else {
-        ray->next = smaller(ray->next, way);
+        first->next[lane] = smaller(first->next[lane], way);
     }
-    ray->far = smaller(ray->far, sure);
+    R(look_no_further)(first, lane, sure);
 }
 
 /// Notes the spheres of a node in the slots of `mask`.
-static inline void R(note_balls)(const glint_node *node, unsigned mask, R(lone_ray) * ray)
+static inline void R(note_balls)(const glint_node *node, unsigned mask, const R(lone_ray) * ray, int lane,
+                                 R(first_balls) * first)
 {
     R(balls_on_ray) balls;
-    for (mask &= R(meet_balls)(node, ray, &balls); mask; mask &= mask - 1) {
+    for (mask &= R(meet_balls)(node, ray, first->far[lane], &balls); mask; mask &= mask - 1) {
         const int slot = __builtin_ctz(mask);
-        R(note_ball)(ray, node->child[slot] & ~GLINT_NODE_PRIM, balls.way[slot], balls.sure[slot]);
+        const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
+        if (id != ray->leaving)
+            R(note_ball)(first, lane, id, balls.way[slot], balls.sure[slot]);
     }
 }
 
-/// What remains to be decided of a ray.
-static inline void R(pair_ray)(const glint_cast_args *args, const R(lone_ray) * ray, uint32_t at, R(ray_pairs) * pairs)
+/// What remains to be decided of a group.
+static inline void R(pair_first)(const glint_cast_args *args, size_t at, unsigned lanes, const R(first_balls) * first,
+                                 R(ray_pairs) * pairs)
 {
-    const bool two = ray->prim[1] != GLINT_MISS && ray->way[1] <= ray->far;
-    if (ray->prim[0] == GLINT_MISS || !(ray->way[0] <= ray->far))
-        return;
-    if (two)
-        R(add_pair)(args, pairs, at, ray->prim[1], HUGE_VALF);
-    R(add_pair)(args, pairs, at, ray->prim[0], two ? ray->next : smaller(ray->way[1], ray->next));
+    for (lanes &= ~lanes_equal(first->prim[0], GLINT_MISS); lanes; lanes &= lanes - 1) {
+        const int lane = __builtin_ctz(lanes);
+        const uint32_t ray = (uint32_t)at + (uint32_t)lane;
+        const float far = first->far[lane], second = first->way[1][lane], next = first->next[lane];
+        const bool two = first->prim[1][lane] != GLINT_MISS && second <= far;
+        if (!(first->way[0][lane] <= far))
+            continue;
+        if (two)
+            R(add_pair)(args, pairs, ray, first->prim[1][lane], HUGE_VALF);
+        R(add_pair)(args, pairs, ray, first->prim[0][lane], two ? next : smaller(second, next));
+    }
 }

@@ -1,6 +1,6 @@
-// cast_rays: the nearest hit of rays that start anywhere. In small scenes groups meet all primitives, else each ray walks the
-// index, among spheres alone, among others in rounds (rounds.h); those of a tile of an orthographic camera, or of one with a lens, walk
-// it together (parallel.h). Contract: stages.h.
+// cast_rays: the nearest hit of rays that start anywhere. In small scenes groups meet all primitives, else the rays of a group walk
+// the index together while they go the same way (together.h), and each on its own from there; those of a tile of an orthographic
+// camera, or of one with a lens, walk it as one (parallel.h). Contract: stages.h.
 
 /// Where rays that go in through a sphere or solid come out of it: surely somewhere, for it is convex; of a form without an
 /// inside, perhaps by the other side.
@@ -170,36 +170,8 @@ static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_gro
     }
 }
 
-/// Walks the index, which has spheres alone, with one ray, by float.
-static void R(walk_lone_ray)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays,
-                             const R(lone_rays) * lone, int lane, R(ray_pairs) * pairs)
-{
-    const glint_geometry_table *geometry = args->geometry;
-    const size_t at = (size_t)g * GLINT_GROUP + (size_t)lane;
-    R(lone_ray) ray;
-    walk_entry stack[WALK_STACK];
-    int height = 0;
-    R(load_lone_ray)(args, at, rays, lone, &ray);
-    stack[height++] = (walk_entry) { 0, 0 };
-    while (height > 0) {
-        const walk_entry top = stack[--height];
-        if (ray.far < top.depth)
-            continue;
-        _Alignas(64) float depth[GLINT_NODE_WIDTH];
-        int order[GLINT_NODE_WIDTH];
-        const glint_node *node = &geometry->nodes[top.node];
-        const unsigned prims = prims_of_node(node), leaf = prims | lanes_equal(node->child, 0); // 0: no child
-        const unsigned mask = leaf == 0xffff ? prims : R(boxes_of_lone_ray)(node, &ray, depth);
-        if (mask & prims)
-            R(note_balls)(node, mask & prims, &ray);
-        for (int i = sort_slots(mask & ~prims, depth, order); i-- > 0;)
-            stack[height++] = (walk_entry) { node->child[order[i]], depth[order[i]] };
-    }
-    R(pair_ray)(args, &ray, (uint32_t)at, pairs);
-}
-
-static void R(walk_in_rounds)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays,
-                              const R(lone_rays) * lone, unsigned lanes, R(ray_pairs) * pairs);
+static void R(walk_rays)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays, const R(lone_rays) * lone,
+                         unsigned lanes, R(ray_pairs) * pairs);
 static void R(cast_parallel)(const glint_cast_args *args);
 
 #define LENS_BEAM 8 ///< radius over focus, above which the rays of a tile have little in common
@@ -308,21 +280,15 @@ static void R(cast_many_rays)(const glint_cast_args *args)
     R(ray_group) rays;
     R(lone_rays) lone;
     R(ray_pairs) pairs = { .count = 0 };
-    const bool mixed = args->geometry->triangles || args->geometry->solids;
     for (uint32_t g = 0; g < args->group_count; g++) {
         if (!R(begin_rays)(args, g, local, &rays))
             continue;
         R(load_lone_rays)(&rays, &lone);
-        unsigned lanes = args->active[g];
-        if (GLINT_REAL == 64 && mixed) {
-            R(walk_in_rounds)(args, g, &rays, &lone, lanes & lone.usual, &pairs);
-            lanes &= ~lone.usual;
-        }
-        for (; lanes; lanes &= lanes - 1)
-            if (GLINT_REAL == 64 && lone.usual & lanes & -lanes)
-                R(walk_lone_ray)(args, g, &rays, &lone, __builtin_ctz(lanes), &pairs);
-            else
-                R(walk_ray)(args, g, &rays, __builtin_ctz(lanes));
+        const unsigned usual = GLINT_REAL == 64 ? lone.usual : 0;
+        if (args->active[g] & usual)
+            R(walk_rays)(args, g, &rays, &lone, args->active[g] & usual, &pairs);
+        for (unsigned lanes = args->active[g] & ~usual; lanes; lanes &= lanes - 1)
+            R(walk_ray)(args, g, &rays, __builtin_ctz(lanes));
     }
     R(decide_ray_pairs)(args, &pairs);
     for (uint32_t g = 0; g < args->group_count; g++) {

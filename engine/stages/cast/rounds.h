@@ -1,10 +1,11 @@
 // rounds: rays that go every way among triangles and solids. The rays of a group walk the index in rounds, a node each; the triangles
 // that they come upon are decided in double, a vector of pairs of ray and triangle at a time, each lane with its own of both. Lanes
 // that may come under the rules of shared edges are left to decide_rays. So are solids, for all rays at once that come upon one in the
-// same round. Contract: stages.h, cast.
+// same round. Where there are spheres alone, nothing is decided on the way, and rays walk one after the other. Contract: stages.h, cast.
 
 #define GLINT_ROUND_PAIRS 96 ///< of a round, a multiple of any VR
 #define GLINT_ROUND_SOLIDS 64 ///< of a round
+#define GLINT_LEFT_NODES 48 ///< at most, that a group leaves to each of its rays, see together.h
 
 /// The rays of a group as triangles see them: components in the cyclic order that has the direction's largest last, see
 /// edges_along. With that every lane of a vector has one order, and the bits are those of its own.
@@ -16,8 +17,8 @@ typedef struct R(turned_rays) {
 /// The nodes that a ray is still to look into, and where it enters them.
 typedef struct R(node_stack) {
     int height;
-    uint32_t node[WALK_STACK + GLINT_NODE_WIDTH]; ///< with room for what is behind the packed
-    float depth[WALK_STACK + GLINT_NODE_WIDTH];
+    uint32_t node[WALK_STACK + GLINT_NODE_WIDTH + GLINT_LEFT_NODES]; ///< with room for what is behind the packed
+    float depth[WALK_STACK + GLINT_NODE_WIDTH + GLINT_LEFT_NODES];
 } R(node_stack);
 
 typedef struct R(rounds) {
@@ -28,6 +29,7 @@ typedef struct R(rounds) {
     uint32_t solid[GLINT_ROUND_SOLIDS]; ///< solids, or what else is neither triangle nor sphere
     uint32_t rays[GLINT_ROUND_SOLIDS]; ///< which came upon each, a bit a lane
     int solids;
+    R(first_balls) first;
     R(lone_ray) ray[GLINT_GROUP];
     R(node_stack) stack[GLINT_GROUP];
 } R(rounds);
@@ -161,8 +163,7 @@ static __attribute__((noinline)) void R(decide_triangles)(const glint_cast_args 
                 R(keep_ray)(args, ray, id, t);
             else
                 R(decide_rays)(args, g, id, 1u << lane);
-            float *far = &rounds->ray[lane].far;
-            *far = smaller(*far, R(reach_in_index)(args, ((const real *)args->t)[ray]));
+            R(look_no_further)(&rounds->first, (int)lane, R(reach_in_index)(args, ((const real *)args->t)[ray]));
         }
     }
     rounds->count = 0;
@@ -182,8 +183,7 @@ static __attribute__((noinline)) void R(decide_solids)(const glint_cast_args *ar
     }
     for (; nearer; nearer &= nearer - 1) {
         const int lane = __builtin_ctz(nearer);
-        float *far = &rounds->ray[lane].far;
-        *far = smaller(*far, R(reach_in_index)(args, ((const real *)args->t)[at + (size_t)lane]));
+        R(look_no_further)(&rounds->first, lane, R(reach_in_index)(args, ((const real *)args->t)[at + (size_t)lane]));
     }
     rounds->solids = 0;
 }
@@ -215,7 +215,7 @@ static inline void R(meet_others)(const glint_geometry_table *geometry, const gl
             R(add_solid)(rounds, id, lane);
     }
     if (spheres)
-        R(note_balls)(node, spheres, &rounds->ray[lane]);
+        R(note_balls)(node, spheres, &rounds->ray[lane], lane, &rounds->first);
 }
 
 /// Pairs a ray with the triangles of a node in the slots of `mask`. Returns the slots of other primitives.
@@ -277,16 +277,17 @@ static inline void R(push_nodes)(const glint_node *node, const float depth[GLINT
 /// One ray goes on to the next node. Returns whether there was any.
 static inline bool R(step)(const glint_cast_args *args, int lane, R(rounds) * rounds)
 {
-    R(lone_ray) *ray = &rounds->ray[lane];
+    const float far = rounds->first.far[lane];
     R(node_stack) *stack = &rounds->stack[lane];
     _Alignas(64) float depth[GLINT_NODE_WIDTH];
     do {
         if (!stack->height)
             return false;
         stack->height--;
-    } while (ray->far < stack->depth[stack->height]);
+    } while (far < stack->depth[stack->height]);
     const glint_node *node = &args->geometry->nodes[stack->node[stack->height]];
-    const unsigned mask = R(boxes_of_lone_ray)(node, ray, depth), prims = mask & prims_of_node(node);
+    const unsigned mask = R(boxes_of_lone_ray)(node, &rounds->ray[lane], far, depth),
+                   prims = mask & prims_of_node(node);
     if (prims) {
         const unsigned others = R(add_to_round)(args->geometry, node, prims, lane, rounds);
         if (others)
@@ -297,22 +298,10 @@ static inline bool R(step)(const glint_cast_args *args, int lane, R(rounds) * ro
     return true;
 }
 
-/// Walks the index with the rays of a group in `lanes`.
+/// The rays in `lanes` walk on from the nodes of their stacks.
 static __attribute__((noinline)) void R(walk_in_rounds)(const glint_cast_args *args, uint32_t g,
-                                                        const R(ray_group) * rays, const R(lone_rays) * lone,
-                                                        unsigned lanes, R(ray_pairs) * pairs)
+                                                        const R(ray_group) * rays, unsigned lanes, R(rounds) * rounds)
 {
-    R(rounds) room, *const rounds = &room;
-    const size_t at = (size_t)g * GLINT_GROUP;
-    R(turn_rays)(args, at, lanes, &rounds->turned);
-    rounds->count = rounds->solids = 0;
-    for (unsigned left = lanes; left; left &= left - 1) {
-        const int lane = __builtin_ctz(left);
-        R(load_lone_ray)(args, at + (size_t)lane, rays, lone, &rounds->ray[lane]);
-        rounds->stack[lane].height = 1;
-        rounds->stack[lane].node[0] = 0;
-        rounds->stack[lane].depth[0] = 0;
-    }
     for (unsigned going = lanes; going;) {
         for (unsigned left = going; left; left &= left - 1) {
             if (!R(step)(args, __builtin_ctz(left), rounds))
@@ -327,8 +316,29 @@ static __attribute__((noinline)) void R(walk_in_rounds)(const glint_cast_args *a
         if (rounds->solids)
             R(decide_solids)(args, g, rays, rounds);
     }
-    for (; lanes; lanes &= lanes - 1) {
-        const int lane = __builtin_ctz(lanes);
-        R(pair_ray)(args, &rounds->ray[lane], (uint32_t)at + (uint32_t)lane, pairs);
+}
+
+/// Of an index that has spheres alone: one ray walks on, by float.
+static void R(walk_lone_ray)(const glint_cast_args *args, int lane, R(rounds) * rounds)
+{
+    const glint_geometry_table *geometry = args->geometry;
+    const R(lone_ray) *ray = &rounds->ray[lane];
+    R(node_stack) *stack = &rounds->stack[lane];
+    int height = stack->height;
+    while (height > 0) {
+        const uint32_t top = stack->node[--height];
+        if (rounds->first.far[lane] < stack->depth[height])
+            continue;
+        _Alignas(64) float depth[GLINT_NODE_WIDTH];
+        int order[GLINT_NODE_WIDTH];
+        const glint_node *node = &geometry->nodes[top];
+        const unsigned prims = prims_of_node(node), leaf = prims | lanes_equal(node->child, 0); // 0: no child
+        const unsigned mask = leaf == 0xffff ? prims : R(boxes_of_lone_ray)(node, ray, rounds->first.far[lane], depth);
+        if (mask & prims)
+            R(note_balls)(node, mask & prims, ray, lane, &rounds->first);
+        for (int i = sort_slots(mask & ~prims, depth, order); i-- > 0; height++) {
+            stack->node[height] = node->child[order[i]];
+            stack->depth[height] = depth[order[i]];
+        }
     }
 }

@@ -20,6 +20,7 @@
 #include "engine/stages/cast/nearest.h"
 #include "engine/stages/cast/rays.h"
 #include "engine/stages/cast/rounds.h"
+#include "engine/stages/cast/together.h"
 #include "engine/stages/cast/slot.h"
 #include "engine/stages/cast/cast.h"
 #include "engine/stages/cast/pixels.h"

@@ -11,6 +11,7 @@ typedef enum ray_kind {
     RAYS_OF_ORTHOGRAPHIC_CAMERA, ///< cast_rays, parallel
     RAYS_OF_LENS, ///< cast_rays, of either projection
     RAYS_PARALLEL, ///< likewise, another direction for each group
+    RAYS_ALIKE, ///< likewise, nearly along one direction
     RAYS_FREE, ///< cast_rays
     RAY_KINDS
 } ray_kind;
@@ -175,7 +176,7 @@ static inline void get_ray(const ray_case *c, uint32_t i, double origin[3], doub
 static inline void shoot_free(ray_case *c)
 {
     const scene_plan *plan = &c->plan;
-    double source[3], direction[3], origin[3], target[3];
+    double source[3], way[3] = { 0 }, direction[3], origin[3], target[3], spread = 0;
     const double distance = plan->size * power_of_ten(-2, one_in(4) ? 7 : 1);
     const double jitter = one_in(3) ? 0 : plan->size * power_of_ten(-16, 1);
     random_unit(direction);
@@ -185,17 +186,19 @@ static inline void shoot_free(ray_case *c)
             origin[k] = source[k] + jitter * between(-1, 1);
             target[k] = plan->middle[k] + plan->size * between(-1, 1);
         }
-        const bool same = c->kind == RAYS_PARALLEL && i % GLINT_GROUP;
-        if (!same) {
+        if (c->kind == RAYS_FREE || i % GLINT_GROUP == 0) {
             const double length = power_of_ten(-1, 1) / (distance + plan->size);
-            random_unit(direction);
+            random_unit(way);
             for (int k = 0; k < 3 && !one_in(5); k++)
-                direction[k] = (target[k] - origin[k]) * length;
+                way[k] = (target[k] - origin[k]) * length;
             if (one_in(6)) // along an axis or two
-                direction[below(3)] = direction[below(3)] = either_sign(0);
-            if (!(length3(direction) > 0))
-                random_unit(direction);
+                way[below(3)] = way[below(3)] = either_sign(0);
+            if (!(length3(way) > 0))
+                random_unit(way);
+            spread = c->kind == RAYS_ALIKE ? length3(way) * power_of_ten(-9, 0) : 0;
         }
+        for (int k = 0; k < 3; k++)
+            direction[k] = spread > 0 ? way[k] + spread * between(-1, 1) : way[k];
         put3(c->origin, c->precision, i, origin);
         put3(c->direction, c->precision, i, direction);
     }
@@ -247,7 +250,7 @@ static inline void start_rays(ray_case *c, ray_kind kind, int precision)
         input3(c->origin, real_kind(precision), n);
         input3(c->direction, real_kind(precision), n);
     }
-    if (kind == RAYS_PARALLEL || kind == RAYS_FREE) {
+    if (kind >= RAYS_PARALLEL) {
         shoot_free(c);
         length = c->plan.size;
     } else {
@@ -256,7 +259,7 @@ static inline void start_rays(ray_case *c, ray_kind kind, int precision)
     choose_lines(c, length);
     c->scene = random_scene(&c->plan);
     c->cast.geometry = &c->scene->table;
-    c->cast.camera = kind == RAYS_PARALLEL || kind == RAYS_FREE ? NULL : &c->camera;
+    c->cast.camera = kind >= RAYS_PARALLEL ? NULL : &c->camera;
     memcpy(c->cast.origin, c->origin, sizeof c->cast.origin);
     memcpy(c->cast.direction, c->direction, sizeof c->cast.direction);
 }
