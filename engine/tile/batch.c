@@ -362,6 +362,17 @@ void glint_batch_sides(const glint_batch *batch, const glint_tile *tile, const g
     sides[1] = glint_media_top(&beyond);
 }
 
+/// Index here over index beyond; of a mirror alone 1, which nobody looks at.
+static double ratio_of(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
+{
+    const glint_bounce_material *m = &frame->plan->bouncing[tile->surface.material[i]];
+    uint32_t sides[2];
+    if (!m->transmits && !m->fresnel)
+        return 1;
+    glint_batch_sides(batch, tile, frame, i, sides);
+    return index_of(frame->plan, sides[0]) / index_of(frame->plan, sides[1]);
+}
+
 void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_precision precision = frame->plan->desc.precision;
@@ -380,9 +391,7 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = batch->wanted[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            uint32_t sides[2];
-            glint_batch_sides(batch, tile, frame, i, sides);
-            glint_real_put(batch->ratio, precision, i, index_of(frame->plan, sides[0]) / index_of(frame->plan, sides[1]));
+            glint_real_put(batch->ratio, precision, i, ratio_of(batch, tile, frame, i));
         }
     if (glint_plan_bumps(frame->plan))
         glint_tile_bounce_normals(tile, frame->plan, batch->wanted, batch->ratio, args.normal);
@@ -440,41 +449,102 @@ static void total_share(const glint_bounce_material *m, double share[3])
         share[c] = m->mirror[c] < 1 ? 1 - m->mirror[c] : 0;
 }
 
-/// Points a ray along `way`, and weighs it.
-static void send(glint_ray *ray, const double (*way)[GLINT_TILE_SAMPLES], glint_precision precision, uint32_t i,
-                 const double share[3], double factor)
+void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                       const double weight[3], double mirrored[3], double through[3])
 {
-    for (int c = 0; c < 3; c++) {
-        ray->direction[c] = glint_real_at(way[c], precision, i);
-        ray->weight[c] = glint_weight(ray->weight[c] * (share[c] * factor));
+    glint_bounce_material room;
+    const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &room);
+    const double part = m->fresnel ? glint_real_at(batch->reflectance, frame->plan->desc.precision, i) : 1;
+    for (int c = 0; c < 3; c++)
+        mirrored[c] = glint_weight(weight[c] * (m->mirror[c] * part));
+    if (!m->transmits) {
+        through[0] = through[1] = through[2] = 0;
+        return;
     }
+    double rest[3];
+    total_share(m, rest);
+    const double *share = glint_has_lane(batch->total, i) ? rest : m->transmission, left = m->fresnel ? 1 - part : 1;
+    for (int c = 0; c < 3; c++)
+        through[c] = glint_weight(weight[c] * (share[c] * left));
 }
 
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        glint_ray *mirror, glint_ray *through)
 {
     const glint_precision precision = frame->plan->desc.precision;
-    glint_bounce_material room;
-    const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &room);
     const bool back = glint_has_lane(tile->hit.back, i), total = glint_has_lane(batch->total, i);
-    const double mirrored = m->fresnel ? glint_real_at(batch->reflectance, precision, i) : 1;
+    double weight[3];
     glint_batch_start_ray(batch, tile, frame, i, mirror);
+    glint_batch_start_ray(batch, tile, frame, i, through);
+    vec_copy(weight, mirror->weight);
+    glint_batch_weigh(batch, tile, frame, i, weight, mirror->weight, through->weight);
+    for (int c = 0; c < 3; c++) {
+        mirror->direction[c] = glint_real_at(batch->reflected[c], precision, i);
+        through->direction[c] = glint_real_at(total ? batch->reflected[c] : batch->refracted[c], precision, i);
+    }
     mirror->depth++;
-    if (m->transmits) { // not a copy of what was just written number by number, which processors wait for
-        glint_batch_start_ray(batch, tile, frame, i, through);
-        through->depth++;
-    }
-    send(mirror, batch->reflected, precision, i, m->mirror, mirrored);
+    through->depth++;
     mirror->inward = back;
-    if (!m->transmits) { // a mirror alone
-        through->weight[0] = through->weight[1] = through->weight[2] = 0;
-        return;
-    }
-    double rest[3];
-    total_share(m, rest);
-    send(through, total ? batch->reflected : batch->refracted, precision, i, total ? rest : m->transmission,
-         m->fresnel ? 1 - mirrored : 1);
     through->inward = total ? back : !back;
     if (!total && frame->plan->transmits)
         glint_media_cross(&through->media, medium_of(tile, frame, i), back);
+}
+
+// ---- Many at once ----
+
+/// Which way each goes, and to which side of its surface.
+static void direct(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
+                   const glint_sent *sent, glint_rays *rays)
+{
+    const glint_precision precision = frame->plan->desc.precision;
+    for (uint32_t n = 0; n < sent->count; n++) {
+        const uint32_t i = sent->sample[n];
+        const bool crosses = sent->through[n] && !glint_has_lane(batch->total, i),
+                   back = glint_has_lane(tile->hit.back, i);
+        for (int c = 0; c < 3; c++)
+            glint_real_put(rays->direction[c], precision, n,
+                           glint_real_at(crosses ? batch->refracted[c] : batch->reflected[c], precision, i));
+        rays->inward[n / GLINT_GROUP] |= (uint16_t)((back != crosses) << n % GLINT_GROUP);
+        if (!frame->plan->transmits)
+            continue;
+        rays->media[n] = *media_of(batch, tile, frame, i);
+        if (crosses)
+            glint_media_cross(&rays->media[n], medium_of(tile, frame, i), back);
+    }
+}
+
+/// Where each begins, and what it has of the one that came.
+static void hand_on(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
+                    const glint_sent *sent, glint_rays *rays)
+{
+    const glint_rays *from = tile == &batch->tile ? batch->rays : NULL;
+    for (int c = 0; c < 3; c++)
+        take_reals(sent->sample, sent->count, frame->plan->desc.precision, tile->surface.point[c], rays->origin[c]);
+    for (uint32_t n = 0; n < sent->count; n++) {
+        const uint32_t i = sent->sample[n], ray = from ? batch->ray_of[i] : 0;
+        rays->leaving[n] = tile->at.prim[i];
+        rays->pixel[n] = from ? from->pixel[ray] : i;
+        rays->depth[n] = from ? from->depth[ray] + 1 : 1;
+        rays->term[n] = from ? from->term[ray] : sent->through[n] ? GLINT_TERM_TRANSMISSION : GLINT_TERM_MIRROR;
+    }
+    memset(rays->point, 0, sent->count * sizeof *rays->point);
+    memset(rays->scatters, 0, sent->count * sizeof *rays->scatters);
+    memset(rays->least, 0, sent->count * sizeof *rays->least);
+    for (uint32_t n = 0; n < sent->count; n++)
+        rays->way[n] = frame->plan->patterns
+                           ? (from ? from->way[batch->ray_of[sent->sample[n]]] : 0) +
+                                 glint_real_at(tile->at.t, frame->plan->desc.precision, sent->sample[n])
+                           : 0;
+}
+
+void glint_batch_send(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
+                      const glint_sent *sent, glint_rays *rays)
+{
+    glint_rays_clear(rays, (sent->count + GLINT_GROUP - 1) / GLINT_GROUP);
+    for (uint32_t g = 0; g < rays->group_count; g++)
+        rays->active[g] = 0xffff;
+    if (sent->count % GLINT_GROUP)
+        rays->active[rays->group_count - 1] = (uint16_t)((1u << sent->count % GLINT_GROUP) - 1);
+    hand_on(batch, tile, frame, sent, rays);
+    direct(batch, tile, frame, sent, rays);
 }

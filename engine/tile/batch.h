@@ -33,6 +33,13 @@ typedef struct glint_batch {
     _Alignas(64) double reflected[3][GLINT_TILE_SAMPLES], refracted[3][GLINT_TILE_SAMPLES];
 } glint_batch;
 
+/// Rays that go on from samples of a tile.
+typedef struct glint_sent {
+    uint32_t count;
+    uint16_t sample[GLINT_TILE_SAMPLES]; ///< where each begins
+    bool through[GLINT_TILE_SAMPLES]; ///< it is the refracted one of its sample, not the mirrored
+} glint_sent;
+
 static inline bool glint_batch_has_sample(const glint_batch *batch, uint32_t ray)
 {
     return batch->whole || glint_has_lane(batch->met, ray);
@@ -77,10 +84,16 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
 /// its media only in frames with transparent materials.
 void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                            glint_ray *ray);
-/// The mirrored and the refracted ray of sample `i`, weighed, after glint_batch_find_ways. Where batch->total is set both
-/// go the same way. What lets nothing through: of `through` the weight alone is written, which is 0.
+/// The weights of the mirrored and of the refracted ray of sample `i`, after glint_batch_find_ways; weight: of the ray that came. What
+/// lets nothing through gives the latter 0.
+void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                       const double weight[3], double mirrored[3], double through[3]);
+/// These rays, weighed. Where batch->total is set both go the same way.
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        glint_ray *mirror, glint_ray *through);
+/// The same of many samples: makes `rays` of those that are sent, from ray 0 on, but for their weights.
+void glint_batch_send(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
+                      const glint_sent *sent, glint_rays *rays);
 /// The medium that a ray of the batch, which is cast, went through since its last surface.
 uint32_t glint_batch_crossed(const glint_batch *batch, const glint_tile_frame *frame, uint32_t ray);
 /// The media of sample `i` of the tile on the ray's side of its surface, and beyond: materials, GLINT_NO_MEDIUM.

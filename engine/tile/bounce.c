@@ -24,6 +24,7 @@ struct glint_bounce {
     glint_rays room[GLINT_BOUNCE_LEVELS];
     glint_rays *levels[GLINT_BOUNCE_LEVELS]; ///< each in some room, or the batch's own: what is taken changes places with it
     uint32_t counts[GLINT_BOUNCE_LEVELS];
+    glint_sent sent[2]; ///< what a batch sends into its own level, and into the one above
     double budget[GLINT_TILE_SAMPLES]; ///< light that each sample may still lose
     glint_ray_slope *slopes; ///< what those of all levels and of the batch's own rays are in; NULL until a frame has derivatives
 };
@@ -106,46 +107,55 @@ static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const gl
     return any;
 }
 
-static double total_weight(const glint_ray *ray) { return (ray->weight[0] + ray->weight[1]) + ray->weight[2]; }
+/// The two rays of a sample.
+typedef struct two_rays {
+    double weight[2][3]; ///< mirrored, refracted
+    glint_ray_slope slopes[2][GLINT_DERIVATIVES_MAX]; ///< in frames with derivatives
+} two_rays;
+
+static double total_weight(const double weight[3]) { return (weight[0] + weight[1]) + weight[2]; }
 
 /// Whether a ray must be followed; if not, what it might have brought is off the budget.
-static bool matters(struct glint_bounce *bounce, const glint_plan *plan, const glint_ray *ray)
+static bool matters(const glint_plan *plan, const double weight[3], double *budget)
 {
-    double weight = ray->weight[0]; // none is NaN
+    double most = weight[0]; // none is NaN
     for (int c = 1; c < 3; c++)
-        weight = ray->weight[c] > weight ? ray->weight[c] : weight;
-    if (weight == 0) // of a ray that is none, nothing else may be set
+        most = weight[c] > most ? weight[c] : most;
+    if (most == 0) // of a ray that is none
         return false;
-    double *budget = &bounce->budget[ray->pixel];
-    const double lost = weight * plan->brightest;
+    const double lost = most * plan->brightest;
     if (!(4 * lost <= *budget))
         return true;
     *budget -= lost;
     return false;
 }
 
-/// slopes: of the ray; of frames without derivatives not read.
-static void push(struct glint_bounce *bounce, const glint_plan *plan, uint32_t level, const glint_ray *ray,
-                 const glint_ray_slope *slopes)
+/// Sends one of the rays of sample i to level `base`, which is empty, or to the one above.
+static void push(struct glint_bounce *bounce, const glint_plan *plan, uint32_t base, uint32_t above, uint32_t i,
+                 const two_rays *two, bool through)
 {
-    if (level >= GLINT_BOUNCE_LEVELS)
+    glint_sent *sent = &bounce->sent[above];
+    if (base + above >= GLINT_BOUNCE_LEVELS)
         return;
-    const uint32_t count = bounce->counts[level]++;
-    if (count % GLINT_GROUP == 0)
-        bounce->levels[level]->active[count / GLINT_GROUP] = bounce->levels[level]->inward[count / GLINT_GROUP] = 0;
-    glint_rays_put(bounce->levels[level], plan, count, ray);
+    glint_rays *rays = bounce->levels[base + above];
+    const uint32_t n = sent->count++;
+    sent->sample[n] = (uint16_t)i;
+    sent->through[n] = through;
+    for (int c = 0; c < 3; c++)
+        rays->weight[c][n] = two->weight[through][c];
     if (plan->derivatives)
-        memcpy(bounce->levels[level]->slopes + count * plan->derivatives->count, slopes,
-               plan->derivatives->count * sizeof *slopes);
+        memcpy(rays->slopes + n * plan->derivatives->count, two->slopes[through],
+               plan->derivatives->count * sizeof *rays->slopes);
 }
 
-/// A number in 0 .. 1 that is the ray's own: made of its direction's bits (the finish of splitmix64).
-static double lot_of(const glint_ray *ray)
+/// A number in 0 .. 1 that is the mirrored ray's own: made of its direction's bits (the finish of splitmix64).
+static double lot_of(const glint_batch *batch, glint_precision precision, uint32_t i, uint32_t depth)
 {
-    uint64_t z = ray->depth;
+    uint64_t z = depth;
     for (int c = 0; c < 3; c++) {
+        const double x = glint_real_at(batch->reflected[c], precision, i);
         uint64_t bits;
-        memcpy(&bits, &ray->direction[c], sizeof bits);
+        memcpy(&bits, &x, sizeof bits);
         z = (z ^ bits) * 0xbf58476d1ce4e5b9u;
         z = (z ^ z >> 27) * 0x94d049bb133111ebu;
         z ^= z >> 31;
@@ -153,52 +163,57 @@ static double lot_of(const glint_ray *ray)
     return (double)(z >> 11) * 0x1p-53;
 }
 
-/// Gives a ray the weight of another, which then has none.
-static void take_weight(const glint_plan *plan, glint_ray *one, glint_ray *other, glint_ray_slope *slopes,
-                        const glint_ray_slope *more)
+/// Gives one of two rays the weight of both.
+static void take_weight(const glint_plan *plan, two_rays *two, int one)
 {
     for (int c = 0; c < 3; c++) {
-        one->weight[c] = glint_weight(one->weight[c] + other->weight[c]);
-        other->weight[c] = 0;
+        two->weight[one][c] = glint_weight(two->weight[one][c] + two->weight[!one][c]);
+        two->weight[!one][c] = 0;
         for (size_t k = 0; plan->derivatives && k < plan->derivatives->count; k++)
-            slopes[k].weight[c] += more[k].weight[c];
+            two->slopes[one][k].weight[c] += two->slopes[!one][k].weight[c];
     }
 }
 
-/// One of two rays, by lot as they weigh, gets the weight of both, the other none.
-static void stand_for_both(const glint_plan *plan, glint_ray *a, glint_ray *b, glint_ray_slope *a_slopes,
-                           glint_ray_slope *b_slopes)
-{
-    if (!(total_weight(b) > 0) || lot_of(a) * (total_weight(a) + total_weight(b)) < total_weight(a))
-        take_weight(plan, a, b, a_slopes, b_slopes);
-    else
-        take_weight(plan, b, a, b_slopes, a_slopes);
-}
-
-/// The mirrored and the refracted ray of one sample, the stronger one staying in `level`.
+/// Sends on the mirrored and the refracted ray of sample i, the stronger one to level `base`, the weaker one to that above.
 static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                    uint32_t level)
+                    uint32_t base)
 {
     const glint_plan *plan = frame->plan;
-    glint_ray mirror, through;
-    glint_ray_slope slopes[2][GLINT_DERIVATIVES_MAX];
-    glint_batch_split(&bounce->batch, tile, frame, i, &mirror, &through);
+    const glint_batch *batch = &bounce->batch;
+    const bool first = tile != &batch->tile;
+    const uint32_t ray = first ? 0 : batch->ray_of[i], depth = first ? 1 : batch->rays->depth[ray] + 1;
+    double came[3];
+    for (int c = 0; c < 3; c++)
+        came[c] = first ? 1 : batch->rays->weight[c][ray];
+    double *budget = &bounce->budget[first ? i : batch->rays->pixel[ray]];
+    two_rays two;
+    glint_batch_weigh(batch, tile, frame, i, came, two.weight[0], two.weight[1]);
     if (plan->derivatives)
-        glint_derive_split(&bounce->batch, tile, frame, i, slopes[0], slopes[1]);
-    if (tile != &bounce->batch.tile) {
-        mirror.term = GLINT_TERM_MIRROR;
-        through.term = GLINT_TERM_TRANSMISSION;
-    } else if (glint_has_lane(bounce->batch.total, i)) { // both go the same way
-        take_weight(plan, &mirror, &through, slopes[0], slopes[1]);
-    } else if (mirror.depth > GLINT_BOUNCE_SPLITS) {
-        stand_for_both(plan, &mirror, &through, slopes[0], slopes[1]);
-    }
-    const bool mirrors = matters(bounce, plan, &mirror), transmits = matters(bounce, plan, &through);
-    const bool weaker_mirror = mirrors && transmits && total_weight(&mirror) < total_weight(&through);
+        glint_derive_split(batch, tile, frame, i, two.slopes[0], two.slopes[1]);
+    const double mirrored = total_weight(two.weight[0]), refracted = total_weight(two.weight[1]);
+    if (!first && glint_has_lane(batch->total, i)) // both go the same way
+        take_weight(plan, &two, 0);
+    else if (!first && depth > GLINT_BOUNCE_SPLITS) // one, by lot as they weigh
+        take_weight(plan, &two,
+                    refracted > 0 &&
+                        !(lot_of(batch, plan->desc.precision, i, depth) * (mirrored + refracted) < mirrored));
+    const bool mirrors = matters(plan, two.weight[0], budget), transmits = matters(plan, two.weight[1], budget);
+    const bool weaker_mirror = mirrors && transmits && total_weight(two.weight[0]) < total_weight(two.weight[1]);
     if (mirrors)
-        push(bounce, plan, level + weaker_mirror, &mirror, slopes[0]);
+        push(bounce, plan, base, weaker_mirror, i, &two, false);
     if (transmits)
-        push(bounce, plan, level + (mirrors && !weaker_mirror), &through, slopes[1]);
+        push(bounce, plan, base, mirrors && !weaker_mirror, i, &two, true);
+}
+
+static void begin_sending(struct glint_bounce *bounce) { bounce->sent[0].count = bounce->sent[1].count = 0; }
+
+static void end_sending(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame,
+                        uint32_t base)
+{
+    for (uint32_t above = 0; above < 2 && base + above < GLINT_BOUNCE_LEVELS; above++) {
+        bounce->counts[base + above] = bounce->sent[above].count;
+        glint_batch_send(&bounce->batch, tile, frame, &bounce->sent[above], bounce->levels[base + above]);
+    }
 }
 
 /// Sends on what the eye's samples have hit, to level 0.
@@ -207,24 +222,28 @@ static void spawn_first(struct glint_bounce *bounce, const glint_tile *tile, con
     if (!choose(bounce, tile, frame))
         return;
     glint_batch_find_ways(&bounce->batch, tile, frame);
+    begin_sending(bounce);
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = bounce->batch.wanted[g]; left; left &= left - 1)
             send_on(bounce, tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), 0);
+    end_sending(bounce, tile, frame, 0);
 }
 
-/// Sends on what the batch has hit, in the order of its rays; `level` is where these were, and empty.
+/// Sends on what the batch has hit, in the order of its rays; `level` is where these were, and empty as those above.
 static void spawn(struct glint_bounce *bounce, const glint_tile_frame *frame, uint32_t level)
 {
     const glint_batch *batch = &bounce->batch;
     if (!choose(bounce, &batch->tile, frame))
         return;
     glint_batch_find_ways(&bounce->batch, &batch->tile, frame);
+    begin_sending(bounce);
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
         for (unsigned left = batch->rays->active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             if (glint_batch_has_sample(batch, i) && glint_has_lane(batch->wanted, batch->sample[i]))
                 send_on(bounce, &batch->tile, frame, batch->sample[i], level);
         }
+    end_sending(bounce, &batch->tile, frame, level);
 }
 
 // ---- A batch ----
@@ -235,7 +254,6 @@ static void take_level(struct glint_bounce *bounce, uint32_t level, glint_tile_c
     glint_rays *rays = bounce->levels[level];
     bounce->levels[level] = bounce->batch.rays;
     bounce->batch.rays = rays;
-    rays->group_count = (bounce->counts[level] + GLINT_GROUP - 1) / GLINT_GROUP;
     for (uint32_t i = 0; i < bounce->counts[level]; i++) {
         counts->mirror += rays->term[i] == GLINT_TERM_MIRROR;
         counts->refraction += rays->term[i] == GLINT_TERM_TRANSMISSION;
