@@ -8,7 +8,7 @@
 
 static inline double vec_dot(const double a[3], const double b[3]) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
 
-static inline void vec_copy(double out[3], const double v[3]) { memcpy(out, v, 3 * sizeof *out); }
+static inline void vec_copy(double out[3], const double v[3]) { memmove(out, v, 3 * sizeof *out); }
 
 static inline void vec_sub(double out[3], const double a[3], const double b[3])
 {
@@ -51,8 +51,13 @@ static inline double vec_rescale(double out[3], const double v[3])
 /// Unit vector of a finite vector that is not zero.
 static inline void vec_normalize(double out[3], const double v[3])
 {
-    vec_rescale(out, v);
-    vec_rescale(out, out); // a subnormal vector may need a second step
+    const double largest = vec_max_abs(v);
+    if (largest > 0x1p-400 && largest < 0x1p400) { // where a power of two changes nothing
+        vec_copy(out, v);
+    } else {
+        vec_rescale(out, v);
+        vec_rescale(out, out); // a subnormal vector may need a second step
+    }
     const double length = sqrt(vec_dot(out, out));
     for (int c = 0; c < 3; c++)
         out[c] /= length;

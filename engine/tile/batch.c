@@ -450,13 +450,13 @@ static void total_share(const glint_bounce_material *m, double share[3])
 }
 
 void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       const double weight[3], double mirrored[3], double through[3])
+                       double mirrored[3], double through[3])
 {
     glint_bounce_material room;
     const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &room);
     const double part = m->fresnel ? glint_real_at(batch->reflectance, frame->plan->desc.precision, i) : 1;
     for (int c = 0; c < 3; c++)
-        mirrored[c] = glint_weight(weight[c] * (m->mirror[c] * part));
+        mirrored[c] = glint_weight(mirrored[c] * (m->mirror[c] * part));
     if (!m->transmits) {
         through[0] = through[1] = through[2] = 0;
         return;
@@ -465,7 +465,7 @@ void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const g
     total_share(m, rest);
     const double *share = glint_has_lane(batch->total, i) ? rest : m->transmission, left = m->fresnel ? 1 - part : 1;
     for (int c = 0; c < 3; c++)
-        through[c] = glint_weight(weight[c] * (share[c] * left));
+        through[c] = glint_weight(through[c] * (share[c] * left));
 }
 
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
@@ -473,11 +473,9 @@ void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const g
 {
     const glint_precision precision = frame->plan->desc.precision;
     const bool back = glint_has_lane(tile->hit.back, i), total = glint_has_lane(batch->total, i);
-    double weight[3];
     glint_batch_start_ray(batch, tile, frame, i, mirror);
     glint_batch_start_ray(batch, tile, frame, i, through);
-    vec_copy(weight, mirror->weight);
-    glint_batch_weigh(batch, tile, frame, i, weight, mirror->weight, through->weight);
+    glint_batch_weigh(batch, tile, frame, i, mirror->weight, through->weight);
     for (int c = 0; c < 3; c++) {
         mirror->direction[c] = glint_real_at(batch->reflected[c], precision, i);
         through->direction[c] = glint_real_at(total ? batch->reflected[c] : batch->refracted[c], precision, i);

@@ -84,10 +84,10 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
 /// its media only in frames with transparent materials.
 void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                            glint_ray *ray);
-/// The weights of the mirrored and of the refracted ray of sample `i`, after glint_batch_find_ways; weight: of the ray that came. What
+/// Weighs the mirrored and the refracted ray of sample `i`, after glint_batch_find_ways: both have the weight of the ray that came. What
 /// lets nothing through gives the latter 0.
 void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       const double weight[3], double mirrored[3], double through[3]);
+                       double mirrored[3], double through[3]);
 /// These rays, weighed. Where batch->total is set both go the same way.
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        glint_ray *mirror, glint_ray *through);

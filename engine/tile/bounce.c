@@ -182,12 +182,11 @@ static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const g
     const glint_batch *batch = &bounce->batch;
     const bool first = tile != &batch->tile;
     const uint32_t ray = first ? 0 : batch->ray_of[i], depth = first ? 1 : batch->rays->depth[ray] + 1;
-    double came[3];
-    for (int c = 0; c < 3; c++)
-        came[c] = first ? 1 : batch->rays->weight[c][ray];
     double *budget = &bounce->budget[first ? i : batch->rays->pixel[ray]];
     two_rays two;
-    glint_batch_weigh(batch, tile, frame, i, came, two.weight[0], two.weight[1]);
+    for (int c = 0; c < 3; c++)
+        two.weight[0][c] = two.weight[1][c] = first ? 1 : batch->rays->weight[c][ray];
+    glint_batch_weigh(batch, tile, frame, i, two.weight[0], two.weight[1]);
     if (plan->derivatives)
         glint_derive_split(batch, tile, frame, i, two.slopes[0], two.slopes[1]);
     const double mirrored = total_weight(two.weight[0]), refracted = total_weight(two.weight[1]);

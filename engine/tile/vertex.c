@@ -13,6 +13,8 @@
 #include <sched.h>
 #include <stdlib.h>
 
+#define PREFETCHED 8 ///< sites ahead
+
 struct glint_vertex {
     glint_batch batch; ///< of one block
     _Alignas(64) uint32_t no_owner[GLINT_SHADING_POINT_BLOCK]; ///< GLINT_MISS
@@ -79,6 +81,8 @@ static uint32_t face_size(const glint_geometry *geometry, uint32_t first, uint32
     uint32_t count = 1;
     const glint_part *part = &geometry->parts[geometry->prim_part[first]];
     const uint32_t end = part->first_prim + (uint32_t)part->shape->count;
+    if (number + 1 < geometry->table.shading_point_count && geometry->shading_point_prims[number + 1] == first + 1)
+        return 1; // the next triangle begins the next face
     while (first + count < end &&
            geometry->shading_points[geometry->prims[geometry->places[first + count]].shading_points].at[0] == number)
         count++;
@@ -206,6 +210,14 @@ static void put_shading_point(glint_tile *tile, const glint_tile_frame *frame, u
     tile->surface.material[i] = frame->geometry.prims[s->prim].material;
 }
 
+/// A site's triangle is anywhere in memory.
+static void prefetch_prim(const glint_geometry *geometry, uint32_t number)
+{
+    const uint32_t first = geometry->shading_point_prims[number];
+    if (first != GLINT_MISS)
+        __builtin_prefetch(&geometry->prims[geometry->places[first]]);
+}
+
 /// Puts a block's sites into the arrays. The backs of one-sided surfaces have no light.
 static void load_block(struct glint_vertex *vertex, const glint_tile_frame *frame, uint32_t block)
 {
@@ -221,6 +233,8 @@ static void load_block(struct glint_vertex *vertex, const glint_tile_frame *fram
     }
     for (uint32_t i = 0; i < GLINT_SHADING_POINT_BLOCK; i++) {
         const bool there = i < left && frame->plan->geometry->shading_point_prims[first + i] != GLINT_MISS;
+        if (i + PREFETCHED < left)
+            prefetch_prim(frame->plan->geometry, first + i + PREFETCHED);
         shading_point s = { .point = { 0 }, .normal = { 0, 0, 1 }, .prim = 0 };
         if (there)
             find_shading_point(frame->plan->geometry, first + i, &s);
@@ -266,29 +280,31 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
 
 // ---- A tile ----
 
-/// The light of a tile's site is worked out by this worker, unless another has begun to.
-static void ask_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
+/// The light of a tile's site is worked out by this worker, unless another has begun to. Returns whether it is known.
+static bool ask_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
 {
-    unsigned char none = GLINT_BLOCK_NONE;
-    atomic_uchar *state = &frame->shading_points->state[block];
-    if (atomic_load_explicit(state, memory_order_acquire) != GLINT_BLOCK_NONE ||
-        !atomic_compare_exchange_strong(state, &none, GLINT_BLOCK_CLAIMED))
-        return;
+    unsigned char state = atomic_load_explicit(&frame->shading_points->state[block], memory_order_acquire);
+    if (state != GLINT_BLOCK_NONE ||
+        !atomic_compare_exchange_strong(&frame->shading_points->state[block], &state, GLINT_BLOCK_CLAIMED))
+        return state == GLINT_BLOCK_DONE;
     work_out(tile, frame, block);
-    atomic_store_explicit(state, GLINT_BLOCK_DONE, memory_order_release);
+    atomic_store_explicit(&frame->shading_points->state[block], GLINT_BLOCK_DONE, memory_order_release);
+    return true;
 }
 
-static void wait_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
+static bool wait_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
 {
     (void)tile;
     while (atomic_load_explicit(&frame->shading_points->state[block], memory_order_acquire) != GLINT_BLOCK_DONE)
         sched_yield();
+    return true;
 }
 
-/// Does something with the block of each site that the wanted samples have.
-static void each_block(glint_tile *tile, const glint_tile_frame *frame,
-                       void (*act)(glint_tile *, const glint_tile_frame *, uint32_t))
+/// Does something with the block of each site that the wanted samples have. Returns whether all are done.
+static inline bool each_block(glint_tile *tile, const glint_tile_frame *frame,
+                              bool (*act)(glint_tile *, const glint_tile_frame *, uint32_t))
 {
+    bool done = true;
     uint32_t last = GLINT_MISS, last_side = 0;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         if (glint_all_are(tile->at.prim + (size_t)g * GLINT_GROUP, last) && tile->hit.back[g] == (last_side ? 0xffff : 0))
@@ -301,11 +317,12 @@ static void each_block(glint_tile *tile, const glint_tile_frame *frame,
             const uint32_t *at = frame->geometry.shading_points[frame->geometry.prims[prim].shading_points].at;
             for (int j = 0; j < 3; j++)
                 if (j == 0 || at[j] / GLINT_SHADING_POINT_BLOCK != at[j - 1] / GLINT_SHADING_POINT_BLOCK)
-                    act(tile, frame, side * frame->shading_points->blocks + at[j] / GLINT_SHADING_POINT_BLOCK);
+                    done &= act(tile, frame, side * frame->shading_points->blocks + at[j] / GLINT_SHADING_POINT_BLOCK);
             last = prim;
             last_side = side;
         }
     }
+    return done;
 }
 
 static bool has_shading_points(const glint_prim *prim)
@@ -371,8 +388,8 @@ void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, doubl
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
         tile->vertex->wanted[g] = (uint16_t)(tile->at.hits[g] & ~(tile->own_light[g] | tile->hit.dark[g]));
-    each_block(tile, frame, ask_for);
-    each_block(tile, frame, wait_for);
+    if (!each_block(tile, frame, ask_for))
+        each_block(tile, frame, wait_for);
     spread(tile, frame, sum);
     if (frame->plan->derivatives)
         glint_derive_vertex(tile, frame, tile->vertex->wanted);
