@@ -52,7 +52,7 @@ static inline double vec_rescale(double out[3], const double v[3])
 static inline void vec_normalize(double out[3], const double v[3])
 {
     const double largest = vec_max_abs(v);
-    if (largest > 0x1p-400 && largest < 0x1p400) { // where a power of two changes nothing
+    if (largest > 0x1p-400 && largest < 0x1p400) { // where squares neither overflow nor lose what counts
         vec_copy(out, v);
     } else {
         vec_rescale(out, v);

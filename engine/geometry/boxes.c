@@ -108,6 +108,23 @@ void glint_prim_place_sphere(const glint_geometry_table *table, glint_prim *prim
     prim->filter_bound = float_up(radius * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(vec_dot(box.center, box.center)) + FLT_MIN);
 }
 
+/// The map makes of a unit circle an ellipse; the root of the larger eigenvalue of its columns' products is half of its length.
+void glint_prim_place_axis(const glint_geometry_table *table, const glint_prim *prim, glint_solid *solid)
+{
+    const bool about_axis = solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE ||
+                            solid->form == GLINT_FORM_CONE || solid->form == GLINT_FORM_FUNNEL;
+    double column[3][3];
+    for (int i = 0; i < 3; i++)
+        for (int c = 0; c < 3; c++)
+            column[i][c] = solid->forward[c][i] * table->scale;
+    const double xx = vec_dot(column[0], column[0]), yy = vec_dot(column[1], column[1]),
+                 xy = vec_dot(column[0], column[1]), length = sqrt(vec_dot(column[2], column[2]));
+    const double thick = sqrt(0.5 * ((xx + yy) + sqrt((xx - yy) * (xx - yy) + 4 * (xy * xy))));
+    for (int c = 0; c < 3; c++)
+        solid->axis[c] = (float)(column[2][c] / length);
+    solid->thick = about_axis && thick < 0.5 * prim->filter_bound && thick > FLT_MIN ? float_up(thick) : HUGE_VALF;
+}
+
 void glint_prim_place_box(const glint_geometry_table *table, const glint_prim *prim, uint32_t item, glint_box *box)
 {
     const placed_box placed = place_box(table, prim);

@@ -163,6 +163,8 @@ static void keep_box(const glint_geometry *geometry, const glint_prim *prim)
     glint_prim_place_box(&geometry->table, prim, 0, &box);
     memcpy(lower, box.lower, sizeof box.lower);
     memcpy(upper, box.upper, sizeof box.upper);
+    if (!combined)
+        glint_prim_place_axis(&geometry->table, prim, &geometry->solids[prim->item]);
 }
 
 static glint_status index_create(glint_geometry *geometry, glint_error *error)

@@ -121,6 +121,8 @@ static inline bool glint_prim_in_tree(const glint_prim *prim)
 
 /// geometry/boxes.c: a sphere around a primitive becomes its filter's: its own, or that of its box, or a smaller one.
 void glint_prim_place_sphere(const glint_geometry_table *table, glint_prim *prim);
+/// What the filter knows of the axis of a solid that has such a sphere.
+void glint_prim_place_axis(const glint_geometry_table *table, const glint_prim *prim, glint_solid *solid);
 /// Its box in the index's frame, rounded outwards.
 void glint_prim_place_box(const glint_geometry_table *table, const glint_prim *prim, uint32_t item, glint_box *box);
 /// The boxes of what is in the tree, `count` of them, in the order of `prims`, which other threads may read. solids: without

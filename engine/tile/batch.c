@@ -362,12 +362,12 @@ void glint_batch_sides(const glint_batch *batch, const glint_tile *tile, const g
     sides[1] = glint_media_top(&beyond);
 }
 
-/// Index here over index beyond; of a mirror alone 1, which nobody looks at.
+/// Index here over index beyond; of a mirror alone 1, where nothing else asks what lies beyond it.
 static double ratio_of(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
 {
     const glint_bounce_material *m = &frame->plan->bouncing[tile->surface.material[i]];
     uint32_t sides[2];
-    if (!m->transmits && !m->fresnel)
+    if (!m->transmits && !m->fresnel && !glint_plan_bumps(frame->plan))
         return 1;
     glint_batch_sides(batch, tile, frame, i, sides);
     return index_of(frame->plan, sides[0]) / index_of(frame->plan, sides[1]);

@@ -84,14 +84,15 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
 /// its media only in frames with transparent materials.
 void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                            glint_ray *ray);
-/// Weighs the mirrored and the refracted ray of sample `i`, after glint_batch_find_ways: both have the weight of the ray that came. What
-/// lets nothing through gives the latter 0.
+/// Weighs the mirrored and the refracted ray of sample `i`, after glint_batch_find_ways: both come with the weight of the ray that came.
+/// What lets nothing through gives the latter 0.
 void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        double mirrored[3], double through[3]);
 /// These rays, weighed. Where batch->total is set both go the same way.
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        glint_ray *mirror, glint_ray *through);
-/// The same of many samples: makes `rays` of those that are sent, from ray 0 on, but for their weights.
+/// The same of many samples: makes `rays` of those that are sent, from ray 0 on, but for their weights and slopes. Those from a tile
+/// that the eye sees get their term, too.
 void glint_batch_send(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
                       const glint_sent *sent, glint_rays *rays);
 /// The medium that a ray of the batch, which is cast, went through since its last surface.

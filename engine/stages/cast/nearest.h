@@ -183,9 +183,9 @@ static inline void R(cast_spheres)(const glint_cast_args *args, uint32_t g, cons
     }
 }
 
-// ---- One ray against the spheres of a node ----
+// ---- Rays on their way through the index ----
 
-/// A group's rays as one after the other walks the index.
+/// What walks need of a group's rays besides.
 typedef struct R(lone_rays) {
     _Alignas(64) float inverse[3][GLINT_GROUP], length[GLINT_GROUP],
         per_a[GLINT_GROUP]; ///< of d: 1 / d, |d|, 1 / |d|^2

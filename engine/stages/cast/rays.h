@@ -176,7 +176,7 @@ static void R(cast_parallel)(const glint_cast_args *args);
 
 #define LENS_BEAM 8 ///< radius over focus, above which the rays of a tile have little in common
 
-/// Whether the rays walk the index together.
+/// Whether the rays walk the index as one.
 static inline bool R(is_beam)(const glint_camera_args *camera)
 {
     return camera && !(camera->lens && camera->lens->radius * camera->lens->per_focus > LENS_BEAM);

@@ -202,7 +202,7 @@ static inline void R(add_solid)(R(rounds) * rounds, uint32_t id, int lane)
     rounds->rays[n] |= 1u << lane;
 }
 
-/// The primitives of a node in the slots of `mask`, which are no triangles: spheres are noted, see pair_ray.
+/// The primitives of a node in the slots of `mask`, which are no triangles: spheres are noted, see pair_first.
 static inline void R(meet_others)(const glint_geometry_table *geometry, const glint_node *node, unsigned mask, int lane,
                                   R(rounds) * rounds)
 {

@@ -1,8 +1,10 @@
 // slot: a primitive in a slot of a node, no triangle, against the groups of a tile that it may show in. Contract: stages.h, cast.
 
-/// Finds the groups that come near it. Returns how many. boxed, a constant: a solid before rays from one eye, with the box that it is in.
+/// Finds the groups that come near it. Returns how many. Constants: rods, it may be longer than wide; boxed, a solid before rays from
+/// one eye, with the box that it is in.
 INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, const glint_node *node,
-                              const node_on_screen *seen, int slot, const bool boxed, eye_box *box, R(near_group) * out)
+                              const node_on_screen *seen, int slot, const bool rods, const bool boxed, eye_box *box,
+                              R(near_group) * out)
 {
     const float depth = seen->near[slot];
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
@@ -11,6 +13,9 @@ INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, co
     if (!left)
         return 0;
     const shape_on_screen shape = shape_of(node, seen, slot, &tile->args->geometry->prims[id], &tile->view);
+    rod_on_screen rod = { .is = false };
+    if (rods)
+        rod = rod_of(tile->args->geometry, &tile->args->geometry->prims[id], &tile->view);
     if (boxed)
         *box = see_box(tile->args->camera, &tile->view, node, slot);
     for (; left; left &= left - 1) {
@@ -21,7 +26,9 @@ INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, co
         else
             for (int i = 0; i < GLINT_GROUP; i += VF) {
                 const vf s = f_load(at.s + i), t = f_load(at.t + i);
-                const unsigned near = R(open_lanes)(tile, &at, i, depth) & near_shape(&shape, s, -t);
+                unsigned near = R(open_lanes)(tile, &at, i, depth) & near_shape(&shape, s, -t);
+                if (rod.is)
+                    near &= near_rod(&rod, s, -t);
                 lanes |= (boxed ? near & lanes_in_box(box, s, t) : near) << i;
             }
         count = R(note_near)(&at, lanes, out, count);
@@ -98,7 +105,7 @@ INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_no
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
     R(near_group) groups[GLINT_TILE_GROUPS];
     R(near_part) parts[GLINT_TILE_SAMPLES / VR];
-    const int count = R(find_near_groups)(tile, gathered, node, seen, slot, false, NULL, groups);
+    const int count = R(find_near_groups)(tile, gathered, node, seen, slot, false, false, NULL, groups);
     if (!count)
         return;
     const int part_count = R(find_near_parts)(tile, groups, count, parts);
@@ -121,7 +128,7 @@ INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_n
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
     R(near_group) groups[GLINT_TILE_GROUPS];
     R(candidate) candidate;
-    const int count = R(find_near_groups)(tile, gathered, node, seen, slot, boxed, box, groups);
+    const int count = R(find_near_groups)(tile, gathered, node, seen, slot, GLINT_REAL == 64, boxed, box, groups);
     if (!count)
         return;
     if (gathered || !tile->parallel)

@@ -1,13 +1,13 @@
 // together: the rays of a group walk the index together for as long as that is less work than each on its own: where they go about the
 // same way, as what a flat mirror or a small part of a lens sends on. A node is first asked what of it any of them may come to, then
-// each of that which of them; nodes that few of them come to are left to those alone (rounds.h). Contract: stages.h, cast.
+// each of that which of them; nodes that few of them come to, or with more children in question than there are rays, are left to each of those (rounds.h). Contract: stages.h, cast.
 
-#define GLINT_FEW_LANES 3 ///< no more walk each on its own
+#define GLINT_FEW_LANES 3 ///< rays; so many or fewer walk each on its own
 
 /// Bounds of what boxes_of_lone_ray does for any ray of a group. Along an axis that some go up and some down nothing is known.
 typedef struct R(common_way) {
     float enter[3], leave[3]; ///< what is subtracted of the sides by which rays enter and leave
-    float least[3], most[3]; ///< inverse direction
+    float gentle[3], steep[3]; ///< inverse directions of least and of largest size; the latter may be infinite
     int first[3], last[3]; ///< where these sides are in a node, in floats
 } R(common_way);
 
@@ -53,14 +53,16 @@ static inline void R(find_common_way)(const R(common_walk) * walk, unsigned lane
         way->last[k] = (back ? k : k + 3) * GLINT_NODE_WIDTH;
         way->enter[k] = HUGE_VALF;
         way->leave[k] = -HUGE_VALF;
-        way->least[k] = way->most[k] = 1;
+        way->gentle[k] = way->steep[k] = 1;
         if (back && back != lanes) {
             way->first[k] = k * GLINT_NODE_WIDTH;
             way->last[k] = (k + 3) * GLINT_NODE_WIDTH;
             continue;
         }
         float low, high;
-        R(range_in)(walk->lone->inverse[k], lanes, &way->least[k], &way->most[k]);
+        R(range_in)(walk->lone->inverse[k], lanes, &low, &high);
+        way->gentle[k] = back ? high : low;
+        way->steep[k] = back ? low : high;
         R(range_in)(walk->enter[k], lanes, &low, &high);
         way->enter[k] = back ? low : high;
         R(range_in)(walk->leave[k], lanes, &low, &high);
@@ -78,10 +80,10 @@ static inline unsigned R(boxes_on_way)(const glint_node *node, const R(common_wa
         vf enter = f_set(0), leave = f_set(far);
         for (int k = 0; k < 3; k++) {
             const float *first = (const float *)node + way->first[k], *last = (const float *)node + way->last[k];
-            const vf least = f_set(way->least[k]), most = f_set(way->most[k]);
+            const vf gentle = f_set(way->gentle[k]), steep = f_set(way->steep[k]);
             const vf x = f_load(first + i) - f_set(way->enter[k]), y = f_load(last + i) - f_set(way->leave[k]);
-            enter = f_max(f_min(x * least, x * most), enter); // NaN, 0 times infinity, keeps what there was
-            leave = f_min(f_max(y * least, y * most), leave);
+            enter = f_max(f_min(x * gentle, x * steep), enter); // NaN, 0 times infinity, of the second keeps what there was
+            leave = f_min(f_max(y * gentle, y * steep), leave);
         }
         f_store(depth + i, enter);
         inside |= fm_bits(f_le(enter, leave * f_set(1 + WALK_SLACK))) << i;
@@ -223,7 +225,7 @@ static inline bool R(step_together)(const glint_cast_args *args, uint32_t g, R(c
         return false;
     R(common_node) *entry = &walk->stack[--walk->height];
     unsigned lanes = 0;
-    float far = 0;
+    float least, far;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const fm there = f_le(f_load(entry->depth + i), f_load(rounds->first.far + i));
         lanes |= fm_bits(there) << i;
@@ -233,7 +235,6 @@ static inline bool R(step_together)(const glint_cast_args *args, uint32_t g, R(c
         return true;
     if (__builtin_popcount(lanes) <= GLINT_FEW_LANES && R(leave_to_each)(entry, lanes, rounds))
         return true;
-    float least;
     R(range_in)(rounds->first.far, lanes, &least, &far);
     const glint_node *node = &args->geometry->nodes[entry->node];
     const unsigned mask = R(boxes_on_way)(node, &walk->way, far, depth), prims = mask & prims_of_node(node);

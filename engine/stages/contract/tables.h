@@ -148,6 +148,8 @@ typedef struct glint_solid {
         ///< torus: of what the distance from the circle in the middle of its tube is made of
     double tube; ///< torus: radius of its tube where that circle's is 1, above 0 and below 1
     float lower[3], upper[3]; ///< a box around it, in the index's frame and rounded outwards; of a part: not known
+    float axis[3], thick; ///< cylinder, cone and open forms that are longer than wide: the line through the centre along this, which is
+                          ///< unit but for rounding, is nowhere further off than `thick`, in the index's units; else that is infinite
     uint32_t form;
 } glint_solid;
 

@@ -308,3 +308,51 @@ static inline unsigned near_shape(const shape_on_screen *shape, vf u, vf v)
 {
     return shape_at(shape, u * f_set(shape->k), v * f_set(shape->k));
 }
+
+/// A solid that is longer than wide, as the filter sees it: all around its axis. With d along a ray, e along the axis and c from the
+/// one line to the other these pass each other at |n . c| / |n|, n = d x e; what follows of a ray's place is linear in that.
+typedef struct rod_on_screen {
+    float beside[3]; ///< n . c: coefficients of 1, u, v
+    float n[3][2]; ///< n: of 1 and v; of 1 and u; of u and v
+    float reach2, margin; ///< square of how far off the lines may pass; more than what rounding does to n . c and n reach
+    bool is; ///< false: nothing else is set
+} rod_on_screen;
+
+static inline rod_on_screen rod_of(const glint_geometry_table *geometry, const glint_prim *prim, const screen_view *view)
+{
+    const glint_solid *solid = prim->kind == GLINT_PRIM_SOLID ? &geometry->solids[prim->item] : NULL;
+    const float inverse = view->inverse, base = view->base;
+    rod_on_screen out = { .is = solid && solid->thick < HUGE_VALF };
+    float numbers = 2 * prim->filter_bound, c[3] = { 0 }, e[3] = { 0 };
+    if (!out.is)
+        return out;
+    for (int k = 0; k < 3; k++) {
+        const float from = (float)((prim->center[k] - geometry->reference[k]) * geometry->scale - view->exact[k]);
+        numbers += fabsf(prim->filter_center[k]);
+        for (int j = 0; j < 3; j++) {
+            const float axis = view->axis[j][k] * (j < 2 ? view->unit[j] : 1);
+            c[j] += axis * from;
+            e[j] += axis * solid->axis[k];
+        }
+    }
+    const float du = view->unit[0] * inverse, dv = view->unit[1] * inverse;
+    out.beside[0] = c[1] * e[0] - c[0] * e[1];
+    out.beside[1] = du * (c[2] * e[1] - c[1] * e[2]) + view->unit[0] * (base * e[1]);
+    out.beside[2] = dv * (c[0] * e[2] - c[2] * e[0]) - view->unit[1] * (base * e[0]);
+    memcpy(out.n, (const float[3][2]) { { -e[1], dv * e[2] }, { e[0], -(du * e[2]) }, { du * e[1], -(dv * e[0]) } }, sizeof out.n);
+    const float reach = 1.00001f * solid->thick + (view->reach + view->reach_of_numbers * numbers);
+    const float sizes = (fabsf(c[0]) + fabsf(c[1])) + (fabsf(c[2]) + base * view->spread) + (numbers + reach);
+    out.reach2 = reach * reach;
+    out.margin = 0x1p-19f * sizes * (1 + inverse * view->spread);
+    return out;
+}
+
+/// Lanes whose rays, at places u, v, may meet it.
+static inline unsigned near_rod(const rod_on_screen *rod, vf u, vf v)
+{
+    const vf beside = (f_set(rod->beside[0]) + u * f_set(rod->beside[1])) + v * f_set(rod->beside[2]);
+    const vf n[3] = { f_set(rod->n[0][0]) + v * f_set(rod->n[0][1]), f_set(rod->n[1][0]) + u * f_set(rod->n[1][1]),
+                      u * f_set(rod->n[2][0]) + v * f_set(rod->n[2][1]) };
+    const vf least = f_max(f_abs(beside) - f_set(rod->margin), f_set(0));
+    return ~fm_bits(f_lt(f_set(rod->reach2) * DOT(n, n), least * least)) & ((1u << VF) - 1);
+}

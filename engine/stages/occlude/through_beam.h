@@ -63,6 +63,7 @@ typedef struct R(beam_blocker) {
     float near; ///< least w of its box
     bool torus;
     shape_on_screen shape;
+    rod_on_screen rod;
 } R(beam_blocker);
 
 /// Finds the points from `i` on and before `end` that it may block. Its own are dark for that only where they are seen from behind, see
@@ -76,7 +77,9 @@ INNER void R(points_near)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i,
         const unsigned behind = fm_bits(f_le(f_set(b->near), w)) & in_run;
         const vi owner = f_bits(f_load_any((const float *)(beam->own + i)));
         const unsigned front = b->torus ? 0 : fm_bits(i_eq(owner, i_set(b->id)));
-        const unsigned near = behind & ~front & near_shape(&b->shape, u, v);
+        unsigned near = behind & ~front & near_shape(&b->shape, u, v);
+        if (b->rod.is)
+            near &= near_rod(&b->rod, u, v);
         beam->run[n] = (R(near_points)) { .first = (uint16_t)i, .near = (uint16_t)near };
         n += near != 0;
     }
@@ -91,6 +94,8 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
     R(beam_blocker) b = { .prim = &geometry->prims[id], .id = id, .near = seen->near[slot] };
     b.torus = is_torus(geometry, b.prim);
     b.shape = shape_of(node, seen, slot, b.prim, &beam->view);
+    if (GLINT_REAL == 64) // as in cast_slot
+        b.rod = rod_of(geometry, b.prim, &beam->view);
     const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
     const int first = first_column(cells), end = last_column(cells) + 1;

@@ -198,7 +198,7 @@ static inline void shoot_free(ray_case *c)
             spread = c->kind == RAYS_ALIKE ? length3(way) * power_of_ten(-9, 0) : 0;
         }
         for (int k = 0; k < 3; k++)
-            direction[k] = spread > 0 ? way[k] + spread * between(-1, 1) : way[k];
+            direction[k] = spread > 0 && !one_in(4) ? way[k] + spread * between(-1, 1) : way[k];
         put3(c->origin, c->precision, i, origin);
         put3(c->direction, c->precision, i, direction);
     }

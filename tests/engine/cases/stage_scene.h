@@ -139,20 +139,38 @@ static inline void set_random_triangle(glint_prim *prim, const glint_prim *last,
     *prim = out;
 }
 
-/// An affine image of any unit shape: turned, stretched and leaning.
+/// An affine image of any unit shape: turned, stretched and leaning; some are thin, some as round as the unit shape.
 static inline void set_random_solid(test_scene *scene, uint32_t i, const double center[3], double size)
 {
     glint_solid *solid = &scene->solids[i];
+    const double thin = one_in(3) ? power_of_ten(-2, 0) : 1;
+    const bool round = one_in(2);
     double column[3][3], det = 0;
     solid->form = below(GLINT_FORM_TORUS + 1);
     solid->tube = one_in(4) ? power_of_ten(-6, -1) : one_in(4) ? 1 - power_of_ten(-6, -1) : between(0.05, 0.95);
     do {
         for (int k = 0; k < 3; k++) {
-            const double length = size * power_of_ten(-1, 0);
+            const double length = size * power_of_ten(-1, 0) * (k < 2 ? thin : 1);
             random_unit(column[k]);
             for (int c = 0; c < 3; c++)
-                solid->forward[c][k] = column[k][c] *= length;
+                column[k][c] *= length;
         }
+        if (round) {
+            const double wide = length3(column[0]), tall = length3(column[2]);
+            for (int c = 0; c < 3; c++)
+                column[2][c] /= tall;
+            random_across(column[2], column[0]);
+            for (int c = 0; c < 3; c++)
+                column[1][c] = wide * (column[2][(c + 1) % 3] * column[0][(c + 2) % 3] -
+                                       column[2][(c + 2) % 3] * column[0][(c + 1) % 3]);
+            for (int c = 0; c < 3; c++) {
+                column[0][c] *= wide;
+                column[2][c] *= tall;
+            }
+        }
+        for (int k = 0; k < 3; k++)
+            for (int c = 0; c < 3; c++)
+                solid->forward[c][k] = column[k][c];
         for (int k = 0; k < 3; k++)
             for (int c = 0; c < 3; c++) {
                 const double *a = column[(k + 1) % 3], *b = column[(k + 2) % 3];
@@ -161,7 +179,7 @@ static inline void set_random_solid(test_scene *scene, uint32_t i, const double 
         det = 0;
         for (int c = 0; c < 3; c++)
             det += column[0][c] * solid->inverse[0][c];
-    } while (!(fabs(det) > 1e-4 * size * size * size));
+    } while (!(fabs(det) > 1e-4 * thin * thin * size * size * size));
     for (int c = 0; c < 9; c++)
         solid->inverse[c / 3][c % 3] /= det;
     scene->prims[i] = (glint_prim) { .kind = GLINT_PRIM_SOLID };
@@ -203,6 +221,23 @@ static inline void place_on_solid(const test_scene *scene, const glint_prim *pri
             prim->center[c] + (solid->forward[c][0] * k[0] + solid->forward[c][1] * k[1] + solid->forward[c][2] * k[2]);
 }
 
+/// Moves a solid to where the line passes its side within 1e-1 .. 1e-16 of how wide that is, if it is a cylinder's.
+static inline void graze_solid(const test_scene *scene, glint_prim *prim, const test_line *line)
+{
+    const glint_solid *solid = &scene->solids[prim->item];
+    double d[3], place[3];
+    for (int i = 0; i < 3; i++)
+        d[i] = solid->inverse[i][0] * line->direction[0] + solid->inverse[i][1] * line->direction[1] +
+               solid->inverse[i][2] * line->direction[2];
+    const double across = hypot(d[0], d[1]), off = 1 + slight();
+    if (!(across > 0))
+        return;
+    const double k[3] = { -d[1] / across * off, d[0] / across * off, between(0, 1) };
+    along3(line->origin, line->length * between(-0.2, 1.3), line->direction, place);
+    for (int c = 0; c < 3; c++)
+        prim->center[c] = place[c] - (solid->forward[c][0] * k[0] + solid->forward[c][1] * k[1] + solid->forward[c][2] * k[2]);
+}
+
 static inline void random_prim(const scene_plan *plan, test_scene *scene, uint32_t i, uint32_t count)
 {
     glint_prim *prim = &scene->prims[i];
@@ -216,9 +251,11 @@ static inline void random_prim(const scene_plan *plan, test_scene *scene, uint32
     const double largest = plan->size * 1e15; // volumes are within the range of double
     if (plan->triangles && one_in(2))
         set_random_triangle(prim, i ? prim - 1 : NULL, line, center, radius);
-    else if (plan->solids && one_in(2) && largest < 1e60 && largest > 1e-30)
+    else if (plan->solids && one_in(2) && largest < 1e60 && largest > 1e-30) {
         set_random_solid(scene, i, center, radius);
-    else if (kind < 6)
+        if (one_in(2))
+            graze_solid(scene, prim, line);
+    } else if (kind < 6)
         set_grazing(prim, line, radius);
     else if (kind == 6)
         set_touching(prim, line, 0, radius);
@@ -348,6 +385,34 @@ static inline glint_box place_corners_of(const test_scene *scene, glint_prim *pr
     return box;
 }
 
+/// The axis of what has one, and how far off it its surface gets: of the columns across, what of each is square to it.
+static inline void place_axis(const glint_geometry_table *table, glint_solid *solid)
+{
+    const bool has_axis = solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_CONE ||
+                          solid->form == GLINT_FORM_FUNNEL;
+    long double axis[3], across[2][3], gram[3] = { 0 }, length2 = 0;
+    for (int c = 0; c < 3; c++)
+        length2 += (long double)solid->forward[c][2] * solid->forward[c][2];
+    for (int c = 0; c < 3; c++)
+        axis[c] = solid->forward[c][2] / sqrtl(length2);
+    for (int k = 0; k < 2; k++) {
+        long double along = 0;
+        for (int c = 0; c < 3; c++)
+            along += axis[c] * solid->forward[c][k];
+        for (int c = 0; c < 3; c++)
+            across[k][c] = solid->forward[c][k] - along * axis[c];
+    }
+    for (int c = 0; c < 3; c++) {
+        gram[0] += across[0][c] * across[0][c];
+        gram[1] += across[1][c] * across[1][c];
+        gram[2] += across[0][c] * across[1][c];
+        solid->axis[c] = (float)axis[c];
+    }
+    const long double half = (gram[0] - gram[1]) / 2;
+    const long double thick = sqrtl((gram[0] + gram[1]) / 2 + sqrtl(half * half + gram[2] * gram[2]));
+    solid->thick = has_axis && !one_in(4) ? rounded_up(thick * (1 + 1e-15L) * table->scale) : INFINITY;
+}
+
 static inline void build_index(test_scene *scene)
 {
     glint_geometry_table *table = &scene->table;
@@ -369,6 +434,8 @@ static inline void build_index(test_scene *scene)
             scene->solids[prim->item].lower[c] = boxes[next].lower[c];
             scene->solids[prim->item].upper[c] = boxes[next].upper[c];
         }
+        if (prim->kind == GLINT_PRIM_SOLID)
+            place_axis(table, &scene->solids[prim->item]);
         boxes[next++].item = i;
     }
     glint_error error;
