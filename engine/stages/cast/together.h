@@ -1,6 +1,7 @@
 // together: the rays of a group walk the index together for as long as that is less work than each on its own: where they go about the
 // same way, as what a flat mirror or a small part of a lens sends on. A node is first asked what of it any of them may come to, then
-// each of that which of them; nodes that few of them come to, or with more children in question than there are rays, are left to each of those (rounds.h). Contract: stages.h, cast.
+// each of that which of them. Nodes that few of them come to, or of which more children are in question than there are rays, are left to
+// each of those (rounds.h). Contract: stages.h, cast.
 
 #define GLINT_FEW_LANES 3 ///< rays; so many or fewer walk each on its own
 
