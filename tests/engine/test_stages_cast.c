@@ -487,9 +487,10 @@ static void ties_case(int precision, bool odd)
     uint16_t *active = masks(GLINT_TILE_GROUPS);
     active[middle / GLINT_GROUP] |= 1;
     c.scene = tied_scene(&c.plan);
-    c.cast = (glint_cast_args) {
-        .group_count = GLINT_TILE_GROUPS, .active = active, .geometry = &c.scene->table, .camera = &c.camera
-    };
+    c.cast = (glint_cast_args) { .group_count = GLINT_TILE_GROUPS,
+                                 .active = active,
+                                 .geometry = &c.scene->table,
+                                 .camera = &c.camera };
     memcpy(c.cast.origin, c.origin, sizeof c.cast.origin);
     memcpy(c.cast.direction, c.direction, sizeof c.cast.direction);
     cast_all(&c);
@@ -711,7 +712,8 @@ int main(void)
         cmocka_unit_test(test_camera),    cmocka_unit_test(test_cast),    cmocka_unit_test(test_in_sight),
         cmocka_unit_test(test_from_afar), cmocka_unit_test(test_borders), cmocka_unit_test(test_ties),
         cmocka_unit_test(test_surface),   cmocka_unit_test(test_leaving), cmocka_unit_test(test_lit_surface),
-        cmocka_unit_test(test_points),    cmocka_unit_test(test_filled),  cmocka_unit_test(test_tiles),
+        cmocka_unit_test(test_points),
+        cmocka_unit_test(test_filled),    cmocka_unit_test(test_tiles),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     print_skipped();

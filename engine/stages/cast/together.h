@@ -71,8 +71,8 @@ static inline void R(find_common_way)(const R(common_walk) * walk, unsigned lane
     }
 }
 
-/// Which boxes any ray may enter before `far`, and before what it enters none. Each product is beyond those of all rays, rounding
-/// included, for what is rounded keeps its order.
+/// Which boxes some ray may enter before `far`; depth: no ray enters a box before that. Rounding keeps the order of numbers, so each
+/// product bounds those of all rays, rounded as they are.
 static inline unsigned R(boxes_on_way)(const glint_node *node, const R(common_way) * way, float far,
                                        float depth[GLINT_NODE_WIDTH])
 {
