@@ -90,4 +90,4 @@ for _, curve in ipairs(CURVES) do
   end
 end
 
-return glint.animation { scene = scene, frames = 1, width = 960, height = 640, samples = 9, frame = function() end }
+return glint.animation { scene = scene, frames = 1, width = 960, height = 640, samples = 9 }

@@ -68,4 +68,4 @@ for row, model in ipairs { "phong", P.model } do
   end
 end
 
-return glint.animation { scene = scene, frames = 1, width = 1280, height = 500, samples = 9, frame = function() end }
+return glint.animation { scene = scene, frames = 1, width = 1280, height = 500, samples = 9 }

@@ -21,4 +21,4 @@ for row, shading in ipairs { "phong", "faceted" } do
   end
 end
 
-return glint.animation { scene = scene, frames = 1, width = 1280, height = 640, samples = 16, frame = function() end }
+return glint.animation { scene = scene, frames = 1, width = 1280, height = 640, samples = 16 }

@@ -37,4 +37,4 @@ for i, roughness in ipairs(ROUGHNESS) do
 end
 
 return glint.animation { scene = scene, frames = 1, width = 1280, height = 530, samples = 9, tone = "filmic",
-  exposure = 1, frame = function() end }
+  exposure = 1 }

@@ -45,4 +45,4 @@ for row, list in ipairs(ROWS) do
   end
 end
 
-return glint.animation { scene = scene, frames = 1, width = 1280, height = 720, samples = 9, frame = function() end }
+return glint.animation { scene = scene, frames = 1, width = 1280, height = 720, samples = 9 }

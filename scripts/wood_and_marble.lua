@@ -54,4 +54,4 @@ local scene = glint.scene {
   glint.sphere { center = { -0.15, 0.42, 1.9 }, radius = 0.42, material = timber },
 }
 
-return glint.animation { scene = scene, frames = 1, width = 1280, height = 720, samples = 4, frame = function() end }
+return glint.animation { scene = scene, frames = 1, width = 1280, height = 720, samples = 4 }

@@ -139,9 +139,6 @@ static int new_animation(lua_State *L)
     lua_settop(L, 1);
     glintL_push_job(L, GLINTL_JOB_ANIMATION);
     glintL_job_read_table(L, 1, 2);
-    if (lua_getiuservalue(L, 2, GLINTL_JOB_FRAME) == LUA_TNIL)
-        glintL_refuse(L, -1, "animation.frame", "function");
-    lua_settop(L, 2);
     return 1;
 }
 
@@ -235,7 +232,7 @@ void glintL_job_build(lua_State *L, int index, int64_t n, double t)
     luaL_checkstack(L, 4, "frame");
     if (job->kind == GLINTL_JOB_SWEEP) {
         glintL_sweep_build(L, index, n);
-    } else if (lua_getiuservalue(L, index, GLINTL_JOB_FRAME) == LUA_TFUNCTION) { // a scene alone has none
+    } else if (lua_getiuservalue(L, index, GLINTL_JOB_FRAME) == LUA_TFUNCTION) { // a still has none
         lua_pushnumber(L, t);
         lua_pushinteger(L, n);
         lua_call(L, 2, 0);

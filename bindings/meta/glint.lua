@@ -846,7 +846,7 @@ function glint.value(x) end
 ---@field frames? integer  >= 1, numbered from 1. Default 1
 ---@field fps? number  frames a second, > 0. Default 24
 ---@field cyclic? boolean  t = (n-1)/frames, the last frame leads to the first; else (n-1)/(frames-1). Default false
----@field frame fun(t: number, n: integer)  sets the scene to frame n; may depend on t and n alone
+---@field frame? fun(t: number, n: integer)  sets the scene to frame n; may depend on t and n only. Without it all frames show the scene as it is
 
 ---@class glint.animation: glint.animation_fields
 local animation = {}

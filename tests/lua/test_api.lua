@@ -377,6 +377,14 @@ local more = assert(loadfile((arg[0]:gsub("[^/]*$", "") .. "api_objects.lua")))
 more(glint, { check = check, raises = raises, is = is, with = with, SPHERE = SPHERE, LAMP = LAMP, CAMERA = CAMERA },
   tests)
 
+function tests.animation_without_a_frame_function()
+  local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } } }
+  local still = glint.animation { scene = scene, width = 8, height = 6, output = "none" }
+  check(still.frames == 1 and still.frame == nil, "one frame, no function")
+  local ok, message = pcall(glint.animation, { scene = scene, frame = 3 })
+  check(not ok and message:find("animation.frame: function expected, got 3", 1, true), "%s", tostring(message))
+end
+
 local names = {}
 for name in pairs(tests) do names[#names + 1] = name end
 table.sort(names)
