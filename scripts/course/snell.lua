@@ -22,10 +22,11 @@ if refracted < 1 then
   mirrored = (s * s + p * p) / 2
 end
 
+local block = glint.material { diffuse = { 0.07, 0.15, 0.2 } }
 local scene = glint.scene {
   camera = glint.camera { eye = { 0, 0, 10 }, at = { 0, 0, 0 }, projection = "orthographic", height = 4.4 },
   ambient = 1, background = "#10141c",
-  glint.box { min = { -4, -2.2, -1 }, max = { 4, 0, -0.9 }, material = glint.material { diffuse = { 0.07, 0.15, 0.2 } } },
+  glint.box { min = { -4, -2.2, -1 }, max = { 4, 0, -0.9 }, material = block },
 }
 local function beam(x, y, share, color, width)
   local paint = glint.material { diffuse = 0, ambient = { share * color[1], share * color[2], share * color[3] } }
