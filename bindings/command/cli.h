@@ -22,7 +22,8 @@ typedef enum cli_command {
     CLI_NEW = 256,
     CLI_WATCH = 512,
     CLI_COMPLETION = 1024,
-    CLI_JOIN = 2048
+    CLI_JOIN = 2048,
+    CLI_HELP = 4096
 } cli_command;
 
 typedef enum cli_words { ///< that follow a command's name
@@ -38,20 +39,21 @@ typedef struct cli_command_name {
     const char *synopsis; ///< what follows it on the command line
     const char *help; ///< a line for people
 } cli_command_name;
-#define CLI_COMMAND_COUNT 12
+#define CLI_COMMAND_COUNT 13
 extern const cli_command_name cli_command_list[CLI_COMMAND_COUNT];
 
-typedef struct cli_sweep { ///< --sweep name=from:to:count
+typedef struct cli_sweep { ///< --sweep
     const char *name;
-    double from, to;
     int64_t count;
-    char text[32]; ///< the value of the point that runs
+    const char **values; ///< owned; `count` texts, in `texts`
+    char *texts; ///< owned
 } cli_sweep;
 
 #define CLI_DIALECT_OPTIONS 6 ///< --gr-order and the like
 
 typedef struct cli_options {
     cli_command command;
+    bool has_command; ///< its name was given
     bool json, quiet, help, version, verbose;
     const char *program; ///< what the command was started as
     const char *script; ///< NULL: none given
@@ -116,7 +118,8 @@ bool cli_add_set(glintL_request *request, const char *name, const char *text);
 /// Reads the command line; what it keeps points into argv. False: `message` says what is wrong.
 bool cli_read_options(int argc, char **argv, cli_options *options, char message[GLINTL_MESSAGE_SIZE]);
 void cli_free_options(cli_options *options);
-void cli_print_usage(FILE *out); ///< usage.c
+/// The command of that name; NULL: none, and *near is the nearest name, or NULL.
+const cli_command_name *cli_find_command(const char *word, const char **near);
 
 // ---- dialect.c ----
 
@@ -143,11 +146,12 @@ void cli_free_list(cli_file_list *list);
 
 // ---- sweep_points.c ----
 
-/// "name=a:b:n"; the name stays in `text`.
+/// "name=a:b:n", "name=a:b:*n" or "name=v1,v2"; the name stays in `text`. To be freed in any case.
 bool cli_read_sweep(char *text, cli_sweep *sweep, char message[GLINTL_MESSAGE_SIZE]);
 int64_t cli_sweep_points(const cli_options *options); ///< the product of the counts; 0: there is no --sweep
 /// Gives the swept parameters their values at a point, 1 ..: the first --sweep changes fastest.
 void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point);
+void cli_free_sweep(cli_sweep *sweep);
 
 // ---- output.c, events.c, progress.c ----
 
@@ -246,5 +250,6 @@ int cli_reproduce(cli_options *options, cli_output *output, glintL_run *run);
 int cli_new(const cli_options *options, cli_output *output);
 int cli_join(const cli_options *options, cli_output *output);
 int cli_version(const cli_options *options, cli_output *output);
+int cli_help(const cli_options *options, cli_output *output); ///< of a command, or of glint as a whole
 
 #endif

@@ -126,7 +126,7 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
 
 const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
     { "render", CLI_RENDER, CLI_SCRIPT, "SCRIPT [options]", "render the frames of a script; the word may be left out" },
-    { "explain", CLI_EXPLAIN, CLI_SCRIPT, "SCRIPT [--frame N] [--programs] [--json]", "what a frame needs, and who called for it" },
+    { "explain", CLI_EXPLAIN, CLI_SCRIPT, "SCRIPT [--frame N] [--programs] [--json]", "run the script, and say what a frame needs and who called for it" },
     { "describe", CLI_DESCRIBE, CLI_SCRIPT, "SCRIPT --json", "the parameters of a script, for programs" },
     { "compare", CLI_COMPARE, CLI_FILES, "A B [--fail X] [--warn X]",
       "compare pictures: 0 same, 1 warn, 2 differ, 3 size, 4 file" },
@@ -138,27 +138,31 @@ const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
     { "new", CLI_NEW, CLI_FILES, "NAME", "write a scene to begin with" },
     { "cost", CLI_COST, CLI_SCRIPT, "SCRIPT [--report DIR]", "what accuracy costs in time" },
     { "watch", CLI_WATCH, CLI_SCRIPT, "SCRIPT [--http [PORT]]", "render at every save, in the terminal and on a page" },
+    { "help", CLI_HELP, CLI_FILES, "[COMMAND]", "what a command does, and its options" },
     { "completion", CLI_COMPLETION, CLI_SCRIPT, "bash|zsh|fish",
       "what a shell completes; make install puts it in place" },
 };
 
-static bool read_command(const char *word, cli_command *command, cli_words *words)
+const cli_command_name *cli_find_command(const char *word, const char **near)
 {
+    *near = NULL;
     for (size_t i = 0; i < CLI_COMMAND_COUNT; i++) {
-        if (strcmp(word, cli_command_list[i].name) == 0) {
-            *command = cli_command_list[i].command;
-            *words = cli_command_list[i].words;
-            return true;
-        }
+        if (strcmp(word, cli_command_list[i].name) == 0)
+            return &cli_command_list[i];
+        *near = glintL_nearer(word, *near, cli_command_list[i].name);
     }
-    return false;
+    return NULL;
 }
 
 static bool read_words(int count, char **words, cli_options *options, char *message)
 {
     const char *near = NULL;
-    cli_words kind = CLI_SCRIPT;
-    int used = count > 0 && read_command(words[0], &options->command, &kind) ? 1 : 0;
+    const cli_command_name *command = count > 0 ? cli_find_command(words[0], &near) : NULL;
+    const cli_words kind = command ? command->words : CLI_SCRIPT;
+    int used = command ? 1 : 0;
+    if (command)
+        options->command = command->command;
+    options->has_command = command != NULL;
     if (kind == CLI_FILES) {
         options->arguments = words + used;
         options->argument_count = count - used;
@@ -170,9 +174,7 @@ static bool read_words(int count, char **words, cli_options *options, char *mess
         options->script = words[used++];
     if (used == count)
         return true;
-    for (size_t i = 0; i < CLI_COMMAND_COUNT && used == 1; i++)
-        near = glintL_nearer(words[0], near, cli_command_list[i].name);
-    if (near)
+    if (near && used == 1)
         snprintf(message, MESSAGE, "%.200s: no such command; did you mean '%s'?", words[0], near);
     else
         snprintf(message, MESSAGE, "'%.200s' is one word too many; arguments of the script follow --", words[used]);
@@ -235,8 +237,8 @@ static bool check_input(const cli_options *options, char *message)
 static bool check_together(const cli_options *options, const bool used[CLI_OPTION_COUNT], char *message)
 {
     for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
-        if (used[i] && !(cli_option_list[i].commands & options->command)) {
-            snprintf(message, MESSAGE, "--%s: it means nothing to this command", cli_option_list[i].name);
+        if (used[i] && !options->help && !(cli_option_list[i].commands & options->command)) {
+            snprintf(message, MESSAGE, "--%s: it means nothing to this command; --help lists what does", cli_option_list[i].name);
             return false;
         }
     }
@@ -271,12 +273,12 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
     return cli_check_dialect(options, message);
 }
 
-// Room for the swept parameters, behind those that are set; and -s -e -j as a range.
+// Adds the swept parameters to those that are set, and -s -e -j as a range. --help shows the defaults of what is swept.
 static bool complete(cli_options *options, char *message)
 {
     bool good = true;
-    options->request.swept_count = options->sweep_count;
-    for (size_t i = 0; i < options->sweep_count; i++)
+    options->request.swept_count = options->help ? 0 : options->sweep_count;
+    for (size_t i = 0; i < options->request.swept_count; i++)
         good = good && cli_add_set(&options->request, options->sweeps[i].name, "");
     if (options->start || options->end || options->jump) {
         glintL_range range = { options->start ? options->start : 1, options->end ? options->end : INT64_MAX,
@@ -322,5 +324,7 @@ void cli_free_options(cli_options *options)
     glintL_selection_clear(&options->request.selection);
     free(options->request.sets);
     free(options->request.folder);
+    for (size_t i = 0; i < options->sweep_count; i++)
+        cli_free_sweep(&options->sweeps[i]);
     free(options->sweeps);
 }

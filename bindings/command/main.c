@@ -91,10 +91,8 @@ static int dispatch(cli_options *options, cli_output *output, int *signal_number
 {
     if (options->version)
         return cli_version(options, output);
-    if (options->help && !options->script) {
-        cli_print_usage(output->data);
-        return GLINTL_EXIT_DONE;
-    }
+    if (options->command == CLI_HELP || (options->help && !options->script))
+        return cli_help(options, output);
     if (options->command == CLI_COMPARE || options->command == CLI_SHEET || options->command == CLI_JOIN)
         cli_leave_by_signals();
     if (options->command == CLI_COMPARE)

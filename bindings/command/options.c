@@ -11,7 +11,7 @@
 #define SCRIPTED (CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE | CLI_COST)
 #define SHOWN (SCRIPTED | CLI_WATCH)
 #define FILES (CLI_COMPARE | CLI_SHEET | CLI_ASSEMBLE | CLI_REPRODUCE | CLI_NEW | CLI_JOIN)
-#define ALL (SHOWN | FILES | CLI_COMPLETION)
+#define ALL (SHOWN | FILES | CLI_COMPLETION | CLI_HELP)
 #define MESSAGE GLINTL_MESSAGE_SIZE
 
 // ---- Readers ----
@@ -176,10 +176,7 @@ static bool read_sweep(cli_options *options, const cli_option *option, char *tex
         return false;
     }
     options->sweeps = grown;
-    if (!cli_read_sweep(text, &grown[options->sweep_count], message))
-        return false;
-    options->sweep_count++;
-    return true;
+    return cli_read_sweep(text, &grown[options->sweep_count++], message);
 }
 
 // A size such as 512M, in bytes. 0 keeps nothing.
@@ -246,7 +243,8 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
       WITHIN(1, GLINTL_FRAMES_MAX) },
     { "shard", 0, "K/N", CLI_RENDER, read_shard, .help = "the K-th of N parts" },
     { "frame", 0, "N", LOOKED, read_frame, .help = "frame to look at" },
-    { "sweep", 0, "NAME=A:B:N", CLI_RENDER, read_sweep, .help = "the script for N values of a parameter",
+    { "sweep", 0, "NAME=VALUES", CLI_RENDER, read_sweep,
+      .help = "the script for each value of a parameter: A:B:N, A:B:*N or V,V,V",
       .repeats = true },
     { "output", 'o', "PATTERN", CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE | CLI_JOIN, read_text,
       .help = "%04d or #### is the number; .png, .pfm, .npy, .exr, a film or none", AT(output), .suggest = CLI_SUGGEST_FILES,

@@ -1,45 +1,36 @@
-// --sweep name=a:b:n: the script is run once for each value, and its frames are numbered through.
+// The values of a sweep: the script is run once for each, and its frames are numbered through.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bindings/command/cli.h"
 
-bool cli_read_sweep(char *text, cli_sweep *sweep, char message[GLINTL_MESSAGE_SIZE])
-{
-    char *end = NULL;
-    char *equals = strchr(text, '=');
-    bool good = equals && equals > text;
-    if (good) {
-        sweep->from = strtod(equals + 1, &end);
-        good = end > equals + 1 && *end == ':' && isfinite(sweep->from);
-    }
-    if (good) {
-        const char *at = end + 1;
-        sweep->to = strtod(at, &end);
-        good = end > at && *end == ':' && isfinite(sweep->to);
-    }
-    if (good) {
-        const char *at = end + 1;
-        sweep->count = strtoll(at, &end, 10);
-        good = end > at && *end == '\0' && sweep->count >= 1 && sweep->count <= 1000000;
-    }
-    if (!good) {
-        snprintf(message, GLINTL_MESSAGE_SIZE,
-                 "name=from:to:count with count 1 .. 1000000, such as radius=1:5:9, expected, got '%.200s'", text);
-        return false;
-    }
-    *equals = '\0'; // the name ends there
-    sweep->name = text;
-    return true;
-}
+#define POINTS_MAX 1000000
+#define NUMBER_SIZE 32 // of a number's text
 
-int64_t cli_sweep_points(const cli_options *options)
+// ---- name=from:to:count and name=from:to:*count ----
+
+typedef struct range {
+    double from, to;
+    int64_t count;
+    bool has_factor; // each value is the one before it times the same factor
+} range;
+
+static bool read_range(const char *text, range *out)
 {
-    int64_t points = options->sweep_count ? 1 : 0;
-    for (size_t i = 0; i < options->sweep_count && points <= GLINTL_FRAMES_MAX; i++)
-        points *= options->sweeps[i].count;
-    return points;
+    char *end;
+    out->from = strtod(text, &end);
+    if (end == text || *end != ':' || !isfinite(out->from))
+        return false;
+    text = end + 1;
+    out->to = strtod(text, &end);
+    if (end == text || *end != ':' || !isfinite(out->to))
+        return false;
+    text = end + 1;
+    out->has_factor = *text == '*';
+    text += out->has_factor;
+    out->count = strtoll(text, &end, 10);
+    return end > text && *end == '\0' && out->count >= 1 && out->count <= POINTS_MAX;
 }
 
 // Rounds to 15 digits of `scale`, so that 0.1:0.9:9 has 0.3 and not 0.30000000000000004.
@@ -54,17 +45,99 @@ static double shorten(double value, double scale)
 }
 
 // The ends exactly, and between them whole numbers where steps are whole: 1:50:50 has 28.
-static double value_at(const cli_sweep *sweep, int64_t step)
+static double value_at(const range *r, int64_t step)
 {
-    const double last = (double)(sweep->count - 1), at = (double)step;
+    const double last = (double)(r->count - 1), at = (double)step;
     if (step == 0)
-        return sweep->from;
-    if (step == sweep->count - 1)
-        return sweep->to;
-    double value = (sweep->from * (last - at) + sweep->to * at) / last;
+        return r->from;
+    if (step == r->count - 1)
+        return r->to;
+    if (r->has_factor) {
+        const double value = r->from * glint_pow(r->to / r->from, at / last);
+        return shorten(value, fabs(value));
+    }
+    double value = (r->from * (last - at) + r->to * at) / last;
     if (!isfinite(value))
-        value = sweep->from * ((last - at) / last) + sweep->to * (at / last);
-    return shorten(value, fmax(fabs(sweep->from), fabs(sweep->to)));
+        value = r->from * ((last - at) / last) + r->to * (at / last);
+    return shorten(value, fmax(fabs(r->from), fabs(r->to)));
+}
+
+static bool make_room(cli_sweep *sweep, int64_t count, size_t bytes, char *message)
+{
+    sweep->count = count;
+    sweep->values = malloc((size_t)count * sizeof *sweep->values);
+    sweep->texts = malloc(bytes);
+    if (!sweep->values || !sweep->texts)
+        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
+    return sweep->values && sweep->texts;
+}
+
+static bool list_range(cli_sweep *sweep, const range *r, char *message)
+{
+    if (r->has_factor && !(r->to / r->from > 0 && isfinite(r->to / r->from))) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s: two ends of the same sign, neither of them 0, expected with a factor",
+                 sweep->name);
+        return false;
+    }
+    if (!make_room(sweep, r->count, (size_t)r->count * NUMBER_SIZE, message))
+        return false;
+    for (int64_t i = 0; i < r->count; i++) {
+        char *text = sweep->texts + i * NUMBER_SIZE;
+        glintL_format_number(text, value_at(r, i));
+        sweep->values[i] = text;
+    }
+    return true;
+}
+
+// ---- name=value,value,... ----
+
+static bool list_words(cli_sweep *sweep, const char *text, char *message)
+{
+    int64_t count = 1;
+    for (const char *at = text; *at; at++)
+        count += *at == ',';
+    if (!make_room(sweep, count, strlen(text) + 1, message))
+        return false;
+    char *at = strcpy(sweep->texts, text);
+    for (int64_t i = 0; i < count; i++) {
+        sweep->values[i] = at;
+        at += strcspn(at, ",");
+        *at++ = '\0';
+        if (*sweep->values[i] == '\0') {
+            snprintf(message, GLINTL_MESSAGE_SIZE, "%s: a value expected before and after each comma, got '%.200s'", sweep->name,
+                     text);
+            return false;
+        }
+    }
+    return true;
+}
+
+// ---- The option ----
+
+bool cli_read_sweep(char *text, cli_sweep *sweep, char message[GLINTL_MESSAGE_SIZE])
+{
+    range r;
+    char *equals = strchr(text, '=');
+    *sweep = (cli_sweep) { 0 };
+    const bool is_list = equals && strchr(equals, ',');
+    if (!equals || equals == text || (!is_list && !read_range(equals + 1, &r))) {
+        snprintf(message, GLINTL_MESSAGE_SIZE,
+                 "name=from:to:count with count 1 .. %d, such as radius=1:5:9, name=from:to:*count for equal factors, or a list, "
+                 "name=1,5,9, expected, got '%.200s'",
+                 POINTS_MAX, text);
+        return false;
+    }
+    *equals = '\0'; // the name ends there
+    sweep->name = text;
+    return is_list ? list_words(sweep, equals + 1, message) : list_range(sweep, &r, message);
+}
+
+int64_t cli_sweep_points(const cli_options *options)
+{
+    int64_t points = options->sweep_count ? 1 : 0;
+    for (size_t i = 0; i < options->sweep_count && points <= GLINTL_FRAMES_MAX; i++)
+        points *= options->sweeps[i].count;
+    return points;
 }
 
 void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point)
@@ -72,10 +145,15 @@ void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point)
     int64_t rest = point - 1;
     size_t first_set = run->request.set_count - options->sweep_count; // the sweeps' sets are the last
     for (size_t i = 0; i < options->sweep_count; i++) {
-        cli_sweep *sweep = &options->sweeps[i];
-        int64_t step = rest % sweep->count;
-        glintL_format_number(sweep->text, value_at(sweep, step));
-        run->request.sets[first_set + i] = (glintL_set) { .name = sweep->name, .text = sweep->text };
+        const cli_sweep *sweep = &options->sweeps[i];
+        run->request.sets[first_set + i] =
+            (glintL_set) { sweep->name, sweep->values[rest % sweep->count], sweep->values, sweep->count, false };
         rest /= sweep->count;
     }
+}
+
+void cli_free_sweep(cli_sweep *sweep)
+{
+    free(sweep->values);
+    free(sweep->texts);
 }

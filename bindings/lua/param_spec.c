@@ -161,19 +161,31 @@ static void check_keys(lua_State *L, int index, const char *path)
     }
 }
 
-// Takes the value of --set, when there is one for this parameter, into spec.value.
+// Pushes the value that the command line's text gives the parameter; raises where it may not have it.
+static void push_given(lua_State *L, const glintL_set *set, const char *text, int spec)
+{
+    lua_getfield(L, spec, "default");
+    bool good = push_literal(L, text, lua_gettop(L));
+    if (!good || !is_allowed(L, spec, lua_gettop(L))) {
+        lua_pushfstring(L, "--%s %s: %s expected, got '%s'", set->values ? "sweep" : "set", set->name, push_allowed(L, spec), text);
+        lua_error(L);
+    }
+}
+
+// Takes the value of --set or --sweep, when there is one for this parameter, into spec.value.
 static void apply_set(lua_State *L, glintL_run *run, const char *name, int spec)
 {
     glintL_set *set = find_set(run, name);
     if (!set)
         return;
-    lua_getfield(L, spec, "default");
-    bool good = push_literal(L, set->text, lua_gettop(L));
-    if (!good || !is_allowed(L, spec, lua_gettop(L))) {
-        lua_pushfstring(L, "--set %s: %s expected, got '%s'", name, push_allowed(L, spec), set->text);
-        lua_error(L);
-    }
+    if (set->values && run->point <= 1) // all of them before the first picture
+        for (int64_t i = 0; i < set->value_count; i++) {
+            push_given(L, set, set->values[i], spec);
+            lua_settop(L, spec);
+        }
+    push_given(L, set, set->text, spec);
     lua_setfield(L, spec, "value");
+    lua_settop(L, spec);
 }
 
 void glintL_push_param_spec(lua_State *L, glintL_run *run, const char *name, int entry)

@@ -81,10 +81,11 @@ bool glintL_push_unknown_set(lua_State *L)
             near = glintL_nearer(set->name, near, lua_tostring(L, -1)); // the list keeps the string
             lua_pop(L, 2);
         }
+        const char *option = set->values ? "sweep" : "set";
         if (near)
-            lua_pushfstring(L, "--set %s: no such parameter; did you mean '%s'?", set->name, near);
+            lua_pushfstring(L, "--%s %s: no such parameter; did you mean '%s'?", option, set->name, near);
         else
-            lua_pushfstring(L, "--set %s: no such parameter%s", set->name,
+            lua_pushfstring(L, "--%s %s: no such parameter%s", option, set->name,
                             count ? "; --help lists them" : ": the script has none");
         return true;
     }

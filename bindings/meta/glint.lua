@@ -764,7 +764,7 @@ function glint.scene(fields) end
 ---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"  of the .png of depth and d:NAME. Default "none": grey
 ---@field dpi? number  pixels an inch where a .png is printed, 0 .. 1e6. Default 0: not said
 ---@field output? string  file name, .png, .pfm, .npy or .exr (all passes in one file); %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
----@field passes? glint.pass[]|string  files beside the beauty: a list, or "ambient,depth". Default none
+---@field passes? glint.pass[]|string  files beside the beauty: a list, or "ambient,depth"; "all": every one but d:NAME. Default none
 ---@field region? integer[]|string  { x, y, width, height } or "x,y,width,height": this part of the frame alone, in pixels from the top left, with the bits of the whole. Default: all
 
 ---@class glint.save_options

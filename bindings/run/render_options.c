@@ -110,7 +110,7 @@ static void describe(const detail *what, char out[256])
     case PASSES:
         for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
             used += (size_t)snprintf(out + used, 256 - used, "%s%s", pass ? ", " : "list of ", glint_pass_name(pass));
-        snprintf(out + used, 256 - used, ", d:NAME");
+        snprintf(out + used, 256 - used, ", d:NAME, all");
         break;
     }
 }
@@ -188,6 +188,10 @@ static bool add_pass(glintL_render *to, const char *name, size_t length)
     copy[length] = '\0';
     if (strncmp(copy, "d:", 2) == 0)
         return add_derivative(to, copy + 2);
+    if (strcmp(copy, "all") == 0) {
+        to->file_passes |= ((1u << GLINT_PASS_COUNT) - 1) & ~(1u << GLINT_PASS_BEAUTY);
+        return true;
+    }
     glint_pass pass = glint_pass_from_name(copy);
     if (pass == GLINT_PASS_COUNT)
         return false;

@@ -125,9 +125,11 @@ void glintL_find_derivatives(lua_State *L, const glint_scene *scene, glintL_rend
 
 // ---- The request ----
 
-typedef struct glintL_set { ///< --set name=text
+typedef struct glintL_set { ///< --set name=text, or a value of --sweep
     const char *name;
     const char *text;
+    const char *const *values; ///< all values of the --sweep; NULL: of --set
+    int64_t value_count;
     bool is_known; ///< a params table has it
 } glintL_set;
 

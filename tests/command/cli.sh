@@ -271,7 +271,47 @@ io.stderr:write(math.type(P.a), " ", math.type(P.b), " ", P.s, "\n") return requ
     check "--sweep has exact ends" eval 'run steps.lua --sweep n=0.30000000000000004:0.7000000000000001:3 -o e%d.png --size 1x1 -q &&
         grep -aq "n=0.30000000000000004" e1.png && grep -aq "n=0.7000000000000001" e3.png'
     rm -f e[123].png
+    run steps.lua --sweep n=1:256:*9 -o none --size 1x1 -q
+    says "--sweep by factors" '^1 2 4 8 16 32 64 128 256 $'
+    run steps.lua --sweep n=-100:-0.01:*5 -o none --size 1x1 -q
+    says "--sweep by factors below 1" '^-100 -10 -1 -0\.1 -0\.01 $'
+    exits 2 "--sweep by factors from 0" steps.lua --sweep n=0:4:*3 -o none
+    says "--sweep by factors from 0" '^glint: error: --sweep: n: two ends of the same sign'
+    run steps.lua --sweep n=7,-2,1e3 -o none --size 1x1 -q
+    says "--sweep of a list" '^7 -2 1000 $'
+    exits 2 "--sweep of a list with a gap" steps.lua --sweep n=7,,3
+    says "--sweep of a list with a gap" 'a value expected before and after each comma'
+    script kinds 'local P = require("glint").params { shiny = false, mode = { "day", choices = { "day", "night" } } }
+io.stderr:write(P.mode, " ", tostring(P.shiny), ", ") return require("scene").scene'
+    run kinds.lua --sweep mode=night,day --sweep shiny=true,false -o none --size 1x1 -q
+    says "--sweep of choices and booleans" '^night true, day true, night false, day false, $'
+    exits 2 "--sweep checks values first" ten.lua --sweep radius=2,3,500 -o 'first_%d.png'
+    says "--sweep checks values first" '^glint: error: --sweep radius: number 1 \.\. 40 expected, got .500'
+    files "--sweep checks values first: no picture"
+    exits 2 "--sweep of a wrong choice" kinds.lua --sweep mode=day,dusk
+    says "--sweep of a wrong choice" '--sweep mode: day or night expected, got .dusk'
+    exits 2 "--sweep of an unknown one names itself" ten.lua --sweep raduis=1,2
+    says "--sweep of an unknown one names itself" "--sweep raduis: no such parameter; did you mean 'radius'"
+    exits 0 "--sweep beside --help" ten.lua --sweep radius=2:4:2 --help
+    prints "--sweep beside --help" '^  radius=4 +1 \.\. 40'
     exits 2 "--sweep and --set of one" ten.lua --sweep radius=1:2:3 --set radius=2
+    exits 0 "--passes all" one.lua --size 8x8 --passes all -o all.png
+    check "--passes all" eval 'test -s all.depth.png && test -s all.refined.png && test -s all.mirror.png'
+    clean
+    for verb in render explain describe compare sheet assemble join reproduce new cost watch completion; do
+        exits 0 "$verb --help" $verb --help
+        prints "$verb --help" "^usage: glint $verb "
+        mv out by_option
+        run help $verb
+        check "help $verb" cmp out by_option
+    done
+    run compare --help
+    prints "a command has its own options" '--fail X'
+    check "a command has no others" eval '! grep -q -e --samples out'
+    exits 2 "help of an unknown command" help compre
+    says "help of an unknown command" "help: compre: no such command; did you mean 'compare'"
+    exits 0 "help alone" help
+    prints "help alone" '^usage: glint \[render\] SCRIPT'
     run ten.lua --help
     check "--help exits 0" test "$status" -eq 0
     prints "--help has the comment" '^It circles\.$'
@@ -301,7 +341,7 @@ options() {
     exits 2 "a misspelt word" ten.lua --colormap magmo
     says "names the nearest" "^glint: error: --colormap: .* expected, got 'magmo'; did you mean 'magma'\\?$"
     exits 2 "a pass like none" ten.lua --passes diffuse,xyzzy
-    says "names it and all" "'xyzzy' is no pass; list of beauty, .*, albedo, d:NAME expected$"
+    says "names it and all" "'xyzzy' is no pass; list of beauty, .*, albedo, d:NAME, all expected$"
     exits 0 "--version --verbose" --version --verbose
     prints "libraries" '^libraries: Lua 5\.4.*libpng [0-9].*xxhash [0-9]'
     prints "kernels" '^kernels: ref generic.*; in use: [a-z0-9]+, [0-9]+ threads$'
