@@ -13,6 +13,7 @@ local elements, boxes = require "glint.elements", require "glint.box"
 local bonds = {}
 
 local CLOSEST = 0.4 -- angstroms: what is nearer is the same atom in another place
+local NEVER = 0 / 0 -- a reach that no distance is below
 local SIDE = 1 << 20 -- cells across, at most
 local IMAGES = 8 -- how many sides of a periodic box the longest bond may be
 
@@ -35,6 +36,7 @@ end
 
 -- Half of the longest bond a kind makes.
 local function reach_of(name, set)
+  if name == "ghost" then return NEVER end
   if set.distance then return set.distance / 2 end
   local element = elements[elements.symbol(name) or ""]
   if not element then

@@ -23,20 +23,34 @@ end
 function box.check(given, name)
   if type(given) ~= "table" then error(("%s: a box expected, got %s"):format(name, tostring(given)), 0) end
   local size = three(given.size, name .. ".size", "number")
+  local periodic = three(given.periodic or { true, true, true }, name .. ".periodic", "boolean")
   for i = 1, 3 do
-    if size[i] <= 0 then error(("%s.size: numbers > 0 expected, got %.14g"):format(name, size[i]), 0) end
+    if size[i] < 0 or size[i] == 0 and periodic[i] then
+      error(("%s.size: numbers > 0 expected, got %.14g"):format(name, size[i]), 0)
+    end
   end
   local tilt = three({ given.xy or 0, given.xz or 0, given.yz or 0 }, name .. ".xy, xz, yz", "number")
   return {
     size = size, low = three(given.low or { 0, 0, 0 }, name .. ".low", "number"),
-    periodic = three(given.periodic or { true, true, true }, name .. ".periodic", "boolean"),
-    xy = tilt[1], xz = tilt[2], yz = tilt[3],
+    periodic = periodic, xy = tilt[1], xz = tilt[2], yz = tilt[3],
   }
 end
 
 local CORNERS = {
   { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 1, 0 }, { 1, 0, 1 }, { 0, 1, 1 }, { 1, 1, 1 },
 }
+
+--- The box that a cell { origin, a, b, c } is; nil where a does not lie along x, or b not in the plane of x and y. A
+--- side of no length does not repeat.
+---@param cell table
+---@param periodic boolean[]
+function box.of_cell(cell, periodic)
+  local a, b, c = cell.a, cell.b, cell.c
+  if a[2] ~= 0 or a[3] ~= 0 or b[3] ~= 0 or a[1] < 0 or b[2] < 0 or c[3] < 0 then return nil end
+  if a[1] == 0 and b[2] == 0 and c[3] == 0 then return nil end
+  periodic = { periodic[1] and a[1] > 0, periodic[2] and b[2] > 0, periodic[3] and c[3] > 0 }
+  return { low = cell.origin, size = { a[1], b[2], c[3] }, periodic = periodic, xy = b[1], xz = c[1], yz = c[2] }
+end
 
 -- The corner and the three sides of a box, or of a cell { origin, a, b, c }, whose sides may lie anyhow.
 local function sides_of(given, name)
@@ -77,7 +91,8 @@ function box.edges(given, options)
   for _, corner in ipairs(CORNERS) do
     parts[#parts + 1] = glint.sphere { center = place(corner), radius = radius, material = material }
     for i = 1, 3 do
-      if corner[i] == 0 then
+      local side = sides[i]
+      if corner[i] == 0 and (side[1] ~= 0 or side[2] ~= 0 or side[3] ~= 0) then
         local to = { table.unpack(corner) }
         to[i] = 1
         parts[#parts + 1] = glint.cylinder { base = place(corner), top = place(to), radius = radius, capped = false,
@@ -102,18 +117,25 @@ function box.corners(given)
   return { first, last }
 end
 
+-- The sides that shares are measured by: where a box is flat they are lengths.
+local function sizes_of(b)
+  local size = b.size
+  local x, y, z = size[1], size[2], size[3]
+  return x == 0 and 1 or x, y == 0 and 1 or y, z == 0 and 1 or z
+end
+
 --- A point from its shares of the box.
 function box.unscale(b, u, v, w)
-  local size, low = b.size, b.low
-  return low[1] + u * size[1] + v * b.xy + w * b.xz, low[2] + v * size[2] + w * b.yz, low[3] + w * size[3]
+  local low, a, c, d = b.low, sizes_of(b)
+  return low[1] + u * a + v * b.xy + w * b.xz, low[2] + v * c + w * b.yz, low[3] + w * d
 end
 
 --- The shares of a point, 0 .. 1 inside.
 function box.scale(b, x, y, z)
-  local size, low = b.size, b.low
-  local w = (z - low[3]) / size[3]
-  local v = (y - low[2] - w * b.yz) / size[2]
-  return (x - low[1] - v * b.xy - w * b.xz) / size[1], v, w
+  local low, a, c, d = b.low, sizes_of(b)
+  local w = (z - low[3]) / d
+  local v = (y - low[2] - w * b.yz) / c
+  return (x - low[1] - v * b.xy - w * b.xz) / a, v, w
 end
 
 --- Shares brought back into the box where it is periodic.
@@ -125,7 +147,7 @@ end
 
 --- Which share of each side `reach` is, measured across the box: from one face to the one that repeats it.
 local function margins(b, reach)
-  local x, y, z = b.size[1], b.size[2], b.size[3]
+  local x, y, z = sizes_of(b)
   local a, c = b.yz / z, (b.xy * b.yz / y - b.xz) / z -- the planes' normals: (1, -xy/y, c) and (0, 1, -yz/z)
   return reach / x * math.sqrt(1 + (b.xy / y) ^ 2 + c * c), reach / y * math.sqrt(1 + a * a), reach / z
 end

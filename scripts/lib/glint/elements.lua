@@ -70,4 +70,25 @@ function elements.symbol(label)
   return type(elements[symbol]) == "table" and symbol or nil
 end
 
+-- Symbols that are the names of other atoms far more often, where more stands after them: CD1 is a carbon.
+local NAMES = { CA = "C", CD = "C", CE = "C", CF = "C", CM = "C", HE = "H", HF = "H", HG = "H", HO = "H", HS = "H",
+  NB = "N", ND = "N", NE = "N", NO = "N", NP = "N", OS = "O", PA = "P", SG = "S" }
+
+-- Labels of places without an atom that would else be those of an element.
+local SITES = { BQ = true, DA = true, DU = true, DUM = true, TV = true, VC = true, VS = true, VAC = true }
+
+--- The symbol that a label begins with: of an atom with a number or charge (C13, Fe+3, O2-, 13C), of a place (CB, HG11,
+--- OW) or of a force field (C_R, C.ar). Nil when it is the label of no element, as that of a ghost atom (Xx, Bq, EP).
+---@param label string
+function elements.of_label(label)
+  local symbol = elements.symbol(label)
+  if symbol then return symbol end
+  local letters = label:match "^%d*(%a+)"
+  local capitals = letters and letters:upper()
+  if not letters or #letters > 3 or SITES[capitals] or label:find "[Bb][Qq]$" or label:find ":$" then return nil end
+  local two = letters:sub(1, 2)
+  if #two == 2 and (not NAMES[two:upper()] or two:find "^%u%l") then symbol = elements.symbol(two) end
+  return symbol or elements.symbol(letters:sub(1, 1))
+end
+
 return elements

@@ -53,7 +53,7 @@ end
 -- What is captured of a line, as numbers where it can be.
 local function values(...)
   local list = { ... }
-  for i = 1, select("#", ...) do list[i] = tonumber(list[i]) or list[i] end
+  for i = 1, select("#", ...) do list[i] = list[i] and lines.value(list[i]) end
   return table.unpack(list, 1, select("#", ...))
 end
 

@@ -4,8 +4,9 @@
 --       for label, x, y, z, radius in frame:atoms() do ... end
 --     end
 -- Columns are found by their names, in any order: x y z or xu yu zu (lengths), xs ys zs or xsu ysu zsu (shares of the
--- box); `radius` or `diameter` where it is given. A label is the column `element`, or `types[type]` of the options, or
--- "type1", "type2" ... All columns are there by name: frame:atoms("vx", "c_pe"). The u columns
+-- box); `radius` or `diameter` where it is given. A label is the column `element` or `typelabel`, or `types[type]` of
+-- the options, or "type1", "type2" ..., or "point" where no column has kinds. All columns are there by name:
+-- frame:atoms("vx", "c_pe"). The u columns
 -- lie outside a periodic box where an atom has left it: wrap = true brings it back.
 local frames, boxes = require "glint.frames", require "glint.box"
 
@@ -26,29 +27,48 @@ local function bounds(source, what, count)
   local list = words(line or "")
   if #list ~= count then source:fail(("%d numbers (%s of the box)"):format(count, what), line) end
   for i = 1, count do list[i] = source:number_of(list[i], what .. " of the box") end
-  if list[1] >= list[2] then source:fail(("%s of the box, the lower one first"):format(what), line) end
+  if list[1] > list[2] then source:fail(("%s of the box, the lower one first"):format(what), line) end
   return list
 end
 
--- The box from the three lines of its bounds. What LAMMPS writes for a tilted box is the box around it.
-local function read_box(source, header)
-  local kinds = words(header)
-  local tilted = kinds[1] == "xy"
-  if #kinds ~= (tilted and 6 or 3) or header:find "abc" then
+-- A cell whose sides lie anyhow: abc origin. Its box, too, where they lie as those of a box.
+local function read_cell(source, kinds, frame)
+  local rows, origin = {}, {}
+  for i, side in ipairs { "a", "b", "c" } do
+    local line = source:next()
+    local list = words(line or "")
+    if #list ~= 4 then source:fail(("4 numbers (%s and the origin of the box)"):format(side), line) end
+    for k = 1, 4 do list[k] = source:number_of(list[k], side .. " and the origin of the box") end
+    rows[i], origin[i] = { list[1], list[2], list[3] }, list[4]
+  end
+  frame.cell = { origin = origin, a = rows[1], b = rows[2], c = rows[3] }
+  frame.box = boxes.of_cell(frame.cell, kinds)
+end
+
+-- The box from the three lines of its bounds. What LAMMPS writes for a tilted box is the box around it. Boundaries
+-- without kinds, as old versions write them, are periodic, as LAMMPS's are by default.
+local function read_box(source, header, frame)
+  local names = words(header)
+  local tilted, general = names[1] == "xy", names[1] == "abc"
+  local skipped = tilted and 3 or general and 2 or 0
+  local kinds = { true, true, true }
+  if #names ~= skipped and #names ~= skipped + 3 then
     source:fail("ITEM: BOX BOUNDS with three boundary kinds such as pp pp pp, after xy xz yz when tilted", header)
   end
+  for i = 1, 3 do kinds[i] = #names == skipped or names[skipped + i] == "pp" end
+  if general then return read_cell(source, kinds, frame) end
   local n = tilted and 3 or 2
   local x, y, z = bounds(source, "x bounds", n), bounds(source, "y bounds", n), bounds(source, "z bounds", n)
   local xy, xz, yz = x[3] or 0, y[3] or 0, z[3] or 0
   local low = { x[1] - math.min(0, xy, xz, xy + xz), y[1] - math.min(0, yz), z[1] }
   local high = { x[2] - math.max(0, xy, xz, xy + xz), y[2] - math.max(0, yz), z[2] }
-  local box = { low = low, high = high, size = {}, periodic = {}, xy = xy, xz = xz, yz = yz }
+  local box = { low = low, high = high, size = {}, periodic = kinds, xy = xy, xz = xz, yz = yz }
   for i = 1, 3 do
     box.size[i] = high[i] - low[i]
-    box.periodic[i] = kinds[#kinds - 3 + i] == "pp"
-    if box.size[i] <= 0 then source:fail("a box larger than its tilt", header) end
+    kinds[i] = kinds[i] and box.size[i] > 0
+    if box.size[i] < 0 then source:fail("a box larger than its tilt", header) end
   end
-  return box
+  frame.box = box
 end
 
 -- Which columns hold what. One pattern takes the at most five that matter out of a line: columns.x and the others say
@@ -62,10 +82,10 @@ local function find_columns(source, header)
     if not position and place[set[1]] and place[set[2]] and place[set[3]] then position = set end
   end
   if not position then source:fail("columns x y z, xs ys zs, xu yu zu or xsu ysu zsu", header) end
-  if not place.element and not place.type then source:fail("a column element or type", header) end
+  local label = place.element or place.typelabel or place.type
   columns.scaled = position.scaled
   used[place[position[1]]], used[place[position[2]]], used[place[position[3]]] = "x", "y", "z"
-  used[place.element or place.type] = place.element and "element" or "type"
+  if label then used[label] = label == place.type and "type" or "label" end
   local size = place.radius or place.diameter
   if size then used[size] = place.radius and "radius" or "diameter" end
   local parts, rank = {}, 0
@@ -81,7 +101,8 @@ local function find_columns(source, header)
 end
 
 local function label_of(source, columns, list, options)
-  if columns.element then return list[columns.element] end
+  if columns.label then return list[columns.label] end
+  if not columns.type then return "point" end
   local number = source:whole(list[columns.type], "the type of an atom", 1)
   if not options.types then return "type" .. number end
   return options.types[number] or source:fail(("a type among the %d of the option types"):format(#options.types),
@@ -100,9 +121,10 @@ local function read_atom(source, frame, columns, options)
   local x, y = source:number_of(list[columns.x], "x"), source:number_of(list[columns.y], "y")
   local z, radius = source:number_of(list[columns.z], "z"), nil
   if columns.scaled or options.wrap then
-    if not columns.scaled then x, y, z = boxes.scale(frame.box, x, y, z) end
-    if options.wrap then x, y, z = boxes.wrapped(frame.box, x, y, z) end
-    x, y, z = boxes.unscale(frame.box, x, y, z)
+    local box = frame.box or source:fail("a box with a along x and b in the plane of x and y, for shares of it,", line)
+    if not columns.scaled then x, y, z = boxes.scale(box, x, y, z) end
+    if options.wrap then x, y, z = boxes.wrapped(box, x, y, z) end
+    x, y, z = boxes.unscale(box, x, y, z)
   end
   if columns.radius then
     radius = source:number_of(list[columns.radius], "radius")
@@ -115,20 +137,23 @@ end
 -- What stands below each ITEM line, up to the atoms.
 local function read_header(source, line, frame)
   while true do
-    local item = line and line:match "^ITEM:%s*(.*)"
+    local item = line and line:match "^ITEM:%s*(.-)%s*$"
     if not item then source:fail("a line ITEM: ...", line) end
     if item == "TIMESTEP" then
       frame.step = source:whole(source:next(), "the time step", 0)
     elseif item == "NUMBER OF ATOMS" then
       frame.count = source:whole(source:next(), "the number of atoms", 0)
     elseif item:find "^BOX BOUNDS" then
-      frame.box = read_box(source, item:sub(#"BOX BOUNDS" + 1))
+      read_box(source, item:sub(#"BOX BOUNDS" + 1), frame)
     elseif item == "UNITS" or item == "TIME" then
       frame[item:lower()] = source:next()
     elseif item:find "^ATOMS" then
       return item:sub(#"ATOMS" + 1)
+    elseif item:find "^ENTRIES" then
+      source:fail("ITEM: ATOMS, as dump atom and dump custom write it,", line)
     else
-      source:fail("ITEM: TIMESTEP, NUMBER OF ATOMS, BOX BOUNDS, UNITS, TIME or ATOMS", line)
+      repeat line = source:next() until not line or line:find "^ITEM:" -- nothing that is needed
+      if line then source:back(line) end
     end
     line = source:next()
   end
@@ -144,7 +169,7 @@ local function start(source, number, options)
   end
   local frame = { done = 0 }
   local header = read_header(source, line, frame)
-  for _, name in ipairs { "step", "count", "box" } do
+  for _, name in ipairs { "step", "count", frame.cell and "cell" or "box" } do
     if not frame[name] then source:fail(("the %s of the frame above ITEM: ATOMS"):format(name), "ITEM: ATOMS") end
   end
   local columns = find_columns(source, header)
@@ -156,8 +181,8 @@ local function start(source, number, options)
   end
 end
 
---- Iterates over the frames of a file: number, step, count, box { low, high, size, periodic, xy, xz, yz }, and
---- frame:atoms() -> label, x, y, z, radius or nil.
+--- Iterates over the frames of a file: number, step, count, box { low, high, size, periodic, xy, xz, yz } or, of abc
+--- origin, cell { origin, a, b, c }, and frame:atoms() -> label, x, y, z, radius or nil.
 ---@param path string
 ---@param options? { types: string[], wrap: boolean }
 function lammps.frames(path, options)

@@ -12,6 +12,27 @@ local LONGEST = 40 -- characters of a line that an error shows
 local LINE_MAX = 1 << 20 -- bytes
 local BLOCK = 1 << 16 -- bytes that are read at once
 
+-- What other programs write and no reader here takes: by the ending of a file's name, and by its first bytes.
+local ENDINGS = {
+  cif = "CIF", mmcif = "mmCIF", bcif = "BinaryCIF", mmtf = "MMTF", mol2 = "Tripos MOL2", sdf = "SDF",
+  mol = "an MDL molfile", gro = "a GROMACS structure", g96 = "a GROMOS structure", cube = "a Gaussian cube",
+  crd = "a CHARMM or AMBER structure",
+  dcd = "a DCD trajectory", xtc = "a GROMACS trajectory", trr = "a GROMACS trajectory", nc = "NetCDF", cdf = "NetCDF",
+  h5 = "HDF5", hdf5 = "HDF5", psf = "a CHARMM topology", las = "LAS", laz = "LAZ", e57 = "E57", ptx = "Leica PTX",
+  obj = "a Wavefront mesh (glint.mesh)", stl = "an STL mesh (glint.mesh)", glb = "glTF", gltf = "glTF", off = "OFF",
+  ["3mf"] = "3MF", fbx = "FBX", gz = "compressed by gzip", bz2 = "compressed by bzip2", xz = "compressed by xz",
+  zip = "a zip archive", zst = "compressed by zstd", xlsx = "an Excel workbook",
+}
+local BEGINNINGS = {
+  { "\xff\xfe", "UTF-16, not UTF-8" }, { "\xfe\xff", "UTF-16, not UTF-8" }, { "\x1f\x8b", ENDINGS.gz },
+  { "PK\3\4", ENDINGS.zip }, { "data_", ENDINGS.cif }, { "glTF", "glTF" }, { "\x89HDF", "HDF5" }, { "CDF\1", "NetCDF" },
+}
+local READS = ".xyz .pdb .nff .csv .tsv .txt .pts .pcd .ply and LAMMPS dumps"
+
+local function refuse_foreign(path, kind)
+  error(("%s: is %s; glint reads %s"):format(path, kind, READS), 0)
+end
+
 local function shown(text)
   if text == nil then return "the end of the file" end
   return #text > LONGEST and ("%q..."):format(text:sub(1, LONGEST)) or ("%q"):format(text)
@@ -21,12 +42,42 @@ end
 --- device, a pipe or a folder.
 ---@param path string
 function lines.open(path)
+  local foreign = ENDINGS[(path:match "%.(%w+)$" or ""):lower()]
   local kind = path ~= "-" and glint._other_kind(path)
   if kind then error(("%s: a file expected, got a %s"):format(path, kind), 0) end
   local file, message
   if path == "-" then file = io.stdin else file, message = io.open(path, "rb") end
   if not file then error(message, 0) end
+  if foreign then refuse_foreign(path, foreign) end
   return setmetatable({ path = path, number = 0, file = file, block = "", at = 1, base = 0, line_at = 0 }, source)
+end
+
+-- A block whose lines end in LF or CRLF: the same bytes, but for carriage returns without LF after them, which become
+-- line ends, and for several before one LF, which are one line end.
+local function end_lines(block)
+  if not block:find "\r[^\n]" then return block end
+  return (block:gsub("(\r+)()", function(run, after)
+    return block:byte(after) == 10 and (" "):rep(#run - 1) .. "\r" or ("\n"):rep(#run)
+  end))
+end
+
+-- The next block; nil after the last. It does not end in a carriage return unless the file does.
+local function read_block(self)
+  local block
+  repeat
+    local more, message = self.file:read(BLOCK)
+    if message then error(("%s: %s"):format(self.path, message), 0) end
+    block = more and (block or "") .. more or block
+  until not more or more:byte(-1) ~= 13
+  return block and end_lines(block)
+end
+
+-- Steps over a byte order mark at the beginning of the file, and refuses what is not text or not ours.
+local function begin_file(self)
+  if self.block:sub(1, 3) == "\xef\xbb\xbf" then self.at = 4 end
+  for _, beginning in ipairs(BEGINNINGS) do
+    if self.block:find(beginning[1], self.at, true) == self.at then refuse_foreign(self.path, beginning[2]) end
+  end
 end
 
 -- Where the line at hand ends, once the block has grown until it holds that. After the last block: its end.
@@ -37,18 +88,18 @@ local function line_end(self)
       self.number = self.number + 1
       self:fail(("a line of at most %d bytes"):format(LINE_MAX), "a longer one")
     end
-    local more, message = self.file:read(BLOCK)
-    if message then error(("%s: %s"):format(self.path, message), 0) end
+    local more = read_block(self)
     if not more then self:close() end
     self.base = self.base + self.at - 1
     self.block, self.at = rest .. (more or ""), 1
+    if self.base == 0 and self.number == 0 and rest == "" then begin_file(self) end
     local to = self.block:find("\n", #rest + 1, true)
     if to then return to end
   end
   return #self.block + 1
 end
 
---- The next line without its end (LF or CRLF), nil after the last.
+--- The next line without its end (LF, CRLF or CR), nil after the last.
 function source:next()
   if self.held ~= nil then
     local line = self.held
@@ -84,12 +135,25 @@ function source:fail(expected, got)
   error(("%s:%d: %s expected, got %s"):format(self.path, self.number + (got and 0 or 1), expected, shown(got)), 0)
 end
 
+--- The number that a text stands for, in decimal, its exponent as Fortran writes it, too: 1.5D+03, 1.5-103. Nil: none.
+---@param text string
+function lines.number(text)
+  if text:find "[xX]" then return nil end
+  return tonumber(text) or tonumber((text:gsub("^(%s*[+-]?[%d.]+)[dD]?([+-]?%d+%s*)$", "%1e%2")))
+end
+
+--- What a field holds: a number where it is one, else its text.
+---@param text string
+function lines.value(text)
+  return tonumber(text) or text:find(".", 1, true) and lines.number(text) or text
+end
+
 --- The finite number that a text stands for, in decimal; else an error that names `what` it was to be.
 ---@param text string?
 ---@param what string
 ---@return number
 function source:number_of(text, what)
-  local value = text and not text:find "[xX]" and tonumber(text)
+  local value = text and lines.number(text)
   if not value or value - value ~= 0 then
     self:fail(what .. " (a finite number)", text or "nothing")
   end

@@ -2,25 +2,28 @@
 --     local set = particles.new()
 --     set:add_frame(xyz.frame "caffeine.xyz")        -- or set:add("C", x, y, z) by hand
 --     scene:add(set:spheres())
--- A label is a kind of options.kinds, an element (color and radius from glint.elements), "type1" ... "type999" (a
--- palette, radius 0.5: LAMMPS's reduced units) or "point" (grey, radius 0.5).
+-- A label is a kind of options.kinds, an element (color and radius from glint.elements; C13, Fe+3 and CB begin with
+-- one), "type1" ... "type999" (a palette, radius 0.5: LAMMPS's reduced units) or "point" (grey, radius 0.5). Other
+-- labels in a file, as of ghost atoms, are one kind, "ghost" (pink, radius 0.5), with a warning a file.
 -- Colours by a column of the file, in place of the kinds':
 --     local set = particles.new { color_by = { column = "speed", map = "viridis" } }     -- also low, high: its range
 -- Memory: numbers are packed in chunks, there is no table for each sphere. A sphere takes 36 bytes (20 as "f32"), twice
 -- that for the moment in which spheres() puts the chunks together. Then the engine has it: some 260 bytes a sphere from
 -- the first picture on, 380 while the index is built.
 local glint = require "glint"
-local elements = require "glint.elements"
+local boxes, elements = require "glint.box", require "glint.elements"
 
 local particles = {}
 
 local CHUNK = 256 -- spheres packed at a time
 local LARGE = 100000 -- spheres: their strings are collected once the engine has its copy, of which Lua knows nothing
 local PALETTE = { "#4e79a7", "#f28e2b", "#59a14f", "#e15759", "#b07aa1", "#edc948", "#76b7b2", "#9c755f" }
-local POINT = { color = "#b8b8b8", radius = 0.5 }
+local POINT, GHOST = { color = "#b8b8b8", radius = 0.5 }, { color = "#ff1493", radius = 0.5 }
 
 local OPTIONS = { kinds = true, scale = true, radius = true, material = true, format = true, color_by = true }
 local STEPS = 256 -- of colours by a column, each a material
+
+local warned = {} -- files with labels that are nothing known
 
 local set = {}
 set.__index = set
@@ -74,18 +77,32 @@ function particles.new(options)
 end
 
 local function known(label)
-  local symbol = elements.symbol(label)
-  if symbol then return symbol, elements[symbol] end
   local number = math.tointeger(tonumber(label:match "^type([1-9]%d?%d?)$"))
   if number then return label, { color = PALETTE[(number - 1) % #PALETTE + 1], radius = 0.5 } end
   if label == "point" then return label, POINT end
+  local symbol = elements.of_label(label)
+  if symbol then return symbol, elements[symbol] end
 end
 
--- Finds or makes the kind of a label: its place among the materials and its radius. Nil when there is none.
-local function kind_of(self, label)
+-- Labels of a file that are nothing known: one kind. Warns once a file.
+local function ghost_of(self, frame, label)
+  local path = frame.source.path
+  if not warned[path] then
+    local message = "%s:%d: %q is no element and none of the option kinds: such atoms have one colour and the radius %g"
+    local radius = self.options.radius or (self.options.scale or 1) * GHOST.radius
+    glint._warn(message:format(path, frame.source.number, label, radius))
+  end
+  warned[path] = true
+  return "ghost", GHOST
+end
+
+-- Finds or makes the kind of a label: its place among the materials and its radius. Nil when there is none, except in
+-- a frame of a file.
+local function kind_of(self, label, frame)
   local options = self.options
   local name, found = label, (options.kinds or {})[label]
   if not found then name, found = known(label) end
+  if not found and frame then name, found = ghost_of(self, frame, label) end
   if not found then return nil end
   local kind = self.kinds[name]
   if not kind then
@@ -131,8 +148,8 @@ local function put_value(self, value)
 end
 
 -- Adds a sphere. Returns false, what was expected and what was got when it cannot be.
-local function put(self, label, x, y, z, radius, value)
-  local kind = self.kinds[label] or kind_of(self, label)
+local function put(self, frame, label, x, y, z, radius, value)
+  local kind = self.kinds[label] or kind_of(self, label, frame)
   if not kind then
     return false, "an element, its number, or one of the option kinds", label
   end
@@ -158,7 +175,7 @@ end
 ---@param radius? number  Default: the kind's
 ---@param value? number  what color_by is to show
 function set:add(label, x, y, z, radius, value)
-  local done, expected, got = put(self, label, x, y, z, radius, value)
+  local done, expected, got = put(self, nil, label, x, y, z, radius, value)
   if not done then error(("%s expected, got %q"):format(expected, got), 2) end
 end
 
@@ -180,7 +197,7 @@ end
 function set:add_frame(frame)
   if frame.box then keep_box(self, frame.box) end
   for label, x, y, z, radius, value in frame:atoms(self.color_by and self.color_by.column) do
-    local done, expected, got = put(self, label, x, y, z, radius, value)
+    local done, expected, got = put(self, frame, label, x, y, z, radius, value)
     if not done then frame:fail(expected, got) end
   end
   return self
@@ -211,6 +228,7 @@ function set:range()
   local by = self.color_by
   if not by then error("particles.range: a set with color_by expected", 2) end
   local low, high = by.low or self.lowest, by.high or self.highest
+  if self.count == 0 then low, high = by.low or 0, by.high or 1 end
   if low < high then return low, high end
   return low, low + 1 -- all values are one
 end
@@ -236,11 +254,15 @@ local function color(self, all)
   all.index, self.values = table.concat(index), nil
 end
 
---- The spheres, as one shape. The set's own copy of them goes: to be called once.
+--- The spheres, as one shape; an empty group where there are none, as in the first frame of some films. The set's own
+--- copy of them goes: to be called once.
 ---@param fields? table  further fields of the shape, such as { name = "melt" }
 function set:spheres(fields)
-  if self.count == 0 then error("particles: one sphere at least expected, got none", 2) end
   if not self.data then error("particles: the spheres of this set have been taken", 2) end
+  if self.count == 0 then
+    self.data = nil
+    return glint.group {}
+  end
   pack(self)
   local all = { format = self.format, materials = self.materials }
   all.data, self.data = table.concat(self.data), nil
@@ -255,11 +277,14 @@ function set:spheres(fields)
   return shape
 end
 
---- The centre of the box around all spheres, and half its diagonal.
+--- The centre of the box around all spheres, and half its diagonal. Without spheres: of the box of the frames, and
+--- without that the origin and 1.
 ---@return number[] center
 ---@return number radius
 function set:extent()
   local low, high, center, squares = self.low, self.high, {}, 0
+  if self.count == 0 and not self.box then return { 0, 0, 0 }, 1 end
+  if self.count == 0 then low, high = table.unpack(boxes.corners(self.box)) end
   for i = 1, 3 do
     center[i] = (low[i] + high[i]) / 2
     squares = squares + ((high[i] - low[i]) / 2) ^ 2

@@ -1,23 +1,51 @@
 -- PDB: the ATOM and HETATM records of the Protein Data Bank's format 3.3, by columns. Each MODEL is a frame.
 --     for label, x, y, z in pdb.frame "1crn.pdb":atoms() do ... end
--- The element is that of columns 77-78, and where these are empty that of the atom's name (columns 13-16). Of atoms at
--- alternate locations the first (blank or A, column 17) is taken. Other records are passed over. The other
--- fields are there by name, frame:atoms("chain", "bfactor"): serial, name, resname, chain, resseq, occupancy, bfactor,
--- element, charge.
+-- The element is that of columns 77-78, and where these are empty that of the atom's name (columns 13-16) and residue.
+-- Of atoms at alternate locations the first one is taken, whatever column 17 calls it. The massless places of a water
+-- (EPW, MW) are passed over. CRYST1 gives frame.cell = { origin, a, b, c } and frame.box (glint.box). Other records
+-- are passed over. The other fields are there by name, frame:atoms("chain", "bfactor"): serial, name, resname, chain,
+-- resseq, occupancy, bfactor, element, charge.
+local glint = require "glint"
 local elements = require "glint.elements"
-local frames = require "glint.frames"
+local frames, lines = require "glint.frames", require "glint.lines"
 
 local pdb = {}
 
-local TAKEN = { ATOM = true, HETATM = true, MODEL = true, ENDMDL = true, END = true }
+local TAKEN = { ATOM = true, HETATM = true, MODEL = true, ENDMDL = true, END = true, CRYST = true }
 local LAST_COLUMN = 54 -- of z
 
--- Names are set so that the element's symbol ends in column 14: " CA " is a carbon, "CA  " calcium. Names of four
--- letters ("HG11") begin in column 13 and are hydrogens.
-local function element_of(name)
-  local two = name:sub(1, 2)
-  if two:find "^%a%a" and not name:find "^H%w%w%w$" and elements.symbol(two) then return two end
-  return name:match "%a"
+local function set_of(words)
+  local set = {}
+  for word in words:gmatch "%S+" do set[word] = true end
+  return set
+end
+
+-- Residues whose atoms are H, C, N, O, P, S and Se only, so that the first letter of a name tells.
+local BIOMOLECULES = set_of [[
+ALA ARG ASN ASP CYS GLN GLU GLY HIS ILE LEU LYS MET PHE PRO SER THR TRP TYR VAL ASX GLX SEC PYL MSE SEP TPO PTR HYP
+HID HIE HIP HSD HSE HSP CYX CYM ASH GLH LYN ACE NME NMA NH2
+A C G U I T N DA DC DG DT DU DI RA RC RG RU A3 A5 C3 C5 G3 G5 U3 U5 RA3 RA5 RC3 RC5 RG3 RG5 RU3 RU5
+DA3 DA5 DC3 DC5 DG3 DG5 DT3 DT5 ADE CYT GUA THY URA AMP ADP ATP GMP GDP GTP]]
+local WATERS = set_of "HOH WAT DOD H2O SOL SPC TIP TIP3 TIP4 TIP5 TP3 TP4 TP5 T3P T4P T4E T5P TI3 TI4 OPC SWM"
+-- Ions as CHARMM names them.
+local IONS = { SOD = "Na", CLA = "Cl", POT = "K", CAL = "Ca", CES = "Cs", LIT = "Li", RUB = "Rb", BAR = "Ba",
+  CAD = "Cd" }
+-- Symbols that begin the name of no atom of another element, wherever they stand.
+local SURE = set_of [[FE CL BR ZN MG MN SI AL LI SE NI CU MO RU RH PT AU AG IR AS GA GE TI ZR]]
+
+-- The element that a name stands for where no column gives it; nil: none, as of a water's massless places. In format
+-- 3.3 a symbol ends in column 14: " CA " is a carbon, "CA  " calcium. is_left: this file has all names from column 13.
+local function element_of(name, residue, is_left)
+  local text = name:match "^%s*%d*(.-)%s*$"
+  local letters = (text:match "^%a+" or ""):upper()
+  local first, two = letters:sub(1, 1), letters:sub(1, 2)
+  if WATERS[residue] then return first:find "[OHD]" and elements.symbol(first) or nil end
+  if BIOMOLECULES[residue] then return elements.symbol(two == "SE" and two or first) end
+  local ion = IONS[letters] or residue:match "^%a*" == letters and elements.symbol(letters)
+  if ion then return ion end
+  local is_placed = name:find "^%a%a" and not is_left and #text < 4 and (first ~= "H" or text == "HG")
+  if SURE[two] or is_placed and elements.symbol(two) then return elements.symbol(two) end
+  return elements.symbol(first) or elements.of_label(letters)
 end
 
 local COLUMNS = { "serial", "name", "resname", "chain", "resseq", "occupancy", "bfactor", "element", "charge" }
@@ -36,13 +64,36 @@ local function pick(wanted)
   end
 end
 
+-- An atom; nil for a place that is none.
 local function read_atom(source, fields, line)
   fields.line = line
   if #line < LAST_COLUMN then source:fail("a record of at least 54 columns (z is in 47-54)", line) end
-  local label = line:sub(77, 78):match "%a+" or element_of(line:sub(13, 16))
+  local name, residue = line:sub(13, 16), line:sub(18, 21):match("^%s*(.-)%s*$"):upper()
+  fields.is_left = fields.is_left or name:find "^[CNO]%d* +$" ~= nil
+  local given = line:sub(77, 78):match "%a+"
+  local label = given and elements.symbol(given) or element_of(name, residue, fields.is_left)
+  if not label and WATERS[residue] then return nil end
+  label = label or given or name:match "%S+"
   if not label then source:fail("an element in columns 77-78 or an atom's name in 13-16", line) end
   return label, source:number_of(line:sub(31, 38), "x, columns 31-38,"),
     source:number_of(line:sub(39, 46), "y, columns 39-46,"), source:number_of(line:sub(47, 54), "z, columns 47-54,")
+end
+
+-- Whether an atom is to be taken: of an atom at alternate locations the first, and of a residue that is one of several
+-- kinds the atoms of the first kind. What is kept is the residue at hand, and all atoms that have alternate locations.
+local function is_first(fields, line)
+  local name, alternate, kind = line:sub(13, 16), line:sub(17, 17), line:sub(18, 20)
+  local place = line:sub(22, 27) .. line:sub(73, 76)
+  if fields.place ~= place then fields.place, fields.kind, fields.names = place, kind, {} end
+  if alternate == " " then
+    fields.names[name] = true
+    return true
+  end
+  local kinds, chosen, atom = fields.kinds, fields.chosen, place .. name
+  kinds[place] = kinds[place] or fields.kind
+  if fields.names[name] or kinds[place] ~= kind then return false end
+  chosen[atom] = chosen[atom] or alternate
+  return chosen[atom] == alternate
 end
 
 -- The next record that counts: its name and line.
@@ -53,24 +104,76 @@ local function next_record(source)
   end
 end
 
-local function start(source, number, options)
+local function cosine(degrees)
+  return ({ [60] = 0.5, [90] = 0, [120] = -0.5 })[degrees] or glint.cos(math.rad(degrees))
+end
+
+-- The cell and box of a CRYST1 record; nil where it has none: 1 1 1 stands in files that are no crystal.
+local function cell_of(source, line)
+  local v, is_whole = {}, true
+  for i, columns in ipairs { { 7, 15 }, { 16, 24 }, { 25, 33 }, { 34, 40 }, { 41, 47 }, { 48, 54 } } do
+    local text = line:sub(columns[1], columns[2])
+    v[i] = i > 3 and not text:find "%S" and 90 or lines.number(text) or 0
+    is_whole = is_whole and v[i] > 0 and v[i] < (i > 3 and 180 or math.huge)
+  end
+  local a, b, c = v[1], v[2], v[3]
+  if math.max(a, b, c) <= 1 then return nil end
+  local cos_a, cos_b, cos_c = cosine(v[4]), cosine(v[5]), cosine(v[6])
+  local sin_c = math.sqrt(1 - cos_c * cos_c)
+  local y = (cos_a - cos_b * cos_c) / sin_c
+  local square = 1 - cos_b * cos_b - y * y
+  if not is_whole or square <= 0 then
+    local message = "%s:%d: no cell: six numbers of one expected in CRYST1, got %q"
+    glint._warn(message:format(source.path, source.number, line))
+    return nil
+  end
+  local box = { low = { 0, 0, 0 }, size = { a, b * sin_c, c * math.sqrt(square) }, periodic = { true, true, true },
+    xy = b * cos_c, xz = c * cos_b, yz = c * y }
+  local sides = { { a, 0, 0 }, { box.xy, box.size[2], 0 }, { box.xz, box.yz, box.size[3] } }
+  return { origin = box.low, a = sides[1], b = sides[2], c = sides[3] }, box
+end
+
+-- Records before a frame's atoms: its model and its cell, or that of the frame before it. The first record that is
+-- neither is given back.
+local function read_head(source, number, fields)
+  local cells = source.cells or {}
+  source.cells = cells
+  cells[number] = cells[number] or cells[number - 1]
   local name, line = next_record(source)
-  while name == "END" or name == "ENDMDL" do name, line = next_record(source) end
+  while name == "END" or name == "ENDMDL" or name == "CRYST" or name == "MODEL" and not fields.is_model do
+    if name == "MODEL" then
+      fields.is_model, fields.model = true, source:whole(line:sub(7), "the number of the model", 0)
+    elseif name == "CRYST" then
+      cells[number] = { cell_of(source, line) }
+    elseif fields.is_model then
+      break -- no atoms
+    end
+    name, line = next_record(source)
+  end
+  if name then source:back(line) end
+  fields.cell, fields.box = table.unpack(cells[number] or {}, 1, 2)
+  return name
+end
+
+local function start(source, number, options)
+  local fields = { kinds = {}, chosen = {} }
+  local name, line = read_head(source, number, fields), nil
   if not name and number > 1 then return nil end
   if not name then source:fail("an ATOM or HETATM record", nil) end
-  local is_model = name == "MODEL"
-  if not is_model then source:back(line) end
-  local fields = { model = is_model and source:whole(line:sub(7), "the number of the model", 0) or nil }
+  local is_model = fields.is_model
   frames.name_columns(fields, COLUMNS, pick)
   return fields, function()
     while true do
       name, line = next_record(source)
       if not name and is_model then source:fail("ENDMDL", nil) end
       if name == "MODEL" then source:fail(is_model and "ENDMDL" or "ATOM, HETATM or END", line) end
-      if name ~= "ATOM" and name ~= "HETATM" then return nil end
-      local alternate = line:sub(17, 17)
-      if (name == "ATOM" or options.hetatm ~= false) and (alternate == " " or alternate == "A" or alternate == "") then
-        return read_atom(source, fields, line)
+      if name ~= "ATOM" and name ~= "HETATM" and name ~= "CRYST" then return nil end
+      if line:sub(1, LAST_COLUMN):find("\t", 1, true) then
+        source:fail("a record in columns, with blanks and no tabs,", line)
+      end
+      if name == "ATOM" or name == "HETATM" and options.hetatm ~= false then
+        local label, x, y, z = read_atom(source, fields, line)
+        if label and is_first(fields, line) then return label, x, y, z end
       end
     end
   end

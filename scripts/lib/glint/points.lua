@@ -4,7 +4,7 @@
 -- others are there by name: frame:atoms("mass"). Without names the columns are x, y, z, radius; options.columns =
 -- { "label", "x", ... } says otherwise. The separator is the first of tab, semicolon and comma in that line, else
 -- blanks. A field may stand "in quotes", with "" for a quote. Lines that are empty or begin with # are passed over.
-local frames = require "glint.frames"
+local frames, lines = require "glint.frames", require "glint.lines"
 
 local points = {}
 
@@ -72,7 +72,7 @@ local function pick(columns, wanted)
     local found = {}
     for i, name in ipairs(wanted) do
       local text = list[columns[name]]
-      found[i] = tonumber(text) or text
+      found[i] = text and lines.value(text)
     end
     return table.unpack(found, 1, #wanted)
   end

@@ -5,11 +5,12 @@
 --     end
 -- Extended XYZ says in its comment what the columns are and where the periodic cell is:
 --     Lattice="10 0 0 0 10 0 0 0 10" Properties=species:S:1:pos:R:3:vel:R:3:charge:R:1 pbc="T T F"
+-- frame.keys has the values of all keys as texts, under their names in small letters.
 -- frame.columns are then species, x, y, z, vel_x, vel_y, vel_z, charge (of a property of 2 or of more than 3 numbers
 -- name_1 ...); frame.cell = { origin, a, b, c } has the cell's corner and sides, and frame.box is the same as a box
 -- (glint.box) where a lies along x and b in the plane of x and y. Without Properties the columns after the fourth are
 -- "5", "6" ...
-local frames = require "glint.frames"
+local boxes, frames = require "glint.box", require "glint.frames"
 
 local xyz = {}
 
@@ -25,12 +26,39 @@ local function read_atom(source, frame, index)
   return label, source:number_of(x, "x"), source:number_of(y, "y"), source:number_of(z, "z")
 end
 
--- The value of a key of the comment: key=word or key="words", whatever the case of the key.
-local function value_of(comment, key)
-  local text, at = " " .. comment, (" " .. comment:lower()):find("%s" .. key:lower() .. "%s*=")
-  if not at then return nil end
-  local rest = text:sub(at):match "=%s*(.*)"
-  return rest:match '^"([^"]*)"' or rest:match "^[%[{]([^%]}]*)[%]}]" or rest:match "^%S+"
+-- What stands between quotation marks or brackets at `from` of a text, and where the rest begins. Nil: they do not end.
+local function enclosed(text, from)
+  local mark = text:sub(from, from)
+  if mark == '"' or mark == "'" then
+    local at = from + 1
+    while at <= #text do
+      local c = text:sub(at, at)
+      if c == mark then return text:sub(from + 1, at - 1), at + 1 end
+      at = at + (c == "\\" and 2 or 1)
+    end
+    return nil
+  end
+  local inside = text:match(mark == "{" and "^%b{}" or "^%b[]", from)
+  if inside then return inside:gsub("[][{},]", " "), from + #inside end
+end
+
+-- The keys of a comment, in small letters, and their values, as texts: key=word, key="words" or 'words', and arrays
+-- [a, b] and {a b}. Quoted text is one value, whatever stands in it.
+local function read_keys(comment)
+  local keys, at = {}, 1
+  while at <= #comment do
+    local name, after = comment:match("^([^%s=\"'{}%[%]]+)%s*=%s*()", at)
+    local value
+    if name then
+      value, at = enclosed(comment, after)
+      if not value then value, at = comment:match("^(%S*)()", after) end
+      keys[name:lower()] = keys[name:lower()] or value
+    else
+      local _, beyond = enclosed(comment, at)
+      at = beyond or comment:match("^%s+()", at) or comment:match("^%S+()", at)
+    end
+  end
+  return keys
 end
 
 -- The names of the columns, from name:type:count:name:type:count ...
@@ -50,7 +78,7 @@ end
 
 -- How a line is read: one pattern for the four columns that every frame has.
 local function find_columns(source, fields)
-  local text = value_of(fields.comment, "Properties")
+  local text = fields.keys.properties
   local names, place = text and property_names(source, text, fields.comment) or { "element", "x", "y", "z" }, {}
   for i, name in ipairs(names) do place[name] = place[name] or i end
   local label = place.species or place.element or place.Z or place.type
@@ -81,21 +109,28 @@ local function numbers_of(source, text, count, what, comment)
   return list
 end
 
+-- Along which sides a frame repeats: pbc="T T F", or one word for all; all where it is not said.
+local function periodic_of(source, fields)
+  local list = {}
+  for word in (fields.keys.pbc or "T"):gmatch "[^%s,]+" do
+    local first = word:sub(1, 1):upper()
+    if not first:find "[TF10]" then source:fail("T or F of pbc", word) end
+    list[#list + 1] = first == "T" or first == "1"
+  end
+  if #list == 1 then return { list[1], list[1], list[1] } end
+  if #list ~= 3 then source:fail("three words T or F of pbc", fields.comment) end
+  return list
+end
+
 -- The cell of a frame, and its box where the sides lie as those of a box.
 local function find_cell(source, fields)
-  local text = value_of(fields.comment, "Lattice")
+  local text = fields.keys.lattice
   if not text then return end
   local v = numbers_of(source, text, 9, "Lattice", fields.comment)
-  local origin = numbers_of(source, value_of(fields.comment, "Origin") or "0 0 0", 3, "Origin", fields.comment)
-  local periodic, i = { true, true, true }, 0
-  for word in (value_of(fields.comment, "pbc") or ""):gmatch "%a+" do
-    i = i + 1
-    if i <= 3 then periodic[i] = word:find "^[Tt]" ~= nil end
-  end
+  local origin = numbers_of(source, fields.keys.origin or "0 0 0", 3, "Origin", fields.comment)
+  local periodic = periodic_of(source, fields)
   fields.cell = { origin = origin, a = { v[1], v[2], v[3] }, b = { v[4], v[5], v[6] }, c = { v[7], v[8], v[9] } }
-  if v[2] == 0 and v[3] == 0 and v[6] == 0 and v[1] > 0 and v[5] > 0 and v[9] > 0 then
-    fields.box = { low = origin, size = { v[1], v[5], v[9] }, periodic = periodic, xy = v[4], xz = v[7], yz = v[8] }
-  end
+  fields.box = boxes.of_cell(fields.cell, periodic)
 end
 
 -- Blank lines may stand before a count, and nowhere else.
@@ -105,10 +140,10 @@ local function start(source, number)
   if not line and number > 1 then return nil end
   local before = number > 1 and (" of frame %d (the frame before it is complete)"):format(number) or ""
   if not line or not line:find "^%s*%d+%s*$" then source:fail("the number of atoms" .. before, line) end
-  local count, index = source:whole(line, "the number of atoms", 1), 0
+  local count, index = source:whole(line, "the number of atoms", 0), 0
   local comment = source:next()
   if not comment then source:fail("a line of comment", nil) end
-  local fields = { count = count, comment = comment }
+  local fields = { count = count, comment = comment, keys = read_keys(comment) }
   find_columns(source, fields)
   find_cell(source, fields)
   return fields, function()
