@@ -238,6 +238,9 @@ void cli_release_signals(void);
 // ---- The sub-commands: each returns the exit code ----
 
 int cli_render(cli_options *options, cli_output *output, glintL_run *run);
+/// Writes what is still to be written and gives the last warnings, after a script that ended well when `good`. False: the run
+/// has failed.
+bool cli_finish_frames(glintL_run *run, bool good);
 int cli_explain(cli_options *options, cli_output *output, glintL_run *run);
 int cli_describe(cli_options *options, cli_output *output, glintL_run *run);
 int cli_cost(cli_options *options, cli_output *output, glintL_run *run);

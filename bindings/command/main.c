@@ -41,13 +41,9 @@ static void finish_early(void)
     if (!run)
         return;
     open_output = NULL;
-    bool good = glintL_call_settle(run);
-    good = glintL_run_collect(run, true) && good;
-    good = good && glintL_films_finish(run);
+    bool good = cli_finish_frames(run, glintL_call_settle(run));
     cli_progress_destroy(output->progress);
     output->progress = NULL;
-    if (good)
-        cli_warn_clipped(run);
     if (good && !run->exit_code)
         cli_report_end(output);
     else

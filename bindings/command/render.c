@@ -44,13 +44,15 @@ static bool run_points(cli_options *options, glintL_run *run)
     return true;
 }
 
-// Calls are counted as they come: what was selected beyond them shows at the end.
-static void warn_calls(glintL_run *run)
+bool cli_finish_frames(glintL_run *run, bool good)
 {
-    char message[GLINTL_MESSAGE_SIZE];
-    if (run->call_count > 0 && run->call_count == run->count &&
-        glintL_selection_outside(&run->request.selection, run->count, message))
-        glintL_run_warn(run, "%s", message);
+    good = glintL_run_collect(run, true) && good; // what was handed over is finished in any case
+    good = good && !run->interrupted && glintL_films_finish(run);
+    // The calls of a loop are counted as they come: only now is it known what the selection leaves of them.
+    good = good && (run->count == 0 || glintL_selection_settle(run, 1, run->count));
+    if (good)
+        cli_warn_clipped(run);
+    return good;
 }
 
 int cli_render(cli_options *options, cli_output *output, glintL_run *run)
@@ -58,14 +60,8 @@ int cli_render(cli_options *options, cli_output *output, glintL_run *run)
     if (!output->quiet)
         output->progress = cli_progress_create(output->color);
     bool good = run_points(options, run);
-    good = glintL_run_collect(run, true) && good; // what was handed over is finished in any case
-    good = good && !run->interrupted && glintL_films_finish(run);
-    if (good) {
-        warn_calls(run);
-        cli_warn_clipped(run);
-    } else {
+    if (!cli_finish_frames(run, good))
         glintL_films_keep(run);
-    }
     if (run->interrupted) {
         cli_report_error(output, 0, 128 + (int)run->interrupted, "interrupted");
     } else if (run->exit_code) {

@@ -154,7 +154,6 @@ static bool check_sweep(const task *work)
 // Runs the jobs whose list is at 1.
 static void run_results(lua_State *L, const task *work)
 {
-    char message[GLINTL_MESSAGE_SIZE];
     if (work->run->mode == GLINTL_MODE_WATCH) {
         work->script->jobs = luaL_ref(L, LUA_REGISTRYINDEX);
     } else if (work->run->mode == GLINTL_MODE_EXPLAIN) {
@@ -162,8 +161,8 @@ static void run_results(lua_State *L, const task *work)
     } else if (work->run->mode == GLINTL_MODE_RENDER) {
         int64_t total = work->run->point_count ? work->script->frames * work->run->point_count
                                                : work->run->count + work->script->frames;
-        if (work->run->point <= 1 && glintL_selection_outside(&work->run->request.selection, total, message))
-            glintL_run_warn(work->run, "%s", message);
+        if (work->run->point <= 1 && !glintL_selection_settle(work->run, 1, total))
+            return;
         glintL_call_settle(work->run);
         glintL_jobs_run(L, 1, work->run);
     }

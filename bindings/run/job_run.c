@@ -92,22 +92,23 @@ static int run_protected(lua_State *L)
 static bool run_as(lua_State *L, glintL_run *run, int list, const glintL_request *request, const glintL_render *render)
 {
     glintL_job *job = lua_touserdata(L, 1);
-    char message[GLINTL_MESSAGE_SIZE];
     glintL_request before = run->request;
     glintL_render render_before = job->render;
+    // The command line's own selection may be for a later run of the script.
+    bool is_own = request->selection.ranges != before.selection.ranges;
     bool good = false;
     run->request = *request;
     job->render = *render;
     lua_pushcfunction(L, run_protected);
     lua_pushvalue(L, list);
     lua_pushlightuserdata(L, &good);
-    if (lua_pcall(L, 2, 0, 0) != LUA_OK)
+    if (is_own && !glintL_selection_settle(run, run->count + 1, run->count + job->frames))
+        lua_pop(L, 3);
+    else if (lua_pcall(L, 2, 0, 0) != LUA_OK)
         good = glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", lua_tostring(L, -1));
     if (!run->is_command) {
         good = glintL_run_collect(run, true) && good;
         good = good && glintL_films_finish(run);
-        if (good && glintL_selection_outside(&run->request.selection, run->total, message))
-            glintL_run_warn(run, "%s", message);
     }
     job->render = render_before;
     run->request = before;

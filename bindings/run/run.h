@@ -60,8 +60,9 @@ bool glintL_selection_has(const glintL_selection *selection, int64_t number);
 int64_t glintL_selection_count(const glintL_selection *selection, int64_t first, int64_t last);
 /// Which of the selected frames of 1 .. total are this shard's, counted from 1: *from .. *to, empty when to < from.
 void glintL_selection_part(const glintL_selection *selection, int64_t first, int64_t last, int64_t *from, int64_t *to);
-/// Whether frames outside 1 .. total were named by number; writes the warning.
-bool glintL_selection_outside(const glintL_selection *selection, int64_t total, char message[GLINTL_MESSAGE_SIZE]);
+/// Warns of selected frames outside first .. last, the frames of the script. False: the selection has none of these frames,
+/// and the run has failed. An empty shard is no failure.
+bool glintL_selection_settle(struct glintL_run *run, int64_t first, int64_t last);
 
 // ---- render_options.c ----
 

@@ -136,25 +136,46 @@ void glintL_selection_part(const glintL_selection *selection, int64_t first, int
     }
 }
 
-bool glintL_selection_outside(const glintL_selection *selection, int64_t total, char message[GLINTL_MESSAGE_SIZE])
+// Whether frames outside first .. last were named by number; writes the warning.
+static bool names_others(const glintL_selection *selection, int64_t first, int64_t last, char message[GLINTL_MESSAGE_SIZE])
 {
     for (size_t i = 0; i < selection->range_count; i++) {
         const glintL_range *range = &selection->ranges[i];
         bool open = range->last == INT64_MAX;
-        if (range->first >= 1 && range->first <= total && (open || range->last <= total))
+        if (range->first >= first && range->first <= last && (open || range->last <= last))
             continue;
-        if (range->first == range->last)
-            snprintf(message, GLINTL_MESSAGE_SIZE,
-                     "frame %" PRId64 " is left out: the frames of the script are 1 .. %" PRId64, range->first, total);
-        else if (open)
-            snprintf(message, GLINTL_MESSAGE_SIZE,
-                     "of frames %" PRId64 "- some are left out: the frames of the script are 1 .. %" PRId64,
-                     range->first, total);
-        else
-            snprintf(message, GLINTL_MESSAGE_SIZE,
-                     "of frames %" PRId64 "-%" PRId64 " some are left out: the frames of the script are 1 .. %" PRId64,
-                     range->first, range->last, total);
+        char named[64] = "";
+        if (!open && range->last != range->first)
+            snprintf(named, sizeof named, "%" PRId64, range->last);
+        bool one = range->first == range->last;
+        snprintf(message, GLINTL_MESSAGE_SIZE,
+                 "%s%" PRId64 "%s%s%s left out: the frames of the script are %" PRId64 " .. %" PRId64,
+                 one ? "frame " : "of frames ", range->first, one ? "" : "-", named, one ? " is" : " some are", first, last);
         return true;
     }
     return false;
+}
+
+// Whether a range has one of the frames first .. last.
+static bool has_any(const glintL_range *range, int64_t first, int64_t last)
+{
+    int64_t before = range->first < first ? first - range->first : 0; // rounded up to whole steps
+    int64_t nearest = range->first + (before + range->step - 1) / range->step * range->step;
+    return nearest <= (range->last < last ? range->last : last);
+}
+
+bool glintL_selection_settle(glintL_run *run, int64_t first, int64_t last)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    const glintL_selection *selection = &run->request.selection;
+    bool any = selection->range_count == 0;
+    for (size_t i = 0; i < selection->range_count && !any; i++)
+        any = has_any(&selection->ranges[i], first, last);
+    if (!any)
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
+                               "frames: the selection leaves nothing: the frames of the script are %" PRId64 " .. %" PRId64,
+                               first, last);
+    if (names_others(selection, first, last, message))
+        glintL_run_warn(run, "%s", message);
+    return run->exit_code == 0;
 }

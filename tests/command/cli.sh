@@ -199,6 +199,29 @@ traced() { # NAME WANT ARGUMENTS...: the frame function is called for these fram
     if [ "$have" = "$want" ] && [ "$status" -eq 0 ]; then pass; else fail "$name: frames $have, exit $status"; fi
 }
 
+# A selection that leaves nothing is a mistake; a shard without frames is not.
+left_nothing() {
+    local options
+    for options in "-f 11" "-s 11" "-f 0" "-f 0-1:5" "-f 11-20,30-" "-j 3 -s 12" "-f 11 --shard 1/2"; do
+        TRACE=1 exits 2 "nothing left by $options" ten.lua -o none $options
+        says "nothing left by $options" 'error: frames: the selection leaves nothing: .*1 \.\. 10$'
+        check "no frame is built by $options" test -z "$(grep "^frame" err)"
+        exits 2 "nothing left of a loop by $options" loop.lua -o none $options
+    done
+    exits 2 "nothing left of a sweep" ten.lua -o none --sweep radius=2:4:2 -f 21
+    says "nothing left of a sweep" '1 \.\. 20$'
+    script leaves 'local S = require "scene"
+for i = 1, 3 do S.scene:render { width = 8, height = 8 } end
+os.exit(0)'
+    exits 2 "nothing left before os.exit" leaves.lua -o none -f 4
+    script own 'local S = require "scene"
+local a = require("glint").animation { scene = S.scene, frames = 3, width = 8, height = 8, output = "none", frame = print }
+a:run { frames = "4-" }'
+    exits 2 "nothing left by a run of the script" own.lua
+    says "nothing left by a run of the script" "frames of the script are 1 .. 3"
+    exits 0 "an empty shard" loop.lua -o none -f 1 --shard 2/2
+}
+
 selection() {
     traced "all" "1 2 3 4 5 6 7 8 9 10 "
     traced "ranges" "1 2 3 5 7 9 " -f 1-3,5,7-9:2
@@ -207,7 +230,7 @@ selection() {
     traced "-s -e -j" "2 5 8 " -s 2 -e 9 -j 3
     traced "cut" "10 " -f 10-30
     says "cut warns" 'warning: .*1 \.\. 10'
-    traced "nothing left" "" -f 11
+    left_nothing
     traced "shard 1/3" "1 2 3 " --shard 1/3
     traced "shard 2/3" "4 5 6 " --shard 2/3
     traced "shard 3/3" "7 8 9 10 " --shard 3/3
@@ -832,6 +855,7 @@ local r = a:run { frames = "2-3", output = "p%d.png", threads = 2 }
 assert(r.frames == 2 and r.kept == 0)
 assert(a:run { frames = 2, output = "p%d.png" }.kept == 1)
 assert(not pcall(a.run, a, { frames = "x" }) and not pcall(a.run, a, { thread = 2 }))
+assert(select(2, pcall(a.run, a, { frames = "11-" })):find "frames: the selection leaves nothing")
 assert(not pcall(a.run, a, { output = "/proc/nothing/x.png", frames = 1 }))
 local image = a.scene:render { width = 8, height = 8, output = "q.png" }
 assert(image.width == 8 and io.open "q.png")
