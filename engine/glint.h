@@ -1368,7 +1368,8 @@ glint_status glint_draft_finish(glint_draft *draft, glint_error *error);
 void glint_draft_destroy(glint_draft *draft);
 
 /// Removes from a folder the hidden files of drafts whose process was killed: those of this host at once, those of others a
-/// day after they were last written. The first draft of a process in a folder does it, too. Any thread.
+/// day after they were last written. A process does it once in each folder where it opens a draft or calls glint_file_has_key. Any
+/// thread.
 void glint_drafts_collect(const char *path);
 /// Removes the hidden files of this process's drafts. For a signal's handler that ends the process next: it may be called
 /// there, and no draft can be finished afterwards.

@@ -217,16 +217,6 @@ char *glint_draft_place(const char *path)
     return out;
 }
 
-/// Removes what killed processes have left in the folder of `path`.
-static void collect_around(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    char *folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : NULL;
-    if (folder || !slash)
-        glint_drafts_collect_once(slash ? folder : ".");
-    free(folder);
-}
-
 static int open_hidden(glint_draft *draft)
 {
     size_t room = strlen(draft->target) + TEMPORARY_ROOM;
@@ -244,7 +234,7 @@ static int open_hidden(glint_draft *draft)
         draft->temporary = NULL;
         return code;
     }
-    collect_around(draft->temporary);
+    glint_drafts_collect_beside(draft->temporary);
     return 0;
 }
 

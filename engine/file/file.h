@@ -27,8 +27,8 @@ glint_status glint_file_read_picture(const char *path, glint_bytes *out, glint_e
 
 /// This host's name, without slashes, cut at the room there is.
 void glint_host_name(char out[GLINT_HOST_SIZE]);
-/// glint_drafts_collect, unless this process has looked through the folder lately. Any thread.
-void glint_drafts_collect_once(const char *path);
+/// Calls glint_drafts_collect on the folder of the file `path`, unless this process has looked through it lately. Any thread.
+void glint_drafts_collect_beside(const char *path);
 /// Notes and forgets the hidden name of a draft, which lives in between, for glint_drafts_abandon. Any thread.
 void glint_draft_enlist(const char *temporary);
 void glint_draft_delist(const char *temporary);

@@ -1,8 +1,8 @@
 /// Hidden files that killed processes left beside their places; and the drafts of this process, for its last signal.
 ///
 /// A draft is called .NAME.HOST.PID.NUMBER.tmp, and its process holds a lock on it. One of this host whose process is gone
-/// and whose lock is free is removed by the next process that opens a draft in the folder; one of another host, of which
-/// nothing can be known, a day after the last write.
+/// and whose lock is free is removed by the next process that opens a draft in the folder or looks there for a finished picture;
+/// a draft of another host, of which nothing can be known, a day after the last write.
 #include "engine/file/file.h"
 
 #include <ctype.h>
@@ -13,6 +13,7 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -100,7 +101,8 @@ void glint_drafts_collect(const char *path)
         closedir(folder);
 }
 
-void glint_drafts_collect_once(const char *path)
+/// glint_drafts_collect, unless this process has looked through the folder lately.
+static void collect_once(const char *path)
 {
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     static struct { dev_t device; ino_t number; } seen[FOLDERS_KEPT];
@@ -119,6 +121,15 @@ void glint_drafts_collect_once(const char *path)
     pthread_mutex_unlock(&lock);
     if (is_new)
         glint_drafts_collect(path);
+}
+
+void glint_drafts_collect_beside(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : NULL;
+    if (folder || !slash)
+        collect_once(slash ? folder : ".");
+    free(folder);
 }
 
 // ---- The drafts of this process ----

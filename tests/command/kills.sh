@@ -70,6 +70,17 @@ kill $alive
 result $? "files of living processes, of other hosts and of other names stay"
 rm -f out/.*.tmp
 
+# A run that has nothing left to write removes them as well, and the folder of a film's frames goes.
+"$glint" scene.lua -o 'kept/k_%d.png' -q
+mkdir f.apng.frames
+cp kept/k_1.png "kept/.k_1.png.$host.$dead.0.tmp"
+"$glint" scene.lua -o 'kept/k_%d.png' --json 2>err | grep -q '"kept":6' && [ -z "$(hidden)" ]
+result $? "a run that finds all of its pictures"
+for ((i = 1; i <= 6; i++)); do cp "kept/k_$i.png" "f.apng.frames/000$i.png"; done
+cp kept/k_1.png "f.apng.frames/.0001.png.$host.$dead.7.tmp"
+"$glint" scene.lua -o f.apng --json 2>err | grep -q '"kept":6' && [ -e f.apng ] && [ ! -e f.apng.frames ]
+result $? "a film whose frames are all there"
+
 # Signals that can be caught leave nothing, at any moment.
 bad_before=$bad
 for ((i = 0; i < kills; i++)); do
