@@ -23,7 +23,8 @@ typedef enum cli_command {
     CLI_WATCH = 512,
     CLI_COMPLETION = 1024,
     CLI_JOIN = 2048,
-    CLI_HELP = 4096
+    CLI_HELP = 4096,
+    CLI_PUBLISH = 8192
 } cli_command;
 
 typedef enum cli_words { ///< that follow a command's name
@@ -39,7 +40,7 @@ typedef struct cli_command_name {
     const char *synopsis; ///< what follows it on the command line
     const char *help; ///< a line for people
 } cli_command_name;
-#define CLI_COMMAND_COUNT 13
+#define CLI_COMMAND_COUNT 14
 extern const cli_command_name cli_command_list[CLI_COMMAND_COUNT];
 
 typedef struct cli_sweep { ///< --sweep
@@ -61,7 +62,9 @@ typedef struct cli_options {
     int argument_count;
     const char *file; ///< of reproduce
     const char *output; ///< -o as it was given; NULL: not given
-    const char *label, *title, *colorbar; ///< of sheet; NULL: not given
+    const char *label, *title, *colorbar; ///< of sheet, the title of publish, too; NULL: not given
+    const char *controls; ///< of publish; NULL: all parameters
+    bool shows_source; ///< of publish
     int64_t columns, difference; ///< of sheet; 0: not given
     double gain, label_size; ///< of sheet; 0: not given
     bool transparent; ///< of sheet
@@ -106,7 +109,7 @@ struct cli_option {
     bool repeats; ///< it may be given several times
     const char *group; ///< heading in --help of this and the options after it
 };
-#define CLI_OPTION_COUNT 65
+#define CLI_OPTION_COUNT 67
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
 /// What stands for the option's text, its words where it takes words; "": it takes no text.
@@ -245,6 +248,8 @@ int cli_explain(cli_options *options, cli_output *output, glintL_run *run);
 int cli_describe(cli_options *options, cli_output *output, glintL_run *run);
 int cli_cost(cli_options *options, cli_output *output, glintL_run *run);
 int cli_watch(cli_options *options, cli_output *output, glintL_run *run);
+/// glint publish. publish.c of bindings/publish.
+int cli_publish(cli_options *options, cli_output *output, glintL_run *run);
 int cli_completion(const cli_options *options, cli_output *output); ///< its shell is options->script
 int cli_compare(const cli_options *options, cli_output *output);
 int cli_sheet(const cli_options *options, cli_output *output);

@@ -138,6 +138,8 @@ const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
     { "new", CLI_NEW, CLI_FILES, "NAME", "write a scene to begin with" },
     { "cost", CLI_COST, CLI_SCRIPT, "SCRIPT [--report DIR]", "what accuracy costs in time" },
     { "watch", CLI_WATCH, CLI_SCRIPT, "SCRIPT [--http [PORT]]", "render at every save, in the terminal and on a page" },
+    { "publish", CLI_PUBLISH, CLI_SCRIPT, "SCRIPT -o PAGE.html",
+      "a page of one file with the engine, the script and its controls" },
     { "help", CLI_HELP, CLI_FILES, "[COMMAND]", "what a command does, and its options" },
     { "completion", CLI_COMPLETION, CLI_SCRIPT, "bash|zsh|fish",
       "what a shell completes; make install puts it in place" },

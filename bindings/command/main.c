@@ -24,6 +24,8 @@ static int run_command(cli_options *options, cli_output *output, glintL_run *run
         return cli_assemble(options, output, run);
     case CLI_REPRODUCE:
         return cli_reproduce(options, output, run);
+    case CLI_PUBLISH:
+        return cli_publish(options, output, run);
     case CLI_COST:
         return cli_cost(options, output, run);
     default:

@@ -11,7 +11,7 @@
 #define SCRIPTED (CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE | CLI_COST)
 #define SHOWN (SCRIPTED | CLI_WATCH)
 #define FILES (CLI_COMPARE | CLI_SHEET | CLI_ASSEMBLE | CLI_REPRODUCE | CLI_NEW | CLI_JOIN)
-#define ALL (SHOWN | FILES | CLI_COMPLETION | CLI_HELP)
+#define ALL (SHOWN | FILES | CLI_PUBLISH | CLI_COMPLETION | CLI_HELP)
 #define MESSAGE GLINTL_MESSAGE_SIZE
 
 // ---- Readers ----
@@ -227,7 +227,7 @@ static bool read_untrusted(cli_options *options, const cli_option *option, char 
 
 #define AT(member) .at = offsetof(cli_options, member)
 #define WITHIN(least, most) .min = (least), .max = (most)
-#define LOOKED CLI_RENDER | CLI_EXPLAIN | CLI_WATCH | CLI_COST
+#define LOOKED CLI_RENDER | CLI_EXPLAIN | CLI_WATCH | CLI_COST | CLI_PUBLISH
 
 // The options that are fields of scene:render{} and need no more than that list has.
 #define FIELD(...)
@@ -246,7 +246,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "sweep", 0, "NAME=VALUES", CLI_RENDER, read_sweep,
       .help = "the script for each value of a parameter: A:B:N, A:B:*N or V,V,V",
       .repeats = true },
-    { "output", 'o', "PATTERN", CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE | CLI_JOIN, read_text,
+    { "output", 'o', "PATTERN", CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE | CLI_JOIN | CLI_PUBLISH, read_text,
       .help = "%04d or #### is the number; .png, .pfm, .npy, .exr, a film or none", AT(output), .suggest = CLI_SUGGEST_FILES,
       .group = "files" },
     { "passes", 0, "LIST", SCRIPTED, read_render, .help = "also write these:", .suggest = CLI_SUGGEST_PASSES },
@@ -260,7 +260,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
       WITHIN(1, GLINT_SIDE_MAX), .group = "sheets" },
     { "label", 0, "TEXT", CLI_SHEET, read_text, .help = "text under each picture, with {name}, {file}, {frame}",
       AT(label) },
-    { "title", 0, "TEXT", CLI_SHEET, read_text, .help = "text above the sheet", AT(title) },
+    { "title", 0, "TEXT", CLI_SHEET | CLI_PUBLISH, read_text, .help = "text above the sheet or page", AT(title) },
     { "difference", 0, "N", CLI_SHEET, read_count, .help = "also the difference from the N-th picture", AT(difference),
       WITHIN(1, 1000000) },
     { "gain", 0, "X", CLI_SHEET, read_real, .help = "the difference times X", AT(gain), WITHIN(1e-3, 1e6),
@@ -270,16 +270,16 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "colorbar", 0, "BAR", CLI_SHEET, read_text, .help = "MAP,LOW,HIGH,TITLE: a colour bar of all pictures",
       AT(colorbar) },
     { "transparent", 0, NULL, CLI_SHEET, read_flag, .help = "the sheet has no paper", AT(transparent) },
-    { "set", 'D', "NAME=VALUE", SHOWN, read_set, .help = "a parameter of the script", .repeats = true,
+    { "set", 'D', "NAME=VALUE", SHOWN | CLI_PUBLISH, read_set, .help = "a parameter of the script", .repeats = true,
       .group = "picture" },
     { "region", 0, "RECT", CLI_RENDER | CLI_EXPLAIN, read_render, .help = "X,Y,W,H: this part of the frame" },
-    { "size", 0, "WxH", SHOWN, read_size, .help = "pixels across and down",
+    { "size", 0, "WxH", SHOWN | CLI_PUBLISH, read_size, .help = "pixels across and down",
       .suggest = "640x360 1280x720 1920x1080 3840x2160" },
     { "dpi", 0, "N", SHOWN | CLI_SHEET, read_render, .help = "pixels an inch, for print" },
     GLINTL_RENDER_LIST(FIELD, OPTION) { "adaptive", 0, "X", SHOWN, read_render,
                                         .help = "all samples only where neighbours differ by more",
                                         .suggest = "0.3 0.1 0.03 0.01" },
-    { "threads", 't', "N", SHOWN | CLI_REPRODUCE, read_int, .help = "worker threads", AT(request.threads),
+    { "threads", 't', "N", SHOWN | CLI_REPRODUCE | CLI_PUBLISH, read_int, .help = "worker threads", AT(request.threads),
       WITHIN(1, 1024), .group = "machine" },
     { "no-reuse", 0, NULL, CLI_RENDER | CLI_WATCH, read_flag, .help = "keep nothing from frame to frame",
       AT(request.no_reuse) },
@@ -296,6 +296,9 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "knobs", 0, "LIST", CLI_COST, read_text, .help = "these only: samples,precision", AT(knobs) },
     { "report", 0, "DIR", CLI_COST, read_text, .help = "a page with the plot and the pictures", AT(report),
       .suggest = CLI_SUGGEST_FILES },
+    { "controls", 0, "LIST", CLI_PUBLISH, read_text, .help = "parameters that get a control; default all", AT(controls),
+      .group = "publish" },
+    { "source", 0, NULL, CLI_PUBLISH, read_flag, .help = "the page shows the script", AT(shows_source) },
     { "http", 0, "[PORT]", CLI_WATCH, read_port, .help = "also serve a page", .group = "watch" },
     { "terminal", 0, "kitty|sixel|blocks|text", CLI_WATCH, read_word, .help = "how to draw", AT(terminal) },
     { "dialect", 0, "gr", SHOWN | CLI_REPRODUCE, read_word, .help = "what the script is written in", AT(dialect),

@@ -1,5 +1,6 @@
 -- Runs in the watched script's state before the script does, and tells the watcher which files it is about to read.
---   note(path, optional)   the file decides the picture; optional: only where its folder exists
+--   note(path, optional, module)   the file decides the picture; optional: only where its folder exists; module: the
+--                                  part of the path that stands for the name of a module
 --   skip(path)             the script writes the file itself
 local note, skip = ...
 
@@ -40,7 +41,7 @@ package.searchers[2] = function(name)
     local part = name:gsub("%.", "/")
     for template in package.path:gmatch "[^;]+" do
       local path = template:gsub("%?", function() return part end)
-      note(path, true)
+      note(path, true, part)
       if path == found then break end
     end
   end

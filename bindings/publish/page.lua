@@ -1,0 +1,75 @@
+-- The page of glint publish: page.html with its @NAMES@ filled in. It needs no network and no server.
+local the = ...
+
+local function html(text)
+  return (text:gsub("[&<>\"']", { ["&"] = "&amp;", ["<"] = "&lt;", [">"] = "&gt;", ['"'] = "&quot;", ["'"] = "&#39;" }))
+end
+
+-- JSON of values and tables of them by name.
+local function json(value)
+  if type(value) ~= "table" then return the.json(value) end
+  local list = {}
+  for name, one in pairs(value) do list[#list + 1] = the.json(name) .. ":" .. json(one) end
+  table.sort(list)
+  return "{" .. table.concat(list, ",") .. "}"
+end
+
+-- Inside a script element no "<" may stand, so that no text ends the element.
+local function embedded(value) return (json(value):gsub("<", "\\u003c")) end
+
+-- The values that --set gave, where they are not the script's own.
+local function values_of(params)
+  local values = {}
+  for _, param in ipairs(params) do
+    if param.value ~= param.default then values[param.name] = param.value end
+  end
+  return values
+end
+
+local function attributes_of(page)
+  local list = { ('width="%d" height="%d" frame="%d"'):format(page.width, page.height, page.frame) }
+  if page.controls then list[2] = ('controls="%s"'):format(html(page.controls)) end
+  return table.concat(list, " ")
+end
+
+-- The files of the page. Those in the script's folder are found from there and by the whole name, which `same` has.
+local function files_of(page)
+  local files, same = {}, {}
+  for name, bytes in pairs(page.files) do
+    local is_beside = page.folder ~= "" and name:sub(1, #page.folder) == page.folder
+    local short = is_beside and name:sub(#page.folder + 1) or name
+    files[short] = the.base64(bytes)
+    if is_beside then same[name] = short end
+  end
+  return files, same
+end
+
+local function listing(source)
+  return "<details><summary>Script</summary>\n<pre><code>" .. html(source) .. "</code></pre></details>"
+end
+
+function the.publish(page)
+  local files, same = files_of(page)
+  local values = {
+    VERSION = page.version, TITLE = html(page.title), WIDTH = page.width, HEIGHT = page.height,
+    ATTRIBUTES = attributes_of(page), POSTER = the.base64(page.poster), WASM = the.base64(page.wasm),
+    ENGINE = page.engine, SOURCE = page.shows_source and listing(page.source) or "",
+    JOB = embedded {
+      name = page.script, text = page.source, files = files, same = same, values = values_of(page.params),
+    },
+  }
+  return (page.template:gsub("@(%u+)@", function(name) return values[name] and tostring(values[name]) end))
+end
+
+-- Returns a message when --controls names what is no parameter, else nothing.
+function the.wrong_control(page)
+  local known = {}
+  for _, param in ipairs(page.params) do known[#known + 1], known[param.name] = param.name, true end
+  for name in (page.controls or ""):gmatch "[^,]+" do
+    if not known[name] then
+      local list = #known > 0 and "its parameters are " .. table.concat(known, ", ") or "it has no parameters"
+      return ("--controls: the script has no parameter '%s'; %s"):format(name, list)
+    end
+  end
+  return ""
+end

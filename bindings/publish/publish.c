@@ -1,0 +1,307 @@
+// glint publish SCRIPT -o PAGE: one page with the engine, the script, the files it reads, its controls and a picture of the
+// frame, which stands there until the engine has started.
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "bindings/command/cli.h"
+#include "bindings/run/carried.h"
+#include "bindings/run/system.h"
+
+#define FILES_MAX 256
+#define FILE_BYTES_MAX ((size_t)64 << 20) // of one file that the script reads
+
+static const char TRACK_LUA[] = {
+#include "bindings/watch/track.lua.h"
+};
+static const unsigned char PAGE_LUA[] = {
+#include "bindings/publish/page.lua.h"
+};
+static const char PAGE_HTML[] = {
+#include "bindings/publish/page.html.h"
+};
+static const glintL_carried MODULE = { "@page.lua", PAGE_LUA, sizeof PAGE_LUA };
+
+typedef struct publication {
+    const cli_options *options;
+    glintL_run *run;
+    cli_script script;
+    struct {
+        char *path, *name; // of a file that the script reads; its name in the page; owned
+    } files[FILES_MAX];
+    size_t file_count;
+    glint_image *image; // of the frame
+    glintL_render render;
+    int64_t frame;
+    uint8_t *poster, *wasm, *engine; // owned
+    size_t poster_size, wasm_size, engine_size;
+} publication;
+
+// ---- What the script reads ----
+
+static void add_file(publication *p, const char *path, const char *name)
+{
+    struct stat info;
+    for (size_t i = 0; i < p->file_count; i++)
+        if (strcmp(p->files[i].path, path) == 0)
+            return;
+    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) // the script itself reports what is not there
+        return;
+    if (p->file_count == FILES_MAX) {
+        glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0, "publish: the script reads more than %d files", FILES_MAX);
+        return;
+    }
+    p->files[p->file_count].path = strdup(path);
+    p->files[p->file_count].name = strdup(name);
+    if (!p->files[p->file_count].path || !p->files[p->file_count].name)
+        glintL_run_fail(p->run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    p->file_count++;
+}
+
+static void note_file(void *context, const char *path) { add_file(context, path, path); }
+
+// note(path, optional, module): the page has glint's own modules already.
+static int note(lua_State *L)
+{
+    publication *p = lua_touserdata(L, lua_upvalueindex(1));
+    const char *path = luaL_checkstring(L, 1), *module = lua_tostring(L, 3);
+    if (!module)
+        add_file(p, path, path);
+    else if (strncmp(module, "glint/", 6) != 0)
+        add_file(p, path, lua_pushfstring(L, "%s.lua", module));
+    return 0;
+}
+
+static int skip(lua_State *L)
+{
+    (void)L; // a file that the script writes
+    return 0;
+}
+
+static void prepare(void *context, lua_State *L)
+{
+    if (luaL_loadbufferx(L, TRACK_LUA, sizeof TRACK_LUA, "=publish", "t") != LUA_OK)
+        lua_error(L);
+    lua_pushlightuserdata(L, context);
+    lua_pushcclosure(L, note, 1);
+    lua_pushcfunction(L, skip);
+    lua_call(L, 2, 0);
+}
+
+// ---- The picture ----
+
+static void take_image(void *context, const glintL_run *run, const glintL_work *work)
+{
+    publication *p = context;
+    (void)run;
+    if (p->image)
+        return;
+    p->image = glint_image_retain(work->image);
+    p->render = work->render;
+    p->frame = work->index;
+}
+
+static bool render(publication *p, char *message)
+{
+    glintL_run *run = p->run;
+    glint_error error;
+    run->request.force = true;
+    run->request.render_text[glintL_render_find("output")] = "none";
+    run->keeps_images = true;
+    run->no_sheets = true;
+    run->reporter = (glintL_reporter) { .context = p, .image = take_image, .prepare = prepare, .reads = note_file };
+    glintL_selection_clear(&run->request.selection);
+    if (!glintL_selection_add(&run->request.selection, (glintL_range) { p->options->frame, p->options->frame, 1 }))
+        return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    if (!cli_run_script(&p->script, p->options, run) || !glintL_call_settle(run) || !glintL_run_collect(run, true))
+        return false;
+    if (!p->image)
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "publish: the script has no frame %" PRId64,
+                               p->options->frame);
+    glint_write_desc desc = { .path = "poster.png", .pass = GLINT_PASS_BEAUTY, .tone = p->render.desc.tone };
+    desc.tone.bits = 8;
+    if (glint_image_to_bytes(p->image, &desc, &p->poster, &p->poster_size, &error) == GLINT_OK)
+        return true;
+    snprintf(message, GLINTL_MESSAGE_SIZE, "%s", error.message);
+    return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", message);
+}
+
+// ---- The engine for the page ----
+
+// Reads a whole file. NULL: errno says why.
+static uint8_t *read_file(const char *path, size_t *size)
+{
+    FILE *file = fopen(path, "rbe");
+    struct stat info;
+    if (!file)
+        return NULL;
+    uint8_t *bytes = NULL;
+    errno = EFBIG;
+    if (fstat(fileno(file), &info) == 0 && S_ISREG(info.st_mode) && (uintmax_t)info.st_size <= FILE_BYTES_MAX)
+        bytes = malloc((size_t)info.st_size + 1);
+    if (bytes && (*size = fread(bytes, 1, (size_t)info.st_size, file)) < (size_t)info.st_size) {
+        free(bytes);
+        bytes = NULL;
+        errno = EIO;
+    }
+    fclose(file);
+    return bytes;
+}
+
+// Reads NAME of the folder that `make web` leaves: GLINT_WEB, or web/ beside the command, or where `make install` puts it.
+static uint8_t *read_part(const publication *p, const char *name, size_t *size)
+{
+    char folder[GLINTL_PATH_SIZE], path[GLINTL_PATH_SIZE + 64];
+    const char *given = getenv("GLINT_WEB");
+    if (given && *given) {
+        snprintf(path, sizeof path, "%.4000s/%s", given, name);
+        return read_file(path, size);
+    }
+    if (!glintL_program_folder(p->options->program, folder, sizeof folder))
+        return NULL;
+    snprintf(path, sizeof path, "%.4000sweb/%s", folder, name);
+    uint8_t *bytes = read_file(path, size);
+    if (bytes)
+        return bytes;
+    snprintf(path, sizeof path, "%.4000s../share/glint/web/%s", folder, name);
+    return read_file(path, size);
+}
+
+static bool read_engine(publication *p)
+{
+    p->wasm = read_part(p, "glint.wasm.gz", &p->wasm_size);
+    p->engine = p->wasm ? read_part(p, "publish.js", &p->engine_size) : NULL;
+    return p->engine ||
+           glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0,
+                           "publish: the engine for pages is not there (glint.wasm.gz, publish.js). Build it with "
+                           "`make web`, then run build/glint, or install again");
+}
+
+// ---- The page ----
+
+static void set_text(lua_State *L, const char *name, const void *bytes, size_t size)
+{
+    lua_pushlstring(L, bytes, size);
+    lua_setfield(L, -2, name);
+}
+
+static void set_number(lua_State *L, const char *name, lua_Integer value)
+{
+    lua_pushinteger(L, value);
+    lua_setfield(L, -2, name);
+}
+
+// Pushes the bytes of a file. May raise.
+static void push_file(lua_State *L, const char *path)
+{
+    size_t size = 0;
+    uint8_t *bytes = read_file(path, &size);
+    if (!bytes)
+        luaL_error(L, "%s: %s", path, strerror(errno));
+    lua_pushlstring(L, (const char *)bytes, size);
+    free(bytes);
+}
+
+static void push_page(lua_State *L, const void *context)
+{
+    const publication *p = context;
+    lua_newtable(L);
+    glintL_copy_value(p->script.state, -1, L);
+    lua_setfield(L, -2, "params");
+    lua_pushstring(L, p->run->script);
+    lua_setfield(L, -2, "script");
+    lua_pushlstring(L, p->options->script, (size_t)(cli_base_name(p->options->script) - p->options->script));
+    lua_setfield(L, -2, "folder");
+    push_file(L, p->options->script);
+    lua_setfield(L, -2, "source");
+    lua_pushstring(L, p->options->title ? p->options->title : p->run->script);
+    lua_setfield(L, -2, "title");
+    lua_pushstring(L, p->options->controls);
+    lua_setfield(L, -2, "controls");
+    lua_pushboolean(L, p->options->shows_source);
+    lua_setfield(L, -2, "shows_source");
+    lua_pushliteral(L, GLINT_VERSION);
+    lua_setfield(L, -2, "version");
+    set_number(L, "width", glint_image_width(p->image));
+    set_number(L, "height", glint_image_height(p->image));
+    set_number(L, "frame", p->frame);
+    set_text(L, "template", PAGE_HTML, sizeof PAGE_HTML);
+    set_text(L, "poster", p->poster, p->poster_size);
+    set_text(L, "wasm", p->wasm, p->wasm_size);
+    set_text(L, "engine", p->engine, p->engine_size);
+    lua_newtable(L);
+    for (size_t i = 0; i < p->file_count; i++) {
+        push_file(L, p->files[i].path);
+        lua_setfield(L, -2, p->files[i].name);
+    }
+    lua_setfield(L, -2, "files");
+}
+
+// Makes the text of the page's function. May raise, in the script's state.
+static void make(const publication *p, const char *function, glintL_made_text *made)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    if (glintL_make_text(&MODULE, 1, function, push_page, p, made, message))
+        return;
+    glintL_drop_text(made);
+    luaL_error(p->script.state, "%s", message);
+}
+
+static int write_page(lua_State *L)
+{
+    const publication *p = lua_touserdata(L, 1);
+    glintL_made_text made;
+    glint_error error;
+    if (glintL_push_unknown_set(L))
+        return lua_error(L);
+    glintL_push_params(L);
+    make(p, "wrong_control", &made);
+    lua_pushlstring(L, made.text, made.size);
+    glintL_drop_text(&made);
+    if (lua_rawlen(L, -1) > 0)
+        return lua_error(L);
+    lua_pop(L, 1);
+    make(p, "publish", &made);
+    const bool is_written = glintL_write_text(p->options->output, made.text, made.size, &error) == GLINT_OK;
+    glintL_drop_text(&made);
+    return is_written ? 0 : luaL_error(L, "%s", error.message);
+}
+
+static void destroy(publication *p)
+{
+    cli_close_script(&p->script);
+    glint_image_release(p->image);
+    for (size_t i = 0; i < p->file_count; i++) {
+        free(p->files[i].path);
+        free(p->files[i].name);
+    }
+    free(p->poster);
+    free(p->wasm);
+    free(p->engine);
+}
+
+int cli_publish(cli_options *options, cli_output *output, glintL_run *run)
+{
+    publication p = { .options = options, .run = run };
+    char message[GLINTL_MESSAGE_SIZE];
+    const char *ending = options->output ? strrchr(options->output, '.') : NULL;
+    if (!ending || strcmp(ending, ".html") != 0) {
+        cli_report_error(output, 0, GLINTL_EXIT_USAGE, "publish: -o PAGE.html expected");
+        return GLINTL_EXIT_USAGE;
+    }
+    if (read_engine(&p) && render(&p, message)) {
+        lua_State *L = p.script.state;
+        lua_settop(L, 0);
+        lua_pushcfunction(L, write_page);
+        lua_pushlightuserdata(L, &p);
+        if (lua_pcall(L, 1, 0, 0) != LUA_OK)
+            glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%s", lua_tostring(L, -1));
+    }
+    destroy(&p);
+    if (run->exit_code)
+        cli_report_error(output, 0, run->exit_code, run->message);
+    return run->exit_code;
+}

@@ -1,0 +1,382 @@
+// <glint-figure>: a picture with controls, rendered in the page.
+//
+//   <script type="module" src="glint-figure.js"></script>
+//   <glint-figure src="moving_light.lua" controls="radius,height" width="640" height="360">
+//     <img src="moving_light.png" alt="Five spheres under a lamp">
+//   </glint-figure>
+//
+// Attributes:
+//   src        address of the script; without it, the text of a <script type="text/x-lua"> inside the element
+//   files      addresses of the files that the script reads, separated by commas; the script sees their last parts
+//   controls   names of the script's parameters that get a control, separated by commas; all of them without it
+//   width, height   size of the picture, in pixels; the script's own without them
+//   frame      first frame shown, from 1
+//   timing     shows how long the last full picture took
+// A page may set `figure.given = { name, text, files, values }` instead of src and files.
+// The picture inside is shown until the first frame is there, and without JavaScript. `figure.values` has the values of the
+// controls. Each finished picture sends the event "glint-render"; its `detail` has { image, coarse, ms }. An error sends
+// "glint-error" with { error }.
+import { load } from "./glint.mjs"
+
+const REST_MS = 150         // a control at rest for this long gets the full picture
+const COARSE_MS = 30        // what a picture may take while a control moves
+const PATIENCE_MS = 300     // a full picture that takes longer is cancelled for the next one; its worker starts anew
+const LOGARITHMIC = 100     // a range of more than this factor has a logarithmic slider
+
+let engine // one for all figures of a page
+const engineOfPage = () => engine ??= load()
+
+// Has the figures of the page use this promise of an engine; called before the first one starts.
+export function useEngine(promise) {
+  engine = promise
+}
+
+const style = `
+  :host { display: block; color-scheme: light dark; font: 0.9375rem/1.4 system-ui, sans-serif; max-width: 100%; }
+  [hidden] { display: none !important; }
+  figure { margin: 0; }
+  .picture { position: relative; }
+  canvas, ::slotted(img) { display: block; width: 100%; height: auto; }
+  .error { margin: 0; padding: 0.6em 0.8em; white-space: pre-wrap; overflow-wrap: anywhere; font: 0.8125rem/1.4 ui-monospace, monospace;
+    background: #8b1a1a; color: #fff; }
+  form { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(14rem, 100%), 1fr)); gap: 0.5rem 1.25rem; margin: 0.6rem 0; }
+  label { display: grid; grid-template-columns: 1fr auto; gap: 0 0.5rem; align-items: center; }
+  label > input[type=range], label > select, label > input[type=text] { grid-column: 1 / -1; width: 100%; box-sizing: border-box;
+    min-height: 1.75rem; margin: 0; font: inherit; }
+  output, .note { font-variant-numeric: tabular-nums; color: color-mix(in srgb, currentColor 75%, transparent); }
+  .bar { display: flex; flex-wrap: wrap; gap: 0.5rem 0.75rem; align-items: center; }
+  .bar input { flex: 1 1 8rem; }
+  button { font: inherit; padding: 0.25rem 0.8rem; min-height: 2rem; }
+`
+
+// Returns the number as people write it: three figures, without zeros at the end.
+export function written(value) {
+  return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(3)))
+}
+
+// A control of one parameter: a labelled slider, list, box or field. `changed(value, moving)` hears of each new value.
+export function control(param, changed) {
+  const label = document.createElement("label")
+  const name = document.createElement("span")
+  name.textContent = param.name.replaceAll("_", " ")
+  if (param.doc) label.title = param.doc
+  const output = document.createElement("output")
+  const read = makeInput(param, label)
+  const { input } = read
+  label.prepend(name)
+  const tell = moving => {
+    const value = read.value()
+    if (value === undefined) return
+    output.textContent = read.shown ? written(value) : ""
+    changed(value, moving)
+  }
+  if (read.shown) name.after(output)
+  output.textContent = read.shown ? written(param.value) : ""
+  input.addEventListener("input", () => tell(input.type === "range"))
+  input.addEventListener("change", () => tell(false))
+  return {
+    element: label,
+    set(value) {
+      read.set(value)
+      output.textContent = read.shown ? written(value) : ""
+    },
+  }
+}
+
+function makeInput(param, label) {
+  const input = document.createElement(param.choices ? "select" : "input")
+  label.append(input)
+  if (param.choices) {
+    for (const choice of param.choices) input.add(new Option(String(choice), String(choice)))
+    const set = value => { input.value = String(value) }
+    set(param.value)
+    return { input, set, value: () => param.choices.find(choice => String(choice) === input.value) }
+  }
+  if (param.type === "boolean") {
+    input.type = "checkbox"
+    input.checked = param.value
+    return { input, set: value => { input.checked = value }, value: () => input.checked }
+  }
+  if (param.type === "number" && param.min !== undefined && param.max !== undefined) return makeSlider(param, input)
+  input.type = param.type === "number" ? "number" : "text"
+  if (param.type === "number") input.step = "any"
+  input.value = param.value
+  const number = () => input.value === "" || !input.validity.valid ? undefined : Number(input.value)
+  return { input, set: value => { input.value = value }, value: param.type === "number" ? number : () => input.value }
+}
+
+// A slider of 1000 steps, or of whole numbers where the range has few; logarithmic over large ratios.
+function makeSlider(param, input) {
+  const whole = Number.isInteger(param.value) && Number.isInteger(param.min) && Number.isInteger(param.max) && param.max - param.min > 4
+  const logarithmic = param.min > 0 && param.max / param.min > LOGARITHMIC
+  input.type = "range"
+  const place = logarithmic ? Math.log : x => x
+  const back = logarithmic ? Math.exp : x => x
+  input.min = place(param.min)
+  input.max = place(param.max)
+  input.step = whole && !logarithmic ? 1 : (place(param.max) - place(param.min)) / 1000
+  const limited = x => Math.min(param.max, Math.max(param.min, x))
+  const value = () => {
+    const exact = limited(back(Number(input.value)))
+    return whole ? Math.round(exact) : Number(exact.toPrecision(4))
+  }
+  const spoken = () => input.setAttribute("aria-valuetext", written(value()))
+  const set = to => {
+    input.value = place(limited(to))
+    input.setAttribute("aria-valuetext", written(to))
+  }
+  input.addEventListener("input", spoken)
+  set(param.value)
+  return { input, set, value, shown: true }
+}
+
+// Draws the picture's 8-bit values on a canvas, whose size in the page does not change.
+export function show(canvas, image) {
+  if (canvas.width !== image.width || canvas.height !== image.height) {
+    canvas.width = image.width
+    canvas.height = image.height
+  }
+  canvas.getContext("2d").putImageData(new ImageData(image.rgba, image.width, image.height), 0, 0)
+}
+
+// Renders a job's pictures as controls ask for them: one at a time, the newest request wins, coarse while a control moves.
+export class Renderer {
+  constructor(job, { size, shown, failed, busy = () => {} }) {
+    Object.assign(this, { job, size, shown, failed, busy })
+    this.scale = 0.5
+    this.running = false
+    this.next = null
+  }
+
+  // Asks for a picture. A coarse one is followed by the full one, once nothing was asked for a moment.
+  ask(request, coarse = false) {
+    clearTimeout(this.rest)
+    if (coarse) this.rest = setTimeout(() => this.ask(request), REST_MS)
+    this.next = { request, coarse }
+    if (!this.running) this.run()
+    else if (performance.now() - this.since > PATIENCE_MS) this.abort?.abort()
+  }
+
+  stop() {
+    clearTimeout(this.rest)
+    this.next = null
+    this.abort?.abort()
+  }
+
+  async run() {
+    this.running = true
+    this.busy(true)
+    while (this.next) {
+      const { request, coarse } = this.next
+      this.next = null
+      await this.render(request, coarse)
+    }
+    this.running = false
+    this.busy(false)
+  }
+
+  async render(request, coarse) {
+    const { width, height } = this.size()
+    const scale = coarse ? this.scale : 1
+    const small = { width: Math.max(16, Math.round(width * scale)), height: Math.max(9, Math.round(height * scale)) }
+    const abort = coarse ? null : new AbortController()
+    this.abort = abort
+    const start = this.since = performance.now()
+    try {
+      const image = await this.job.render({ ...request, ...small, ...coarse && { samples: 1 }, ...abort && { signal: abort.signal } })
+      const ms = performance.now() - start
+      if (coarse) this.scale = Math.min(1, Math.max(0.125, scale * Math.sqrt(COARSE_MS / Math.max(ms, 1))))
+      this.shown(image, { coarse, ms })
+    } catch (error) {
+      if (error.name !== "AbortError") this.failed(error)
+    }
+    if (this.abort === abort) this.abort = null
+  }
+}
+
+const list = text => text.split(",").map(part => part.trim()).filter(Boolean)
+
+async function fetched(address, as) {
+  const response = await fetch(address)
+  if (!response.ok) throw new Error(`${address}: the server answers ${response.status} ${response.statusText}`)
+  return as === "text" ? response.text() : new Uint8Array(await response.arrayBuffer())
+}
+
+// Plays frames one after the other, as fast as they are rendered and at most at the animation's own rate.
+class Player {
+  constructor(frames, fps, go) {
+    Object.assign(this, { frames, fps, go })
+    this.frame = 1
+    this.playing = false
+  }
+
+  toggle() {
+    this.playing = !this.playing
+    this.due = performance.now()
+    if (this.playing) this.step()
+  }
+
+  step() {
+    this.frame = this.frame % this.frames + 1
+    this.due = Math.max(performance.now(), this.due + 1000 / this.fps)
+    this.go(this.frame)
+  }
+
+  // Called once a frame is shown.
+  shown() {
+    if (this.playing) this.timer = setTimeout(() => this.playing && this.step(), Math.max(0, this.due - performance.now()))
+  }
+}
+
+export class GlintFigure extends HTMLElement {
+  static observedAttributes = ["src"]
+
+  constructor() {
+    super()
+    const root = this.attachShadow({ mode: "open" })
+    root.innerHTML = `<style>${style}</style>
+      <figure><div class="picture"><slot></slot><canvas role="img" hidden></canvas></div>
+      <pre class="error" role="alert" hidden></pre>
+      <div class="bar player" hidden><button type="button" class="play" aria-pressed="false">Play</button>
+        <input type="range" class="frames" min="1" step="1" value="1" aria-label="Frame"><span class="note counter"></span></div>
+      <form hidden></form>
+      <div class="bar foot" hidden><button type="button" class="reset">Reset</button><span class="note timing" role="status"></span></div></figure>`
+    this.part$ = selector => root.querySelector(selector)
+    this.part$("form").addEventListener("submit", event => event.preventDefault())
+    this.values = {}
+    this.frame = 1
+  }
+
+  // The engine starts when the figure comes near the visible part of the page.
+  connectedCallback() {
+    this.watcher = new IntersectionObserver(entries => {
+      if (!entries.some(entry => entry.isIntersecting)) return
+      this.watcher.disconnect()
+      this.start()
+    }, { rootMargin: "200px" })
+    this.watcher.observe(this)
+  }
+
+  disconnectedCallback() {
+    this.watcher?.disconnect()
+    this.renderer?.stop()
+    this.job?.close()
+    this.job = null
+  }
+
+  attributeChangedCallback(_, before, now) {
+    if (before !== null && before !== now && this.job) this.start()
+  }
+
+  async source() {
+    if (this.given) return this.given
+    if (!this.hasAttribute("src")) {
+      const inside = this.querySelector('script[type="text/x-lua"]')
+      if (!inside) throw new Error("glint-figure: neither a src nor a <script type=\"text/x-lua\"> inside")
+      return { name: inside.getAttribute("name") || "figure.lua", text: inside.textContent, files: {} }
+    }
+    const address = new URL(this.getAttribute("src"), document.baseURI)
+    const files = {}
+    for (const file of list(this.getAttribute("files") ?? "")) files[file.split("/").pop()] = await fetched(new URL(file, address))
+    return { name: address.pathname.split("/").pop(), text: await fetched(address, "text"), files }
+  }
+
+  async start() {
+    try {
+      const [glint, { name, text, files, values }] = await Promise.all([engineOfPage(), this.source()])
+      this.job?.close()
+      this.job = await glint.open(text, { name, files, set: values })
+      this.frame = Math.min(Number(this.getAttribute("frame")) || 1, this.job.frames)
+      this.renderer = new Renderer(this.job, {
+        size: () => ({ width: Number(this.getAttribute("width")) || this.job.width,
+          height: Number(this.getAttribute("height")) || this.job.height }),
+        shown: (image, how) => this.shown(image, how),
+        failed: error => this.failed(error),
+      })
+      this.makeControls()
+      this.makePlayer()
+      this.ask(false)
+    } catch (error) {
+      this.failed(error)
+    }
+  }
+
+  makeControls() {
+    const wanted = this.hasAttribute("controls") ? list(this.getAttribute("controls")) : this.job.params.map(param => param.name)
+    const form = this.part$("form")
+    this.controls = []
+    form.replaceChildren()
+    for (const name of wanted) {
+      const param = this.job.params.find(one => one.name === name)
+      if (!param) throw new Error(`glint-figure: controls: the script has no parameter "${name}"`)
+      const made = control(param, (value, moving) => {
+        this.values = { ...this.values, [name]: value }
+        this.ask(moving)
+      })
+      this.controls.push({ param, made })
+      form.append(made.element)
+    }
+    form.hidden = wanted.length === 0
+    this.part$(".foot").hidden = wanted.length === 0 && !this.hasAttribute("timing")
+    this.part$(".reset").hidden = wanted.length === 0
+    this.part$(".reset").onclick = () => {
+      for (const { param, made } of this.controls) made.set(param.value)
+      this.values = {}
+      this.ask(false)
+    }
+  }
+
+  makePlayer() {
+    const { frames } = this.job
+    const [bar, button, slider] = [".player", ".play", ".frames"].map(this.part$)
+    bar.hidden = frames < 2
+    if (frames < 2) return
+    slider.max = frames
+    this.player = new Player(frames, this.job.fps, frame => { this.goTo(frame, true) })
+    button.onclick = () => {
+      this.player.frame = this.frame
+      this.player.toggle()
+      button.textContent = this.player.playing ? "Pause" : "Play"
+      button.setAttribute("aria-pressed", String(this.player.playing))
+      if (!this.player.playing) this.ask(false)
+    }
+    slider.oninput = () => this.goTo(Number(slider.value), true)
+    slider.onchange = () => this.goTo(Number(slider.value), false)
+    this.goTo(this.frame, null)
+  }
+
+  goTo(frame, coarse) {
+    this.frame = frame
+    this.part$(".frames").value = frame
+    this.part$(".counter").textContent = `${frame} / ${this.job.frames}`
+    if (coarse !== null) this.ask(coarse)
+  }
+
+  ask(coarse) {
+    this.renderer.ask({ frame: this.frame, set: this.values }, coarse)
+  }
+
+  shown(image, { coarse, ms }) {
+    const canvas = this.part$("canvas")
+    const inside = this.querySelector("img")
+    show(canvas, image)
+    canvas.setAttribute("aria-label", inside?.alt || this.getAttribute("aria-label") || "A rendered picture")
+    canvas.hidden = false
+    this.part$("slot").hidden = true
+    this.part$("slot").style.display = "none"
+    this.part$(".error").hidden = true
+    if (this.hasAttribute("timing") && !coarse) this.part$(".timing").textContent = `${Math.max(1, Math.round(ms))} ms`
+    this.player?.shown()
+    this.dispatchEvent(new CustomEvent("glint-render", { detail: { image, coarse, ms } }))
+  }
+
+  failed(error) {
+    const box = this.part$(".error")
+    box.textContent = error.message
+    box.hidden = false
+    if (this.player?.playing) this.part$(".play").click()
+    this.dispatchEvent(new CustomEvent("glint-error", { detail: { error } }))
+  }
+}
+
+if (!customElements.get("glint-figure")) customElements.define("glint-figure", GlintFigure)

@@ -1,0 +1,296 @@
+// The playground: a script on one side, its picture on the other.
+import { basicSetup, EditorView } from "codemirror"
+import { keymap } from "@codemirror/view"
+import { indentWithTab } from "@codemirror/commands"
+import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/language"
+import { lua } from "@codemirror/legacy-modes/mode/lua"
+import { setDiagnostics } from "@codemirror/lint"
+import { tags } from "@lezer/highlight"
+import { load } from "./glint.mjs"
+import { control, Renderer, show } from "./glint-figure.js"
+
+const TYPING_MS = 350 // after the last key the script runs
+const get = id => document.getElementById(id)
+const engine = load()
+
+let examples = []
+let job, renderer, files = {}, name = "scene.lua"
+let values = {}, frame = 1, playing = false, picture
+
+// ---- The editor ----
+
+const theme = EditorView.theme({
+  "&": { color: "var(--text)", backgroundColor: "var(--paper)" },
+  ".cm-content": { caretColor: "var(--text)" },
+  ".cm-gutters": { backgroundColor: "var(--panel)", color: "var(--quiet)", border: "0" },
+  ".cm-activeLine, .cm-activeLineGutter": { backgroundColor: "color-mix(in srgb, var(--accent) 8%, transparent)" },
+})
+const colors = HighlightStyle.define([
+  { tag: tags.comment, color: "var(--quiet)" },
+  { tag: tags.keyword, color: "var(--keyword)" },
+  { tag: [tags.string, tags.number, tags.atom], color: "var(--value)" },
+])
+let typing
+const editor = new EditorView({
+  parent: get("editor"),
+  extensions: [
+    basicSetup, keymap.of([indentWithTab]), StreamLanguage.define(lua), syntaxHighlighting(colors), theme,
+    EditorView.contentAttributes.of({ "aria-label": "Lua script" }),
+    EditorView.updateListener.of(update => {
+      if (!update.docChanged) return
+      clearTimeout(typing)
+      typing = setTimeout(run, TYPING_MS)
+    }),
+  ],
+})
+const script = () => editor.state.doc.toString()
+
+function setScript(text) {
+  editor.dispatch({ changes: { from: 0, to: editor.state.doc.length, insert: text } })
+  clearTimeout(typing)
+  return run()
+}
+
+// ---- Errors ----
+
+function showError(error) {
+  get("error").textContent = error.message
+  get("error").hidden = false
+  get("state").textContent = "error"
+  const line = error.file && error.file !== name ? 0 : error.line
+  if (!(line >= 1 && line <= editor.state.doc.lines)) return
+  const { from, to } = editor.state.doc.line(line)
+  editor.dispatch(setDiagnostics(editor.state, [{ from, to, severity: "error", message: error.message }]))
+}
+
+function clearError() {
+  get("error").hidden = true
+  editor.dispatch(setDiagnostics(editor.state, []))
+}
+
+// ---- Running the script ----
+
+let version = 0
+async function run() {
+  const mine = ++version
+  get("state").textContent = "running"
+  try {
+    const opened = await (await engine).open(script(), { name, files, seconds: 10 })
+    if (mine !== version) return opened.close()
+    renderer?.stop()
+    job?.close()
+    job = opened
+    frame = Math.min(frame, job.frames)
+    values = Object.fromEntries(Object.entries(values).filter(([key]) => job.params.some(param => param.name === key)))
+    renderer = new Renderer(job, { size, shown, failed: showError })
+    clearError()
+    showControls()
+    showPlayer()
+    ask(false)
+    if (!get("pane-explain").hidden) explain()
+  } catch (error) {
+    if (mine === version) showError(error)
+  }
+}
+
+function size() {
+  const width = Number(get("width").value)
+  return { width, height: Math.max(1, Math.round(width * job.height / job.width)) }
+}
+
+function ask(coarse) {
+  const pass = get("pass").value
+  renderer.ask({ frame, set: values, passes: pass === "beauty" ? ["beauty"] : ["beauty", pass] }, coarse)
+}
+
+function shown(image, { coarse, ms }) {
+  const pass = get("pass").value
+  show(get("picture"), pass === "beauty" ? image : { width: image.width, height: image.height, rgba: image.view(pass) })
+  clearError()
+  get("state").textContent = coarse ? "coarse" : "ready"
+  if (!coarse) {
+    picture = image
+    get("time").textContent = `${image.width} × ${image.height}, ${Math.max(1, Math.round(ms))} ms`
+    get("save-picture").disabled = false
+  }
+  if (playing) setTimeout(() => playing && goTo(frame % job.frames + 1, true), Math.max(0, 1000 / job.fps - ms))
+}
+
+// ---- Controls ----
+
+let shape = ""
+let controls = []
+function showControls() {
+  const now = JSON.stringify(job.params)
+  if (now !== shape) {
+    shape = now
+    controls = job.params.map(param => ({ param, made: control(param, (value, moving) => {
+      values = { ...values, [param.name]: value }
+      ask(moving)
+    }) }))
+    get("params").replaceChildren(...controls.map(one => one.made.element))
+    for (const { param, made } of controls) if (param.name in values) made.set(values[param.name])
+  }
+  get("reset").hidden = job.params.length === 0
+}
+
+function showPlayer() {
+  get("player").hidden = job.frames < 2
+  get("frame").max = job.frames
+  if (job.frames < 2 && playing) get("play").click()
+  if (job.frames > 1) goTo(frame, null)
+}
+
+function goTo(to, coarse) {
+  frame = to
+  get("frame").value = to
+  get("counter").textContent = `${to} / ${job.frames}`
+  if (coarse !== null) ask(coarse)
+}
+
+get("params").addEventListener("submit", event => event.preventDefault())
+get("frame").addEventListener("input", () => goTo(Number(get("frame").value), true))
+get("frame").addEventListener("change", () => goTo(Number(get("frame").value), false))
+get("play").addEventListener("click", () => {
+  playing = !playing
+  get("play").textContent = playing ? "Pause" : "Play"
+  get("play").setAttribute("aria-pressed", String(playing))
+  ask(playing)
+})
+get("reset").addEventListener("click", () => {
+  for (const { param, made } of controls) made.set(param.value)
+  values = {}
+  ask(false)
+})
+for (const id of ["pass", "width"]) get(id).addEventListener("change", () => job && ask(false))
+
+const PASSES = ["beauty", "ambient", "diffuse", "specular", "indirect", "mirror", "transmission", "depth", "normal", "object_id", "albedo", "outline"]
+for (const pass of PASSES) get("pass").add(new Option(pass))
+
+// ---- What the scene calls for ----
+
+const element = (tag, ...children) => {
+  const made = document.createElement(tag)
+  made.append(...children)
+  return made
+}
+
+function table(heads, rows) {
+  return element("table", element("thead", element("tr", ...heads.map(head => element("th", head)))),
+    element("tbody", ...rows.map(row => element("tr", ...row.map(cell => element("td", String(cell)))))))
+}
+
+async function explain() {
+  const pane = get("pane-explain")
+  try {
+    const plan = await job.explain()
+    const callers = new Map()
+    for (const { effect, caller } of plan.effects) callers.set(effect, [...callers.get(effect) ?? [], caller])
+    pane.replaceChildren(
+      element("p", "The renderer computes only what this scene needs."),
+      table(["Effect", "Called for by"], [...callers].map(([effect, by]) => [effect, by.length > 4 ? `${by.slice(0, 3).join(", ")} and ${by.length - 3} more` : by.join(", ")])),
+      table(["Stage", "What it computes"], plan.stages.map(stage => [stage.name, stage.why])),
+      table(["Rays to expect", ""], Object.entries(plan.rays).filter(([, count]) => count > 0).map(([kind, count]) => [kind, count.toLocaleString("en")])))
+  } catch (error) {
+    showError(error)
+  }
+}
+
+const tabs = [get("tab-picture"), get("tab-explain")]
+function choose(tab) {
+  for (const one of tabs) {
+    const chosen = one === tab
+    one.setAttribute("aria-selected", String(chosen))
+    one.tabIndex = chosen ? 0 : -1
+    get(one.getAttribute("aria-controls")).hidden = !chosen
+  }
+  if (tab === tabs[1] && job) explain()
+}
+for (const tab of tabs) {
+  tab.addEventListener("click", () => choose(tab))
+  tab.addEventListener("keydown", event => {
+    if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return
+    const other = tabs[1 - tabs.indexOf(tab)]
+    other.focus()
+    choose(other)
+  })
+}
+
+// ---- Links and files ----
+
+const squeezed = async (bytes, stream) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer())
+
+async function toHash(text) {
+  const bytes = await squeezed(new TextEncoder().encode(text), new CompressionStream("deflate-raw"))
+  return btoa(Array.from(bytes, byte => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "")
+}
+
+async function fromHash(text) {
+  const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), letter => letter.charCodeAt(0))
+  return new TextDecoder().decode(await squeezed(bytes, new DecompressionStream("deflate-raw")))
+}
+
+get("share").addEventListener("click", async () => {
+  const hash = `script=${await toHash(script())}`
+  const of = Object.keys(files).length > 0 ? `&files=${encodeURIComponent(name)}` : ""
+  history.replaceState(null, "", `#${hash}${of}`)
+  try {
+    await navigator.clipboard.writeText(location.href)
+    get("state").textContent = "link copied"
+  } catch {
+    get("state").textContent = "the link is in the address bar"
+  }
+})
+
+function download(data, filename, type) {
+  const link = document.createElement("a")
+  link.href = URL.createObjectURL(new Blob([data], { type }))
+  link.download = filename
+  link.click()
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000)
+}
+get("save-script").addEventListener("click", () => download(script(), name, "text/x-lua"))
+get("save-picture").addEventListener("click", () => download(picture.png(), name.replace(/\.lua$/, ".png"), "image/png"))
+
+// ---- Examples ----
+
+async function filesOf(example) {
+  const read = {}
+  for (const file of example.files ?? []) {
+    const response = await fetch(`examples/${file}`)
+    if (!response.ok) throw new Error(`examples/${file}: the server answers ${response.status}`)
+    read[file] = new Uint8Array(await response.arrayBuffer())
+  }
+  return read
+}
+
+async function openExample(wanted) {
+  const example = examples.find(one => one.name === wanted) ?? examples[0]
+  get("examples").value = example.name
+  const [text, read] = await Promise.all([fetch(`examples/${example.name}`).then(response => response.text()), filesOf(example)])
+  name = example.name
+  files = read
+  values = {}
+  frame = 1
+  await setScript(text)
+}
+
+get("examples").addEventListener("change", async () => {
+  history.replaceState(null, "", `#example=${get("examples").value}`)
+  await openExample(get("examples").value).catch(showError)
+})
+
+async function start() {
+  examples = await (await fetch("examples/index.json")).json()
+  for (const { name: file, title } of examples) get("examples").add(new Option(`${file}: ${title}`, file))
+  const asked = new URLSearchParams(location.hash.slice(1))
+  if (!asked.has("script")) return openExample(asked.get("example") ?? "moving_light.lua")
+  const of = examples.find(one => one.name === asked.get("files"))
+  if (of) {
+    name = of.name
+    files = await filesOf(of)
+  }
+  return setScript(await fromHash(asked.get("script")))
+}
+
+start().catch(showError)

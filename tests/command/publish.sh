@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# `glint publish` without a browser: what the page holds, and what is refused. tests/web/pages.mjs opens such a page in one.
+. tests/command/prelude.sh
+cd "$work" || exit 1
+mkdir web data other
+printf 'module' | gzip -n >web/glint.wasm.gz
+echo 'console.log("engine")' >web/publish.js
+export GLINT_WEB=$work/web
+cat >scene.lua <<'LUA'
+local glint = require "glint"
+local P = glint.params { size = { 1, min = 0, max = 2 }, label = { "</script>", doc = "of the ball" } }
+local file <close> = assert(io.open((arg[0]:match "^.*/" or "") .. "data/shade.txt"))
+return glint.animation { width = 8, height = 6, scene = glint.scene {
+  camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }, ambient = file:read "n",
+  glint.sphere { center = { 0, 0, 0 }, radius = P.size } } }
+LUA
+echo 0.5 >data/shade.txt
+has() { check "$1 has $2" grep -qF -- "$2" "$1"; } # FILE TEXT
+
+# ---- What the page holds ----
+
+exits 0 "a page" publish scene.lua -o page.html --set size=1.5 --title 'A & B' --source
+has page.html '<title>A &amp; B</title>'
+has page.html "\"data/shade.txt\":\"$(base64 <data/shade.txt)\""
+has page.html '"values":{"size":1.5}'
+has page.html "$(base64 <web/glint.wasm.gz)"
+has page.html 'console.log("engine")'
+check "no text of the script ends an element" test "$(grep -c '</script>' page.html)" -eq 3
+cd other || exit 1
+exits 0 "a script in another folder" publish ../scene.lua -o ../far.html --controls size
+cd ..
+has far.html '"same":{"../data/shade.txt":"data/shade.txt"}'
+has far.html 'controls="size"'
+
+# ---- What is refused ----
+
+exits 2 "no page" publish scene.lua
+says "no page" 'publish: -o PAGE.html expected'
+exits 2 "a picture" publish scene.lua -o wrong.png
+exits 2 "an unknown control" publish scene.lua -o wrong.html --controls size,sizes
+says "an unknown control" "the script has no parameter 'sizes'; its parameters are label, size"
+exits 2 "an unknown parameter" publish scene.lua -o wrong.html --set sizes=1
+exits 2 "an unknown frame" publish scene.lua -o wrong.html --frame 2
+says "an unknown frame" 'has no frame 2'
+exits 2 "no script" publish missing.lua -o wrong.html
+exits 2 "an option of other commands" publish scene.lua -o wrong.html --samples 4
+GLINT_WEB=$work/nowhere exits 2 "no engine for pages" publish scene.lua -o wrong.html
+says "no engine for pages" 'make web'
+check "nothing is left of a refused page" test ! -e wrong.html
+totals

@@ -1,0 +1,281 @@
+// The pages in Chromium: pictures against the command's, sliders, errors at their line, no message in the console.
+//   node pages.mjs WEB GLINT SCRIPTS WORK
+// WEB is what `make web` leaves, GLINT the command, SCRIPTS the folder of scripts, WORK a folder for pictures.
+import { execFileSync } from "node:child_process"
+import { createServer } from "node:http"
+import { createReadStream, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs"
+import { extname, join, normalize } from "node:path"
+import { chromium } from "playwright-core"
+
+const [web, glint, scripts, work] = process.argv.slice(2)
+rmSync(work, { recursive: true, force: true })
+mkdirSync(work, { recursive: true })
+
+let passed = 0, failed = 0
+function check(holds, what) {
+  if (holds) passed++
+  else failed++
+  if (!holds) console.log(`failed: ${what}`)
+}
+
+// ---- A server of the folder ----
+
+const types = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css", ".json": "application/json",
+  ".wasm": "application/wasm", ".png": "image/png", ".svg": "image/svg+xml", ".lua": "text/plain" }
+const server = createServer((request, response) => {
+  const path = normalize(decodeURIComponent(new URL(request.url, "http://localhost").pathname))
+  const file = path.startsWith("/native/") ? join(work, path.slice("/native/".length)) : join(web, path.endsWith("/") ? `${path}index.html` : path)
+  if (!existsSync(file)) {
+    response.writeHead(404)
+    return response.end()
+  }
+  response.writeHead(200, { "content-type": types[extname(file)] ?? "application/octet-stream" })
+  createReadStream(file).pipe(response)
+})
+await new Promise(done => server.listen(0, "127.0.0.1", done))
+const base = `http://127.0.0.1:${server.address().port}`
+
+// ---- Chromium ----
+
+const quiet = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+  "--disable-component-update", "--disable-sync"]
+const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: quiet })
+const LIMIT_MS = 60000
+
+async function open(address, viewport = { width: 1200, height: 800 }) {
+  const context = await browser.newContext({ viewport })
+  const page = await context.newPage()
+  page.setDefaultTimeout(LIMIT_MS)
+  page.messages = []
+  page.on("console", message => page.messages.push(`${message.type()}: ${message.text()}`))
+  page.on("pageerror", error => page.messages.push(`error: ${error.message}`))
+  await page.goto(address)
+  return page
+}
+
+async function close(page, what) {
+  check(page.messages.length === 0, `${what}: the console has: ${page.messages.join(" | ")}`)
+  await page.context().close()
+}
+
+// How many 8-bit values differ between a canvas and a picture of the command; -1 where the sizes differ.
+function differing(page, canvas, name) {
+  return canvas.evaluate(async (shown, address) => {
+    const picture = new Image()
+    picture.src = address
+    await picture.decode()
+    if (picture.naturalWidth !== shown.width || picture.naturalHeight !== shown.height) return -1
+    const native = document.createElement("canvas")
+    native.width = shown.width
+    native.height = shown.height
+    native.getContext("2d").drawImage(picture, 0, 0)
+    const [a, b] = [shown, native].map(one => one.getContext("2d").getImageData(0, 0, shown.width, shown.height).data)
+    let count = 0
+    for (let i = 0; i < a.length; i++) count += a[i] !== b[i]
+    return count
+  }, `${base}/native/${name}`)
+}
+
+let pictures = 0
+function native(script, ...options) {
+  const name = `${++pictures}.png`
+  execFileSync(glint, [join(scripts, script), ...options, "--force", "--quiet", "-o", join(work, name)],
+    { env: { ...process.env, GLINT_FONT: "bitmap" } })
+  return readdirSync(work).find(file => file === name || file.startsWith(`${pictures}_`))
+}
+
+// ---- The playground ----
+
+const ready = page => page.waitForFunction(() => document.getElementById("state").textContent === "ready")
+const canvasOf = page => page.locator("#picture")
+
+async function playground() {
+  const start = Date.now()
+  const page = await open(`${base}/index.html`)
+  await ready(page)
+  console.log(`playground: first picture after ${Date.now() - start} ms`)
+  check(await differing(page, canvasOf(page), native("moving_light.lua", "--size", "640x360", "-f", "1")) === 0, "playground: the first picture")
+
+  const slider = page.getByLabel("radius")
+  await slider.focus()
+  await page.keyboard.press("End")
+  await ready(page)
+  await page.waitForTimeout(400)
+  await ready(page)
+  check(await differing(page, canvasOf(page), native("moving_light.lua", "--size", "640x360", "-f", "1", "--set", "radius=40")) === 0,
+    "playground: the slider's picture")
+
+  await page.selectOption("#pass", "depth")
+  await page.waitForTimeout(400)
+  await ready(page)
+  check(await page.locator("#error").isHidden(), "playground: the depth pass")
+
+  await page.getByRole("tab", { name: "What this scene calls for" }).click()
+  await page.waitForFunction(() => document.getElementById("pane-explain").textContent.includes("hard shadow"))
+  await page.getByRole("tab", { name: "Picture" }).click()
+  await playgroundErrors(page)
+  await close(page, "playground")
+}
+
+// Replaces the editor's text by typing.
+async function type(page, text) {
+  await page.locator(".cm-content").click()
+  await page.keyboard.press("Control+A")
+  await page.keyboard.insertText(text)
+}
+
+const failing = text => page => page.waitForFunction(part => {
+  const box = document.getElementById("error")
+  return !box.hidden && box.textContent.includes(part)
+}, text)
+
+async function playgroundErrors(page) {
+  await type(page, 'local glint = require "glint"\nlocal red = glint.material { shininess = -1 }\n')
+  await failing("material.shininess")(page)
+  check((await page.locator("#error").textContent()).includes(":2:"), "playground: the error names its line")
+  check(await page.locator(".cm-line").nth(1).locator(".cm-lintRange-error").count() > 0, "playground: the error is marked at its line")
+  await type(page, "while true do end\n")
+  await failing("time")(page)
+  check(true, "playground: an endless loop is stopped")
+  await page.selectOption("#examples", "workshop.lua")
+  await ready(page)
+  check(await page.locator("#error").isHidden(), "playground: lives on after an endless loop")
+}
+
+async function sharing() {
+  const page = await open(`${base}/index.html`)
+  await ready(page)
+  await type(page, readFileSync(join(scripts, "course/lambert.lua"), "utf8"))
+  await page.waitForTimeout(600)
+  await ready(page)
+  await page.getByRole("button", { name: "Copy link" }).click()
+  await page.waitForFunction(() => location.hash.startsWith("#script="))
+  const link = page.url()
+  const other = await open(link)
+  await ready(other)
+  check(await differing(other, canvasOf(other), native("course/lambert.lua", "--size", "640x360")) === 0, "a shared link shows the script's picture")
+  const [download] = await Promise.all([other.waitForEvent("download"), other.getByRole("button", { name: "Save picture" }).click()])
+  await download.saveAs(join(work, "saved.png"))
+  check(await differing(other, canvasOf(other), "saved.png") === 0, "the saved picture is the one that is shown")
+  await close(page, "sharing")
+  await close(other, "shared")
+}
+
+// ---- Figures and the course ----
+
+// Waits for the full picture of a figure after `act`.
+async function rendered(figure, act) {
+  const done = figure.evaluate(one => new Promise((resolve, reject) => {
+    one.addEventListener("glint-render", event => event.detail.coarse || resolve(), { passive: true })
+    one.addEventListener("glint-error", event => reject(event.detail.error))
+  }))
+  await act()
+  await done
+}
+
+async function figure() {
+  const page = await open(`${base}/figure.html`)
+  const one = page.locator("glint-figure")
+  const canvas = one.locator("canvas")
+  await canvas.waitFor({ state: "visible" })
+  check(await differing(page, canvas, native("moving_light.lua", "--size", "640x360", "-f", "1")) === 0, "figure: the first picture")
+  await one.getByLabel("height").focus()
+  await rendered(one, () => page.keyboard.press("Home"))
+  check(await differing(page, canvas, native("moving_light.lua", "--size", "640x360", "-f", "1", "--set", "height=5")) === 0,
+    "figure: the slider's picture, by the keyboard")
+  await one.getByRole("button", { name: "Play" }).click()
+  await page.waitForFunction(() => document.querySelector("glint-figure").frame > 3)
+  await rendered(one, () => one.getByRole("button", { name: "Pause" }).click())
+  const frame = await one.evaluate(element => element.frame)
+  check(await differing(page, canvas, native("moving_light.lua", "--size", "640x360", "-f", String(frame), "--set", "height=5")) === 0,
+    `figure: frame ${frame}, after playing`)
+  await rendered(one, () => one.getByRole("button", { name: "Reset" }).click())
+  check(await canvas.getAttribute("aria-label") !== "", "figure: the canvas has a text for screen readers")
+  await close(page, "figure")
+}
+
+async function course() {
+  const page = await open(`${base}/course.html`)
+  const figures = page.locator("glint-figure")
+  for (let i = 0; i < await figures.count(); i++) {
+    const one = figures.nth(i)
+    await one.scrollIntoViewIfNeeded()
+    await one.locator("canvas").waitFor({ state: "visible" })
+    const [src, width, height] = await Promise.all(["src", "width", "height"].map(name => one.getAttribute(name)))
+    check(await differing(page, one.locator("canvas"), native(src, "--size", `${width}x${height}`)) === 0, `course: ${src}`)
+    await page.screenshot({ path: join(work, `course-${i + 1}.png`) })
+  }
+  await close(page, "course")
+}
+
+async function phone() {
+  for (const name of ["index.html", "figure.html", "course.html"]) {
+    const page = await open(`${base}/${name}`, { width: 390, height: 844 })
+    await page.waitForTimeout(1500)
+    const over = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)
+    check(over <= 0, `${name} is ${over} pixels wider than a phone`)
+    await page.screenshot({ path: join(work, `phone-${name}.png`) })
+    await close(page, `phone: ${name}`)
+  }
+}
+
+// ---- A published page, from a disk ----
+
+async function published() {
+  const script = join(work, "tricky.lua")
+  writeFileSync(script, TRICKY)
+  writeFileSync(join(work, "shade.lua"), "return 0.25 -- a module beside the script\n")
+  const path = join(work, "page.html")
+  const run = (...words) => execFileSync(glint, words, { cwd: work, env: { ...process.env, GLINT_FONT: "bitmap", GLINT_WEB: web, LUA_PATH: "./?.lua" } })
+  run("publish", "tricky.lua", "-o", "page.html", "--size", "320x180", "--title", "Lamps & <tags>", "--source", "--set", "height=9")
+  check(statSync(path).size <= 2.5e6, `the published page has ${statSync(path).size} bytes`)
+  const page = await open(`file://${path}`)
+  const one = page.locator("glint-figure")
+  await one.locator("canvas").waitFor({ state: "visible" })
+  const codes = () => one.locator("canvas").evaluate(shown => [...shown.getContext("2d").getImageData(0, 0, shown.width, shown.height).data])
+  const expected = (...words) => {
+    run("tricky.lua", "--size", "320x180", "--force", "--quiet", "-o", "expected.png", ...words)
+    return codesOf(page, join(work, "expected.png"))
+  }
+  check(same(await codes(), await expected("--set", "height=9")), "published: the picture, with the values of --set")
+  check(await page.title() === "Lamps & <tags>" && await page.locator("details").count() === 1, "published: title and script")
+  await one.getByLabel("height").focus()
+  await rendered(one, () => page.keyboard.press("Home"))
+  check(same(await codes(), await expected("--set", "height=4")), "published: the slider's picture")
+  await close(page, "published")
+}
+
+const TRICKY = `local glint = require "glint"
+local P = glint.params { height = { 8, min = 4, max = 12, doc = "</script><b>&" } }
+return glint.animation { width = 64, height = 36, scene = glint.scene {
+  camera = glint.camera { eye = { 0, 2, 8 }, at = { 0, 0, 0 } }, ambient = require "shade",
+  glint.point_light { position = { 3, P.height, 5 } }, glint.sphere { center = { 0, 0, 0 }, radius = 1.5 } } }
+`
+
+const same = (a, b) => a.length === b.length && a.every((value, i) => value === b[i])
+
+// The 8-bit values of a picture on disk, as the browser decodes them.
+function codesOf(page, path) {
+  return page.evaluate(async base64 => {
+    const picture = new Image()
+    picture.src = `data:image/png;base64,${base64}`
+    await picture.decode()
+    const canvas = document.createElement("canvas")
+    canvas.width = picture.naturalWidth
+    canvas.height = picture.naturalHeight
+    canvas.getContext("2d").drawImage(picture, 0, 0)
+    return [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data]
+  }, readFileSync(path).toString("base64"))
+}
+
+for (const test of [playground, sharing, figure, course, published, phone]) {
+  try {
+    await test()
+  } catch (error) {
+    check(false, `${test.name}: ${error.message}`)
+  }
+}
+await browser.close()
+server.close()
+console.log(`${passed} passed, ${failed} failed`)
+process.exit(failed === 0 ? 0 : 1)
