@@ -1088,6 +1088,10 @@ size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list);
 /// that mirrored, refracted and indirect rays and transparent objects call for; mirror, refraction and indirect: 0 or the
 /// first generation.
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan);
+/// Estimates the work of rendering `plan` right after `before`, by their keys: a stage whose key differs counts 1, the stages
+/// `light` and `occlude` count 1 for each light or light sample that differs. Bit i of *stages is set where number i of
+/// glint_plan_stages must run. 0: the two pictures are the same.
+double glint_plan_work_after(const glint_plan *plan, const glint_plan *before, uint32_t *stages);
 
 /// A program that a frame runs for a material, or for the background.
 typedef struct glint_program_use {

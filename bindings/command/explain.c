@@ -4,12 +4,50 @@
 #include <string.h>
 
 #include "bindings/command/cli.h"
+#include "bindings/run/order.h"
 
 static void print_frame(FILE *out, const glintL_run *run, const glint_render_desc *desc)
 {
     fprintf(out, "%s, frame %" PRId64 ": %.0f x %.0f, %.0f sample%s a pixel, decided in %s\n", run->script,
             run->explain_frame, desc->width, desc->height, desc->samples, desc->samples == 1 ? "" : "s",
             desc->precision == GLINT_FLOAT ? "float" : "double");
+}
+
+// `"first":"...","second":"..."`
+static void print_pair(FILE *out, const char *first, const char *value, const char *second, const char *other)
+{
+    fprintf(out, "\"%s\":", first);
+    glintL_json_string(out, value);
+    fprintf(out, ",\"%s\":", second);
+    glintL_json_string(out, other);
+}
+
+// What each axis of the frame's sweep costs, and which of them changes most often.
+static void print_order(FILE *out, const glintL_order *order)
+{
+    fputs("\nsweep\n  axes: ", out);
+    for (int i = 0; i < order->axis_count; i++)
+        fprintf(out, "%s runs %s; ", order->axes[i].name, order->axes[i].stages[0] ? order->axes[i].stages : "nothing");
+    for (int i = 0; i < order->axis_count; i++)
+        fprintf(out, "%s%s", i ? ", " : "order: ", order->axes[order->by_work[i]].name);
+    fputc('\n', out);
+}
+
+// `,"sweep":{"axes":[{"name":"lamp.position","stages":"light, occlude, shade"}],"order":["lamp.position"]}`
+static void print_order_json(FILE *out, const glintL_order *order)
+{
+    fputs(",\"sweep\":{\"axes\":[", out);
+    for (int i = 0; i < order->axis_count; i++) {
+        fputs(i ? ",{" : "{", out);
+        print_pair(out, "name", order->axes[i].name, "stages", order->axes[i].stages);
+        fputc('}', out);
+    }
+    fputs("],\"order\":[", out);
+    for (int i = 0; i < order->axis_count; i++) {
+        fputs(i ? "," : "", out);
+        glintL_json_string(out, order->axes[order->by_work[i]].name);
+    }
+    fputs("]}", out);
 }
 
 static void print_for_people(FILE *out, const glintL_run *run)
@@ -35,6 +73,8 @@ static void print_for_people(FILE *out, const glintL_run *run)
         fprintf(out, "  refraction %" PRIu64 " at most\n", rays.refraction);
     if (rays.indirect)
         fprintf(out, "  indirect   %" PRIu64 " at most\n", rays.indirect);
+    if (run->explain_order)
+        print_order(out, run->explain_order);
 }
 
 // The instructions of each program, a line each.
@@ -53,15 +93,6 @@ static void print_programs(FILE *out, const glint_plan *plan)
         }
         free(listing);
     }
-}
-
-// `"first":"...","second":"..."`
-static void print_pair(FILE *out, const char *first, const char *value, const char *second, const char *other)
-{
-    fprintf(out, "\"%s\":", first);
-    glintL_json_string(out, value);
-    fprintf(out, ",\"%s\":", second);
-    glintL_json_string(out, other);
 }
 
 // `,"programs":[{"material":"floor","field":"diffuse","instructions":3,"rows":2,"listing":"..."}]`; the scene's own has no
@@ -118,6 +149,8 @@ static void print_json(FILE *out, const glintL_run *run, bool programs)
     }
     fputs("],", out);
     cli_print_rays(out, &rays);
+    if (run->explain_order)
+        print_order_json(out, run->explain_order);
     if (programs)
         print_programs_json(out, plan);
     fputs("}\n", out);

@@ -114,18 +114,34 @@ void glintL_film_take(const glintL_run *run, glintL_naming *naming)
         *naming = (glintL_naming) { .pattern = film->pattern, .film = film };
 }
 
-bool glintL_film_add(glintL_film *film, const char *file)
+static bool grow(glintL_film *film)
 {
-    if (film->count == film->room) {
-        size_t room = film->room ? 2 * film->room : 64;
-        char **grown = realloc(film->files, room * sizeof *grown);
-        if (!grown)
-            return false;
-        film->files = grown;
-        film->room = room;
+    const size_t room = film->room ? 2 * film->room : 64;
+    char **files = realloc(film->files, room * sizeof *files);
+    if (files)
+        film->files = files;
+    int64_t *numbers = files ? realloc(film->numbers, room * sizeof *numbers) : NULL;
+    if (!numbers)
+        return false;
+    film->numbers = numbers;
+    film->room = room;
+    return true;
+}
+
+bool glintL_film_add(glintL_film *film, int64_t number, const char *file)
+{
+    size_t at = film->count;
+    char *copy = film->count < film->room || grow(film) ? strdup(file) : NULL;
+    if (!copy)
+        return false;
+    for (; at > 0 && film->numbers[at - 1] > number; at--) {
+        film->files[at] = film->files[at - 1];
+        film->numbers[at] = film->numbers[at - 1];
     }
-    film->files[film->count] = strdup(file);
-    return film->files[film->count] && ++film->count;
+    film->files[at] = copy;
+    film->numbers[at] = number;
+    film->count++;
+    return true;
 }
 
 void glintL_films_destroy(glintL_film *films)
@@ -135,6 +151,7 @@ void glintL_films_destroy(glintL_film *films)
         for (size_t i = 0; i < films->count; i++)
             free(films->files[i]);
         free(films->files);
+        free(films->numbers);
         free(films->path);
         free(films->pattern);
         free(films);

@@ -14,6 +14,7 @@ typedef struct glintL_film {
     glintL_film_kind kind;
     double fps;
     char **files; ///< owned, in order
+    int64_t *numbers; ///< owned; of these frames, where glintL_film_add adds them
     size_t count, room;
 } glintL_film;
 
@@ -23,8 +24,8 @@ bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *re
                       char message[GLINTL_MESSAGE_SIZE]);
 /// A naming whose pattern is an open film's names that film's frames from now on.
 void glintL_film_take(const glintL_run *run, glintL_naming *naming);
-/// Adds a finished frame. False: out of memory.
-bool glintL_film_add(glintL_film *film, const char *file);
+/// Adds a finished frame, in its place by number. False: out of memory.
+bool glintL_film_add(glintL_film *film, int64_t number, const char *file);
 /// Makes the films whose frames are all there, and removes the frames. False: the run has failed.
 bool glintL_films_finish(glintL_run *run);
 /// Says where the frames of films are that were not made.

@@ -1,4 +1,4 @@
-// Frames of animations and sweeps: numbered through a list of them, selected, rendered in order.
+// Frames of animations and sweeps: numbered through a list of them, selected, rendered in the order that costs least.
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bindings/run/film.h"
+#include "bindings/run/order.h"
 #include "bindings/run/sheet.h"
 
 // ---- What a script returned ----
@@ -441,14 +442,89 @@ static bool make_sheet(job_walk *walk, int64_t first)
     return glintL_sweep_make_sheet(walk->L, walk->job_index, &walk->naming, first, partial);
 }
 
+// Plans frame n of the job at hand with what decides its keys. NULL: it cannot be planned, of which the run says nothing.
+static glint_plan *probe(void *context, int64_t n)
+{
+    job_walk *walk = context;
+    lua_State *L = walk->L;
+    glint_error error;
+    glint_plan *plan = NULL;
+    glint_render_desc desc = walk->render.desc;
+    lua_pushcfunction(L, build);
+    lua_pushvalue(L, walk->job_index);
+    lua_pushinteger(L, n);
+    lua_pushlightuserdata(L, walk);
+    walk->run->in_frame = true;
+    const bool good = lua_pcall(L, 3, 0, 0) == LUA_OK;
+    walk->run->in_frame = false;
+    lua_settop(L, walk->job_index);
+    const glint_scene *scene = good ? scene_of(walk) : NULL;
+    desc.codes = true;
+    desc.derivative_count = 0;
+    return scene && glint_plan_create(scene, &desc, &plan, &error) == GLINT_OK ? plan : NULL;
+}
+
+// The order of the job's frames: as they are numbered, but where a sweep of several axes has another that costs less. A
+// frame that cannot be planned, and a pipe that takes the frames, leave them as numbered.
+static void find_order(job_walk *walk, bool search, glintL_order *order)
+{
+    lua_State *L = walk->L;
+    glintL_order_init(order);
+    if (walk->job->kind != GLINTL_JOB_SWEEP || !search) {
+        glintL_order_add(order, walk->job->frames);
+        return;
+    }
+    lua_getiuservalue(L, walk->job_index, GLINTL_JOB_FRAME);
+    const int axes = lua_gettop(L);
+    for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, axes); i++) {
+        const int object = glintL_sweep_push_axis(L, axes, i);
+        glintL_order_axis *axis = glintL_order_add(order, (int64_t)lua_rawlen(L, object + 2));
+        glintL_sweep_push_title(L, axes, i);
+        snprintf(axis->name, sizeof axis->name, "%s", lua_tostring(L, -1));
+        lua_settop(L, axes);
+    }
+    lua_settop(L, walk->job_index);
+    glintL_order_find(order, probe, walk);
+}
+
+// Whether several axes of the sweep at hand have several values.
+static bool is_grid(job_walk *walk)
+{
+    int several = 0;
+    lua_getiuservalue(walk->L, walk->job_index, GLINTL_JOB_FRAME);
+    const int axes = lua_gettop(walk->L);
+    for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(walk->L, axes); i++) {
+        const int object = glintL_sweep_push_axis(walk->L, axes, i);
+        several += lua_rawlen(walk->L, object + 2) > 1;
+        lua_settop(walk->L, axes);
+    }
+    lua_settop(walk->L, walk->job_index);
+    return several > 1;
+}
+
+// Whether the run renders several frames of the job at hand, whose first frame has that number, and may do so in any order.
+static bool may_reorder(job_walk *walk, int64_t first, const part *p)
+{
+    if (walk->job->kind != GLINTL_JOB_SWEEP || !is_grid(walk))
+        return false;
+    const int64_t last = first + walk->job->frames - 1;
+    const int64_t count = glintL_selection_count(&walk->run->request.selection, first, last);
+    const char *pattern = walk->naming.pattern;
+    return count > 2 && p->place < p->to && p->place + count >= p->from && !(pattern && glintL_name_is_special(pattern));
+}
+
 static bool run_job(job_walk *walk, lua_Integer i, part *p)
 {
     glintL_run *run = walk->run;
-    int64_t first = run->count + 1;
+    glintL_order order;
+    const int64_t first = run->count + 1;
     begin_job(walk, i);
     bool good = open_film(walk);
-    for (int64_t n = 1; n <= walk->job->frames && good; n++) {
-        int64_t number = ++run->count;
+    const bool search = good && may_reorder(walk, first, p);
+    good = good && (!search || settle_before(walk, i, first));
+    find_order(walk, good && search, &order);
+    for (int64_t place = 0; place < walk->job->frames && good; place++) {
+        const int64_t n = glintL_order_frame(&order, place), number = first + n - 1;
         if (!glintL_selection_has(&run->request.selection, number))
             continue;
         p->place++;
@@ -458,6 +534,7 @@ static bool run_job(job_walk *walk, lua_Integer i, part *p)
         if (n == walk->job->frames)
             walk->settled = i;
     }
+    run->count += walk->job->frames;
     if (walk->job->kind == GLINTL_JOB_SWEEP)
         good = call(walk, restore, 0, run->count) && good;
     if (walk->job->kind == GLINTL_JOB_SWEEP && good && !run->interrupted)
@@ -534,6 +611,11 @@ static void explain_frame(job_walk *walk, int64_t n)
     const bool keeps = run->keeps_scene && walk->job->frames > 1;
     glintL_work *next = keeps ? plan_frame(walk, n > 1 ? n - 1 : 2, run->explain_frame) : NULL;
     glintL_work *work = keeps && !next ? NULL : plan_frame(walk, n, run->explain_frame);
+    if (work && walk->job->kind == GLINTL_JOB_SWEEP && !run->keeps_scene) {
+        run->explain_order = malloc(sizeof *run->explain_order);
+        if (run->explain_order)
+            find_order(walk, true, run->explain_order);
+    }
     if (work && show_moments(walk, n)) {
         run->explain_plan = work->plan;
         work->plan = NULL;

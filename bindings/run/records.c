@@ -34,6 +34,7 @@ void glintL_run_destroy(glintL_run *run)
     glint_writer_destroy(run->writer); // before the records its results point to
     glint_renderer_destroy(run->renderer);
     glint_plan_destroy(run->explain_plan);
+    free(run->explain_order);
     glint_plan_destroy(run->kept_neighbour);
     glint_scene_release(run->kept_scene);
     glintL_work_destroy(run->deferred);
@@ -55,11 +56,13 @@ void glintL_run_reset(glintL_run *run)
 {
     glintL_run_collect(run, true);
     glint_plan_destroy(run->explain_plan);
+    free(run->explain_order);
     glintL_work_destroy(run->deferred);
     glintL_films_destroy(run->films);
     glintL_forget_warnings(run);
     free(run->params_text);
     run->explain_plan = NULL;
+    run->explain_order = NULL;
     run->deferred = NULL;
     run->films = NULL;
     run->params_text = NULL;
@@ -221,7 +224,7 @@ static void flush_records(glintL_run *run)
         if (!record->failed) {
             if (record->is_last)
                 count_record(run, record);
-            if (record->is_last && record->film && !glintL_film_add(record->film, record->files[GLINT_PASS_BEAUTY]))
+            if (record->is_last && record->film && !glintL_film_add(record->film, record->index, record->files[GLINT_PASS_BEAUTY]))
                 glintL_run_fail(run, GLINTL_EXIT_FAILED, record->index, "out of memory");
             if (run->reporter.frame)
                 run->reporter.frame(run->reporter.context, run, record);

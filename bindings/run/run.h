@@ -11,6 +11,7 @@
 ///   film.c            films: their frames, kept in a folder until they are made; film_pipe.c through ffmpeg
 ///   sheet.c           contact sheets of files; sheet_axes.c their axes, sheet_page.c as an HTML page, sweep_sheet.c of sweeps
 ///   state.c           the run of a Lua state, and its failure; records.c its frames in order
+///   order.c           in which order a sweep's frames are rendered
 ///   jobs.c            frames of jobs; job_run.c :run; call.c scene:render
 ///   kept_image.c      the picture of a file that was kept
 ///
@@ -236,6 +237,7 @@ struct glintL_run {
     glintL_mode mode;
     int64_t explain_frame;
     glint_plan *explain_plan; ///< owned
+    struct glintL_order *explain_order; ///< owned; of the sweep that the frame belongs to; NULL: it is of none
     bool keeps_scene; ///< of the frame that is explained; then there are, too:
     glint_scene *kept_scene; ///< owned; as it is in that frame
     glintL_render kept_render;
@@ -438,6 +440,8 @@ void glintL_sweep_restore(lua_State *L, int index);
 /// Pushes the object, the name of the field and the list of values of axis `i` of those at `axes`; returns the object's
 /// index.
 int glintL_sweep_push_axis(lua_State *L, int axes, lua_Integer i);
+/// Pushes "object.field" of axis `i` of those at `axes`, or its name where the object has none.
+void glintL_sweep_push_title(lua_State *L, int axes, lua_Integer i);
 /// Pushes the table name -> value of frame n of the sweep at `index`.
 void glintL_sweep_push_values(lua_State *L, int index, int64_t n);
 /// Pushes the "name=value" lines of frame n of the sweep at `index`, an axis each.

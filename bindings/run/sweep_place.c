@@ -13,6 +13,21 @@ int glintL_sweep_push_axis(lua_State *L, int axes, lua_Integer i)
     return axis;
 }
 
+// Pushes the name of the object at `object`, and returns it; "" where it has none.
+static const char *push_object_name(lua_State *L, int object)
+{
+    const int top = lua_gettop(L);
+    const bool is_named = lua_isuserdata(L, object) && !glintL_test_object(L, object, GLINTL_SCENE) && // it has no name
+                          luaL_getmetafield(L, object, "__name") != LUA_TNIL &&
+                          glintL_test_object(L, object, lua_tostring(L, -1)) &&
+                          lua_getfield(L, object, "name") == LUA_TSTRING;
+    if (!is_named)
+        lua_pushliteral(L, "");
+    lua_insert(L, top + 1);
+    lua_settop(L, top + 1);
+    return lua_tostring(L, -1);
+}
+
 // Pushes what an axis is called: its field; where another axis has that too, with the object before it.
 static void push_axis_name(lua_State *L, int axes, lua_Integer i)
 {
@@ -22,19 +37,25 @@ static void push_axis_name(lua_State *L, int axes, lua_Integer i)
         others += j != i && lua_rawequal(L, object + 1, other + 1);
         lua_settop(L, other - 1);
     }
-    if (others) {
-        const char *name = lua_isuserdata(L, object) && luaL_getmetafield(L, object, "__name") != LUA_TNIL &&
-                                   glintL_test_object(L, object, lua_tostring(L, -1)) &&
-                                   lua_getfield(L, object, "name") == LUA_TSTRING
-                               ? lua_tostring(L, -1)
-                               : "";
-        if (*name)
-            lua_pushfstring(L, "%s.%s", name, lua_tostring(L, object + 1));
-        else
-            lua_pushfstring(L, "%s %d", lua_tostring(L, object + 1), (int)i);
-    } else {
+    const char *name = push_object_name(L, object);
+    if (others && *name)
+        lua_pushfstring(L, "%s.%s", name, lua_tostring(L, object + 1));
+    else if (others)
+        lua_pushfstring(L, "%s %d", lua_tostring(L, object + 1), (int)i);
+    else
         lua_pushvalue(L, object + 1);
-    }
+    lua_replace(L, top + 1);
+    lua_settop(L, top + 1);
+}
+
+void glintL_sweep_push_title(lua_State *L, int axes, lua_Integer i)
+{
+    const int top = lua_gettop(L), object = glintL_sweep_push_axis(L, axes, i);
+    const char *name = push_object_name(L, object);
+    if (*name)
+        lua_pushfstring(L, "%s.%s", name, lua_tostring(L, object + 1));
+    else
+        push_axis_name(L, axes, i);
     lua_replace(L, top + 1);
     lua_settop(L, top + 1);
 }

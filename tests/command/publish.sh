@@ -41,7 +41,7 @@ exits 2 "an unknown control" publish scene.lua -o wrong.html --controls size,siz
 says "an unknown control" "the script has no parameter 'sizes'; its parameters are label, size"
 exits 2 "an unknown parameter" publish scene.lua -o wrong.html --set sizes=1
 exits 2 "an unknown frame" publish scene.lua -o wrong.html --frame 2
-says "an unknown frame" 'has no frame 2'
+says "an unknown frame" 'the frames of the script are 1'
 exits 2 "no script" publish missing.lua -o wrong.html
 exits 2 "an option of other commands" publish scene.lua -o wrong.html --samples 4
 GLINT_WEB=$work/nowhere exits 2 "no engine for pages" publish scene.lua -o wrong.html
