@@ -117,7 +117,7 @@ LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(LINK_NEEDED)
 
 # ---- Sources ----
 
-ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/stages/*/*.c engine/tile/*/*.c))
+ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/*/*/*.c))
 BINDINGS_SRC := $(sort $(wildcard bindings/*/*.c))
 # The instruction sets of this machine; KERNELS=avx2 compiles that alone, in a quarter of the time, for work on a kernel.
 KERNELS := generic $(if $(PORTABLE),,$(if $(filter x86_64-% amd64-%,$(TARGET)),sse2 avx2 avx512))
@@ -154,9 +154,10 @@ $(BUILD)/engine/stages/simd/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) $(X86_BITS) -m
 $(BUILD)/engine/stages/simd/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw $(X86_BITS) -mavx2 -mfma
 # An engine's object has the flags of its own in the archive and in the shared library.
 objects_of = $(foreach source,$(1),$(source:%.c=$(BUILD)/%.o) $(source:%.c=$(BUILD)/shared/%.o))
-UNROLLED := $(addprefix engine/,compare/flip.c frame/refine.c frame/stats.c plan/tints.c $(addprefix tile/,batch.c bounce.c derivative/bend.c \
-              derivative/derivative.c derivative/fade.c derivative/shader.c environment.c indirect/begin.c \
-              indirect/indirect.c pattern/inputs.c pattern/shader.c transparent_shadow.c))
+UNROLLED := $(addprefix engine/,compare/flip.c frame/stats.c tile/batch.c $(addprefix effects/,adaptive/choose.c bounce/bounce.c \
+              derivative/bend.c derivative/derivative.c derivative/fade.c derivative/shader.c environment/environment.c \
+              indirect/begin.c indirect/indirect.c pattern/inputs.c pattern/shader.c transparent_shadow/plan.c \
+              transparent_shadow/transparent_shadow.c))
 $(if $(filter-out $(ENGINE_SRC),$(UNROLLED)),$(error no such source: $(filter-out $(ENGINE_SRC),$(UNROLLED))))
 $(call objects_of,$(UNROLLED)): OWN := $(KERNEL_CFLAGS)
 $(call objects_of,engine/stages/simd/select.c): OWN := $(KERNELS:%=-DGLINT_KERNEL_%)

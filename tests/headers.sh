@@ -3,7 +3,7 @@
 # by the isa_*.c files only; simd/avx2.h and simd/avx512.h need their instruction sets. Then: which machines are refused.
 set -u
 bad=0
-for header in engine/*.h engine/*/*.h engine/stages/*/*.h engine/tile/*/*.h bindings/*/*.h; do
+for header in engine/*.h engine/*/*.h engine/stages/*/*.h engine/effects/*/*.h bindings/*/*.h; do
     flags=()
     case $header in
     *simd/avx2.h) flags=(-mavx2 -mfma) ;;

@@ -12,16 +12,22 @@ forbid() {
     fi
 }
 
-# layer FOLDER FOLDER...: what the sources of the first include
-layer() {
-    folder=$1
+# includes FILES FOLDER...: what the sources of a pattern include: headers of these folders, or these headers
+includes() {
+    files=$1
     shift
-    allowed=$folder
-    for below in "$@"; do allowed="$allowed|$below"; done
-    if grep -nE '^#include "' "$folder"/*.[ch] | grep -vE "#include \"(engine/glint\.h|($allowed)/[^/]*)\""; then
-        echo "^ $folder: includes $folder, $* and engine/glint.h only"
+    allowed=engine/glint.h
+    for name in "$@"; do allowed="$allowed|$name"; done
+    # shellcheck disable=SC2086
+    if grep -nE '^#include "' $files /dev/null | grep -vE "#include \"($allowed)(/[^/]*)?\""; then
+        echo "^ $files: includes $* and engine/glint.h only"
         bad=1
     fi
+}
+
+# layer FOLDER FOLDER...: what the sources of the first include, beside their own headers
+layer() {
+    includes "$1/*.[ch]" "$@"
 }
 
 base=engine/base
@@ -33,13 +39,16 @@ layer engine/text $base
 layer engine/overlay engine/text $base
 layer engine/film engine/overlay engine/stages $base
 layer engine/program engine/file $stages $base
-layer engine/plan engine/program engine/geometry engine/scene engine/overlay engine/film $stages $base
-layer engine/reuse engine/program engine/plan engine/film $stages $base
-for room in engine/tile engine/tile/pattern engine/tile/derivative engine/tile/indirect; do
-    layer $room engine/tile engine/tile/pattern engine/tile/derivative engine/tile/indirect engine/program engine/reuse engine/plan engine/film $stages \
-        engine/stages/light $base
+# An effect's plan.h belongs to the plan; its other headers belong to the walk of a tile, and to the frame around it.
+effects='engine/effects/[a-z_]*'
+for files in 'engine/plan/*.[ch]' 'engine/effects/*/plan*.[ch]' 'engine/effects/derivative/slopes.h'; do
+    includes "$files" engine/plan "$effects/(plan|slopes).h" engine/program engine/geometry engine/scene engine/overlay engine/film $stages $base
 done
-layer engine/frame engine/program engine/tile engine/reuse engine/plan engine/film $base
+layer engine/reuse engine/program engine/plan engine/film $stages $base
+layer engine/tile "$effects" engine/program engine/reuse engine/plan engine/film $stages engine/stages/light $base
+layer engine/frame "$effects" engine/program engine/tile engine/reuse engine/plan engine/film $base
+includes 'engine/effects/*/*.[ch]' "$effects" engine/frame engine/tile engine/program engine/reuse engine/plan engine/geometry engine/scene \
+    engine/film $stages engine/stages/light $base
 layer engine/file engine/text engine/overlay engine/film engine/stages $base
 layer engine/compare engine/file engine/film $base
 layer engine/sheet engine/text engine/overlay engine/file $base

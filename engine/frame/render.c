@@ -1,7 +1,7 @@
 /// A frame: its tiles on the worker pool, each walked through the plan's stages; progress and cancel.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
-#include "engine/frame/outline.h"
+#include "engine/effects/outline/outline.h"
 #include "engine/frame/render.h"
 #include "engine/frame/renderer.h"
 

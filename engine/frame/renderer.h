@@ -6,8 +6,8 @@
 #include "engine/film/image.h"
 #include "engine/film/tone.h"
 #include "engine/frame/grids.h"
-#include "engine/frame/refine.h"
-#include "engine/plan/tints.h"
+#include "engine/effects/adaptive/choose.h"
+#include "engine/effects/transparent_shadow/plan.h"
 #include "engine/reuse/reuse.h"
 #include "engine/tile/tile.h"
 

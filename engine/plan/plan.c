@@ -1,4 +1,4 @@
-#include "engine/plan/raster.h"
+#include "engine/effects/raster/plan.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"

@@ -6,22 +6,17 @@
 ///   plan/camera.c     the view
 ///   plan/lens.c       where samples go through the camera's lens
 ///   plan/shading.c    materials and lights
-///   plan/bounce.c     mirrors and transparent materials
 ///   plan/eye.c        what the eye is inside of
-///   plan/visible_lights.c       lights that are seen
-///   plan/environment.c a background that a program gives
-///   plan/indirect.c   light that surfaces get from other surfaces and the background
-///   plan/exposure.c   several times of a frame, while a shutter is open
-///   plan/derivative.c slopes of what shading reads
 ///   plan/explain.c    which effects the scene calls for, and who called
+///   effects/*/plan.c  an effect's part
 #ifndef GLINT_PLAN_H
 #define GLINT_PLAN_H
 
 #include "engine/geometry/geometry.h"
 #include "engine/geometry/media.h"
 #include "engine/overlay/overlay.h"
-#include "engine/plan/derivative.h"
-#include "engine/plan/patterns.h"
+#include "engine/effects/derivative/plan.h"
+#include "engine/effects/pattern/plan.h"
 
 /// In the order a frame runs them.
 typedef enum glint_stage_id {
@@ -129,7 +124,7 @@ typedef struct glint_plan_indirect {
     double distance; ///< then, within which surfaces close it; may be infinite
 } glint_plan_indirect;
 
-#define GLINT_BOUNCE_LEVELS 32 ///< times that the weaker of two rays may be followed first; see tile/bounce.c
+#define GLINT_BOUNCE_LEVELS 32 ///< times that the weaker of two rays may be followed first; see effects/bounce/bounce.c
 #define GLINT_BOUNCE_SPLITS 16 ///< surfaces of a chain at which both rays are followed
 #define GLINT_BOUNCE_LOSS 0x1p-20 ///< of linear light: what weak rays that are not followed may hold together, a sample
 

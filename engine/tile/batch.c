@@ -1,7 +1,7 @@
 /// The walk of a batch of rays: cast, what they meet packed into few groups, through the stages, and where they go on.
 #include "engine/tile/batch.h"
 #include "engine/base/vec.h"
-#include "engine/tile/pattern/cut_out.h"
+#include "engine/effects/cut_out/cut_out.h"
 
 #include <string.h>
 

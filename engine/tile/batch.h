@@ -1,10 +1,10 @@
 /// A batch of rays that start on surfaces: at most a tile's samples, walked through the stages together. Internal.
 ///
-/// tile/bounce.c and tile/indirect/ decide which rays there are and what becomes of the light they find.
+/// effects/bounce and effects/indirect decide which rays there are and what becomes of the light they find.
 #ifndef GLINT_BATCH_H
 #define GLINT_BATCH_H
 
-#include "engine/tile/pattern/pattern.h"
+#include "engine/effects/pattern/pattern.h"
 #include "engine/tile/rays.h"
 
 #define GLINT_WEIGHT_MAX 1e150 ///< products with what a surface gives stay finite

@@ -1,6 +1,6 @@
 /// What a tile leaves for later frames: where its results are kept, what it shows, and the keys of both.
 #include "engine/base/alloc.h"
-#include "engine/tile/pattern/pattern.h"
+#include "engine/effects/pattern/pattern.h"
 
 #include <math.h>
 

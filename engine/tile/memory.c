@@ -1,6 +1,6 @@
 /// What a tile's working memory has beside the tile itself: allocated for the first frame that needs it, kept for those after it.
 #include "engine/base/alloc.h"
-#include "engine/tile/pattern/pattern.h"
+#include "engine/effects/pattern/pattern.h"
 
 #include <stdlib.h>
 

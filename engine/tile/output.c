@@ -1,4 +1,4 @@
-#include "engine/tile/pattern/pattern.h"
+#include "engine/effects/pattern/pattern.h"
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 

@@ -39,7 +39,7 @@ typedef struct glint_rays {
 void glint_rays_clear(glint_rays *rays, uint32_t group_count);
 /// Puts a ray into lane i, which becomes active.
 void glint_rays_put(glint_rays *rays, const glint_plan *plan, uint32_t i, const glint_ray *ray);
-/// tile/environment.c: fills `light` of those rays in `missed` with what a program shows them, as background.
+/// effects/environment/environment.c: fills `light` of those rays in `missed` with what a program shows them, as background.
 void glint_tile_environment_of(glint_tile *tile, const glint_tile_frame *frame, const glint_rays *rays,
                                const uint16_t *missed, double (*light)[GLINT_TILE_SAMPLES]);
 

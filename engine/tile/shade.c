@@ -2,7 +2,7 @@
 /// of a tile together, whose sums never leave the registers.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/tile/pattern/pattern.h"
+#include "engine/effects/pattern/pattern.h"
 
 #include <stdlib.h>
 #include <string.h>

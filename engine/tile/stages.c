@@ -1,10 +1,10 @@
 /// The calls of a tile's stages: plan and memory in, the kernels' argument structs out.
-#include "engine/tile/pattern/pattern.h"
+#include "engine/effects/pattern/pattern.h"
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
 #include "engine/stages/light/cone_sample.h"
 #include "engine/stages/simd/coefficients.h"
-#include "engine/tile/pattern/cut_out.h"
+#include "engine/effects/cut_out/cut_out.h"
 
 #include <math.h>
 #include <string.h>

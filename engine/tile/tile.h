@@ -6,9 +6,9 @@
 #include "engine/film/tone.h"
 #include "engine/plan/plan.h"
 #include "engine/reuse/reuse.h"
-#include "engine/plan/raster.h"
-#include "engine/tile/refine.h"
-#include "engine/tile/shading_points.h"
+#include "engine/effects/raster/plan.h"
+#include "engine/effects/adaptive/refine.h"
+#include "engine/effects/vertex_shading/shading_points.h"
 
 #include <string.h>
 
@@ -104,7 +104,7 @@ typedef struct glint_tile_sample {
             ///< log2_specular, and each has the `lit` and `open` of all
     } light[GLINT_LIGHT_CHUNK];
     float *facing;
-    float *planes; ///< what programs gave, see plan/patterns.h; NULL in frames without
+    float *planes; ///< what programs gave, see effects/pattern/plan.h; NULL in frames without
 } glint_tile_sample;
 
 /// The rays of the current sample. Arrays of real are as long as doubles need, here and below.
@@ -168,26 +168,26 @@ typedef struct glint_tile {
     const uint32_t *owner; ///< for occlude: the primitives that points are on, of faces and vertices; NULL: those that were hit
     const void *viewed[3]; ///< for occlude: the rays that found the points; NULL: the tile's
     struct glint_bounce
-        *bounce; ///< memory of tile/bounce.c and of tile/transparent_shadow.c; NULL until a frame needs it
+        *bounce; ///< memory of effects/bounce/bounce.c and of effects/transparent_shadow/transparent_shadow.c; NULL until a frame needs it
     struct glint_transparent_shadow *transparent_shadow;
     struct glint_samples *samples; ///< memory of tile/shade.c; likewise
     uint32_t own_lights; ///< the first of `lights` that is the current sample's
     const struct glint_batch *batch; ///< whose rays found the samples; NULL: the eye's did
-    struct glint_vertex *vertex; ///< likewise, of tile/vertex.c
-    struct glint_depth_cue *depth_cue; ///< of tile/depth_cue.c; NULL until a frame fades
-    struct glint_raster_rest *raster_rest; ///< of tile/raster.c: what is cast because it is no triangle; likewise
+    struct glint_vertex *vertex; ///< likewise, of effects/vertex_shading/vertex.c
+    struct glint_depth_cue *depth_cue; ///< of effects/depth_cue/depth_cue.c; NULL until a frame fades
+    struct glint_raster_rest *raster_rest; ///< of effects/raster/raster.c: what is cast because it is no triangle; likewise
     struct glint_visible_light
-        *visible_light; ///< of tile/visible_lights.c; NULL unless the frame has lights that are seen
-    struct glint_gathered *gathered; ///< of tile/gather.c; NULL until a frame is adaptive
-    struct glint_differ_work *differ; ///< of tile/differ.c; NULL until a frame is a base
-    struct glint_indirect *indirect; ///< memory of tile/indirect/; likewise
-    struct glint_environment *environment; ///< of tile/environment.c; NULL unless a program gives the background
+        *visible_light; ///< of effects/visible_light/visible_light.c; NULL unless the frame has lights that are seen
+    struct glint_gathered *gathered; ///< of effects/adaptive/gather.c; NULL until a frame is adaptive
+    struct glint_differ_work *differ; ///< of effects/adaptive/differ.c; NULL until a frame is a base
+    struct glint_indirect *indirect; ///< memory of effects/indirect/; likewise
+    struct glint_environment *environment; ///< of effects/environment/environment.c; NULL unless a program gives the background
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
     glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
     void *shadow_room; ///< of occlude; owned; NULL until a frame has shadows of area lights
-    struct glint_pattern *pattern; ///< memory of tile/pattern/pattern.c; NULL in frames without programs
-    struct glint_derivative_work *derivative; ///< of tile/derivative/; NULL until a frame has derivatives
+    struct glint_pattern *pattern; ///< memory of effects/pattern/pattern.c; NULL in frames without programs
+    struct glint_derivative_work *derivative; ///< of effects/derivative/; NULL until a frame has derivatives
     double *unbumped[3]; ///< real: the normals that bumps have turned, as they were; NULL: there are no bumps
     uint32_t own_planes; ///< of the planes that samples have which are shaded together, the current sample's
 } glint_tile;
@@ -297,8 +297,8 @@ glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame 
                                        const uint32_t *slot, uint32_t count);
 glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
                                            const uint32_t *slot, uint32_t count);
-/// tile/soft_shadow.c: both in one, and books them, for the samples of a light in slots `slot` and on, where their sum is all that
-/// read. Returns whether it is, and marks the slots. The points are found.
+/// effects/area_light/soft_shadow.c: computes light and shadow of the samples of a light together, in slots `slot` and on, where only
+/// their sum is read. Returns whether only the sum is read, and marks the slots. The points are found.
 bool glint_tile_sum_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot,
                           uint32_t count);
 /// The arguments of shade but the outputs, for `count` lights of the plan from `from` on, which are filled in, as are the
@@ -338,7 +338,7 @@ static inline uint64_t *glint_tile_tests_of(glint_tile *tile, const glint_tile_f
 }
 void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 
-/// tile/bounce.c: follows what materials send on, and adds it to the sums of the current sample, whose points are found.
+/// effects/bounce/bounce.c: follows what materials send on, and adds it to the sums of the current sample, whose points are found.
 struct glint_bounce *glint_bounce_create(void);
 void glint_bounce_destroy(struct glint_bounce *bounce);
 /// Makes room for the slopes of rays; false: no memory.
@@ -347,7 +347,7 @@ void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether any material in sight sends rays on. They have been named.
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
 
-/// tile/depth_cue.c: light that fades with the distance from the eye.
+/// effects/depth_cue/depth_cue.c: light that fades with the distance from the eye.
 struct glint_depth_cue *glint_depth_cue_create(void);
 void glint_depth_cue_destroy(struct glint_depth_cue *depth_cue);
 /// By what the current sample sees, before any other rays are followed. `any`: some ray sees something; the rays are made.
@@ -359,7 +359,7 @@ double glint_tile_way_of(const glint_tile *tile, const glint_plan *plan, uint32_
 /// Puts the totals where resolve reads.
 void glint_tile_take_faded(glint_tile *tile, const glint_plan *plan);
 
-/// tile/visible_lights.c: lights that are seen.
+/// effects/visible_light/visible_light.c: lights that are seen.
 struct glint_visible_light *glint_visible_light_create(void);
 void glint_visible_light_destroy(struct glint_visible_light *visible_light);
 /// Makes room for the plan's lights; false: no memory.
@@ -377,7 +377,7 @@ const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GL
 /// Adds what lights look like to the sums, as background.
 void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *frame);
 
-/// tile/environment.c: a background that a program gives.
+/// effects/environment/environment.c: a background that a program gives.
 struct glint_environment *glint_environment_create(const glint_plan *plan);
 void glint_environment_destroy(struct glint_environment *environment); ///< NULL: nothing
 /// Whether some ray may leave the scene and show it: then the tile's rays are needed.
@@ -385,7 +385,7 @@ bool glint_tile_sees_environment(const glint_tile *tile);
 /// Adds what such rays see to the sums.
 void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame);
 
-/// tile/differ.c: compares the pixels of a base, which are stored, and leaves what the tiles around compare.
+/// effects/adaptive/differ.c: compares the pixels of a base, which are stored, and leaves what the tiles around compare.
 struct glint_differ_work *glint_differ_work_create(void);
 void glint_differ_work_destroy(struct glint_differ_work *work); ///< NULL: nothing
 /// Where the numbers of its objects and normals go, in the order of groups.
@@ -393,7 +393,7 @@ float *glint_differ_values(struct glint_differ_work *work, int value);
 void glint_tile_prefetch_borders(const glint_tile *tile, const glint_refine *refine);
 void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
 
-/// tile/gather.c: the chosen pixels of a tile, apart from the others.
+/// effects/adaptive/gather.c: the chosen pixels of a tile, apart from the others.
 struct glint_gathered *glint_gathered_create(void);
 void glint_gathered_destroy(struct glint_gathered *gathered); ///< NULL: nothing
 /// Whether light is local, and no stage depends on where in its group, or in its tile, a pixel is.
@@ -421,7 +421,7 @@ void glint_tile_vertex_gathered(glint_tile *tile, const glint_tile_frame *frame)
 void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
                                uint32_t count, uint32_t first, uint32_t samples);
 
-/// tile/refine.c: whether some pixels of the tile get all samples.
+/// effects/adaptive/refine.c: whether some pixels of the tile get all samples.
 bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame);
 /// Leaves these active; returns whether there are any.
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
@@ -433,7 +433,7 @@ void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame
 /// is clipped or not finite, nothing is taken and the refined pixels stay the active ones: see glint_refine.in_codes.
 void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
 
-/// tile/indirect/: follows paths of light from the points that `seen` hits, and adds what they find to the sums of `tile`.
+/// effects/indirect/: follows paths of light from the points that `seen` hits, and adds what they find to the sums of `tile`.
 /// `from`: the batch that `seen` belongs to; NULL: it is what the eye sees, `tile` itself.
 struct glint_batch;
 struct glint_indirect *glint_indirect_create(const glint_plan *plan);
@@ -441,7 +441,7 @@ void glint_indirect_destroy(struct glint_indirect *indirect);
 void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
                          const struct glint_batch *from);
 
-/// tile/transparent_shadow.c: light through transparent objects.
+/// effects/transparent_shadow/transparent_shadow.c: light through transparent objects.
 struct glint_transparent_shadow *glint_transparent_shadow_create(void);
 void glint_transparent_shadow_destroy(struct glint_transparent_shadow *transparent_shadow);
 /// Finds the points whose light goes through what absorbs from its first step on, and returns whether there are any. The points
@@ -527,7 +527,7 @@ static inline void glint_real_put(void *array, glint_precision precision, uint32
         ((double *)array)[i] = x;
 }
 
-/// tile/microfacets.c: for frames with microfacets. The first two point `at` to where results are or go, in sample k of each
+/// effects/microfacet/microfacet.c: for frames with microfacets. The first two point `at` to where results are or go, in sample k of each
 /// pixel, and return whether they are there already.
 bool glint_tile_view_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 bool glint_tile_facet_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light,
@@ -540,7 +540,7 @@ void glint_tile_lend_facets(glint_tile *to, const glint_tile *from);
 /// Writes down what the kept arrays hold now.
 void glint_tile_sign_facets(glint_tile *tile, const glint_tile_frame *frame);
 
-/// tile/vertex.c: flat and Gouraud shading.
+/// effects/vertex_shading/vertex.c: flat and Gouraud shading.
 struct glint_vertex *glint_vertex_create(void);
 void glint_vertex_destroy(struct glint_vertex *vertex);
 /// Makes room for derivatives; false: no memory.
@@ -554,14 +554,14 @@ void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
 /// The same, added to others: diffuse and specular.
 void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES]);
 
-/// tile/raster.c: scan conversion.
+/// effects/raster/raster.c: scan conversion.
 struct glint_raster_rest *glint_raster_rest_create(void);
 void glint_raster_rest_destroy(struct glint_raster_rest *rest);
 bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *frame);
 /// `args`: as for a cast of everything.
 void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args);
 
-/// tile/derivative/derivative.c: how fast the light of the current sample changes with parameters.
+/// effects/derivative/derivative.c: how fast the light of the current sample changes with parameters.
 struct glint_derivative_work *glint_derivative_create(void);
 void glint_derivative_destroy(struct glint_derivative_work *work); ///< NULL: nothing
 /// Makes room for what the plan's derivatives need beside; false: no memory.
@@ -578,11 +578,11 @@ void glint_tile_put_tint(const glint_tile *tile, const glint_plan *plan, uint32_
                          const double (*color)[GLINT_TILE_SAMPLES]);
 void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
                               const uint16_t *reached);
-/// tile/derivative/vertex.c: keeps the slopes of a block of faces and vertices; gives samples what lies between those of their
+/// effects/derivative/vertex.c: keeps the slopes of a block of faces and vertices; gives samples what lies between those of their
 /// triangles, after their light.
 void glint_derive_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
 void glint_derive_vertex(const glint_tile *tile, const glint_tile_frame *frame, const uint16_t *wanted);
-/// tile/derivative/fade.c: after a sample of what the eye sees, where light fades.
+/// effects/derivative/fade.c: after a sample of what the eye sees, where light fades.
 void glint_derive_fade(glint_tile *tile, const glint_tile_frame *frame);
 /// After the last sample: into the image.
 void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *frame);

@@ -1,5 +1,5 @@
 /// The walk of a tile: which stages run, in what order, and where their results go.
-#include "engine/tile/pattern/pattern.h"
+#include "engine/effects/pattern/pattern.h"
 
 #include <string.h>
 

@@ -1,0 +1,314 @@
+/// What lies beyond the first surface of a tile: mirrored and refracted rays, and what they find.
+///
+/// Rays wait in levels of at most one tile's samples. A batch is all that waits in the highest level, and where a surface
+/// sends on two rays, the weaker goes a level up and the stronger stays: so a level never holds more than the batch that
+/// filled it, and a ray of level n has at most 2^-n of the first one's weight wherever mirror + transmission is at most 1.
+/// That bounds the memory, however long the chains are. The order of a pixel's rays, and so of its sums, depends on
+/// nothing but that pixel.
+///
+/// Where both rays of a surface were followed for ever, their number would double with each. Beyond GLINT_BOUNCE_SPLITS
+/// surfaces one, drawn by lot as they weigh, stands for both with the weight of the two: no light is lost, and work no longer
+/// doubles. The lot is made of the ray's own bits, so that it falls the same everywhere.
+///
+/// A ray too weak to be seen is not followed: all that a sample loses so is at most GLINT_BOUNCE_LOSS of linear light, by
+/// the plan's bound of what any ray can bring. That is 1/318 of the smallest step between two 8-bit sRGB codes.
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/effects/derivative/work.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct glint_bounce {
+    glint_batch batch;
+    glint_rays room[GLINT_BOUNCE_LEVELS];
+    glint_rays *levels[GLINT_BOUNCE_LEVELS]; ///< each in some room, or the batch's own: what is taken changes places with it
+    uint32_t counts[GLINT_BOUNCE_LEVELS];
+    glint_sent sent[2]; ///< what a batch sends into its own level, and into the one above
+    double budget[GLINT_TILE_SAMPLES]; ///< light that each sample may still lose
+    glint_ray_slope *slopes; ///< what those of all levels and of the batch's own rays are in; NULL until a frame has derivatives
+};
+
+/// Not zeroed as a whole: the pages of a level are the system's until it is used.
+struct glint_bounce *glint_bounce_create(void)
+{
+    struct glint_bounce *bounce = aligned_alloc(_Alignof(struct glint_bounce), sizeof *bounce);
+    if (!bounce)
+        return NULL;
+    memset(&bounce->batch, 0, sizeof bounce->batch);
+    bounce->slopes = NULL;
+    for (int i = 0; i < GLINT_BOUNCE_LEVELS; i++) {
+        bounce->room[i].slopes = NULL;
+        bounce->levels[i] = &bounce->room[i];
+        bounce->counts[i] = 0;
+    }
+    return bounce;
+}
+
+void glint_bounce_destroy(struct glint_bounce *bounce)
+{
+    if (!bounce)
+        return;
+    glint_derivative_destroy(bounce->batch.tile.derivative);
+    free(bounce->slopes);
+    free(bounce);
+}
+
+bool glint_bounce_derives(struct glint_bounce *bounce, const glint_plan *plan)
+{
+    const size_t each = (size_t)GLINT_TILE_SAMPLES * GLINT_DERIVATIVES_MAX;
+    if (!bounce->batch.tile.derivative)
+        bounce->batch.tile.derivative = glint_derivative_create();
+    if (!bounce->slopes)
+        bounce->slopes = malloc((GLINT_BOUNCE_LEVELS + 1) * each * sizeof *bounce->slopes); // pages are the system's until used
+    for (size_t i = 0; bounce->slopes && i < GLINT_BOUNCE_LEVELS; i++)
+        bounce->room[i].slopes = bounce->slopes + i * each;
+    if (bounce->slopes)
+        bounce->batch.own.slopes = bounce->slopes + GLINT_BOUNCE_LEVELS * each;
+    return bounce->slopes && bounce->batch.tile.derivative && glint_derivative_fits(bounce->batch.tile.derivative, plan);
+}
+
+bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_bounce_material *materials = frame->plan->bouncing;
+    uint32_t last = GLINT_MISS; // most lanes show what the lane before shows
+    if (tile->at.only) {
+        const glint_bounce_material *only = &materials[frame->geometry.prims[*tile->at.only].material];
+        return only->mirrors || only->transmits;
+    }
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+            const uint32_t material = tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)];
+            if (material != last && (materials[material].mirrors || materials[material].transmits))
+                return true;
+            last = material;
+        }
+    return false;
+}
+
+// ---- From a surface on ----
+
+/// The hits of `tile` whose materials send rays on, and whose chain is not at its end.
+static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    bool any = false;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        bounce->batch.wanted[g] = 0;
+        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const glint_bounce_material *m = &plan->bouncing[tile->surface.material[i]];
+            const uint32_t depth = tile == &bounce->batch.tile ? bounce->batch.rays->depth[bounce->batch.ray_of[i]] : 0;
+            if ((m->mirrors || m->transmits) && depth < plan->desc.max_depth)
+                bounce->batch.wanted[g] |= (uint16_t)(left & -left);
+        }
+        any = any || bounce->batch.wanted[g];
+    }
+    return any;
+}
+
+/// The two rays of a sample.
+typedef struct two_rays {
+    double weight[2][3]; ///< mirrored, refracted
+    glint_ray_slope slopes[2][GLINT_DERIVATIVES_MAX]; ///< in frames with derivatives
+} two_rays;
+
+static double total_weight(const double weight[3]) { return (weight[0] + weight[1]) + weight[2]; }
+
+/// Whether a ray must be followed; if not, what it might have brought is off the budget.
+static bool matters(const glint_plan *plan, const double weight[3], double *budget)
+{
+    double most = weight[0]; // none is NaN
+    for (int c = 1; c < 3; c++)
+        most = weight[c] > most ? weight[c] : most;
+    if (most == 0) // of a ray that is none
+        return false;
+    const double lost = most * plan->brightest;
+    if (!(4 * lost <= *budget))
+        return true;
+    *budget -= lost;
+    return false;
+}
+
+/// Sends one of the rays of sample i to level `base`, which is empty, or to the one above.
+static void push(struct glint_bounce *bounce, const glint_plan *plan, uint32_t base, uint32_t above, uint32_t i,
+                 const two_rays *two, bool through)
+{
+    glint_sent *sent = &bounce->sent[above];
+    if (base + above >= GLINT_BOUNCE_LEVELS)
+        return;
+    glint_rays *rays = bounce->levels[base + above];
+    const uint32_t n = sent->count++;
+    sent->sample[n] = (uint16_t)i;
+    sent->through[n] = through;
+    for (int c = 0; c < 3; c++)
+        rays->weight[c][n] = two->weight[through][c];
+    if (plan->derivatives)
+        memcpy(rays->slopes + n * plan->derivatives->count, two->slopes[through],
+               plan->derivatives->count * sizeof *rays->slopes);
+}
+
+/// A number in 0 .. 1 that is the mirrored ray's own: made of its direction's bits (the finish of splitmix64).
+static double lot_of(const glint_batch *batch, glint_precision precision, uint32_t i, uint32_t depth)
+{
+    uint64_t z = depth;
+    for (int c = 0; c < 3; c++) {
+        const double x = glint_real_at(batch->reflected[c], precision, i);
+        uint64_t bits;
+        memcpy(&bits, &x, sizeof bits);
+        z = (z ^ bits) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+        z ^= z >> 31;
+    }
+    return (double)(z >> 11) * 0x1p-53;
+}
+
+/// Gives one of two rays the weight of both.
+static void take_weight(const glint_plan *plan, two_rays *two, int one)
+{
+    for (int c = 0; c < 3; c++) {
+        two->weight[one][c] = glint_weight(two->weight[one][c] + two->weight[!one][c]);
+        two->weight[!one][c] = 0;
+        for (size_t k = 0; plan->derivatives && k < plan->derivatives->count; k++)
+            two->slopes[one][k].weight[c] += two->slopes[!one][k].weight[c];
+    }
+}
+
+/// Sends on the mirrored and the refracted ray of sample i, the stronger one to level `base`, the weaker one to that above.
+static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                    uint32_t base)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_batch *batch = &bounce->batch;
+    const bool first = tile != &batch->tile;
+    const uint32_t ray = first ? 0 : batch->ray_of[i], depth = first ? 1 : batch->rays->depth[ray] + 1;
+    double *budget = &bounce->budget[first ? i : batch->rays->pixel[ray]];
+    two_rays two;
+    for (int c = 0; c < 3; c++)
+        two.weight[0][c] = two.weight[1][c] = first ? 1 : batch->rays->weight[c][ray];
+    glint_batch_weigh(batch, tile, frame, i, two.weight[0], two.weight[1]);
+    if (plan->derivatives)
+        glint_derive_split(batch, tile, frame, i, two.slopes[0], two.slopes[1]);
+    const double mirrored = total_weight(two.weight[0]), refracted = total_weight(two.weight[1]);
+    if (!first && glint_has_lane(batch->total, i)) // both go the same way
+        take_weight(plan, &two, 0);
+    else if (!first && depth > GLINT_BOUNCE_SPLITS) // one, by lot as they weigh
+        take_weight(plan, &two,
+                    refracted > 0 &&
+                        !(lot_of(batch, plan->desc.precision, i, depth) * (mirrored + refracted) < mirrored));
+    const bool mirrors = matters(plan, two.weight[0], budget), transmits = matters(plan, two.weight[1], budget);
+    const bool weaker_mirror = mirrors && transmits && total_weight(two.weight[0]) < total_weight(two.weight[1]);
+    if (mirrors)
+        push(bounce, plan, base, weaker_mirror, i, &two, false);
+    if (transmits)
+        push(bounce, plan, base, mirrors && !weaker_mirror, i, &two, true);
+}
+
+static void begin_sending(struct glint_bounce *bounce) { bounce->sent[0].count = bounce->sent[1].count = 0; }
+
+static void end_sending(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame,
+                        uint32_t base)
+{
+    for (uint32_t above = 0; above < 2 && base + above < GLINT_BOUNCE_LEVELS; above++) {
+        bounce->counts[base + above] = bounce->sent[above].count;
+        glint_batch_send(&bounce->batch, tile, frame, &bounce->sent[above], bounce->levels[base + above]);
+    }
+}
+
+/// Sends on what the eye's samples have hit, to level 0.
+static void spawn_first(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame)
+{
+    if (!choose(bounce, tile, frame))
+        return;
+    glint_batch_find_ways(&bounce->batch, tile, frame);
+    begin_sending(bounce);
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = bounce->batch.wanted[g]; left; left &= left - 1)
+            send_on(bounce, tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), 0);
+    end_sending(bounce, tile, frame, 0);
+}
+
+/// Sends on what the batch has hit, in the order of its rays; `level` is where these were, and empty as those above.
+static void spawn(struct glint_bounce *bounce, const glint_tile_frame *frame, uint32_t level)
+{
+    const glint_batch *batch = &bounce->batch;
+    if (!choose(bounce, &batch->tile, frame))
+        return;
+    glint_batch_find_ways(&bounce->batch, &batch->tile, frame);
+    begin_sending(bounce);
+    for (uint32_t g = 0; g < batch->rays->group_count; g++)
+        for (unsigned left = batch->rays->active[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            if (glint_batch_has_sample(batch, i) && glint_has_lane(batch->wanted, batch->sample[i]))
+                send_on(bounce, &batch->tile, frame, batch->sample[i], level);
+        }
+    end_sending(bounce, &batch->tile, frame, level);
+}
+
+// ---- A batch ----
+
+/// Takes all rays of a level into the batch.
+static void take_level(struct glint_bounce *bounce, uint32_t level, glint_tile_counts *counts)
+{
+    glint_rays *rays = bounce->levels[level];
+    bounce->levels[level] = bounce->batch.rays;
+    bounce->batch.rays = rays;
+    for (uint32_t i = 0; i < bounce->counts[level]; i++) {
+        counts->mirror += rays->term[i] == GLINT_TERM_MIRROR;
+        counts->refraction += rays->term[i] == GLINT_TERM_TRANSMISSION;
+    }
+    bounce->counts[level] = 0;
+}
+
+/// Adds what the rays found to their pixels, in their order.
+static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to)
+{
+    const glint_rays *rays = batch->rays;
+    for (uint32_t g = 0; g < rays->group_count; g++)
+        for (unsigned left = rays->active[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]];
+            const uint32_t pixel = rays->pixel[i];
+            for (int c = 0; c < 3; c++)
+                sum[c][pixel] += rays->weight[c][i] * glint_batch_light_of(batch, plan, c, i);
+        }
+}
+
+static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_tile_frame *frame, uint32_t level)
+{
+    take_level(bounce, level, &to->counts);
+    const bool any = glint_batch_cast(&bounce->batch, frame);
+    if (any || bounce->batch.whole)
+        glint_batch_light(&bounce->batch, frame, any);
+    if (frame->plan->derivatives) {
+        if (frame->plan->absorbs)
+            glint_derive_absorption(&bounce->batch, frame);
+        glint_derive_collect(&bounce->batch, frame->plan, to);
+    }
+    collect(&bounce->batch, frame->plan, to);
+    if (any && frame->plan->runs[GLINT_STAGE_INDIRECT])
+        glint_tile_indirect(to, frame, &bounce->batch.tile, &bounce->batch);
+    if (any)
+        spawn(bounce, frame, level);
+}
+
+void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame)
+{
+    struct glint_bounce *bounce = tile->bounce;
+    glint_batch_begin(&bounce->batch, tile, frame, GLINT_WALK_BOUNCE);
+    bounce->batch.ordered = frame->plan->runs[GLINT_STAGE_INDIRECT]; // whose paths begin in the order of samples
+    memset(bounce->counts, 0, sizeof bounce->counts);
+    for (int i = 0; i < GLINT_TILE_SAMPLES; i++)
+        bounce->budget[i] = GLINT_BOUNCE_LOSS;
+    spawn_first(bounce, tile, frame);
+    for (uint32_t level = 1;;) {
+        while (level > 0 && bounce->counts[level] == 0)
+            level--;
+        if (bounce->counts[level] == 0 || glint_tile_cancelled(frame))
+            break;
+        run_batch(bounce, tile, frame, level);
+        if (level + 1 < GLINT_BOUNCE_LEVELS)
+            level++;
+    }
+    glint_batch_end(&bounce->batch, tile);
+}

@@ -1,0 +1,140 @@
+/// What of a frame no derivative goes through.
+#include "engine/base/status.h"
+#include "engine/effects/derivative/slopes.h"
+#include "engine/program/program.h"
+
+/// Whether a surface moves, or the eye.
+static bool moves(const glint_plan *plan, const glint_plan_derivative *d)
+{
+    bool any = d->view.moves;
+    for (uint32_t i = 0; i < plan->geometry->part_count; i++)
+        any = any || d->parts[i].moves;
+    return any;
+}
+
+/// Whether something changes by a derivative that is described; an empty one: nothing.
+static bool varies(const glint_plan *plan, const glint_plan_derivatives *all, const glint_plan_derivative *d)
+{
+    if (!d->materials)
+        return false;
+    bool any = moves(plan, d) || d->fades || glint_any_slope(d->background) || (d->weighs && plan->runs[GLINT_STAGE_BOUNCE]);
+    for (size_t i = 0; i < plan->geometry->materials.count; i++)
+        any = any || d->materials[i].varies || (plan->tints && glint_any_slope(d->bounces[i].transmission));
+    for (size_t i = 0; i < all->light_count; i++)
+        any = any || d->lights[i].varies;
+    return any;
+}
+
+/// What of the frame no derivative goes through, or NULL.
+static const char *find_obstacle(const glint_plan *plan)
+{
+    if (plan->runs[GLINT_STAGE_INDIRECT])
+        return "scene.indirect: indirect light and ambient occlusion have no derivative; leave them out";
+    return NULL;
+}
+
+/// Whether a material has something of a pattern, or a shader that reads coordinates on surfaces or how wide a pixel is: what moves
+/// changes these in ways that are not followed.
+static bool is_painted(const glint_plan_pattern *pattern)
+{
+    const uint32_t unknown = GLINT_READS_UV | 1u << GLINT_INPUT_FOOTPRINT;
+    const glint_program *shader = pattern->program[GLINT_FIELD_SHADER];
+    bool any = pattern->cut || (shader && shader->inputs & unknown);
+    for (int field = 0; field < GLINT_FIELD_SHADER; field++)
+        any = any || pattern->program[field];
+    return any;
+}
+
+static bool is_any_painted(const glint_plan *plan)
+{
+    for (uint32_t i = 0; plan->patterns && i < plan->material_count; i++)
+        if (is_painted(&plan->patterns->of[i]))
+            return true;
+    return false;
+}
+
+/// What beyond the first surface a derivative does not go through, or NULL.
+static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan_derivative *d)
+{
+    bool absorbs = false;
+    for (size_t i = 0; i < plan->geometry->materials.count; i++) {
+        const glint_material_desc *desc = &((const glint_material *)plan->geometry->materials.items[i])->desc;
+        if (glint_any_slope(d->bounces[i].mirror) && !glint_material_mirrors(desc))
+            return "material.mirror: 0 sends no ray on, and has no derivative; above 0 it has";
+        if (glint_any_slope(d->bounces[i].transmission) && !glint_material_transmits(desc))
+            return "material.transmission: 0 sends no ray on, and has no derivative; above 0 it has";
+        if (plan->tints && d->programs[i].of[GLINT_FIELD_TRANSMISSION])
+            return "material.transmission: light through what a pattern colours has no derivative by the pattern; lights with "
+                   "shadows = false have";
+        absorbs = absorbs || glint_any_slope(d->bounces[i].absorption);
+    }
+    if (d->bends && is_any_painted(plan))
+        return "material: what moves or bends has no derivative where materials have patterns or bumps, or shaders that read uv or "
+               "footprint; where all have plain numbers it has";
+    if (plan->tints && plan->patterns && plan->patterns->plane[GLINT_FIELD_TRANSMISSION] >= 0 && d->moves)
+        return "material.transmission: light through what a pattern colours has no derivative by what moves; lights with shadows "
+               "= false have";
+    if (plan->environment && d->bends && plan->runs[GLINT_STAGE_BOUNCE])
+        return "background: what moves or bends has no derivative before one that a program gives, where mirrors or glass may "
+               "show it; before a colour it has";
+    if (plan->dims && (absorbs || d->moves))
+        return "absorption: light through what absorbs has no derivative by it, nor by what moves; lights with shadows = false "
+               "have";
+    const bool thins = plan->veil.on && glint_any_slope(d->bounces[plan->veil.material].absorption);
+    if (plan->runs[GLINT_STAGE_DEPTH_CUE] && plan->visible_light_count && (d->bends || d->fades || thins))
+        return "scene.depth_cue, absorption: what moves or fades otherwise has no derivative where visible lights may be seen; visible "
+               "= false has";
+    if (plan->absorbs && plan->visible_light_count && d->bends)
+        return "absorption: what moves has no derivative where visible lights may be seen through what absorbs; visible = "
+               "false has";
+    return NULL;
+}
+
+static glint_status check_light(const glint_plan *plan, const glint_plan_derivative *d, const glint_scene *scene,
+                                size_t index, glint_error *error)
+{
+    const glint_light_desc *desc = &glint_scene_light(scene, index)->desc;
+    char name[2 * GLINT_NAME_SIZE];
+    double shown[3];
+    const char *why = NULL;
+    if (d->lights[index].varies && desc->visible && glint_light_shows(desc, shown))
+        why = "visible: what a light itself looks like has no derivative; visible = false has";
+    for (uint32_t k = 0; k < plan->light_count; k++) {
+        const glint_plan_light *row = &plan->lights[k];
+        const bool moves = d->lights[index].moves || d->bends;
+        if (row->source != index)
+            continue;
+        if (row->cap && (moves || glint_has_slope(d->lights[index].coefficients, 3)))
+            why = "position, attenuation: with caps nothing that moves has a derivative; shadow = \"rays\" has";
+        else if (moves && row->light_samples && row->light_samples->emission == GLINT_EMIT_CONE)
+            why = "position: of a sphere light by radiance nothing that moves has a derivative; one by intensity has";
+    }
+    if (!why)
+        return GLINT_OK;
+    glint_describe_light(desc, index + 1, name, sizeof name);
+    return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: %s", d->name, name, why);
+}
+
+glint_status glint_plan_check_derivatives(const glint_plan *plan, const glint_scene *scene, glint_error *error)
+{
+    const glint_plan_derivatives *all = plan->derivatives;
+    const char *why = all ? find_obstacle(plan) : NULL;
+    glint_status status = GLINT_OK;
+    if (why)
+        return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", all->of[0].name, why);
+    for (size_t i = 0; all && i < all->count; i++) {
+        const glint_plan_derivative *d = &all->of[i];
+        if (d->view.moves && plan->environment)
+            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': background: before one that a program gives a camera has no "
+                              "derivative; before a colour it has", d->name);
+        if ((why = find_bounce_obstacle(plan, d)))
+            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", d->name, why);
+        if (!varies(plan, all, d) && !varies(plan, all, &all->level[i])) // else it is 0 here, and elsewhere may not be
+            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': nothing in the scene depends on it", d->name);
+        for (size_t k = 0; k < all->light_count && !status; k++)
+            status = d->lights[k].varies || d->bends ? check_light(plan, d, scene, k, error) : GLINT_OK;
+        if (status)
+            return status;
+    }
+    return status;
+}

@@ -1,0 +1,79 @@
+/// Derivatives of light that fades with the distance from the eye; see effects/depth_cue/depth_cue.c.
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/effects/derivative/work.h"
+
+#include <stdlib.h>
+
+/// What is left of a pixel's light, and the share of the colour that it fades towards.
+typedef struct fade {
+    glint_dual left[3], share;
+} fade;
+
+bool glint_derive_fade_fits(glint_derivative_work *work, const glint_plan *plan)
+{
+    if (plan->runs[GLINT_STAGE_DEPTH_CUE] && !work->faded)
+        work->faded = glint_alloc(GLINT_DERIVATIVES_MAX, sizeof *work->faded);
+    return !plan->runs[GLINT_STAGE_DEPTH_CUE] || work->faded;
+}
+
+/// How far what the eye sees in lane i is, which is something.
+static glint_dual way_of(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i, double way)
+{
+    glint_derivative_points points;
+    glint_derivative_find_points(tile, frame, i / GLINT_GROUP, &points);
+    glint_dual out = dual(way, 0);
+    glint_bend bend;
+    if (frame->plan->derivatives->of[index].bends && glint_has_lane(tile->at.hits, i) &&
+        glint_bend_sample(tile, frame, index, i, &points, &bend))
+        for (int c = 0; c < 3; c++)
+            out.slope -= (bend.point[c] - bend.from[c]) * points.eye[c][i % GLINT_GROUP];
+    return out;
+}
+
+static glint_dual share_of(const glint_plan *plan, const glint_plan_derivative *d, glint_dual way)
+{
+    const glint_dual near = dual(plan->depth_cue.near, d->fade.near), far = dual(plan->depth_cue.far, d->fade.far);
+    if (!plan->depth_cue.on || !(way.value < HUGE_VAL))
+        return dual(0, 0);
+    const glint_dual x = dual_div(dual_sub(way, near), dual_sub(far, near));
+    return x.value >= 1 ? dual(1, 0) : x.value > 0 ? x : dual(0, 0);
+}
+
+static fade find_fade(const glint_plan *plan, const glint_plan_derivative *d, glint_dual way)
+{
+    fade out = { .share = share_of(plan, d, way) };
+    const glint_dual rest = dual_sub(dual(1, 0), out.share);
+    for (int c = 0; c < 3; c++) {
+        const double a = plan->veil.absorption[c], more = plan->veil.on ? d->bounces[plan->veil.material].absorption[c] : 0;
+        const double left = glint_plan_left(a, way.value);
+        out.left[c] = rest;
+        if (way.value < HUGE_VAL)
+            out.left[c] = dual_mul(rest, dual(left, -left * (a * way.slope + more * way.value)));
+        else
+            out.left[c] = dual_scale(rest, left);
+    }
+    return out;
+}
+
+void glint_derive_fade(glint_tile *tile, const glint_tile_frame *frame)
+{
+    glint_derivative_work *work = tile->derivative;
+    const glint_plan *plan = frame->plan;
+    const glint_plan_derivatives *all = plan->derivatives;
+    const bool weighs = glint_derivatives_weigh(all);
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const double way = glint_tile_way_of(tile, plan, i);
+        for (size_t k = 0; k < all->count; k++) {
+            const glint_plan_derivative *d = &all->of[k];
+            const fade f = find_fade(plan, d, way_of(tile, frame, k, i, way));
+            for (int c = 0; c < 3; c++) {
+                const double before = tile->sample == 0 ? 0 : work->faded[k][c][i], light = weighs ? work->light[c][i] : 0;
+                const double color = f.share.slope * plan->depth_cue.color[c] + f.share.value * d->fade.color[c];
+                const double own = f.left[c].value > 0 ? work->sum[k][c][i] * f.left[c].value : 0;
+                work->faded[k][c][i] = before + ((own + light * f.left[c].slope) + color);
+                work->sum[k][c][i] = 0;
+            }
+        }
+    }
+}

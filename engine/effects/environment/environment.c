@@ -1,0 +1,284 @@
+/// A background that a program gives: run for the rays of a tile or batch that meet nothing, in the place where `shade` adds
+/// a plain one.
+///
+/// Directions are made unit in double, and the same code serves every instruction set; the programs are a kernel's.
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/program/program.h"
+#include "engine/effects/pattern/inputs.h"
+#include "engine/tile/rays.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define TURN 0x1.921fb54442d18p+2 // 2 pi
+
+struct glint_environment {
+    glint_pattern_inputs inputs;
+    _Alignas(64) double shown[3][GLINT_PROGRAM_LANES];
+    double *rows; ///< scratch of the kernel
+};
+
+struct glint_environment *glint_environment_create(const glint_plan *plan)
+{
+    struct glint_environment *environment = glint_alloc(1, sizeof *environment);
+    if (!environment)
+        return NULL;
+    environment->rows =
+        glint_alloc((size_t)plan->environment->row_count * GLINT_PROGRAM_LANES, sizeof *environment->rows);
+    if (environment->rows)
+        return environment;
+    free(environment);
+    return NULL;
+}
+
+void glint_environment_destroy(struct glint_environment *environment)
+{
+    if (environment)
+        free(environment->rows);
+    free(environment);
+}
+
+/// Lanes of a group whose rays leave the scene.
+static uint16_t leaving(const glint_tile *tile, const glint_plan *plan, uint32_t g)
+{
+    uint16_t lanes = (uint16_t)(tile->active[g] & ~tile->at.hits[g]);
+    for (unsigned left = plan->runs[GLINT_STAGE_VISIBLE_LIGHT] ? lanes : 0; left; left &= left - 1)
+        if (glint_tile_sees_light(tile, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)))
+            lanes &= (uint16_t) ~(left & -left);
+    return lanes;
+}
+
+bool glint_tile_sees_environment(const glint_tile *tile)
+{
+    unsigned any = 0;
+    for (uint32_t g = 0; g < tile->group_count && !tile->transparent; g++)
+        any |= tile->active[g] & (unsigned)~tile->at.hits[g];
+    return any;
+}
+
+// ---- What the programs read ----
+
+/// Sixteen numbers of an array of real.
+static void load_group(const void *array, glint_precision precision, size_t at, double out[GLINT_GROUP])
+{
+    if (precision == GLINT_DOUBLE)
+        memcpy(out, (const double *)array + at, GLINT_GROUP * sizeof *out);
+    for (uint32_t i = 0; i < GLINT_GROUP && precision == GLINT_FLOAT; i++)
+        out[i] = (double)((const float *)array)[at + i];
+}
+
+/// The rays of a group, not unit: as glint_tile_direction has them.
+static void load_directions(const glint_tile *tile, glint_precision precision, uint32_t g, double d[3][GLINT_GROUP])
+{
+    const size_t across = glint_tile_has_arrays(tile) ? 1 : tile->groups_across, x = g % across, y = g / across;
+    for (size_t c = 0; c < 3; c++) {
+        double down[GLINT_GROUP];
+        if (glint_tile_has_arrays(tile)) {
+            load_group(tile->rays.direction[c], precision, (size_t)g * GLINT_GROUP, d[c]);
+            continue;
+        }
+        load_group(tile->rays.across, precision, (3 * x + c) * GLINT_GROUP, d[c]);
+        load_group(tile->rays.down, precision, (3 * y + c) * GLINT_GROUP, down);
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            d[c][i] += down[i];
+        for (uint32_t i = 0; i < GLINT_GROUP && precision == GLINT_FLOAT; i++)
+            d[c][i] = (double)(float)d[c][i];
+    }
+}
+
+/// The directions of sixteen rays, into group `to` of the rows.
+static void put_directions(struct glint_environment *environment, const glint_plan *plan, const double d[3][GLINT_GROUP],
+                           uint32_t to)
+{
+    double length[GLINT_GROUP];
+    const uint32_t at = to * GLINT_GROUP;
+    double(*row)[GLINT_PROGRAM_LANES] = environment->inputs.row;
+    for (uint32_t i = 0; i < GLINT_GROUP; i++)
+        length[i] = sqrt((d[0][i] * d[0][i] + d[1][i] * d[1][i]) + d[2][i] * d[2][i]);
+    for (int c = 0; c < 3; c++) {
+        double *p = row[GLINT_INPUT_P_X + c] + at, *n = row[GLINT_INPUT_N_X + c] + at;
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            p[i] = d[c][i] / length[i];
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            n[i] = -p[i];
+        memcpy(row[GLINT_INPUT_WORLD_X + c] + at, p, sizeof *d);
+        memcpy(row[GLINT_INPUT_V_X + c] + at, n, sizeof *d);
+    }
+    for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+        row[GLINT_INPUT_FOOTPRINT][at + i] = plan->environment->pixel;
+        row[GLINT_INPUT_UV_FOOTPRINT][at + i] = plan->environment->pixel / TURN;
+    }
+}
+
+static void run(const struct glint_environment *environment, const glint_tile_frame *frame,
+                const glint_program *program, glint_program_args *args)
+{
+    args->code = &program->code;
+    args->rows = environment->rows;
+    for (int input = 0; input < GLINT_INPUT_COUNT; input++)
+        args->input[input] = environment->inputs.row[input];
+    frame->stages->program(args);
+}
+
+// ---- What they give ----
+
+/// Notes the lanes of group `from` of the rows at which the program gave what is no light.
+static void note_odd(glint_tile *tile, const struct glint_environment *environment, uint32_t channels, uint32_t from,
+                     unsigned lanes)
+{
+    for (; lanes; lanes &= lanes - 1) {
+        const uint32_t at = from * GLINT_GROUP + (uint32_t)__builtin_ctz(lanes);
+        glint_odd_pattern one = { .field = GLINT_FIELD_BACKGROUND };
+        for (uint32_t c = 0; c < channels; c++)
+            one.count |= !(environment->shown[c][at] >= 0 && environment->shown[c][at] <= GLINT_REFLECTANCE_MAX);
+        for (int c = 0; c < 3; c++)
+            one.point[c] = environment->inputs.row[GLINT_INPUT_P_X + c][at];
+        glint_odd_pattern_add(&tile->counts.odd, &one);
+    }
+}
+
+/// The light of group `from` of the rows, 0 in lanes that are not wanted. channels: how many the program gives; one stands for all.
+static void light_of(glint_tile *tile, const struct glint_environment *environment, uint32_t channels, uint32_t from,
+                     unsigned lanes, double light[3][GLINT_GROUP])
+{
+    double wanted[GLINT_GROUP], odd[GLINT_GROUP] = { 0 };
+    bool any = false;
+    for (uint32_t i = 0; i < GLINT_GROUP; i++)
+        wanted[i] = lanes >> i & 1 ? GLINT_REFLECTANCE_MAX : 0;
+    for (uint32_t c = 0; c < 3; c++) {
+        const double *shown = environment->shown[c < channels ? c : 0] + from * GLINT_GROUP;
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            light[c][i] = shown[i] > 0 ? shown[i] : 0;
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            light[c][i] = light[c][i] < GLINT_REFLECTANCE_MAX ? light[c][i] : GLINT_REFLECTANCE_MAX;
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            odd[i] += light[c][i] == shown[i] ? 0 : 1;
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            light[c][i] = light[c][i] < wanted[i] ? light[c][i] : wanted[i];
+    }
+    for (uint32_t i = 0; i < GLINT_GROUP; i++)
+        any = any || odd[i] > 0;
+    if (any)
+        note_odd(tile, environment, channels, from, lanes);
+}
+
+/// Adds group `from` of the rows to group g of the tile.
+static void add_group(glint_tile *tile, const struct glint_environment *environment, uint32_t channels, uint32_t g,
+                      uint32_t from, unsigned lanes)
+{
+    double light[3][GLINT_GROUP];
+    light_of(tile, environment, channels, from, lanes, light);
+    for (uint32_t c = 0; c < 3; c++) {
+        double *sum = tile->film.sum[GLINT_TERM_BACKGROUND][c] + g * GLINT_GROUP;
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            sum[i] += light[c][i];
+    }
+}
+
+/// What the lanes of `count` groups of the rows show.
+static void run_rows(struct glint_environment *environment, const glint_tile_frame *frame, const uint16_t *lanes,
+                     uint32_t count)
+{
+    const glint_plan_environment *own = frame->plan->environment;
+    glint_program_args args = { .group_count = count, .wanted = lanes };
+    if (own->uv) {
+        args.result[0] = environment->inputs.row[GLINT_INPUT_UV_U];
+        args.result[1] = environment->inputs.row[GLINT_INPUT_UV_V];
+        run(environment, frame, own->uv, &args);
+        args.result[1] = NULL;
+    }
+    for (uint32_t c = 0; c < own->program->code.output_count; c++)
+        args.result[c] = environment->shown[c];
+    run(environment, frame, own->program, &args);
+}
+
+/// Some groups of a tile, and their lanes.
+static void run_groups(glint_tile *tile, const glint_tile_frame *frame, const uint32_t *groups, const uint16_t *lanes,
+                       uint32_t count)
+{
+    struct glint_environment *environment = tile->environment;
+    const uint32_t channels = frame->plan->environment->program->code.output_count;
+    for (uint32_t k = 0; k < count; k++) {
+        double d[3][GLINT_GROUP];
+        load_directions(tile, frame->plan->desc.precision, groups[k], d);
+        put_directions(environment, frame->plan, (const double(*)[GLINT_GROUP])d, k);
+    }
+    run_rows(environment, frame, lanes, count);
+    for (uint32_t k = 0; k < count; k++)
+        add_group(tile, environment, channels, groups[k], k, lanes[k]);
+}
+
+void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame)
+{
+    uint32_t groups[GLINT_PROGRAM_GROUPS], count = 0;
+    uint16_t lanes[GLINT_PROGRAM_GROUPS];
+    if (tile->transparent)
+        return;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        lanes[count] = leaving(tile, frame->plan, g);
+        tile->counts.work.environment += (uint64_t)__builtin_popcount(lanes[count]);
+        groups[count] = g;
+        count += lanes[count] != 0;
+        if (count == GLINT_PROGRAM_GROUPS || (count > 0 && g + 1 == tile->group_count)) {
+            run_groups(tile, frame, groups, lanes, count);
+            count = 0;
+        }
+    }
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_ENVIRONMENT, false);
+}
+
+// ---- Rays that left surfaces ----
+
+/// The directions of `count` rays, at most a group.
+static void load_rays(const glint_rays *rays, glint_precision precision, const uint16_t *ray, uint32_t count,
+                      double d[3][GLINT_GROUP])
+{
+    for (uint32_t i = 0; i < GLINT_GROUP; i++)
+        for (int c = 0; c < 3; c++)
+            d[c][i] = glint_real_at(rays->direction[c], precision, ray[i < count ? i : 0]);
+}
+
+/// What `count` rays show, as many as a call of the program takes at most.
+static void run_rays(glint_tile *tile, const glint_tile_frame *frame, const glint_rays *rays, const uint16_t *ray,
+                     uint32_t count, double (*light)[GLINT_TILE_SAMPLES])
+{
+    struct glint_environment *environment = tile->environment;
+    const uint32_t groups = (count + GLINT_GROUP - 1) / GLINT_GROUP;
+    uint16_t lanes[GLINT_PROGRAM_GROUPS] = { 0 };
+    for (uint32_t g = 0; g < groups; g++) {
+        const uint32_t first = g * GLINT_GROUP, here = count - first < GLINT_GROUP ? count - first : GLINT_GROUP;
+        double d[3][GLINT_GROUP];
+        lanes[g] = (uint16_t)((1u << here) - 1);
+        load_rays(rays, frame->plan->desc.precision, ray + first, here, d);
+        put_directions(environment, frame->plan, (const double(*)[GLINT_GROUP])d, g);
+    }
+    run_rows(environment, frame, lanes, groups);
+    for (uint32_t g = 0; g < groups; g++) {
+        double of[3][GLINT_GROUP];
+        light_of(tile, environment, frame->plan->environment->program->code.output_count, g, lanes[g], of);
+        for (uint32_t i = g * GLINT_GROUP; i < count && i < (g + 1) * GLINT_GROUP; i++)
+            for (int c = 0; c < 3; c++)
+                light[c][ray[i]] = of[c][i % GLINT_GROUP];
+    }
+}
+
+void glint_tile_environment_of(glint_tile *tile, const glint_tile_frame *frame, const glint_rays *rays,
+                               const uint16_t *missed, double (*light)[GLINT_TILE_SAMPLES])
+{
+    uint16_t ray[GLINT_PROGRAM_LANES];
+    uint32_t count = 0;
+    for (uint32_t g = 0; g < rays->group_count; g++) {
+        tile->counts.work.environment += (uint64_t)__builtin_popcount(missed[g]);
+        for (unsigned left = missed[g]; left; left &= left - 1) {
+            ray[count++] = (uint16_t)(g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+            if (count < GLINT_PROGRAM_LANES)
+                continue;
+            run_rays(tile, frame, rays, ray, count, light);
+            count = 0;
+        }
+    }
+    if (count)
+        run_rays(tile, frame, rays, ray, count, light);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_ENVIRONMENT, false);
+}

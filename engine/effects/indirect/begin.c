@@ -1,0 +1,190 @@
+/// Where paths of indirect light begin, and in which directions.
+#include "engine/base/sequence.h"
+#include "engine/base/vec.h"
+#include "engine/effects/indirect/paths.h"
+
+#include <math.h>
+#include <string.h>
+
+/// 4 x 4 pixels at a place among mirrors, which have a number.
+typedef struct pixel_block {
+    bool known;
+    uint64_t at, place, number;
+} pixel_block;
+
+/// Pixels of 2 x 2 belong together first, so that these have an even set as well.
+static uint32_t lane_order(uint32_t lane)
+{
+    const uint32_t x = lane & 3, y = lane >> 2;
+    return (x & 1) | (y & 1) << 1 | (x >> 1) << 2 | (y >> 1) << 3;
+}
+
+/// Notes which block of pixels point i of `seen` belongs to; `block`: the last one found.
+static void find_block(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan,
+                       const glint_ray *ray, uint32_t i, pixel_block *block)
+{
+    const uint32_t group = ray->pixel / GLINT_GROUP;
+    const uint32_t x = to->x0 / 4 + group % to->groups_across, y = to->y0 / 4 + group / to->groups_across;
+    const uint64_t at = x | (uint64_t)y << 32,
+                   place = ray->term == GLINT_TERM_INDIRECT
+                               ? 0
+                               : 1 + 2 * (uint64_t)ray->depth + (ray->term == GLINT_TERM_MIRROR);
+    if (!block->known || block->at != at || block->place != place) {
+        const uint64_t number = glint_sequence_mix(glint_sequence_mix(at, (uint64_t)plan->desc.seed), place);
+        *block = (pixel_block) { .known = true, .at = at, .place = place, .number = number };
+    }
+    indirect->block[i] = block->number;
+    indirect->lane[i] = lane_order(ray->pixel % GLINT_GROUP);
+}
+
+/// What the light that paths find is multiplied by at sample i of a tile: the diffuse reflectance; where they look for open
+/// sky, the ambient light that all of it would bring.
+static const double *first_weight(const glint_tile *seen, const glint_plan *plan, uint32_t i, double room[3])
+{
+    if (!plan->indirect.is_sky)
+        return glint_tile_diffuse(seen, plan, i, room);
+    for (int c = 0; c < 3; c++)
+        room[c] = glint_tile_ambient_rest(seen, plan, i, c);
+    return room;
+}
+
+/// How many paths a point gets, which is fewer times seen where mirrors leave little of it.
+static uint32_t paths_of(const glint_plan *plan, const glint_batch *from, uint32_t i)
+{
+    const double samples = plan->indirect.samples;
+    double weight = 0;
+    for (int c = 0; from && c < 3; c++)
+        weight = glint_larger(weight, from->rays->weight[c][from->ray_of[i]]);
+    return from ? (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples) : (uint32_t)plan->indirect.samples;
+}
+
+/// Begins at point i, whose paths are multiplied by `found`: their first rays are alike but for the direction. Returns how many paths it
+/// gets.
+static uint32_t begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
+                            const glint_tile *seen, const glint_batch *from, uint32_t i, const double *found,
+                            pixel_block *block)
+{
+    const glint_plan *plan = frame->plan;
+    const uint32_t paths = paths_of(plan, from, i);
+    const double part = 1.0 / paths;
+    glint_ray ray;
+    glint_batch_start_ray(from ? from : &indirect->batch, seen, frame, i, &ray);
+    if (!from)
+        ray.term = GLINT_TERM_INDIRECT;
+    ray.point = i;
+    ray.least = glint_largest(ray.weight) * part * plan->indirect.least;
+    ray.inward = glint_has_lane(seen->hit.back, i);
+    ray.scatters++;
+    for (int c = 0; c < 3; c++) {
+        ray.direction[c] = 0;
+        ray.weight[c] = indirect->weight[c][i] = glint_weight(ray.weight[c] * (found[c] * part));
+    }
+    glint_rays_put(&indirect->first, plan, i, &ray);
+    indirect->paths[i] = paths;
+    find_block(indirect, to, plan, &ray, i, block);
+    return paths;
+}
+
+uint32_t glint_indirect_find_points(struct glint_indirect *indirect, const glint_tile *to,
+                                    const glint_tile_frame *frame, const glint_tile *seen, const glint_batch *from)
+{
+    uint32_t most = 0;
+    double room[3];
+    pixel_block block = { .known = false };
+    indirect->fewest = UINT32_MAX;
+    glint_rays_clear(&indirect->first, seen->group_count);
+    for (uint32_t g = 0; g < seen->group_count; g++) {
+        for (unsigned left = seen->at.hits[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const double *found = first_weight(seen, frame->plan, i, room);
+            if (glint_largest(found) == 0)
+                continue;
+            const uint32_t paths = begin_point(indirect, to, frame, seen, from, i, found, &block);
+            most = paths > most ? paths : most;
+            indirect->fewest = paths < indirect->fewest ? paths : indirect->fewest;
+        }
+        indirect->matt[g] = indirect->first.active[g];
+    }
+    return most;
+}
+
+void glint_indirect_scatter(const glint_tile *tile, const glint_tile_frame *frame, const uint16_t *wanted,
+                            const draws *drawn, uint32_t further, double (*direction)[GLINT_TILE_SAMPLES])
+{
+    glint_scatter_args args = { .group_count = tile->group_count,
+                                .wanted = wanted,
+                                .number = drawn->number,
+                                .order = drawn->order,
+                                .digits = { drawn->digits[0], drawn->digits[1] },
+                                .further = further };
+    for (int c = 0; c < 3; c++) {
+        args.normal[c] = tile->surface.normal[c];
+        args.direction[c] = direction[c];
+    }
+    frame->stages->geometry[frame->plan->desc.precision].scatter(&args);
+}
+
+/// The first rays weigh what they did, but those that bumps do not let go.
+static void weigh_first(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen)
+{
+    glint_rays *first = &indirect->first;
+    if (frame->plan->absorbs || glint_plan_bumps(frame->plan))
+        memcpy(first->weight, indirect->weight, sizeof first->weight);
+    if (!glint_plan_bumps(frame->plan))
+        return;
+    for (uint32_t i = 0; i < first->group_count * GLINT_GROUP; i++)
+        if (glint_has_lane(first->active, i) &&
+            !glint_indirect_leaves(seen, frame->plan, i, (const double(*)[GLINT_TILE_SAMPLES])first->direction))
+            for (int c = 0; c < 3; c++)
+                first->weight[c][i] = 0;
+}
+
+/// The points that get path `path`. Returns whether there are any.
+static bool choose_points(struct glint_indirect *indirect, uint32_t path)
+{
+    glint_rays *first = &indirect->first;
+    unsigned any = 0;
+    memcpy(first->active, indirect->matt, first->group_count * sizeof *first->active);
+    for (uint32_t g = 0; g < first->group_count; g++) {
+        for (unsigned left = path < indirect->fewest ? 0 : first->active[g]; left; left &= left - 1)
+            if (path >= indirect->paths[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)])
+                first->active[g] &= (uint16_t) ~(left & -left);
+        any |= first->active[g];
+    }
+    return any;
+}
+
+/// Draws for the points that get path `path`, or those before whose seed ends here: it lasts for 2^32 points.
+static void draw_first(struct glint_indirect *indirect, const glint_plan *plan, uint32_t path, uint64_t number)
+{
+    const bool lasting = (uint64_t)plan->indirect.samples * (uint64_t)plan->desc.samples <= UINT32_MAX / GLINT_GROUP;
+    if (path > 0 && lasting)
+        return;
+    glint_sequence_seed seed;
+    uint64_t last = 0; // the block that it is made of
+    bool known = false;
+    for (uint32_t g = 0; g < indirect->first.group_count; g++)
+        for (unsigned left = indirect->first.active[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const uint64_t k = glint_indirect_point_of(indirect, i, number);
+            if (path != 0 && (uint32_t)k != 0)
+                continue;
+            if (!known || k >> 32 != 0 || indirect->block[i] != last)
+                seed = glint_sequence_seed_of(glint_indirect_seed_of(indirect, i, k, 0));
+            known = k >> 32 == 0;
+            last = indirect->block[i];
+            glint_indirect_note(&indirect->first_draws, i, k, &seed, path);
+        }
+}
+
+bool glint_indirect_begin_paths(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
+                                uint32_t path, uint64_t number)
+{
+    glint_rays *first = &indirect->first;
+    if (!choose_points(indirect, path))
+        return false;
+    draw_first(indirect, frame->plan, path, number);
+    glint_indirect_scatter(seen, frame, first->active, &indirect->first_draws, path, first->direction);
+    weigh_first(indirect, frame, seen);
+    return true;
+}

@@ -1,0 +1,347 @@
+/// Indirect light: from each matt point some paths of light are followed backwards, over directions as dense as their
+/// cosine, and the mean of what they find, times kd, is what the point gives on.
+///
+/// Paths do not branch. Where one meets a surface it takes the light that the lights send there, and goes on in one of the
+/// directions the surface sends light on to: scattered, mirrored or refracted, chosen with probability as the shares, and
+/// weighed by one over it. So the memory is a batch and three sets of rays, however long paths are. What a path finds depends on
+/// its pixel, on the numbers of its sample and of its turns, and on the seed: where a lane chooses the point of an area light,
+/// paths stay in that of their point.
+///
+/// Of an area light each path takes one sample at each point, another from path to path. Light that is computed at each point
+/// and found by chance as well would count twice: paths do not see lights, whether rays of the eye do or not.
+///
+/// A path too weak to be seen ends: what a sample loses so is, in the mean, a quarter of GLINT_BOUNCE_LOSS at most.
+#include "engine/base/alloc.h"
+#include "engine/base/sequence.h"
+#include "engine/base/vec.h"
+#include "engine/effects/indirect/paths.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define GOLDEN 0x1.9e3779b97f4a8p-1 ///< multiples of it, less their whole part, fill 0 .. 1 evenly from the first on
+#define STRENGTH_MAX 1e150
+
+typedef enum turn { TURN_NONE, TURN_SCATTERED, TURN_MIRRORED, TURN_REFRACTED } turn;
+
+struct glint_indirect *glint_indirect_create(const glint_plan *plan)
+{
+    struct glint_indirect *indirect = glint_alloc(1, sizeof *indirect);
+    if (!indirect)
+        return NULL;
+    indirect->lights = glint_alloc(plan->indirect.light_count, sizeof *indirect->lights);
+    if (!indirect->lights) {
+        free(indirect);
+        return NULL;
+    }
+    return indirect;
+}
+
+void glint_indirect_destroy(struct glint_indirect *indirect)
+{
+    if (!indirect)
+        return;
+    free(indirect->lights);
+    free(indirect);
+}
+
+static double mean(const double c[3]) { return ((c[0] + c[1]) + c[2]) / 3; }
+
+// ---- What is drawn on the way ----
+
+/// The point that path `number` of point i takes.
+static void draw(const struct glint_indirect *indirect, uint32_t i, uint64_t number, uint32_t which, double out[2])
+{
+    const uint64_t k = glint_indirect_point_of(indirect, i, number);
+    glint_sequence_scrambled((uint32_t)k, glint_indirect_seed_of(indirect, i, k, which), out);
+}
+
+/// One sample of each light, as strong as all of them: another for each path and turn.
+static void take_lights(struct glint_indirect *indirect, const glint_plan *plan, uint64_t number, uint32_t step)
+{
+    for (uint32_t i = 0; i < plan->indirect.light_count; i++) {
+        const uint32_t first = plan->indirect.light_rows[i], count = plan->indirect.light_rows[i + 1] - first;
+        double part = (double)(number % (1u << 20)) * GOLDEN + step * (GOLDEN * GOLDEN);
+        part -= floor(part);
+        glint_plan_light *light = &indirect->lights[i];
+        *light = plan->lights[first + (uint32_t)(part * count)];
+        light->joined = false;
+        for (int c = 0; c < 3; c++) {
+            light->diffuse[c] = fmin(light->diffuse[c] * count, STRENGTH_MAX);
+            light->specular[c] = fmin(light->specular[c] * count, STRENGTH_MAX);
+        }
+    }
+}
+
+// ---- Where they go on ----
+
+void glint_indirect_find_ways(struct glint_indirect *indirect, const glint_tile_frame *frame)
+{
+    glint_batch *batch = &indirect->batch;
+    const glint_plan *plan = frame->plan;
+    unsigned any = 0;
+    for (uint32_t g = 0; g < batch->tile.group_count; g++) {
+        batch->wanted[g] = 0;
+        for (unsigned left = plan->bouncing ? batch->tile.at.hits[g] : 0; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const glint_bounce_material *m = &plan->bouncing[batch->tile.surface.material[i]];
+            if ((m->mirrors || m->transmits) && batch->rays->depth[batch->ray_of[i]] < plan->desc.max_depth)
+                batch->wanted[g] |= (uint16_t)(left & -left);
+        }
+        any |= batch->wanted[g];
+    }
+    if (any)
+        glint_batch_find_ways(batch, &batch->tile, frame);
+}
+
+/// Which of three ways a path takes, as they share its light out.
+static int choose_way(const struct glint_indirect *indirect, uint64_t number, const glint_rays *rays, uint32_t ray,
+                      const double share[3], double all)
+{
+    const int likely = share[0] > 0 ? 0 : share[1] > 0 ? 1 : 2;
+    double number_of[2];
+    if (!(share[likely] < all))
+        return likely;
+    draw(indirect, rays->point[ray], number, 2 * (rays->scatters[ray] + rays->depth[ray]) + 1, number_of);
+    return number_of[0] * all < share[0] ? 0 : number_of[0] * all < share[0] + share[1] || !(share[2] > 0) ? 1 : 2;
+}
+
+/// Chooses how the path of sample i goes on, and starts it there unless it is scattered.
+static turn choose(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t i,
+                   glint_ray *next)
+{
+    glint_batch *batch = &indirect->batch;
+    const glint_rays *rays = batch->rays;
+    const uint32_t ray = batch->ray_of[i];
+    double share[3] = { 0 }, least = 0, room[3];
+    const double *diffuse = glint_tile_diffuse(&batch->tile, frame->plan, i, room);
+    glint_ray split[2];
+    if (rays->scatters[ray] < frame->plan->indirect.bounces)
+        for (int c = 0; c < 3; c++)
+            share[0] += diffuse[c] * rays->weight[c][ray];
+    if (glint_has_lane(batch->wanted, i)) {
+        glint_batch_split(batch, &batch->tile, frame, i, &split[0], &split[1]);
+        share[1] = 3 * mean(split[0].weight);
+        share[2] = 3 * mean(split[1].weight);
+    }
+    const double all = (share[0] + share[1]) + share[2];
+    if (!(all > 0))
+        return TURN_NONE;
+    const int chosen = choose_way(indirect, number, rays, ray, share, all);
+    const double chance = share[chosen] / all;
+    if (chosen)
+        *next = split[chosen - 1];
+    else
+        glint_batch_start_ray(batch, &batch->tile, frame, i, next);
+    for (int c = 0; c < 3; c++) {
+        next->weight[c] = glint_weight(next->weight[c] / chance);
+        least = glint_larger(least, next->weight[c] * (chosen ? 1 : diffuse[c]));
+    }
+    if (least <= rays->least[ray])
+        return TURN_NONE;
+    return (turn)(TURN_SCATTERED + chosen);
+}
+
+/// Sends the path of sample i on that is scattered there.
+static void leave(const struct glint_indirect *indirect, const glint_tile_frame *frame, uint32_t i, glint_rays *next)
+{
+    const glint_tile *tile = &indirect->batch.tile;
+    const glint_precision precision = frame->plan->desc.precision;
+    double room[3];
+    const double *diffuse = glint_tile_diffuse(tile, frame->plan, i, room);
+    const bool free = glint_indirect_leaves(tile, frame->plan, i, indirect->direction);
+    next->scatters[i]++;
+    for (int c = 0; c < 3; c++) {
+        glint_real_put(next->direction[c], precision, i, glint_real_at(indirect->direction[c], precision, i));
+        next->weight[c][i] = glint_weight(next->weight[c][i] * (diffuse[c] * (free ? 1 : 0)));
+    }
+}
+
+/// Sends every path on that has found a surface to go on from. Returns whether any does.
+static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t step)
+{
+    glint_batch *batch = &indirect->batch;
+    const glint_tile *tile = &batch->tile;
+    glint_rays *rays = &indirect->next[step & 1];
+    unsigned any = 0;
+    if (!frame->plan->bouncing && step + 1 >= frame->plan->indirect.bounces) // all of them have been scattered so often
+        return false;
+    glint_indirect_find_ways(indirect, frame);
+    glint_rays_clear(rays, tile->group_count);
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        indirect->scattered[g] = 0;
+        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            glint_ray next;
+            const turn chosen = choose(indirect, frame, number, i, &next);
+            if (chosen == TURN_NONE)
+                continue;
+            if (chosen == TURN_SCATTERED) {
+                const uint64_t k = glint_indirect_point_of(indirect, next.point, number);
+                const glint_sequence_seed seed = glint_sequence_seed_of(
+                    glint_indirect_seed_of(indirect, next.point, k, 2 * (next.scatters + next.depth)));
+                glint_indirect_note(&indirect->next_draws, i, k, &seed, 0);
+                indirect->scattered[g] |= (uint16_t)(left & -left);
+                next.inward = glint_has_lane(tile->hit.back, i);
+            }
+            glint_rays_put(rays, frame->plan, i, &next);
+        }
+        any |= rays->active[g];
+    }
+    if (!any)
+        return false;
+    glint_indirect_scatter(tile, frame, indirect->scattered, &indirect->next_draws, 0, indirect->direction);
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = indirect->scattered[g]; left; left &= left - 1)
+            leave(indirect, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), rays);
+    batch->rays = rays;
+    return true;
+}
+
+// ---- What they find ----
+
+/// The light that the samples of a group have been found to send back, in each channel.
+static void found_in(const glint_batch *batch, uint32_t g, double found[3][GLINT_GROUP])
+{
+    const double(*sum)[3][GLINT_TILE_SAMPLES] = batch->tile.film.sum;
+    _Static_assert(GLINT_TERM_LOCAL == 4, "in the order of glint_batch_found");
+    for (int c = 0; c < 3; c++)
+        for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+            const uint32_t at = g * GLINT_GROUP + i;
+            found[c][i] = ((sum[0][c][at] + sum[1][c][at]) + sum[2][c][at]) + sum[3][c][at];
+        }
+}
+
+/// Adds what rays have found in some samples of a group. Paths that end there do without the light that more of them would bring: they
+/// take the ambient light that it stands for.
+static void collect_group(const glint_batch *batch, const glint_plan *plan, uint32_t g, unsigned lanes, glint_tile *to)
+{
+    const glint_rays *rays = batch->rays;
+    double found[3][GLINT_GROUP];
+    found_in(batch, g, found);
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctz(left), at = g * GLINT_GROUP + lane, i = batch->ray_of[at];
+        const bool last = rays->scatters[i] == plan->indirect.bounces && batch->tile.at.hits[g] >> lane & 1;
+        double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]];
+        for (int c = 0; c < 3; c++) {
+            const double rest = last ? glint_tile_ambient_rest(&batch->tile, plan, at, c) : 0;
+            sum[c][rays->pixel[i]] += rays->weight[c][i] * (found[c][lane] + rest);
+        }
+    }
+}
+
+/// The first rays of the eye's points are their pixels' own.
+void glint_indirect_collect_missed(const struct glint_indirect *indirect, const glint_tile_frame *frame,
+                                   const uint16_t *missed, const double background[3], glint_tile *to)
+{
+    const glint_rays *rays = indirect->batch.rays;
+    glint_sky_args args = { .group_count = rays->group_count, .missed = missed };
+    for (int c = 0; c < 3; c++) {
+        args.weight[c] = rays->weight[c];
+        args.background[c] = background[c];
+        args.sum[c] = to->film.sum[GLINT_TERM_INDIRECT][c];
+    }
+    if (rays == &indirect->first && !indirect->batch.ordered) {
+        frame->stages->sky(&args);
+        return;
+    }
+    for (uint32_t i = 0; i < rays->group_count * GLINT_GROUP; i++)
+        for (int c = 0; c < 3 && glint_has_lane(missed, i); c++)
+            to->film.sum[rays->term[i]][c][rays->pixel[i]] += rays->weight[c][i] * background[c];
+}
+
+/// The same of what a program shows them.
+static void collect_shown(const glint_batch *batch, const uint16_t *missed, glint_tile *to)
+{
+    const glint_rays *rays = batch->rays;
+    for (uint32_t g = 0; g < rays->group_count; g++)
+        for (unsigned left = missed[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            for (int c = 0; c < 3; c++)
+                to->film.sum[rays->term[i]][c][rays->pixel[i]] += rays->weight[c][i] * batch->shown[c][i];
+        }
+}
+
+/// Adds the light that the rays have found to their pixels: of a whole batch in the order of rays, which may share pixels.
+static void collect(const struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to)
+{
+    const glint_batch *batch = &indirect->batch;
+    const uint16_t *lanes = batch->whole ? batch->rays->active : batch->tile.at.hits;
+    const uint32_t groups = batch->whole ? batch->rays->group_count : batch->tile.group_count;
+    for (uint32_t g = 0; g < groups; g++)
+        if (lanes[g])
+            collect_group(batch, frame->plan, g, lanes[g], to);
+    if (batch->whole)
+        return;
+    uint16_t missed[GLINT_TILE_GROUPS];
+    glint_batch_find_missed(batch, missed);
+    if (frame->plan->environment)
+        collect_shown(batch, missed, to);
+    else
+        glint_indirect_collect_missed(indirect, frame, missed, frame->plan->background, to);
+}
+
+static void count_rays(const glint_batch *batch, glint_tile *to)
+{
+    for (uint32_t g = 0; g < batch->rays->group_count; g++)
+        to->counts.indirect += (unsigned)__builtin_popcount(batch->rays->active[g]);
+}
+
+/// The light of faces and vertices is kept for all readers: it is made of every sample of the lights.
+static void light(struct glint_indirect *indirect, const glint_tile_frame *frame, bool any)
+{
+    glint_batch *batch = &indirect->batch;
+    const bool shading_points = any && frame->plan->runs[GLINT_STAGE_VERTEX];
+    const bool lit = shading_points ? glint_tile_choose_sampled(&batch->tile, frame) : any;
+    glint_batch_shine(batch, &indirect->frame, lit);
+    if (shading_points && glint_tile_has_shading_points(&batch->tile))
+        glint_tile_vertex(&batch->tile, frame);
+}
+
+/// One path of each point, to its end.
+static void follow(struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to, uint64_t number)
+{
+    glint_batch *batch = &indirect->batch;
+    bool any = true;
+    batch->rays = &indirect->first;
+    for (uint32_t step = 0; any && !glint_tile_cancelled(frame); step++) {
+        count_rays(batch, to);
+        take_lights(indirect, frame->plan, number, step);
+        any = glint_batch_cast(batch, &indirect->frame);
+        if (frame->plan->indirect.is_sky) {
+            any = glint_indirect_open_sky(indirect, frame, any, step, to);
+            continue;
+        }
+        if (any || batch->whole)
+            light(indirect, frame, any);
+        collect(indirect, frame, to);
+        any = any && go_on(indirect, frame, number, step);
+    }
+}
+
+void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
+                         const glint_batch *from)
+{
+    struct glint_indirect *indirect = tile->indirect;
+    glint_batch *batch = &indirect->batch;
+    indirect->plan = *frame->plan;
+    indirect->plan.lights = indirect->lights;
+    indirect->plan.light_count = frame->plan->indirect.light_count;
+    indirect->plan.runs[GLINT_STAGE_VISIBLE_LIGHT] = false;
+    indirect->plan.visible_light_count = 0;
+    if (frame->plan->indirect.is_sky) // whatever the background is
+        indirect->plan.environment = NULL;
+    indirect->frame = *frame;
+    indirect->frame.plan = &indirect->plan;
+    const uint32_t paths = glint_indirect_find_points(indirect, tile, frame, seen, from);
+    glint_batch_begin(batch, tile, frame, GLINT_WALK_INDIRECT);
+    batch->ordered = from != NULL; // whose rays may share pixels
+    batch->distances = frame->plan->indirect.is_sky && !frame->plan->transmits;
+    for (uint32_t path = 0; path < paths && !glint_tile_cancelled(frame); path++) {
+        const uint64_t number = (uint64_t)tile->sample * frame->plan->indirect.samples + path;
+        batch->tile.sample = (uint32_t)number;
+        if (glint_indirect_begin_paths(indirect, frame, seen, path, number))
+            follow(indirect, frame, tile, number);
+    }
+    glint_batch_end(batch, tile);
+}

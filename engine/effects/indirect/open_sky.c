@@ -1,0 +1,69 @@
+/// Ambient occlusion: from each point some rays over directions as dense as their cosine, and the mean of what is open of the
+/// sky, 1 where a ray leaves the scene, times the ambient light. What closes it is any surface within the distance that the
+/// scene says, but for what transmits: there rays go on refracted, weaker by what the surface takes.
+#include "engine/effects/indirect/paths.h"
+#include "engine/effects/pattern/pattern.h"
+
+#include <math.h>
+
+/// Surfaces that are too far away close nothing.
+static void open_far(glint_batch *batch, const glint_plan *plan)
+{
+    glint_tile *tile = &batch->tile;
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), ray = batch->ray_of[i];
+            if (glint_real_at(tile->at.t, plan->desc.precision, i) <= plan->indirect.distance) // directions are unit
+                continue;
+            tile->at.hits[g] &= (uint16_t) ~(left & -left);
+            if (!batch->whole)
+                batch->met[ray / GLINT_GROUP] &= (uint16_t) ~(1u << ray % GLINT_GROUP);
+        }
+}
+
+/// What programs give of the share that goes on.
+static void find_shares(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const uint32_t shares = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION;
+    if (glint_tile_fields_shown(tile, frame->plan) & shares)
+        glint_tile_find_patterns(tile, frame);
+}
+
+/// The rays that go on beyond what transmits. Returns whether there are any.
+static bool go_through(struct glint_indirect *indirect, const glint_tile_frame *frame, uint32_t step)
+{
+    glint_batch *batch = &indirect->batch;
+    glint_tile *tile = &batch->tile;
+    glint_rays *rays = &indirect->next[step & 1];
+    unsigned any = 0;
+    find_shares(tile, frame);
+    glint_indirect_find_ways(indirect, frame);
+    glint_rays_clear(rays, tile->group_count);
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        for (unsigned left = batch->wanted[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            glint_ray mirror, through;
+            if (!frame->plan->bouncing[tile->surface.material[i]].transmits)
+                continue;
+            glint_batch_split(batch, tile, frame, i, &mirror, &through);
+            if (fmax(through.weight[0], fmax(through.weight[1], through.weight[2])) > through.least)
+                glint_rays_put(rays, frame->plan, i, &through);
+        }
+        any |= rays->active[g];
+    }
+    batch->rays = rays;
+    return any;
+}
+
+bool glint_indirect_open_sky(struct glint_indirect *indirect, const glint_tile_frame *frame, bool any, uint32_t step,
+                             glint_tile *to)
+{
+    static const double white[3] = { 1, 1, 1 };
+    glint_batch *batch = &indirect->batch;
+    uint16_t missed[GLINT_TILE_GROUPS];
+    if (any && isfinite(frame->plan->indirect.distance))
+        open_far(batch, frame->plan);
+    glint_batch_find_missed(batch, missed);
+    glint_indirect_collect_missed(indirect, frame, missed, white, to);
+    return any && frame->plan->transmits && go_through(indirect, frame, step);
+}

@@ -1,0 +1,83 @@
+#include "engine/effects/outline/outline.h"
+#include "engine/base/vec.h"
+
+typedef struct outliner {
+    const glint_plan *plan;
+    glint_extent extent;
+    glint_image *image;
+    double offset[2]; ///< of the sample that the planes hold
+} outliner;
+
+/// What a pixel shows.
+typedef struct point {
+    size_t at;
+    double depth, place[3], normal[3]; ///< place: from the eye
+} point;
+
+static point point_at(const outliner *o, int x, int y)
+{
+    const glint_plan_camera *camera = &o->plan->camera;
+    const glint_image *image = o->image;
+    const double sx = 2 * (x + o->offset[0]) - image->width, sy = image->height - 2 * (y + o->offset[1]);
+    point p = { .at = (size_t)y * (size_t)image->width + (size_t)x };
+    double aside[3], direction[3];
+    p.depth = (double)image->plane[GLINT_PASS_DEPTH][0][p.at];
+    for (int c = 0; c < 3; c++) {
+        aside[c] = sx * camera->right[c] + sy * camera->up[c];
+        direction[c] = camera->forward[c] + (camera->orthographic ? 0 : aside[c]);
+        p.normal[c] = (double)image->plane[GLINT_PASS_NORMAL][c][p.at];
+    }
+    const double scale = p.depth / sqrt(vec_dot(direction, direction));
+    for (int c = 0; c < 3; c++)
+        p.place[c] = scale * direction[c] + (camera->orthographic ? aside[c] : 0);
+    return p;
+}
+
+static bool is_hit(const point *p) { return p->depth < HUGE_VAL; }
+
+/// Whether no smooth surface goes through both.
+static bool is_break(const point *p, const point *q)
+{
+    double e[3];
+    vec_sub(e, q->place, p->place);
+    const double length = sqrt(vec_dot(e, e));
+    const double up = vec_dot(e, p->normal), down = -vec_dot(e, q->normal);
+    if (vec_dot(p->normal, q->normal) > GLINT_OUTLINE_SMOOTH)
+        return fmax(up, down) > GLINT_OUTLINE_STEP * length;
+    return fmax(up, down) > GLINT_OUTLINE_VALLEY * length || fmin(up, down) < -GLINT_OUTLINE_RIDGE * length;
+}
+
+/// Whether there is an edge between two pixels, and the line is on p, which is hit.
+static bool draws(const outliner *o, const point *p, int x, int y)
+{
+    const glint_extent *e = &o->extent;
+    if (x < e->x || y < e->y || x >= e->x + e->width || y >= e->y + e->height)
+        return false;
+    const point q = point_at(o, x, y);
+    const float *id = o->image->plane[GLINT_PASS_OBJECT_ID][0];
+    if (!is_hit(&q))
+        return true;
+    if (p->depth > q.depth || (p->depth == q.depth && p->at > q.at))
+        return false;
+    return id[p->at] != id[q.at] || is_break(p, &q);
+}
+
+static void draw_row(void *context, size_t index, int worker)
+{
+    const outliner *o = context;
+    const int y = o->extent.y + (int)index;
+    float *line = o->image->plane[GLINT_PASS_OUTLINE][0] + (size_t)y * (size_t)o->image->width;
+    (void)worker;
+    for (int x = o->extent.x; x < o->extent.x + o->extent.width; x++) {
+        const point p = point_at(o, x, y);
+        line[x] = is_hit(&p) && (draws(o, &p, x + 1, y) || draws(o, &p, x, y + 1) || draws(o, &p, x - 1, y) ||
+                                 draws(o, &p, x, y - 1));
+    }
+}
+
+void glint_outline(const glint_plan *plan, const glint_extent *extent, glint_pool *pool, glint_image *image)
+{
+    outliner o = { .plan = plan, .extent = *extent, .image = image };
+    glint_plan_sample_offset(plan, 0, o.offset);
+    glint_pool_run(pool, (size_t)extent->height, draw_row, &o);
+}

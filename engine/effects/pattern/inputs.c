@@ -1,0 +1,362 @@
+#include "engine/effects/pattern/inputs.h"
+#include "engine/base/vec.h"
+#include "engine/tile/batch.h"
+#include "engine/effects/pattern/uv.h"
+
+#define BITS(first, count) (((1u << (count)) - 1) << (first))
+#define READS_P BITS(GLINT_INPUT_P_X, 3)
+#define READS_WORLD BITS(GLINT_INPUT_WORLD_X, 3)
+#define READS_N BITS(GLINT_INPUT_N_X, 3)
+#define READS_V BITS(GLINT_INPUT_V_X, 3)
+#define READS_UV_FOOTPRINT BITS(GLINT_INPUT_UV_FOOTPRINT, 1)
+#define READS_UV GLINT_READS_UV
+#define READS_FOOTPRINT (BITS(GLINT_INPUT_FOOTPRINT, 1) | READS_UV_FOOTPRINT)
+#define READS_GATHERED (READS_P | READS_WORLD | READS_N | READS_V | READS_UV | READS_FOOTPRINT)
+
+/// An entry's group: where it is in the tile, and where in the rows.
+typedef struct gathering {
+    glint_pattern_inputs *inputs;
+    const glint_tile_frame *frame;
+    const glint_pattern_points *points;
+    size_t at, to;
+} gathering;
+
+static double *row(const gathering *g, int input) { return g->inputs->row[input] + g->to; }
+
+/// Sixteen numbers of an array of real.
+static void load_group(const gathering *g, const void *array, double out[GLINT_GROUP])
+{
+    glint_reals_of(array, g->frame->plan->desc.precision, (uint32_t)(g->at / GLINT_GROUP), out);
+}
+
+// ---- Normals ----
+
+/// The geometric normal of a triangle that is shaded smoothly, turned to the viewer.
+static void face_normal(const glint_prim *prim, double scale, bool back, double out[3])
+{
+    double f[3], h[3], n[3];
+    vec_sub(f, prim->corner[1], prim->corner[0]);
+    vec_sub(h, prim->corner[2], prim->corner[0]);
+    vec_scale(f, f, scale);
+    vec_scale(h, h, scale);
+    vec_cross(n, f, h);
+    const double length = sqrt(vec_dot(n, n));
+    for (int c = 0; c < 3; c++)
+        out[c] = (back ? -n[c] : n[c]) / length;
+}
+
+static bool is_smooth(const glint_prim *prim) { return prim->kind == GLINT_PRIM_TRIANGLE && prim->item != GLINT_MISS; }
+
+static void gather_normals(const gathering *g, unsigned lanes)
+{
+    const glint_pattern_points *points = g->points;
+    for (int c = 0; c < 3; c++)
+        load_group(g, points->normal[c], row(g, GLINT_INPUT_N_X + c));
+    if (!g->frame->geometry.corner_normals || points->shading)
+        return;
+    for (; lanes; lanes &= lanes - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctz(lanes);
+        const glint_prim *prim = &g->frame->geometry.prims[points->prim[g->at + lane]];
+        double n[3];
+        if (!is_smooth(prim))
+            continue;
+        face_normal(prim, g->frame->geometry.scale, glint_has_lane(points->back, (uint32_t)g->at + lane), n);
+        for (int c = 0; c < 3; c++)
+            row(g, GLINT_INPUT_N_X + c)[lane] = n[c];
+    }
+}
+
+// ---- The point in the shape's own space ----
+
+/// Lanes whose primitives are of one part with the first, and its place.
+static const glint_pattern_place *next_place(const gathering *g, unsigned left, unsigned *lanes)
+{
+    const glint_geometry *geometry = g->frame->plan->geometry;
+    const glint_prim *prims = g->frame->geometry.prims;
+    const uint32_t *prim = g->points->prim + g->at;
+    const uint32_t first = prim[__builtin_ctz(left)], part = geometry->prim_part[prims[first].id];
+    const bool one = glint_all_are(prim, first); // the common case
+    *lanes = one ? left : 0;
+    for (unsigned rest = one ? 0 : left; rest; rest &= rest - 1) {
+        const uint32_t id = prim[__builtin_ctz(rest)];
+        if (id == first || geometry->prim_part[prims[id].id] == part)
+            *lanes |= rest & -rest;
+    }
+    return &g->frame->plan->patterns->places[part];
+}
+
+/// Which face of a box a lane is on, by the normal in its own space: axis, and whether it is the upper one.
+static int face_of(const gathering *g, const glint_pattern_place *place, uint32_t lane, bool *upper)
+{
+    const size_t i = g->at + lane;
+    double n[3], own[3];
+    int axis = 0;
+    for (int c = 0; c < 3; c++)
+        n[c] = glint_real_at(g->points->normal[c], g->frame->plan->desc.precision, (uint32_t)i);
+    for (int c = 0; c < 3; c++) {
+        own[c] = place->mapped
+                     ? (place->forward[0][c] * n[0] + place->forward[1][c] * n[1]) + place->forward[2][c] * n[2]
+                     : n[c];
+        axis = fabs(own[c]) > fabs(own[axis]) ? c : axis;
+    }
+    *upper = (own[axis] > 0) != glint_has_lane(g->points->back, (uint32_t)i);
+    return axis;
+}
+
+/// Of faces along an axis the coordinate is the face's own, to the last bit: what rounding moved a point by off it must not
+/// decide on which side of a whole number a pattern sees it.
+static void put_exact(const gathering *g, const glint_pattern_place *place, unsigned lanes)
+{
+    if (place->kind == GLINT_SHAPE_BOX) {
+        for (; lanes; lanes &= lanes - 1) {
+            const uint32_t lane = (uint32_t)__builtin_ctz(lanes);
+            bool upper;
+            const int axis = face_of(g, place, lane, &upper);
+            row(g, GLINT_INPUT_P_X + axis)[lane] = upper ? place->upper[axis] : place->lower[axis];
+        }
+        return;
+    }
+    for (int i = 0; lanes == 0xffff && place->axis >= 0 && i < GLINT_GROUP; i++)
+        row(g, GLINT_INPUT_P_X + place->axis)[i] = place->face;
+    for (; lanes != 0xffff && lanes && place->axis >= 0; lanes &= lanes - 1)
+        row(g, GLINT_INPUT_P_X + place->axis)[__builtin_ctz(lanes)] = place->face;
+}
+
+/// Takes a group's points in the world, which are in the rows, into the shape's own space.
+static void map_points(const gathering *g, const glint_pattern_place *place, unsigned lanes)
+{
+    double own[3][GLINT_GROUP];
+    for (int c = 0; c < 3; c++) {
+        const double *m = place->inverse[c], *x = row(g, GLINT_INPUT_P_X), *y = row(g, GLINT_INPUT_P_Y),
+                     *z = row(g, GLINT_INPUT_P_Z);
+        for (int i = 0; i < GLINT_GROUP; i++)
+            own[c][i] = ((m[0] * x[i] + m[1] * y[i]) + m[2] * z[i]) + m[3];
+    }
+    for (int c = 0; c < 3; c++) {
+        double *to = row(g, GLINT_INPUT_P_X + c);
+        for (int i = 0; i < GLINT_GROUP; i++)
+            to[i] = lanes >> i & 1 ? own[c][i] : to[i];
+    }
+}
+
+static void gather_points(const gathering *g, unsigned lanes)
+{
+    for (int c = 0; c < 3; c++)
+        load_group(g, g->points->point[c], row(g, GLINT_INPUT_P_X + c));
+    for (unsigned left = lanes, here; left; left &= ~here) {
+        const glint_pattern_place *place = next_place(g, left, &here);
+        if (place->mapped)
+            map_points(g, place, here);
+        put_exact(g, place, here);
+    }
+}
+
+// ---- The viewer ----
+
+/// The camera whose rays show the points, where the stage `unit` can read them; NULL: load_way_back does.
+static const glint_camera_args *camera_of(const glint_tile_frame *frame, const glint_pattern_points *points)
+{
+    return points->direction[0] || frame->plan->desc.precision != GLINT_DOUBLE ? NULL : glint_tile_rays_of(points->tile);
+}
+
+/// A component of the ways back along the group's rays, not unit: see glint_tile_direction.
+static void load_way_back(const gathering *g, int c, double *restrict out)
+{
+    const glint_tile *tile = g->points->tile;
+    if (g->points->direction[c] || glint_tile_has_arrays(tile)) {
+        load_group(g, g->points->direction[c] ? g->points->direction[c] : tile->rays.direction[c], out);
+        for (int i = 0; i < GLINT_GROUP; i++)
+            out[i] = -out[i];
+        return;
+    }
+    const uint32_t group = (uint32_t)(g->at / GLINT_GROUP), columns = tile->groups_across;
+    const float *across = (const float *)tile->rays.across + (3 * (group % columns) + (uint32_t)c) * GLINT_GROUP;
+    const float *down = (const float *)tile->rays.down + (3 * (group / columns) + (uint32_t)c) * GLINT_GROUP;
+    for (int i = 0; i < GLINT_GROUP; i++)
+        out[i] = -(double)(across[i] + down[i]);
+}
+
+static void make_views(glint_pattern_inputs *inputs, const glint_tile_frame *frame, const glint_pattern_points *points,
+                       const glint_pattern_lanes *entries, uint32_t count)
+{
+    uint32_t groups[GLINT_PROGRAM_GROUPS];
+    glint_unit_args args = { .group_count = count, .camera = camera_of(frame, points), .groups = groups };
+    for (uint32_t k = 0; k < count; k++)
+        groups[k] = entries[k].group;
+    for (int c = 0; c < 3; c++) {
+        args.to[c] = inputs->row[GLINT_INPUT_V_X + c];
+        args.unit[c] = inputs->row[GLINT_INPUT_V_X + c];
+    }
+    frame->stages->unit(&args);
+}
+
+/// Width of a pixel at a point: that of the pixel whose ray, by whatever mirrors, has come there.
+static void gather_footprints(const gathering *g, unsigned lanes)
+{
+    const glint_plan_patterns *patterns = g->frame->plan->patterns;
+    const glint_tile *tile = g->points->tile;
+    for (; lanes; lanes &= lanes - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctz(lanes), i = (uint32_t)g->at + lane;
+        const double t = g->points->t ? glint_real_at(g->points->t, g->frame->plan->desc.precision, i) : 0;
+        const double far = t + (g->points->t && tile->batch ? tile->batch->rays->way[tile->batch->ray_of[i]] : 0);
+        row(g, GLINT_INPUT_FOOTPRINT)[lane] = !g->points->t ? 0 : patterns->pixel * (patterns->parallel ? 1 : far);
+    }
+}
+
+// ---- Coordinates on the surface ----
+
+/// What those of one lane depend on; the point in the shape's own space is there.
+static glint_uv_point uv_point_of(const gathering *g, const glint_pattern_place *place, uint32_t lane)
+{
+    const glint_prim *prim = &g->frame->geometry.prims[g->points->prim[g->at + lane]];
+    glint_uv_point point = { .triangle = prim->id - place->first_prim };
+    double d[3];
+    for (int c = 0; c < 3; c++)
+        point.p[c] = row(g, GLINT_INPUT_P_X + c)[lane];
+    if (place->kind == GLINT_SHAPE_BOX)
+        point.axis = face_of(g, place, lane, &point.upper);
+    if (place->kind != GLINT_SHAPE_SPHERE && place->kind != GLINT_SHAPE_SPHERES)
+        return point;
+    for (int c = 0; c < 3; c++)
+        d[c] = glint_real_at(g->points->point[c], g->frame->plan->desc.precision, (uint32_t)g->at + lane) -
+               prim->center[c];
+    for (int c = 0; c < 3; c++)
+        point.from_center[c] = place->mapped ? vec_dot(place->inverse[c], d) : d[c];
+    return point;
+}
+
+static void gather_uv(const gathering *g, uint32_t reads, unsigned lanes)
+{
+    for (; lanes; lanes &= lanes - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctz(lanes);
+        unsigned one;
+        const glint_pattern_place *place = next_place(g, lanes & -lanes, &one);
+        const glint_uv_point point = uv_point_of(g, place, lane);
+        glint_surface_uv uv;
+        glint_surface_uv_at(place, &point, &uv);
+        row(g, GLINT_INPUT_UV_U)[lane] = uv.at[0];
+        row(g, GLINT_INPUT_UV_V)[lane] = uv.at[1];
+        for (int k = 0; k < 6; k++)
+            g->inputs->uv_slope[k / 3][k % 3][g->to + lane] = uv.slope[k / 3][k % 3];
+        if (reads & READS_UV_FOOTPRINT)
+            row(g, GLINT_INPUT_UV_FOOTPRINT)[lane] = row(g, GLINT_INPUT_FOOTPRINT)[lane] * place->shrink / uv.unit;
+    }
+}
+
+// ---- All of a call ----
+
+double *glint_pattern_row(glint_pattern_inputs *inputs, glint_input input)
+{
+    inputs->from[input] = inputs->row[input];
+    inputs->used |= 1u << input;
+    inputs->same &= ~(1u << input);
+    return inputs->row[input];
+}
+
+void glint_pattern_put_number(glint_pattern_inputs *inputs, glint_input input, double number)
+{
+    double *to = inputs->row[input];
+    const uint32_t bit = 1u << input;
+    if (inputs->used & inputs->same & bit && inputs->from[input] == to && memcmp(to, &number, sizeof number) == 0)
+        return;
+    glint_pattern_row(inputs, input);
+    for (int i = 0; i < GLINT_GROUP; i++)
+        to[i] = number;
+    inputs->same |= bit;
+}
+
+/// Whether the entries' groups lie one after the other in arrays of doubles, so that these are read as they are.
+static bool are_in_order(const glint_tile_frame *frame, const glint_pattern_lanes *entries, uint32_t count)
+{
+    if (frame->plan->desc.precision != GLINT_DOUBLE)
+        return false;
+    for (uint32_t k = 1; k < count; k++)
+        if (entries[k].group != entries[0].group + k)
+            return false;
+    return true;
+}
+
+static void read_array(glint_pattern_inputs *inputs, int input, const void *array, uint32_t group)
+{
+    inputs->from[input] = (const double *)array + (size_t)group * GLINT_GROUP;
+}
+
+/// The place of an entry's shape whose points are in the world where they are in its own space, but for a coordinate that all of
+/// them share. NULL: there is none, or there are several.
+static const glint_pattern_place *plain_place(const glint_tile_frame *frame, const glint_pattern_points *points,
+                                              const glint_pattern_lanes *entry)
+{
+    const gathering g = { NULL, frame, points, (size_t)entry->group * GLINT_GROUP, 0 };
+    unsigned here;
+    const glint_pattern_place *place = next_place(&g, entry->lanes, &here);
+    return place->mapped || place->kind == GLINT_SHAPE_BOX || here != entry->lanes ? NULL : place;
+}
+
+/// Reads the points where they are, if all entries are of one such shape.
+static bool read_points(glint_pattern_inputs *inputs, const glint_tile_frame *frame, const glint_pattern_points *points,
+                        const glint_pattern_lanes *entries, uint32_t count)
+{
+    const glint_pattern_place *place = plain_place(frame, points, &entries[0]);
+    if (!place)
+        return false;
+    const uint32_t prim = points->prim[entries[0].group * GLINT_GROUP + (uint32_t)__builtin_ctz(entries[0].lanes)];
+    for (uint32_t k = 1; k < count && !points->only; k++)
+        if (!glint_all_are(points->prim + (size_t)entries[k].group * GLINT_GROUP, prim) &&
+            plain_place(frame, points, &entries[k]) != place)
+            return false;
+    for (int c = 0; c < 3; c++)
+        read_array(inputs, GLINT_INPUT_P_X + c, points->point[c], entries[0].group);
+    if (place->axis >= 0)
+        glint_pattern_put_number(inputs, (glint_input)(GLINT_INPUT_P_X + place->axis), place->face);
+    return true;
+}
+
+/// Finds what can be read where it is. Returns the inputs that are left.
+static uint32_t read_in_place(glint_pattern_inputs *inputs, const glint_tile_frame *frame,
+                              const glint_pattern_points *points, uint32_t reads, const glint_pattern_lanes *entries,
+                              uint32_t count)
+{
+    if (!are_in_order(frame, entries, count))
+        return reads;
+    for (int c = 0; c < 3 && reads & READS_WORLD; c++)
+        read_array(inputs, GLINT_INPUT_WORLD_X + c, points->point[c], entries[0].group);
+    const bool normals = reads & READS_N && (points->shading || !frame->geometry.corner_normals);
+    for (int c = 0; c < 3 && normals; c++)
+        read_array(inputs, GLINT_INPUT_N_X + c, points->normal[c], entries[0].group);
+    const bool own = reads & READS_P && !(reads & READS_UV) && read_points(inputs, frame, points, entries, count);
+    return reads & ~(READS_WORLD | (normals ? READS_N : 0) | (own ? READS_P : 0));
+}
+
+/// One entry's share of what is in rows.
+static void gather_group(const gathering *g, uint32_t reads, unsigned lanes)
+{
+    if (reads & (READS_P | READS_UV))
+        gather_points(g, lanes);
+    for (int c = 0; c < 3 && reads & READS_WORLD; c++)
+        load_group(g, g->points->point[c], row(g, GLINT_INPUT_WORLD_X + c));
+    if (reads & READS_N)
+        gather_normals(g, lanes);
+    for (int c = 0; c < 3 && reads & READS_V; c++)
+        load_way_back(g, c, row(g, GLINT_INPUT_V_X + c));
+    if (reads & READS_FOOTPRINT)
+        gather_footprints(g, lanes);
+    if (reads & READS_UV)
+        gather_uv(g, reads, lanes);
+}
+
+void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *frame,
+                          const glint_pattern_points *points, uint32_t reads, const glint_pattern_lanes *entries,
+                          uint32_t count)
+{
+    inputs->used &= inputs->same; // numbers stay
+    for (uint32_t rest = reads; rest; rest &= rest - 1)
+        glint_pattern_row(inputs, (glint_input)__builtin_ctz(rest));
+    uint32_t left = read_in_place(inputs, frame, points, reads, entries, count);
+    left &= camera_of(frame, points) ? READS_GATHERED & ~READS_V : READS_GATHERED;
+    for (uint32_t k = 0; left && k < count; k++) {
+        const gathering g = { inputs, frame, points, (size_t)entries[k].group * GLINT_GROUP, (size_t)k * GLINT_GROUP };
+        gather_group(&g, left, entries[k].lanes);
+    }
+    if (reads & READS_V)
+        make_views(inputs, frame, points, entries, count);
+}

@@ -1,0 +1,521 @@
+/// Programs of materials, run for the points that show them: up to sixteen groups at a time, each with its own lanes.
+#include "engine/effects/pattern/pattern.h"
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/program/program.h"
+#include "engine/effects/cut_out/cut_out.h"
+#include "engine/effects/pattern/work.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/// What a plan needs room for.
+static glint_pattern_room room_for(const glint_plan *plan)
+{
+    const glint_plan_patterns *patterns = plan->patterns;
+    return (glint_pattern_room) { .planes = (size_t)patterns->plane_count * GLINT_TILE_SAMPLES,
+                                  .samples = plan->together ? (size_t)plan->desc.samples : 1,
+                                  // a first part's kept values may all live to its end
+                                  .rows = patterns->row_count + GLINT_PROGRAM_OUTPUTS_MAX,
+                                  .bumps = patterns->bumps,
+                                  .cut_outs = patterns->cut_outs };
+}
+
+struct glint_pattern *glint_pattern_create(const glint_plan *plan)
+{
+    struct glint_pattern *pattern = glint_alloc(1, sizeof *pattern);
+    if (!pattern)
+        return NULL;
+    const glint_pattern_room room = room_for(plan);
+    pattern->room = room;
+    pattern->rows = glint_alloc(room.rows * GLINT_PROGRAM_LANES, sizeof *pattern->rows);
+    pattern->cut_out = room.cut_outs ? glint_cut_out_create() : NULL;
+    bool good = pattern->rows && (pattern->cut_out || !room.cut_outs);
+    for (int walk = 0; walk < GLINT_WALK_COUNT; walk++) {
+        const size_t samples = walk == GLINT_WALK_EYE ? room.samples : 1;
+        pattern->planes[walk] = glint_alloc(samples * room.planes, sizeof *pattern->planes[walk]);
+        pattern->normals[walk] = room.bumps ? glint_alloc(3 * GLINT_TILE_SAMPLES, sizeof(double)) : NULL;
+        good = good && pattern->planes[walk] && (pattern->normals[walk] || !room.bumps);
+    }
+    if (good)
+        return pattern;
+    glint_pattern_destroy(pattern);
+    return NULL;
+}
+
+bool glint_pattern_fits(const struct glint_pattern *pattern, const glint_plan *plan)
+{
+    if (!pattern || !plan->patterns)
+        return !pattern && !plan->patterns;
+    const glint_pattern_room room = room_for(plan), has = pattern->room;
+    return room.planes == has.planes && room.samples == has.samples && room.rows == has.rows &&
+           room.bumps == has.bumps && room.cut_outs == has.cut_outs;
+}
+
+void glint_pattern_destroy(struct glint_pattern *pattern)
+{
+    for (int walk = 0; pattern && walk < GLINT_WALK_COUNT; walk++) {
+        free(pattern->planes[walk]);
+        free(pattern->normals[walk]);
+    }
+    if (pattern) {
+        glint_cut_out_destroy(pattern->cut_out);
+        free(pattern->rows);
+    }
+    free(pattern);
+}
+
+void glint_pattern_point(struct glint_pattern *pattern, glint_tile *tile, glint_walk walk)
+{
+    tile->pattern = pattern;
+    tile->at.planes = NULL;
+    for (int c = 0; c < 3; c++)
+        tile->unbumped[c] = NULL;
+    if (!pattern)
+        return;
+    const size_t sample = walk == GLINT_WALK_EYE ? tile->own_planes : 0;
+    tile->at.planes = pattern->planes[walk] + sample * pattern->room.planes;
+    for (int c = 0; c < 3 && pattern->normals[walk]; c++)
+        tile->unbumped[c] = pattern->normals[walk] + (size_t)c * GLINT_TILE_SAMPLES;
+}
+
+float *glint_pattern_planes(struct glint_pattern *pattern, glint_walk walk) { return pattern->planes[walk]; }
+
+// ---- Which lanes ----
+
+/// Those of `lanes` of a group that have material `m`.
+static unsigned lanes_of(const uint32_t *material, uint32_t m, unsigned lanes)
+{
+    unsigned same = 0;
+    for (unsigned i = 0; i < GLINT_GROUP; i++)
+        same |= (unsigned)(material[i] == m) << i;
+    return same & lanes;
+}
+
+/// Lists points that all have one material.
+static void list_one_material(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
+                              const glint_pattern_points *points,
+                              bool (*wants)(const glint_plan_pattern *own, uint32_t fields))
+{
+    const uint16_t *hits = points->hits;
+    const uint32_t group_count = points->group_count;
+    glint_pattern_lanes *entries = pattern->lanes;
+    uint32_t count = 0, first = 0;
+    pattern->first = pattern->count = 0;
+    pattern->several = false;
+    while (first < group_count && !hits[first])
+        first++;
+    if (first == group_count)
+        return;
+    const uint32_t m = points->material[first * GLINT_GROUP + (uint32_t)__builtin_ctz(hits[first])];
+    if (!wants(&patterns->of[m], points->fields))
+        return;
+    for (uint32_t g = first; g < group_count; g++) {
+        entries[count] = (glint_pattern_lanes) { m, (uint16_t)g, hits[g] };
+        count += hits[g] != 0;
+    }
+    pattern->count = count;
+}
+
+void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
+                              const glint_pattern_points *points,
+                              bool (*wants)(const glint_plan_pattern *own, uint32_t fields))
+{
+    const uint16_t *hits = points->hits;
+    const uint32_t *material = points->material, group_count = points->group_count;
+    glint_pattern_lanes *entries = pattern->lanes;
+    uint32_t count = 0, last = GLINT_MISS;
+    bool wanted = false, several = false; // whether material `last` is; whether others were
+    if (points->only) {
+        list_one_material(pattern, patterns, points, wants);
+        return;
+    }
+    for (uint32_t g = 0; g < group_count; g++, material += GLINT_GROUP)
+        for (unsigned left = hits[g], lanes; left; left &= ~lanes) {
+            const uint32_t m = material[__builtin_ctz(left)];
+            lanes = glint_all_are(material, m) ? left : lanes_of(material, m, left);
+            if (m != last) {
+                wanted = wants(&patterns->of[m], points->fields);
+                several = several || (wanted && count > 0 && entries[0].material != m);
+            }
+            last = m;
+            if (wanted)
+                entries[count++] = (glint_pattern_lanes) { m, (uint16_t)g, (uint16_t)lanes };
+        }
+    pattern->first = 0;
+    pattern->count = count;
+    pattern->several = several;
+}
+
+/// Of a list of several materials: moves entries of one to `taken`.
+static uint32_t pick(struct glint_pattern *pattern)
+{
+    glint_pattern_lanes *lanes = pattern->lanes;
+    uint32_t taken = 0;
+    while (pattern->first < pattern->count && !lanes[pattern->first].lanes)
+        pattern->first++;
+    for (uint32_t k = pattern->first; k < pattern->count && taken < GLINT_PROGRAM_GROUPS; k++) {
+        if (!lanes[k].lanes || (taken && lanes[k].material != pattern->taken[0].material))
+            continue;
+        pattern->taken[taken++] = lanes[k];
+        lanes[k].lanes = 0;
+    }
+    return taken;
+}
+
+uint32_t glint_pattern_take(struct glint_pattern *pattern, const glint_pattern_lanes **entries)
+{
+    const uint32_t left = pattern->count - pattern->first;
+    if (pattern->several) {
+        *entries = pattern->taken;
+        return pick(pattern);
+    }
+    *entries = &pattern->lanes[pattern->first];
+    const uint32_t taken = left < GLINT_PROGRAM_GROUPS ? left : GLINT_PROGRAM_GROUPS;
+    pattern->first += taken;
+    return taken;
+}
+
+// ---- What follows from what programs give ----
+
+static float *plane_at(const glint_pattern_points *points, const glint_plan *plan, int field, int channel)
+{
+    return (float *)(uintptr_t)glint_plane_of(points->planes, plan, field, channel);
+}
+
+/// What makes Phong's and Blinn-Phong's highlights even.
+static double even_factor(const glint_material_desc *desc, double s)
+{
+    if (desc->model != GLINT_MODEL_BLINN_PHONG)
+        return (s + 2) / 2;
+    return (s + 2) * (s + 4) / (8 * (glint_pow(2, -s / 2) + s));
+}
+
+static void finish_exponent(const glint_plan_pattern *own, const glint_pattern_points *points, const glint_plan *plan,
+                            uint32_t i)
+{
+    float *shininess = plane_at(points, plan, GLINT_FIELD_SHININESS, 0);
+    if (own->program[GLINT_FIELD_SHADER])
+        return;
+    if (own->desc.model == GLINT_MODEL_BLINN_PHONG && own->desc.matched)
+        shininess[i] *= 4;
+    for (int c = 0; c < 3 && own->desc.normalized; c++) {
+        float *specular = &plane_at(points, plan, GLINT_FIELD_SPECULAR, c)[i];
+        const double ks = own->program[GLINT_FIELD_SPECULAR] ? (double)*specular : own->desc.specular[c];
+        *specular = (float)fmin(ks * even_factor(&own->desc, (double)shininess[i]), GLINT_REFLECTANCE_MAX);
+    }
+}
+
+/// What is left of ambient light where indirect light stands for as much of it as the diffuse reflectance; of a program's
+/// also how much that is.
+static void finish_ambient(const glint_plan_pattern *own, const glint_pattern_points *points, const glint_plan *plan,
+                           uint32_t i)
+{
+    const bool program = own->program[GLINT_FIELD_AMBIENT];
+    if (program && !(own->made >> GLINT_FIELD_REST & 1))
+        return; // there is no indirect light
+    for (int c = 0; c < 3; c++) {
+        float *ambient = &plane_at(points, plan, GLINT_FIELD_AMBIENT, c)[i];
+        const double ka = program ? (double)*ambient : own->desc.ambient[c];
+        const double kd = own->made >> GLINT_FIELD_DIFFUSE & 1
+                              ? (double)plane_at(points, plan, GLINT_FIELD_DIFFUSE, c)[i]
+                              : own->desc.diffuse[c];
+        if (program)
+            plane_at(points, plan, GLINT_FIELD_REST, c)[i] = (float)fmin(ka, kd);
+        *ambient = (float)fmax(ka - kd, 0);
+    }
+}
+
+static void finish_roughness(const glint_plan_pattern *own, const glint_pattern_points *points, const glint_plan *plan,
+                             uint32_t i)
+{
+    float *roughness = &plane_at(points, plan, GLINT_FIELD_ROUGHNESS, 0)[i];
+    const double r = fmin((double)*roughness, 1);
+    (void)own;
+    *roughness = (float)fmax(r * r, 1e-18);
+}
+
+void glint_pattern_finish(const glint_pattern_batch *batch, const glint_pattern_points *points, const glint_plan *plan,
+                          int field)
+{
+    static void (*const finishers[GLINT_FIELD_PLANES])(const glint_plan_pattern *, const glint_pattern_points *,
+                                                       const glint_plan *, uint32_t) = {
+        [GLINT_FIELD_AMBIENT] = finish_ambient,
+        [GLINT_FIELD_SHININESS] = finish_exponent,
+        [GLINT_FIELD_ROUGHNESS] = finish_roughness,
+    };
+    const glint_pattern_lanes *entries = batch->entries;
+    for (uint32_t k = 0; k < batch->count && finishers[field]; k++)
+        for (unsigned left = entries[k].lanes; left; left &= left - 1)
+            finishers[field](batch->own, points, plan,
+                             entries[k].group * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+}
+
+// ---- The programs ----
+
+void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_program_code *code,
+                        uint32_t first, glint_program_args *args)
+{
+    const glint_pattern_inputs *inputs = &pattern->inputs;
+    args->code = code;
+    args->rows = pattern->rows;
+    args->same = inputs->same;
+    for (uint32_t left = inputs->used; left; left &= left - 1) {
+        const int input = __builtin_ctz(left);
+        args->input[input] = inputs->from[input] + (inputs->same >> input & 1 ? 0 : first * GLINT_GROUP);
+    }
+    frame->stages->program(args);
+}
+
+const glint_program_code *glint_pattern_point_planes(glint_pattern_batch *batch, const glint_tile_frame *frame,
+                                                     const glint_pattern_points *points, int field,
+                                                     const glint_program_code *code, glint_program_code *room)
+{
+    const int planes = frame->plan->patterns->planes[field];
+    for (int c = 0; c < planes; c++)
+        batch->args.plane[c] = plane_at(points, frame->plan, field, c);
+    if (code->output_count >= (uint32_t)planes)
+        return code;
+    *room = *code;
+    for (; room->output_count < (uint32_t)planes; room->output_count++)
+        room->outputs[room->output_count] = room->outputs[0];
+    return room;
+}
+
+static bool is_before(const double a[3], const double b[3])
+{
+    for (int c = 0; c < 3; c++)
+        if (a[c] != b[c])
+            return a[c] < b[c];
+    return false;
+}
+
+void glint_odd_pattern_add(glint_odd_pattern *to, const glint_odd_pattern *more)
+{
+    const uint64_t count = to->count + more->count;
+    if (more->count && (!to->count || is_before(more->point, to->point)))
+        *to = *more;
+    to->count = count;
+}
+
+void glint_pattern_note_odd(const glint_pattern_batch *batch, const glint_tile_frame *frame,
+                            const glint_pattern_points *points, int field, glint_tile_counts *counts)
+{
+    for (uint32_t k = 0; k < batch->count; k++)
+        for (unsigned left = batch->called.odd[k]; left; left &= left - 1) {
+            const uint32_t i = batch->entries[k].group * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            glint_odd_pattern one = { .count = 1, .material = batch->entries[k].material, .field = field };
+            for (int c = 0; c < 3; c++)
+                one.point[c] = glint_real_at(points->point[c], frame->plan->desc.precision, i);
+            glint_odd_pattern_add(&counts->odd, &one);
+        }
+}
+
+bool glint_pattern_next(struct glint_pattern *pattern, const glint_tile_frame *frame, glint_pattern_batch *batch)
+{
+    glint_pattern_called *called = &batch->called;
+    batch->count = glint_pattern_take(pattern, &batch->entries);
+    if (!batch->count)
+        return false;
+    batch->own = &frame->plan->patterns->of[batch->entries[0].material];
+    batch->args.group_count = batch->count;
+    batch->args.wanted = called->wanted;
+    batch->args.groups = called->groups;
+    batch->args.odd = called->odd;
+    for (uint32_t k = 0; k < batch->count; k++) {
+        called->groups[k] = batch->entries[k].group;
+        called->wanted[k] = batch->entries[k].lanes;
+    }
+    return true;
+}
+
+static void count_lanes(const glint_pattern_batch *batch, glint_tile_counts *counts)
+{
+    for (uint32_t k = 0; k < batch->count; k++)
+        counts->work.patterns += glint_count_lanes(batch->entries[k].lanes);
+}
+
+void glint_pattern_run_batch(struct glint_pattern *pattern, const glint_tile_frame *frame,
+                             const glint_pattern_points *points, glint_pattern_batch *batch, glint_tile_counts *counts)
+{
+    const glint_plan_pattern *own = batch->own;
+    for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
+        if (!(own->made & points->fields & 1u << field))
+            continue;
+        if (own->program[field]) {
+            glint_program_code room;
+            const glint_program_code *code =
+                glint_pattern_point_planes(batch, frame, points, field, &own->program[field]->code, &room);
+            glint_pattern_call(pattern, frame, code, 0, &batch->args);
+            glint_pattern_note_odd(batch, frame, points, field, counts);
+        }
+        glint_pattern_finish(batch, points, frame->plan, field);
+    }
+}
+
+static bool has_planes(const glint_plan_pattern *own, uint32_t fields) { return own->made & fields; }
+
+/// The programs of all that is listed.
+static void run_list(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
+                     glint_tile_counts *counts)
+{
+    glint_pattern_batch batch = { .count = 0 };
+    while (glint_pattern_next(pattern, frame, &batch)) {
+        count_lanes(&batch, counts);
+        glint_pattern_gather(&pattern->inputs, frame, points, batch.own->reads, batch.entries, batch.count);
+        glint_pattern_run_batch(pattern, frame, points, &batch, counts);
+    }
+}
+
+bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
+                       glint_tile_counts *counts)
+{
+    glint_pattern_find_lanes(pattern, frame->plan->patterns, points, has_planes);
+    const bool any = pattern->count > 0;
+    run_list(pattern, frame, points, counts);
+    return any;
+}
+
+glint_pattern_points glint_pattern_points_of(const glint_tile *tile)
+{
+    glint_pattern_points points; // each field by itself: an initializer clears all of it first, which takes longer
+    points.group_count = tile->group_count;
+    points.hits = tile->at.hits;
+    points.back = tile->hit.back;
+    points.prim = tile->at.prim;
+    points.material = tile->surface.material;
+    points.only = tile->at.only;
+    points.t = tile->owner ? NULL : tile->at.t;
+    points.tile = tile;
+    points.planes = tile->at.planes;
+    points.fields = GLINT_FIELDS_PLANES;
+    points.shading = false;
+    for (int c = 0; c < 3; c++) {
+        points.direction[c] = NULL;
+        points.point[c] = tile->surface.point[c];
+        points.normal[c] = tile->unbumped[c] ? (const void *)tile->unbumped[c] : tile->surface.normal[c];
+    }
+    return points;
+}
+
+bool glint_pattern_needs_normals(const glint_plan *plan)
+{
+    const uint32_t normals = 1u << GLINT_INPUT_N_X | 1u << GLINT_INPUT_N_Y | 1u << GLINT_INPUT_N_Z;
+    const glint_plan_patterns *patterns = plan->patterns;
+    return patterns && (patterns->bumps || patterns->shaders || patterns->reads & normals);
+}
+
+uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan)
+{
+    uint32_t fields = 0, last = GLINT_MISS;
+    for (uint32_t g = 0; plan->patterns && g < tile->group_count; g++) {
+        const uint32_t *material = tile->surface.material + (size_t)g * GLINT_GROUP;
+        if (glint_all_are(material, last)) // the common case
+            continue;
+        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+            const uint32_t m = material[__builtin_ctz(left)];
+            if (m == last)
+                continue;
+            last = m;
+            fields |= plan->patterns->of[m].made;
+            if (tile->at.only)
+                return fields;
+        }
+    }
+    return fields;
+}
+
+bool glint_tile_find_painted(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_pattern_points points = { .group_count = tile->group_count,
+                                          .hits = tile->at.hits,
+                                          .material = tile->surface.material,
+                                          .only = tile->at.only,
+                                          .fields = GLINT_FIELDS_PLANES }; // the list depends on no more
+    glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, has_planes);
+    return tile->pattern->count > 0;
+}
+
+void glint_tile_painted_lanes(const glint_tile *tile, uint16_t painted[GLINT_TILE_GROUPS])
+{
+    memset(painted, 0, GLINT_TILE_GROUPS * sizeof *painted);
+    for (uint32_t k = 0; k < tile->pattern->count; k++)
+        painted[tile->pattern->lanes[k].group] |= tile->pattern->lanes[k].lanes;
+}
+
+bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
+{
+    glint_cached_tile *cached = tile->cached;
+    const bool known = cached && glint_key_equal(cached->pattern, frame->plan->keys[GLINT_STAGE_PATTERN]);
+    if (known || (cached && frame->reuse->keep_pattern &&
+                  (k ? cached->planes != NULL : glint_reuse_hold_planes(frame->reuse, cached))))
+        tile->at.planes = cached->planes + (size_t)k * frame->plan->patterns->plane_count * GLINT_TILE_SAMPLES;
+    return known;
+}
+
+void glint_tile_sign_pattern(glint_tile *tile, const glint_tile_frame *frame)
+{
+    if (frame->reuse->keep_pattern && tile->cached->planes)
+        tile->cached->pattern = frame->plan->keys[GLINT_STAGE_PATTERN];
+}
+
+void glint_tile_pattern(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_pattern_points points = glint_pattern_points_of(tile);
+    run_list(tile->pattern, frame, &points, &tile->counts);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, false);
+}
+
+void glint_tile_find_patterns(glint_tile *tile, const glint_tile_frame *frame)
+{
+    if (glint_tile_find_painted(tile, frame))
+        glint_tile_pattern(tile, frame);
+}
+
+const glint_shade_planes *glint_tile_shade_planes(const glint_tile *tile, const glint_plan *plan,
+                                                  glint_shade_planes *planes)
+{
+    if (!plan->patterns || !(plan->patterns->any || plan->patterns->shaders))
+        return NULL;
+    for (int c = 0; c < 3; c++) {
+        planes->diffuse[c] = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_DIFFUSE, c);
+        planes->ambient[c] = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_AMBIENT, c);
+        planes->specular[c] = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_SPECULAR, c);
+    }
+    planes->shininess = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_SHININESS, 0);
+    planes->alpha = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_ROUGHNESS, 0);
+    for (int k = 0; k < GLINT_SHADER_TERMS; k++)
+        planes->shaded[k / 3][k % 3] =
+            plan->runs[GLINT_STAGE_SHADER] && !plan->accumulate ? tile->pattern->shaded[k] : NULL;
+    vec_copy(planes->ambient_light, plan->ambient);
+    return planes;
+}
+
+const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
+                                                 glint_bounce_material *room)
+{
+    const uint32_t material = tile->surface.material[i];
+    const glint_bounce_material *m = &plan->bouncing[material];
+    const uint32_t colors = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION;
+    double color[3];
+    if (!plan->patterns || !(plan->patterns->of[material].made & colors))
+        return m;
+    *room = *m;
+    vec_copy(room->mirror, glint_color_at(tile->at.planes, plan, GLINT_FIELD_MIRROR, material, i, m->mirror, color));
+    vec_copy(room->transmission,
+             glint_color_at(tile->at.planes, plan, GLINT_FIELD_TRANSMISSION, material, i, m->transmission, color));
+    return room;
+}
+
+double glint_tile_pattern_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c)
+{
+    const uint32_t material = tile->surface.material[i];
+    const glint_plan_pattern *own = plan->patterns ? &plan->patterns->of[material] : NULL;
+    double room[3];
+    if (own && own->made >> GLINT_FIELD_REST & 1)
+        return (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_REST, c)[i] * plan->ambient[c];
+    if (!own || !(own->made >> GLINT_FIELD_DIFFUSE & 1))
+        return plan->indirect.rest[material][c];
+    const double kd = glint_tile_diffuse(tile, plan, i, room)[c];
+    return (own->ambient_follows ? kd : fmin(kd, own->desc.ambient[c])) * plan->ambient[c];
+}

@@ -1,0 +1,284 @@
+/// The stage shader: programs that say what one light leaves of a material, in place of the built-in models.
+///
+/// The groups that show a material are taken sixteen at a time. What they are is gathered once, what each light does there follows,
+/// and the program's results are added up in double before the next sixteen come.
+#include "engine/program/program.h"
+#include "engine/effects/pattern/work.h"
+
+#include <math.h>
+#include <string.h>
+
+/// What is one number of a material and a light, unless programs give it.
+#define NUMBERS (7u << GLINT_INPUT_KD_R | 7u << GLINT_INPUT_KS_R | 1u << GLINT_INPUT_SHININESS | 7u << GLINT_INPUT_LIGHT_R)
+
+/// Some groups that show one material.
+typedef struct batch {
+    const glint_program *program;
+    const glint_pattern_lanes *entries;
+    uint32_t groups[GLINT_PROGRAM_GROUPS]; ///< theirs
+    uint32_t count;
+} batch;
+
+/// Where a light's share goes.
+typedef enum result { TO_SUMS, TO_TOTALS, TO_PLANES } result;
+
+/// Those of a batch that a light reaches: `count` of its entries from `first` on, with what lies between them.
+typedef struct reached {
+    uint32_t first, count;
+    uint16_t lanes[GLINT_PROGRAM_GROUPS]; ///< of each of the batch's entries
+} reached;
+
+static void find_reached(const batch *b, const uint16_t *lit, reached *out)
+{
+    uint32_t first = 0, end = b->count;
+    for (uint32_t k = 0; k < b->count; k++)
+        out->lanes[k] = b->entries[k].lanes & lit[b->groups[k]];
+    while (end > 0 && !out->lanes[end - 1])
+        end--;
+    while (first < end && !out->lanes[first])
+        first++;
+    out->first = first;
+    out->count = end - first;
+}
+
+// ---- What a program reads ----
+
+/// What gathers numbers of a material.
+typedef struct reading {
+    const glint_plan_pattern *own;
+    uint32_t inputs;
+    const glint_pattern_lanes *entries;
+    uint32_t count;
+} reading;
+
+/// A number of a material, or what a program gave of it, if it is read.
+static void gather_field(glint_tile *tile, const glint_plan *plan, const reading *r, glint_field field, int channel,
+                         double number, int input)
+{
+    glint_pattern_inputs *inputs = &tile->pattern->inputs;
+    if (!(r->inputs >> input & 1))
+        return;
+    if (!(r->own->made >> field & 1)) {
+        glint_pattern_put_number(inputs, (glint_input)input, number);
+        return;
+    }
+    const float *plane = glint_plane_of(tile->at.planes, plan, field, channel);
+    double *to = glint_pattern_row(inputs, (glint_input)input);
+    for (uint32_t k = 0; k < r->count; k++)
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            to[k * GLINT_GROUP + i] = (double)plane[r->entries[k].group * GLINT_GROUP + i];
+}
+
+static void gather_material(glint_tile *tile, const glint_plan *plan, const reading *r)
+{
+    const double *diffuse = glint_plan_diffuse(plan, r->entries[0].material);
+    for (int c = 0; c < 3; c++) {
+        gather_field(tile, plan, r, GLINT_FIELD_DIFFUSE, c, diffuse[c], GLINT_INPUT_KD_R + c);
+        gather_field(tile, plan, r, GLINT_FIELD_SPECULAR, c, r->own->desc.specular[c], GLINT_INPUT_KS_R + c);
+    }
+    gather_field(tile, plan, r, GLINT_FIELD_SHININESS, 0, r->own->desc.shininess, GLINT_INPUT_SHININESS);
+}
+
+void glint_shader_gather(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points, uint32_t known,
+                         const glint_pattern_lanes *entries, uint32_t count)
+{
+    const glint_plan_pattern *own = &frame->plan->patterns->of[entries->material];
+    const reading r = { own, own->program[GLINT_FIELD_SHADER]->inputs, entries, count };
+    const uint32_t reads = (r.inputs & ~(NUMBERS | known)) | 7u << GLINT_INPUT_WORLD_X;
+    glint_pattern_gather(&tile->pattern->inputs, frame, points, reads, entries, count);
+    gather_material(tile, frame->plan, &r);
+}
+
+/// Where the batch sees an area light's sample.
+static void place_sample(glint_tile *tile, const glint_plan *plan, const batch *b, const reached *lit,
+                         const glint_plan_light *light, const glint_light_sample *sample)
+{
+    for (uint32_t k = lit->first; k < lit->first + lit->count; k++)
+        for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+            double place[3];
+            glint_tile_sample_place(tile, plan->desc.precision, sample, light->scale, b->groups[k] * GLINT_GROUP + i,
+                                    place);
+            for (int c = 0; c < 3; c++)
+                tile->pattern->inputs.row[GLINT_INPUT_L_X + c][k * GLINT_GROUP + i] = place[c];
+        }
+}
+
+/// Ways to a light and, where the program reads it, how far it is.
+static void gather_way(glint_tile *tile, const glint_tile_frame *frame, const batch *b, const reached *lit,
+                       const glint_plan_light *light)
+{
+    glint_pattern_inputs *inputs = &tile->pattern->inputs;
+    const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
+    const size_t at = light->directional ? 0 : (size_t)lit->first * GLINT_GROUP; // one way for all points
+    const bool measured = glint_program_reads(b->program, GLINT_INPUT_DISTANCE) && !light->directional;
+    glint_unit_args args = { .group_count = light->directional ? 1 : lit->count,
+                             .place = sample ? NULL : light->position,
+                             .length = measured ? glint_pattern_row(inputs, GLINT_INPUT_DISTANCE) + at : NULL };
+    for (int c = 0; c < 3; c++) {
+        double *way = inputs->row[GLINT_INPUT_L_X + c] + at;
+        args.to[c] = way;
+        args.from[c] = light->directional ? NULL : inputs->from[GLINT_INPUT_WORLD_X + c] + at;
+        args.unit[c] = way;
+    }
+    if (sample)
+        place_sample(tile, frame->plan, b, lit, light, sample);
+    frame->stages->unit(&args);
+    inputs->same &= ~(7u << GLINT_INPUT_L_X);
+    if (!light->directional)
+        return;
+    inputs->same |= 7u << GLINT_INPUT_L_X;
+    glint_pattern_put_number(inputs, GLINT_INPUT_DISTANCE, HUGE_VAL);
+}
+
+/// What arrives of a light's colour.
+static void gather_color(glint_tile *tile, const batch *b, const glint_shader_light *from)
+{
+    for (int c = 0; c < 3; c++) {
+        const float *weight = from->weight[c];
+        const glint_input input = (glint_input)(GLINT_INPUT_LIGHT_R + c);
+        if (!weight) {
+            glint_pattern_put_number(&tile->pattern->inputs, input, from->light->diffuse[c]);
+            continue;
+        }
+        double *to = glint_pattern_row(&tile->pattern->inputs, input);
+        for (uint32_t k = 0; k < b->count; k++)
+            for (uint32_t i = 0; i < GLINT_GROUP; i++)
+                to[k * GLINT_GROUP + i] =
+                    from->light->diffuse[c] * (double)weight[b->groups[k] * GLINT_GROUP + i];
+    }
+}
+
+/// How much of a light that is partly covered is seen; without the attenuation, which is in its colour.
+static void gather_share(const batch *b, const reached *lit, const glint_shader_light *from, float *share)
+{
+    for (uint32_t k = 0; k < lit->count; k++)
+        for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+            const size_t at = b->groups[lit->first + k] * GLINT_GROUP + i;
+            const float weight = from->weight[0] ? from->weight[0][at] : 1;
+            share[k * GLINT_GROUP + i] = weight > 0 ? from->visible[at] / weight : from->visible[at];
+        }
+}
+
+// ---- What comes of it ----
+
+/// What one light gives, added to the sums or to the totals of a batch; of the only one, into planes.
+static void add_light(glint_tile *tile, const glint_tile_frame *frame, const batch *b, const reached *lit,
+                      const glint_shader_light *from, result to)
+{
+    struct glint_pattern *pattern = tile->pattern;
+    _Alignas(64) float share[GLINT_PROGRAM_LANES];
+    glint_program_args args = { .group_count = lit->count,
+                                .wanted = lit->lanes + lit->first,
+                                .groups = to == TO_TOTALS ? NULL : b->groups + lit->first,
+                                .share = from->visible ? share : NULL };
+    gather_way(tile, frame, b, lit, from->light);
+    gather_color(tile, b, from);
+    if (from->visible)
+        gather_share(b, lit, from, share);
+    for (int k = 0; k < GLINT_SHADER_TERMS; k++) {
+        args.plane[k] = to == TO_PLANES ? pattern->shaded[k] : NULL;
+        args.total[k] = to == TO_SUMS     ? tile->film.sum[GLINT_TERM_DIFFUSE + k / 3][k % 3]
+                        : to == TO_TOTALS ? pattern->total[k] + (size_t)lit->first * GLINT_GROUP
+                                          : NULL;
+    }
+    glint_pattern_call(pattern, frame, &b->program->code, lit->first, &args);
+    for (uint32_t k = 0; k < lit->count; k++)
+        tile->counts.work.patterns += glint_count_lanes(lit->lanes[lit->first + k]);
+}
+
+/// Rounds the totals of a batch into planes.
+static void round_totals(struct glint_pattern *pattern, const batch *b)
+{
+    for (int term = 0; term < GLINT_SHADER_TERMS; term++)
+        for (uint32_t k = 0; k < b->count; k++) {
+            const double *from = &pattern->total[term][k * GLINT_GROUP];
+            float *to = &pattern->shaded[term][b->groups[k] * GLINT_GROUP];
+            const unsigned lanes = b->entries[k].lanes;
+            for (int i = 0; lanes == 0xffff && i < GLINT_GROUP; i++)
+                to[i] = (float)from[i];
+            for (int i = 0; lanes != 0xffff && i < GLINT_GROUP; i++)
+                to[i] = lanes >> i & 1 ? (float)from[i] : to[i];
+        }
+}
+
+/// Makes the planes 0 that the program has no output for.
+static void clear_missing(struct glint_pattern *pattern, const batch *b)
+{
+    for (uint32_t term = b->program->code.output_count; term < GLINT_SHADER_TERMS; term++)
+        for (uint32_t k = 0; k < b->count; k++)
+            for (unsigned left = b->entries[k].lanes; left; left &= left - 1)
+                pattern->shaded[term][b->groups[k] * GLINT_GROUP + (unsigned)__builtin_ctz(left)] = 0;
+}
+
+/// One material's shader, for some groups that show it and all lights.
+static void shade_batch(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
+                        const batch *b, const glint_shader_light *lights, uint32_t light_count)
+{
+    const result to = frame->plan->accumulate ? TO_SUMS : light_count > 1 || lights->visible ? TO_TOTALS : TO_PLANES;
+    bool gathered = false;
+    for (int term = 0; to == TO_TOTALS && term < GLINT_SHADER_TERMS; term++)
+        memset(tile->pattern->total[term], 0, (size_t)b->count * GLINT_GROUP * sizeof(double));
+    for (uint32_t i = 0; i < light_count; i++) {
+        reached lit;
+        find_reached(b, lights[i].lit, &lit);
+        if (!lit.count)
+            continue;
+        if (!gathered)
+            glint_shader_gather(tile, frame, points, 0, b->entries, b->count);
+        gathered = true;
+        add_light(tile, frame, b, &lit, &lights[i], to);
+    }
+    if (to == TO_TOTALS)
+        round_totals(tile->pattern, b);
+    if (to == TO_PLANES)
+        clear_missing(tile->pattern, b);
+}
+
+static bool has_shader(const glint_plan_pattern *own, uint32_t fields)
+{
+    (void)fields;
+    return own->program[GLINT_FIELD_SHADER];
+}
+
+glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint_plan *plan, const uint16_t *lanes)
+{
+    glint_pattern_points points = glint_pattern_points_of(tile);
+    points.hits = lanes;
+    points.shading = true;
+    for (int c = 0; c < 3; c++)
+        points.normal[c] = tile->surface.normal[c];
+    glint_pattern_find_lanes(tile->pattern, plan->patterns, &points, has_shader);
+    return points;
+}
+
+/// The lanes that any of the lights reaches; `room`: for those of several.
+static const uint16_t *find_lit(const glint_tile *tile, const glint_shader_light *lights, uint32_t light_count,
+                                uint16_t room[GLINT_TILE_GROUPS])
+{
+    if (light_count == 1)
+        return lights->lit;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        room[g] = 0;
+        for (uint32_t i = 0; i < light_count; i++)
+            room[g] |= lights[i].lit[g];
+    }
+    return room;
+}
+
+void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const glint_shader_light *lights, uint32_t light_count)
+{
+    uint16_t room[GLINT_TILE_GROUPS];
+    const uint16_t *lit = find_lit(tile, lights, light_count, room);
+    const glint_pattern_points points = glint_shader_find_lanes(tile, frame->plan, lit);
+    const glint_pattern_lanes *entries;
+    if (!tile->pattern->count)
+        return;
+    for (uint32_t taken; (taken = glint_pattern_take(tile->pattern, &entries));) {
+        batch b = { .entries = entries, .count = taken };
+        b.program = frame->plan->patterns->of[entries[0].material].program[GLINT_FIELD_SHADER];
+        for (uint32_t k = 0; k < b.count; k++)
+            b.groups[k] = entries[k].group;
+        shade_batch(tile, frame, &points, &b, lights, light_count);
+    }
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_SHADER, false);
+}

@@ -1,0 +1,136 @@
+#include "engine/effects/pattern/uv.h"
+#include "engine/base/vec.h"
+#include "engine/program/builder.h"
+
+#define TURN 0x1.921fb54442d18p+2 // 2 pi
+#define BELOW_1 0x1.fffffffffffffp-1
+
+/// The angle of x, z around an axis, 0 .. 1: from -z on by -x, z and x.
+static double around(double x, double z)
+{
+    const double operands[GLINT_OPERANDS_MAX] = { x, z };
+    double angle[GLINT_RESULTS_MAX];
+    glint_fold(GLINT_OP_ATAN2, NULL, operands, angle);
+    return 0.5 + angle[0] / TURN;
+}
+
+/// Of a ball: u eastwards, v from the south pole at y = -1 to the north.
+static void ball_uv(const double d[3], glint_surface_uv *out)
+{
+    const double radius = sqrt(vec_dot(d, d)), operands[GLINT_OPERANDS_MAX] = { fmin(fmax(-d[1] / radius, -1), 1) };
+    const double off_axis2 = d[0] * d[0] + d[2] * d[2], steep = 1 / (sqrt(off_axis2) * (TURN / 2));
+    double angle[GLINT_RESULTS_MAX];
+    glint_fold(GLINT_OP_ACOS, NULL, operands, angle);
+    out->at[0] = around(d[0], d[2]);
+    out->at[1] = angle[0] / (TURN / 2);
+    out->unit = radius * (TURN / 2);
+    out->slope[0][0] = d[2] / (off_axis2 * TURN);
+    out->slope[0][2] = -d[0] / (off_axis2 * TURN);
+    for (int c = 0; c < 3; c++)
+        out->slope[1][c] = steep * ((c == 1) - d[1] / (radius * radius) * d[c]);
+}
+
+/// Of a box: 0 .. 1 on each face, as seen from outside with y upwards; above and below with -z and z upwards.
+static void box_uv(const glint_pattern_place *place, const glint_uv_point *point, glint_surface_uv *out)
+{
+    const int axis = point->axis, along[2] = { axis == 0 ? 2 : 0, axis == 1 ? 2 : 1 };
+    const bool turned[2] = { axis == 0 ? point->upper : axis == 2 && !point->upper, axis == 1 && point->upper };
+    for (int k = 0; k < 2; k++) {
+        const double low = place->lower[along[k]], high = place->upper[along[k]], p = point->p[along[k]];
+        out->at[k] = (turned[k] ? high - p : p - low) / (high - low);
+        out->slope[k][along[k]] = (turned[k] ? -1 : 1) / (high - low);
+        out->unit = k == 0 ? high - low : fmin(out->unit, high - low);
+    }
+}
+
+/// Of a plane or disk: lengths from its point. Of a cylinder or cone: around, and from base to top.
+static void axis_uv(const glint_pattern_place *place, const double p[3], glint_surface_uv *out)
+{
+    double d[3];
+    vec_sub(d, p, place->origin);
+    const double x = vec_dot(d, place->side[0]), y = vec_dot(d, place->side[1]), turn = (x * x + y * y) * TURN;
+    if (place->length == 0) {
+        *out = (glint_surface_uv) { { x, y }, .unit = 1 };
+        vec_copy(out->slope[0], place->side[0]);
+        vec_copy(out->slope[1], place->side[1]);
+        return;
+    }
+    out->at[0] = around(x, -y);
+    out->at[1] = fmin(fmax(vec_dot(d, place->along), 0), BELOW_1); // a cap is in one row of a texture, whatever rounding does
+    out->unit = fmin(TURN * place->radius, place->length);
+    for (int c = 0; c < 3; c++)
+        out->slope[0][c] = (x * place->side[1][c] - y * place->side[0][c]) / turn;
+    vec_copy(out->slope[1], place->along);
+}
+
+/// Of a torus: around its axis as of a cylinder, and around its tube: from the inside of the ring on by its under side, 0 .. 1.
+static void torus_uv(const glint_pattern_place *place, const double p[3], glint_surface_uv *out)
+{
+    double d[3];
+    vec_sub(d, p, place->origin);
+    const double x = vec_dot(d, place->side[0]), y = vec_dot(d, place->side[1]), z = vec_dot(d, place->along);
+    const double round2 = x * x + y * y, round = sqrt(round2), off = round - place->length, tube2 = off * off + z * z;
+    out->at[0] = around(x, -y);
+    out->at[1] = around(z, off);
+    out->unit = TURN * fmin(round, place->radius);
+    for (int c = 0; c < 3; c++) {
+        const double outward = (x * place->side[0][c] + y * place->side[1][c]) / round;
+        out->slope[0][c] = (x * place->side[1][c] - y * place->side[0][c]) / (round2 * TURN);
+        out->slope[1][c] = (off * place->along[c] - z * outward) / (tube2 * TURN);
+    }
+}
+
+/// Sides of a triangle from its first corner, and the way from there to p, all times a power of two. Returns that.
+static double sides_of(const glint_mesh *mesh, uint32_t triangle, const double p[3], double side[3][3])
+{
+    const uint32_t *at = mesh->triangles[triangle];
+    const double *first = mesh->vertices[at[0]];
+    vec_sub(side[0], mesh->vertices[at[1]], first);
+    vec_sub(side[1], mesh->vertices[at[2]], first);
+    vec_sub(side[2], p, first);
+    const double scale = power_of_two_scale(fmax(vec_max_abs(side[0]), vec_max_abs(side[1])));
+    for (int i = 0; i < 3; i++)
+        vec_scale(side[i], side[i], scale);
+    return scale;
+}
+
+/// Of a mesh: those of the corners by the point's weights, u0 + (w1 (u1 - u0) + w2 (u2 - u0)). What rounding moves a point by
+/// beyond an edge does not take them beyond what the corners have: a face whose corners agree has that number exactly.
+static void mesh_uv(const glint_pattern_place *place, const glint_uv_point *point, glint_surface_uv *out)
+{
+    const glint_mesh *mesh = place->mesh;
+    const uint32_t *at = (mesh->triangle_uv ? mesh->triangle_uv : mesh->triangles)[point->triangle];
+    const double *corner[3] = { mesh->uv[at[0]], mesh->uv[at[1]], mesh->uv[at[2]] };
+    double side[3][3], n[3], across[2][3], steepest2 = 0;
+    const double scale = sides_of(mesh, point->triangle, point->p, side);
+    vec_cross(n, side[0], side[1]);
+    vec_cross(across[0], side[1], n);
+    vec_cross(across[1], n, side[0]);
+    const double n2 = vec_dot(n, n), per = scale / n2, w1 = vec_dot(across[0], side[2]) / n2,
+                 w2 = vec_dot(across[1], side[2]) / n2;
+    for (int k = 0; k < 2; k++) {
+        const double u0 = corner[0][k], d1 = corner[1][k] - u0, d2 = corner[2][k] - u0;
+        const double low = fmin(u0, fmin(corner[1][k], corner[2][k])),
+                     high = fmax(u0, fmax(corner[1][k], corner[2][k]));
+        out->at[k] = fmin(fmax(u0 + (w1 * d1 + w2 * d2), low), high);
+        for (int c = 0; c < 3; c++)
+            out->slope[k][c] = (d1 * across[0][c] + d2 * across[1][c]) * per;
+        steepest2 = fmax(steepest2, vec_dot(out->slope[k], out->slope[k]));
+    }
+    out->unit = 1 / sqrt(steepest2);
+}
+
+void glint_surface_uv_at(const glint_pattern_place *place, const glint_uv_point *point, glint_surface_uv *out)
+{
+    *out = (glint_surface_uv) { .unit = 1 };
+    if (place->kind == GLINT_SHAPE_MESH)
+        mesh_uv(place, point, out);
+    else if (place->kind == GLINT_SHAPE_BOX)
+        box_uv(place, point, out);
+    else if (place->kind == GLINT_SHAPE_SPHERE || place->kind == GLINT_SHAPE_SPHERES)
+        ball_uv(point->from_center, out);
+    else if (place->kind == GLINT_SHAPE_TORUS)
+        torus_uv(place, point->p, out);
+    else
+        axis_uv(place, point->p, out);
+}

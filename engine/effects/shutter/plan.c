@@ -1,0 +1,183 @@
+/// A frame seen while a shutter is open: the mean of its light at several times.
+///
+/// Light adds up. Where lights alone differ from time to time, the frame is one plan, in which a light that changes is there once
+/// for each time with its share of the strength; nothing else is done twice. Where surfaces, materials or the camera differ, each
+/// time is rendered, and effects/shutter/shutter.c takes the mean; so are frames with derivatives, of which it takes the mean, too.
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/plan/plan.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define ROWS_MAX 0x1p27 ///< of all times; light samples likewise
+
+glint_render_desc glint_shutter_desc(const glint_render_desc *frame)
+{
+    glint_render_desc desc = *frame;
+    desc.codes = false;
+    desc.derivatives = NULL;
+    desc.derivative_count = 0;
+    desc.outline = GLINT_OUTLINE_NONE;
+    desc.passes = (desc.passes & GLINT_LIGHT_PASSES) | 1u << GLINT_PASS_BEAUTY;
+    return desc;
+}
+
+// ---- Whether lights alone differ ----
+
+static bool vec_equal(const double a[3], const double b[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
+
+static bool equal_depth_cue(const glint_plan *a, const glint_plan *b)
+{
+    return a->depth_cue.on == b->depth_cue.on && vec_equal(a->depth_cue.color, b->depth_cue.color) &&
+           a->depth_cue.near == b->depth_cue.near && a->depth_cue.far == b->depth_cue.far;
+}
+
+/// Whether two plans differ in nothing but lights, if in anything. What becomes of the pixels may differ, too.
+static bool differ_in_lights(const glint_plan *a, const glint_plan *b)
+{
+    static const glint_stage_id read[] = { GLINT_STAGE_SURFACE, GLINT_STAGE_PATTERN, GLINT_STAGE_VIEW };
+    for (size_t i = 0; i < sizeof read / sizeof *read; i++)
+        if (!glint_key_equal(a->keys[read[i]], b->keys[read[i]]))
+            return false;
+    return glint_key_equal(a->all_materials_key, b->all_materials_key) &&
+           glint_key_equal(a->background_key, b->background_key) && equal_depth_cue(a, b) &&
+           vec_equal(a->ambient, b->ambient);
+}
+
+bool glint_plan_adds_up(const glint_plan *plan, glint_plan *const *times, size_t count)
+{
+    bool adds_up = plan->base == NULL && !plan->runs[GLINT_STAGE_SHADER] && !plan->derivatives;
+    for (size_t k = 0; k < count && adds_up; k++)
+        adds_up = differ_in_lights(plan, times[k]) && times[k]->caps == plan->caps;
+    return adds_up;
+}
+
+// ---- The lights of all times ----
+
+/// The rows of the light that begins at row `first`.
+static uint32_t rows_of(const glint_plan *plan, uint32_t first)
+{
+    uint32_t end = first + 1;
+    while (end < plan->light_count && plan->lights[end].joined)
+        end++;
+    return end - first;
+}
+
+/// Whether a light is the same in all times.
+static bool is_steady(glint_plan *const *times, size_t count, uint32_t first, uint32_t rows)
+{
+    for (size_t k = 1; k < count; k++)
+        for (uint32_t i = first; i < first + rows; i++)
+            if (!glint_key_equal(times[k]->lights[i].look_key, times[0]->lights[i].look_key))
+                return false;
+    return true;
+}
+
+/// Whether all times have the same lights in the same rows, wherever these are and whatever they give.
+static bool same_rows(glint_plan *const *times, size_t count)
+{
+    for (size_t k = 1; k < count; k++) {
+        if (times[k]->light_count != times[0]->light_count)
+            return false;
+        for (uint32_t i = 0; i < times[0]->light_count; i++)
+            if (times[k]->lights[i].joined != times[0]->lights[i].joined)
+                return false;
+    }
+    return true;
+}
+
+/// Light samples of a row.
+static size_t samples_of(const glint_plan_light *light)
+{
+    return light->cap ? 1 : light->light_samples ? light->turn_count : 0;
+}
+
+/// What is filled.
+typedef struct lights {
+    glint_plan_light *rows;
+    glint_light_sample *samples;
+    uint32_t row_count;
+    size_t sample_count;
+} lights;
+
+static void add_row(lights *to, const glint_plan_light *from, double share)
+{
+    glint_plan_light *row = &to->rows[to->row_count++];
+    const size_t samples = samples_of(from);
+    *row = *from;
+    vec_scale(row->diffuse, row->diffuse, share);
+    vec_scale(row->specular, row->specular, share);
+    if (samples == 0)
+        return;
+    glint_light_sample *own = to->samples + to->sample_count;
+    memcpy(own, from->cap ? from->cap : from->light_samples, samples * sizeof *own);
+    row->cap = from->cap ? own : NULL;
+    row->light_samples = from->cap ? NULL : own;
+    to->sample_count += samples;
+}
+
+/// The lights of all times, one after the other; those that are steady once.
+static void add_all(lights *to, glint_plan *const *times, size_t count)
+{
+    const bool alike = same_rows(times, count);
+    for (size_t k = 0; k < count; k++) {
+        const glint_plan *time = times[k];
+        for (uint32_t first = 0, rows; first < time->light_count; first += rows) {
+            rows = rows_of(time, first);
+            const bool steady = alike && is_steady(times, count, first, rows);
+            for (uint32_t i = 0; i < rows && (k == 0 || !steady); i++)
+                add_row(to, &time->lights[first + i], steady ? 1 : 1 / (double)count);
+        }
+    }
+}
+
+static glint_status make_room(lights *to, glint_plan *const *times, size_t count, glint_error *error)
+{
+    double rows = 0, samples = 0;
+    for (size_t k = 0; k < count; k++) {
+        rows += times[k]->light_count;
+        for (uint32_t i = 0; i < times[k]->light_count; i++)
+            samples += (double)samples_of(&times[k]->lights[i]);
+    }
+    if (rows > ROWS_MAX || samples > ROWS_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "shutter_times: at most %.0f samples of lights in all times expected, got %.0f", ROWS_MAX,
+                          rows > samples ? rows : samples);
+    to->rows = glint_alloc((size_t)rows, sizeof *to->rows);
+    to->samples = glint_alloc((size_t)samples, sizeof *to->samples);
+    return to->rows && to->samples ? GLINT_OK : glint_fail_nomem(error);
+}
+
+glint_status glint_plan_take_lights(glint_plan *plan, glint_plan *const *times, size_t count, glint_error *error)
+{
+    lights all = { 0 };
+    glint_status status = make_room(&all, times, count, error);
+    if (status) {
+        free(all.rows);
+        free(all.samples);
+        return status;
+    }
+    add_all(&all, times, count);
+    free(plan->lights);
+    free(plan->light_samples);
+    plan->lights = all.rows;
+    plan->light_samples = all.samples;
+    plan->light_count = all.row_count;
+    plan->powers = plan->facets = false;
+    for (size_t k = 0; k < count; k++) {
+        plan->powers = plan->powers || times[k]->powers;
+        plan->facets = plan->facets || times[k]->facets;
+    }
+    plan->highlights = plan->powers || plan->facets;
+    glint_plan_count_lights(plan);
+    return GLINT_OK;
+}
+
+void glint_plan_free_times(glint_plan **times, size_t count)
+{
+    for (size_t k = 0; k < count; k++)
+        glint_plan_destroy(times[k]);
+    free(times);
+}

@@ -1,0 +1,136 @@
+#include "engine/effects/transparent_shadow/plan.h"
+#include "engine/base/vec.h"
+
+#include <math.h>
+
+/// Of the lengths that a ray is made of: its places may be off by so much, in either precision, with room for what the test
+/// below rounds.
+#define SLACK 0x1p-20
+
+// ---- Balls ----
+
+static bool transmits(const glint_plan *plan, const glint_geometry_table *table, const glint_prim *prim)
+{
+    if (prim->kind != GLINT_PRIM_COMBINED)
+        return plan->bouncing[prim->material].transmits;
+    const glint_combined *combined = &table->combined[prim->item];
+    for (uint32_t i = 0; i < combined->count; i++)
+        if (plan->bouncing[table->prims[table->prim_count + combined->first + i].material].transmits)
+            return true;
+    return false;
+}
+
+/// A box, and the one primitive in it; `only` NULL: there are several.
+typedef struct tint_box {
+    double lower[3], upper[3];
+    const glint_prim *only;
+    uint32_t count;
+} tint_box;
+
+static void add_prim(tint_box *box, const glint_geometry_table *table, const glint_prim *prim)
+{
+    double lower[3], upper[3];
+    glint_prim_bounds(table->solids, prim, lower, upper);
+    for (int c = 0; c < 3; c++) {
+        box->lower[c] = box->count ? fmin(box->lower[c], lower[c]) : lower[c];
+        box->upper[c] = box->count ? fmax(box->upper[c], upper[c]) : upper[c];
+    }
+    box->only = box->count ? NULL : prim;
+    box->count++;
+}
+
+/// The ball around a box, or the sphere that is alone in it; the box is empty then.
+static void add_ball(glint_tints *tints, tint_box *box)
+{
+    glint_ball *ball = &tints->of[tints->count++];
+    double half[3];
+    for (int c = 0; c < 3; c++) {
+        half[c] = 0.5 * box->upper[c] - 0.5 * box->lower[c];
+        ball->center[c] = box->lower[c] + half[c];
+    }
+    ball->radius = sqrt(vec_dot(half, half));
+    if (box->only && box->only->kind == GLINT_PRIM_SPHERE) {
+        vec_copy(ball->center, box->only->center);
+        ball->radius = box->only->radius;
+    }
+    box->count = 0;
+}
+
+void glint_tints_find(glint_tints *tints, const glint_plan *plan, const glint_geometry_table *table)
+{
+    uint32_t all = 0;
+    tint_box box = { .count = 0 };
+    *tints = (glint_tints) { .extent = table->extent };
+    for (uint32_t i = 0; i < table->prim_count; i++) {
+        if (!transmits(plan, table, &table->prims[i]))
+            continue;
+        tints->everywhere = tints->everywhere || !glint_prim_bounded(&table->prims[i]);
+        all++;
+    }
+    const uint32_t together = (all + GLINT_TINTS_MAX - 1) / GLINT_TINTS_MAX;
+    for (uint32_t i = 0; i < table->prim_count && !tints->everywhere; i++) {
+        if (!transmits(plan, table, &table->prims[i]))
+            continue;
+        add_prim(&box, table, &table->prims[i]);
+        if (box.count == together)
+            add_ball(tints, &box);
+    }
+    if (box.count)
+        add_ball(tints, &box);
+}
+
+// ---- Rays ----
+
+/// A light as seen from some points: how far from them it is at most, and what rounding may do on the way.
+static double slack_of(const glint_tints *tints, double points, const glint_tint_light *light)
+{
+    const double far = light->directional ? tints->extent : sqrt(vec_dot(light->place, light->place)) + light->radius;
+    return SLACK * (4 * tints->extent + points + far);
+}
+
+/// Whether rays from a ball of points around p to the light's ball are clear of the ball q for certain: the distance of p + t d
+/// from q less the radii, squared, is c + 2 b t + a t^2, above 0 for all t in 0 .. 1, or, directional, from 0 on.
+static inline int is_clear(const double p[3], double points, const glint_ball *q, double slack,
+                           const glint_tint_light *light)
+{
+    double m[3], d[3];
+    const double radius = q->radius + points + slack, rise = light->directional ? 0 : light->radius - points;
+    for (int k = 0; k < 3; k++) {
+        m[k] = q->center[k] - p[k];
+        d[k] = light->directional ? light->place[k] : light->place[k] - p[k];
+    }
+    const double a = vec_dot(d, d) - rise * rise, b = -vec_dot(m, d) - radius * rise, c = vec_dot(m, m) - radius * radius;
+    const int past = (a > 0) & ((b >= 0) | (b * b < a * c));
+    const int beyond = !light->directional & (a + 2 * b + c > 0) & ((b >= 0) | (-b > a));
+    return (c > 0) & (past | beyond);
+}
+
+uint32_t glint_tints_choose(const glint_tints *tints, const glint_ball *points, const glint_tint_light *light,
+                            uint16_t chosen[GLINT_TINTS_MAX])
+{
+    const double slack = slack_of(tints, sqrt(vec_dot(points->center, points->center)) + points->radius, light);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < tints->count; i++)
+        if (!is_clear(points->center, points->radius, &tints->of[i], slack, light))
+            chosen[count++] = (uint16_t)i;
+    return count;
+}
+
+uint16_t glint_tints_lanes(const glint_tints *tints, const uint16_t *chosen, uint32_t count,
+                           const double point[3][GLINT_GROUP], uint16_t lanes, const glint_tint_light *light)
+{
+    unsigned met = 0;
+    double most = 0;
+    for (int i = 0; i < GLINT_GROUP; i++)
+        most = fmax(most, fabs(point[0][i]) + fabs(point[1][i]) + fabs(point[2][i]));
+    const double slack = slack_of(tints, most, light);
+    for (uint32_t k = 0; k < count && (met & lanes) != lanes; k++) {
+        int clear[GLINT_GROUP];
+        for (int i = 0; i < GLINT_GROUP; i++)
+            clear[i] = is_clear((const double[3]) { point[0][i], point[1][i], point[2][i] }, 0, &tints->of[chosen[k]],
+                                slack, light);
+        for (int i = 0; i < GLINT_GROUP; i++)
+            met |= (unsigned)!clear[i] << i;
+    }
+    return (uint16_t)(met & lanes);
+}

@@ -1,0 +1,569 @@
+/// Light through transparent objects. Points that a light does not reach freely are tested again: a ray towards the light
+/// is followed straight through whatever transmits, and takes its colour at each surface. No light is bent. What
+/// absorbs takes its part of the whole distance: where the light stands in it, or the point, or both.
+///
+/// What parts a point from a light for good is decided by `occlude` alone: where the ray meets nothing that transmits, the
+/// point stays dark. Rays that are clear of all that does are not followed (tints.h). The others of all samples of a light are
+/// packed into full groups, as many as fit, and packed again after each surface.
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/tile/batch.h"
+#include "engine/effects/cut_out/cut_out.h"
+#include "engine/effects/transparent_shadow/plan.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define CROSSINGS_MAX 4096 ///< surfaces that one ray crosses; a point behind more is dark
+
+struct glint_transparent_shadow {
+    // rays that are on their way, packed into the first places
+    _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double t[GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t material[GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t leaving[GLINT_TILE_SAMPLES];
+    uint16_t hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
+    uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS];
+    uint16_t holes[GLINT_TILE_GROUPS]; ///< rays that have come to one; 0 in frames without
+    uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< which of the following is in a place
+    uint32_t group_count;
+    // all rays of a call of `follow`, row of the light by row
+    double target[3][GLINT_TILE_SAMPLES]; ///< the light's position; directional: the direction
+    double color[3][GLINT_TILE_SAMPLES];
+    glint_media media[GLINT_TILE_SAMPLES]; ///< in frames where something absorbs
+    uint16_t sample[GLINT_TILE_SAMPLES]; ///< the point they began at
+    bool crossed[GLINT_TILE_SAMPLES], arrived[GLINT_TILE_SAMPLES]; ///< something; through something
+    uint32_t count, first[GLINT_LIGHT_CHUNK + 1]; ///< the first ray of each row, and one beyond
+    // of the tile's samples
+    _Alignas(64) float attenuation[3][GLINT_TILE_SAMPLES]; ///< the light's, times the colour, for each channel
+    uint16_t reached[GLINT_TILE_GROUPS];
+    uint16_t tinted[GLINT_TILE_GROUPS]; ///< points whose rays to the light are followed
+    uint16_t dim[GLINT_TILE_GROUPS]; ///< points inside what absorbs
+    float *planes; ///< of what programs give; NULL: the plan has none for transmission
+};
+
+struct glint_transparent_shadow *glint_transparent_shadow_create(void)
+{
+    return glint_alloc(1, sizeof(struct glint_transparent_shadow));
+}
+
+void glint_transparent_shadow_destroy(struct glint_transparent_shadow *transparent_shadow) { free(transparent_shadow); }
+
+/// What is around a sample's point, on the side of the viewer, to which the light comes as well.
+static glint_media media_at(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
+{
+    const glint_plan *plan = frame->plan;
+    glint_media media = tile->batch ? *glint_batch_media(tile->batch, i) : plan->eye_media;
+    if (!plan->bouncing[tile->surface.material[i]].transmits || !glint_has_lane(tile->hit.back, i))
+        return media;
+    const uint32_t medium = frame->geometry.prims[tile->at.prim[i]].medium;
+    if (!glint_media_has(&media, medium))
+        glint_media_enter(&media, medium);
+    return media;
+}
+
+static bool absorbs(const glint_plan *plan, const glint_media *media)
+{
+    const uint32_t medium = glint_media_top(media);
+    const double *a = medium == GLINT_NO_MEDIUM ? NULL : plan->bouncing[medium].absorption;
+    return a && (a[0] > 0 || a[1] > 0 || a[2] > 0);
+}
+
+/// Whether points of a group may be inside what absorbs: behind surfaces that transmit, or where the viewer is.
+static unsigned lanes_within(const glint_tile *tile, const glint_plan *plan, uint32_t g)
+{
+    return tile->batch || absorbs(plan, &plan->eye_media) ? tile->at.hits[g] : tile->at.hits[g] & tile->hit.back[g];
+}
+
+bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    unsigned any = 0;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        tile->transparent_shadow->dim[g] = 0;
+        for (unsigned left = lanes_within(tile, frame->plan, g); left; left &= left - 1) {
+            const glint_media media = media_at(tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+            tile->transparent_shadow->dim[g] |= (uint16_t)(absorbs(frame->plan, &media) ? left & -left : 0);
+        }
+        any |= tile->transparent_shadow->dim[g];
+    }
+    return any;
+}
+
+uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g) { return tile->transparent_shadow->dim[g]; }
+
+/// Whether the light in `slot` is kept from any point, or dimmed on its way to one.
+static bool is_kept_off(const glint_tile *tile, const glint_plan *plan, uint32_t slot)
+{
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const unsigned whole = tile->at.light[slot].open[g] & ~(plan->dims ? tile->transparent_shadow->dim[g] : 0u);
+        if (tile->at.light[slot].lit[g] & ~whole)
+            return true;
+    }
+    return false;
+}
+
+bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t first, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if (plan->lights[first + i].shadows && is_kept_off(tile, plan, i))
+            return true;
+    return false;
+}
+
+// ---- Which rays are followed ----
+
+static glint_tint_light light_seen(const glint_tile *tile, const glint_plan_light *light)
+{
+    const glint_light_sample *light_sample = glint_tile_light_sample_of(tile, light);
+    glint_tint_light seen = { .directional = light->directional, .radius = light_sample ? light_sample->radius : 0 };
+    vec_copy(seen.place, light_sample ? light_sample->center : light->position);
+    return seen;
+}
+
+/// A ball around the tile's points. False: it is not known.
+static bool ball_around(const glint_tile *tile, glint_ball *ball)
+{
+    double half[3];
+    if (!tile->at.box)
+        return false;
+    for (int c = 0; c < 3; c++) {
+        half[c] = 0.5 * tile->at.box->upper[c] - 0.5 * tile->at.box->lower[c];
+        ball->center[c] = tile->at.box->lower[c] + half[c];
+    }
+    ball->radius = sqrt(vec_dot(half, half));
+    return true;
+}
+
+/// Finds those of `lanes` whose rays to a light may meet something transparent. Returns whether there are any.
+static bool find_tinted(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
+                        const uint16_t *lanes, uint16_t *tinted)
+{
+    const glint_tints *tints = frame->tints;
+    const glint_tint_light seen = light_seen(tile, light);
+    uint16_t chosen[GLINT_TINTS_MAX];
+    glint_ball ball;
+    unsigned any = 0;
+    uint32_t count = tints->count;
+    if (!tints->everywhere && ball_around(tile, &ball))
+        count = glint_tints_choose(tints, &ball, &seen, chosen);
+    else
+        for (uint32_t i = 0; i < count; i++)
+            chosen[i] = (uint16_t)i;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        double point[3][GLINT_GROUP];
+        tinted[g] = tints->everywhere ? lanes[g] : 0;
+        if (lanes[g] && count) {
+            for (int c = 0; c < 3; c++)
+                glint_reals_of(tile->surface.point[c], frame->plan->desc.precision, g, point[c]);
+            tinted[g] = glint_tints_lanes(tints, chosen, count, (const double(*)[GLINT_GROUP])point, lanes[g], &seen);
+        }
+        any |= tinted[g];
+    }
+    return any;
+}
+
+bool glint_tile_may_be_tinted(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light)
+{
+    return find_tinted(tile, frame, light, tile->at.hits, tile->transparent_shadow->tinted);
+}
+
+/// Whether a material shows nothing of the light that falls on it.
+static bool is_black(const glint_plan *plan, uint32_t material)
+{
+    const glint_shade_material *m = &plan->materials[material];
+    return !plan->patterns && !plan->derivatives && m->highlight == GLINT_HIGHLIGHT_NONE && vec_max_abs(m->diffuse) == 0;
+}
+
+/// Those whose rays to the light are followed: from points that show light, and that some row does not reach freely.
+static bool choose_points(glint_tile *tile, const glint_tile_frame *frame, uint32_t index, uint32_t slot, uint32_t count)
+{
+    uint16_t lanes[GLINT_TILE_GROUPS] = { 0 };
+    for (uint32_t i = slot; i < slot + count; i++)
+        for (uint32_t g = 0; g < tile->group_count; g++)
+            lanes[g] |= (uint16_t)(tile->at.light[i].lit[g] & ~tile->at.light[i].open[g]);
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = lanes[g]; left; left &= left - 1)
+            if (is_black(frame->plan, tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)]))
+                lanes[g] &= (uint16_t)~(left & -left);
+    return find_tinted(tile, frame, &frame->plan->lights[index], lanes, tile->transparent_shadow->tinted);
+}
+
+/// Of a row of the light: rays that are followed, and those that arrive at once, from points inside what absorbs.
+static unsigned followed(const glint_tile *tile, uint32_t slot, uint32_t g)
+{
+    const unsigned lit = tile->at.light[slot].lit[g];
+    return lit & ~(unsigned)tile->at.light[slot].open[g] & tile->transparent_shadow->tinted[g];
+}
+
+static unsigned dimmed(const glint_tile *tile, const glint_plan *plan, uint32_t slot, uint32_t g)
+{
+    return plan->dims ? tile->at.light[slot].open[g] & tile->transparent_shadow->dim[g] : 0;
+}
+
+// ---- Rays ----
+
+/// Puts ray `ray` into place `to`: at a point in place i of `point`, on primitive `prim`.
+static void aim(struct glint_transparent_shadow *transparent_shadow, glint_precision precision, bool directional,
+                const double (*point)[GLINT_TILE_SAMPLES], uint32_t i, uint32_t prim, bool inward, uint32_t ray,
+                uint32_t to)
+{
+    const uint16_t bit = (uint16_t)(1u << to % GLINT_GROUP);
+    uint16_t *inwards = &transparent_shadow->inward[to / GLINT_GROUP];
+    for (int c = 0; c < 3; c++) {
+        const double from = glint_real_at(point[c], precision, i), target = transparent_shadow->target[c][ray];
+        glint_real_put(transparent_shadow->origin[c], precision, to, from);
+        glint_real_put(transparent_shadow->direction[c], precision, to, directional ? target : target - from);
+    }
+    transparent_shadow->leaving[to] = prim;
+    *inwards = (uint16_t)(inward ? *inwards | bit : *inwards & ~bit);
+    transparent_shadow->ray_of[to] = (uint16_t)ray;
+}
+
+/// What a medium leaves of channel c over a distance.
+static double left_of(const glint_plan *plan, uint32_t medium, int c, double way)
+{
+    return glint_plan_left(medium == GLINT_NO_MEDIUM ? 0 : plan->bouncing[medium].absorption[c], way);
+}
+
+static double direction_length(const struct glint_transparent_shadow *transparent_shadow, glint_precision precision,
+                               uint32_t i)
+{
+    double d[3];
+    for (int c = 0; c < 3; c++)
+        d[c] = glint_real_at(transparent_shadow->direction[c], precision, i);
+    return sqrt(vec_dot(d, d));
+}
+
+/// The rest of the distance to the light, on which there is nothing more; directional light has none that ends.
+static void arrive(struct glint_transparent_shadow *transparent_shadow, const glint_plan *plan,
+                   const glint_plan_light *light, uint32_t i)
+{
+    const uint32_t ray = transparent_shadow->ray_of[i];
+    transparent_shadow->arrived[ray] = true;
+    if (!plan->absorbs)
+        return;
+    const uint32_t medium = glint_media_top(&transparent_shadow->media[ray]);
+    const double way = light->directional ? HUGE_VAL : direction_length(transparent_shadow, plan->desc.precision, i);
+    for (int c = 0; c < 3; c++)
+        transparent_shadow->color[c][ray] *= left_of(plan, medium, c, way);
+}
+
+/// Takes the colour of one surface, and of the distance up to it, with the ray in place i. Returns whether any light is left.
+static bool cross(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
+                  const glint_tile_frame *frame, uint32_t i)
+{
+    const glint_plan *plan = frame->plan;
+    const uint32_t material = transparent_shadow->material[i], ray = transparent_shadow->ray_of[i],
+                   inside = frame->geometry.prims[transparent_shadow->prim[i]].medium;
+    const bool back = glint_has_lane(transparent_shadow->back, i);
+    bool any = false;
+    double room[3], left[3] = { 1, 1, 1 };
+    const double *transmission = glint_color_at(transparent_shadow->planes, plan, GLINT_FIELD_TRANSMISSION, material, i,
+                                                plan->bouncing[material].transmission, room);
+    if (plan->absorbs) {
+        const uint32_t medium = glint_media_before(&transparent_shadow->media[ray], inside, back);
+        const double length = glint_real_at(transparent_shadow->t, plan->desc.precision, i) *
+                              direction_length(transparent_shadow, plan->desc.precision, i);
+        for (int c = 0; c < 3; c++)
+            left[c] = left_of(plan, medium, c, length);
+        glint_media_cross(&transparent_shadow->media[ray], inside, back);
+    }
+    for (int c = 0; c < 3; c++) {
+        if (plan->derivatives)
+            glint_tile_derive_tint(tile, plan, material, ray, c, transparent_shadow->color[c][ray], transmission[c], left[c]);
+        transparent_shadow->color[c][ray] *= transmission[c] * left[c];
+        any = any || transparent_shadow->color[c][ray] > 0;
+    }
+    transparent_shadow->crossed[ray] = true;
+    return any;
+}
+
+// ---- Their way ----
+
+/// Begins a ray at sample i, in place `to`.
+static void begin_ray(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
+                      const glint_tile_frame *frame, const glint_plan_light *light, uint32_t i, bool inward,
+                      uint32_t to)
+{
+    const uint32_t ray = transparent_shadow->count++;
+    double target[3];
+    glint_tile_light_target(tile, frame, light, i, target);
+    for (int c = 0; c < 3; c++) {
+        transparent_shadow->target[c][ray] = target[c];
+        transparent_shadow->color[c][ray] = 1;
+    }
+    transparent_shadow->sample[ray] = (uint16_t)i;
+    transparent_shadow->crossed[ray] = transparent_shadow->arrived[ray] = false;
+    if (frame->plan->absorbs)
+        transparent_shadow->media[ray] = media_at(tile, frame, i);
+    aim(transparent_shadow, frame->plan->desc.precision, light->directional, tile->surface.point, i, tile->at.prim[i],
+        inward, ray, to);
+}
+
+/// Fills the active lanes; the others of the last group begin nowhere.
+static void close_places(struct glint_transparent_shadow *transparent_shadow, glint_precision precision, uint32_t count)
+{
+    transparent_shadow->group_count = (count + GLINT_GROUP - 1) / GLINT_GROUP;
+    for (uint32_t g = 0; g < transparent_shadow->group_count; g++)
+        transparent_shadow->active[g] = 0xffff;
+    for (uint32_t i = count; i < transparent_shadow->group_count * GLINT_GROUP; i++) {
+        transparent_shadow->active[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP);
+        transparent_shadow->leaving[i] = GLINT_MISS;
+        for (int c = 0; c < 3; c++) {
+            glint_real_put(transparent_shadow->origin[c], precision, i, 0);
+            glint_real_put(transparent_shadow->direction[c], precision, i, 1);
+        }
+    }
+}
+
+/// Begins the rays of rows `slot` and on, from groups `from` to `end`.
+static void begin(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
+                  const glint_tile_frame *frame, uint32_t index, uint32_t slot, uint32_t count, uint32_t from,
+                  uint32_t end)
+{
+    uint32_t places = 0;
+    transparent_shadow->count = 0;
+    for (uint32_t row = 0; row < count; row++) {
+        const glint_plan_light *light = &frame->plan->lights[index + row];
+        transparent_shadow->first[row] = transparent_shadow->count;
+        for (uint32_t g = from; g < end; g++) {
+            const unsigned dim = dimmed(tile, frame->plan, slot + row, g);
+            for (unsigned left = followed(tile, slot + row, g) | dim; left; left &= left - 1) {
+                const unsigned bit = left & -left;
+                begin_ray(transparent_shadow, tile, frame, light, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left),
+                          !(dim & bit) && (tile->hit.back[g] & bit), places);
+                if (dim & bit)
+                    arrive(transparent_shadow, frame->plan, light, places);
+                else
+                    places++;
+            }
+        }
+    }
+    transparent_shadow->first[count] = transparent_shadow->count;
+    close_places(transparent_shadow, frame->plan->desc.precision, places);
+}
+
+static void cast(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile, const glint_tile_frame *frame)
+{
+    const struct glint_geometry_stages *stages = &frame->stages->geometry[frame->plan->desc.precision];
+    glint_cast_args rays = { .group_count = transparent_shadow->group_count,
+                             .active = transparent_shadow->active,
+                             .geometry = &frame->geometry,
+                             .stop = frame->cancelled,
+                             .leaving = transparent_shadow->leaving,
+                             .inward = transparent_shadow->inward,
+                             .t = transparent_shadow->t,
+                             .prim = transparent_shadow->prim,
+                             .hits = transparent_shadow->hits,
+                             .tests = glint_tile_tests_of(tile, frame) };
+    glint_surface_args surfaces = { .group_count = transparent_shadow->group_count,
+                                    .hits = transparent_shadow->hits,
+                                    .prim = transparent_shadow->prim,
+                                    .prims = frame->geometry.prims,
+                                    .mixed = frame->geometry.triangles || frame->geometry.solids,
+                                    .scale = frame->geometry.scale,
+                                    .solids = frame->geometry.solids,
+                                    .corner_normals = frame->geometry.corner_normals,
+                                    .t = transparent_shadow->t,
+                                    .material = transparent_shadow->material,
+                                    .back = transparent_shadow->back,
+                                    .dark = transparent_shadow->dark };
+    for (int c = 0; c < 3; c++) {
+        rays.origin[c] = surfaces.origin[c] = transparent_shadow->origin[c];
+        rays.direction[c] = surfaces.direction[c] = transparent_shadow->direction[c];
+        surfaces.point[c] = transparent_shadow->point[c];
+        surfaces.normal[c] = transparent_shadow->normal[c];
+    }
+    stages->cast_rays(&rays);
+    stages->surface(&surfaces);
+}
+
+/// What programs give of the surfaces that are met: their transmission, and where they have holes.
+static void find_transmission(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile,
+                              const glint_tile_frame *frame)
+{
+    glint_pattern_points points = { .group_count = transparent_shadow->group_count,
+                                    .hits = transparent_shadow->hits,
+                                    .back = transparent_shadow->back,
+                                    .prim = transparent_shadow->prim,
+                                    .material = transparent_shadow->material,
+                                    .tile = tile,
+                                    .planes = transparent_shadow->planes,
+                                    .fields = 1u << GLINT_FIELD_TRANSMISSION };
+    for (int c = 0; c < 3; c++) {
+        points.point[c] = transparent_shadow->point[c];
+        points.normal[c] = transparent_shadow->normal[c];
+        points.direction[c] = transparent_shadow->direction[c];
+    }
+    if (transparent_shadow->planes)
+        glint_pattern_run(tile->pattern, frame, &points, &tile->counts);
+    if (glint_plan_cuts(frame->plan))
+        glint_tile_find_holes(tile, frame, &points, transparent_shadow->holes);
+}
+
+/// One surface further with every ray; those that go on are packed.
+static void step(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile, const glint_tile_frame *frame,
+                 const glint_plan_light *light)
+{
+    const glint_precision precision = frame->plan->desc.precision;
+    uint32_t next = 0;
+    cast(transparent_shadow, tile, frame);
+    if (transparent_shadow->planes || glint_plan_cuts(frame->plan))
+        find_transmission(transparent_shadow, tile, frame);
+    for (uint32_t g = 0; g < transparent_shadow->group_count; g++) {
+        tile->counts.shadow += (uint64_t)__builtin_popcount(transparent_shadow->active[g]);
+        for (unsigned left = transparent_shadow->active[g]; left; left &= left - 1) {
+            const unsigned bit = left & -left;
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), ray = transparent_shadow->ray_of[i];
+            if (!(transparent_shadow->hits[g] & bit) ||
+                (!light->directional && !(glint_real_at(transparent_shadow->t, precision, i) < 1))) {
+                if (transparent_shadow->crossed[ray])
+                    arrive(transparent_shadow, frame->plan, light, i);
+            } else if ((transparent_shadow->holes[g] & bit) ||
+                       (frame->plan->bouncing[transparent_shadow->material[i]].transmits &&
+                        cross(transparent_shadow, tile, frame, i))) {
+                aim(transparent_shadow, precision, light->directional,
+                    (const double(*)[GLINT_TILE_SAMPLES])transparent_shadow->point, i, transparent_shadow->prim[i],
+                    !(transparent_shadow->back[g] & bit), ray, next++);
+            }
+        }
+    }
+    close_places(transparent_shadow, precision, next);
+}
+
+// ---- The light they bring ----
+
+/// Shades with the coloured light: as three lights, one for each channel.
+static void shade(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile, const glint_tile_frame *frame,
+                  const glint_plan_light *light, uint32_t slot)
+{
+    glint_shade_light lights[3];
+    glint_shade_planes planes;
+    glint_shade_args args = { .group_count = tile->group_count,
+                              .active = tile->active,
+                              .hits = transparent_shadow->reached,
+                              .material = tile->surface.material,
+                              .materials = frame->plan->materials,
+                              .planes = glint_tile_shade_planes(tile, frame->plan, &planes),
+                              .facing = tile->at.facing,
+                              .highlights = frame->plan->highlights,
+                              .lights = lights,
+                              .light_count = 3 };
+    for (int c = 0; c < 3; c++) {
+        lights[c] = (glint_shade_light) { .lit = transparent_shadow->reached,
+                                          .cosine = tile->at.light[slot].cosine,
+                                          .attenuation = transparent_shadow->attenuation[c],
+                                          .log2_specular = tile->at.light[slot].log2_specular,
+                                          .sine2 = tile->at.light[slot].sine2,
+                                          .schlick = tile->at.light[slot].schlick };
+        lights[c].diffuse[c] = light->diffuse[c];
+        lights[c].specular[c] = light->specular[c];
+        for (int k = 0; k < GLINT_TERM_LOCAL; k++)
+            args.sum[k][c] = tile->film.sum[k][c];
+    }
+    frame->stages->shade(&args);
+    if (!glint_tile_shows_shader(tile, frame->plan))
+        return;
+    glint_shader_light reach = { .light = light, .lit = transparent_shadow->reached };
+    for (int c = 0; c < 3; c++)
+        reach.weight[c] = transparent_shadow->attenuation[c];
+    glint_tile_shader(tile, frame, &reach, 1);
+}
+
+/// What row `row` of the light, in `slot`, gives along the rays that have arrived.
+static void add_row(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile, const glint_tile_frame *frame,
+                    const glint_plan_light *light, uint32_t row, uint32_t slot)
+{
+    bool any = false;
+    memset(transparent_shadow->reached, 0, tile->group_count * sizeof *transparent_shadow->reached);
+    for (uint32_t ray = transparent_shadow->first[row]; ray < transparent_shadow->first[row + 1]; ray++) {
+        const uint32_t i = transparent_shadow->sample[ray];
+        if (!transparent_shadow->arrived[ray])
+            continue;
+        const double a = light->cap          ? tile->at.light[slot].visible[i]
+                         : light->attenuated ? tile->at.light[slot].attenuation[i]
+                                             : 1;
+        for (int c = 0; c < 3; c++)
+            transparent_shadow->attenuation[c][i] =
+                (float)fmin(a * transparent_shadow->color[c][ray], GLINT_ATTENUATION_MAX);
+        transparent_shadow->reached[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+        if (frame->plan->derivatives)
+            glint_tile_put_tint(tile, frame->plan, i, ray, (const double(*)[GLINT_TILE_SAMPLES])transparent_shadow->color);
+        any = true;
+    }
+    if (any)
+        shade(transparent_shadow, tile, frame, light, slot);
+    if (any && frame->plan->derivatives)
+        glint_tile_derive_tinted(tile, frame, light, slot, transparent_shadow->reached);
+}
+
+/// The rays of groups `from` to `end`, which fit. False: cancelled.
+static bool follow(glint_tile *tile, const glint_tile_frame *frame, uint32_t index, uint32_t slot, uint32_t count,
+                   uint32_t from, uint32_t end)
+{
+    struct glint_transparent_shadow *transparent_shadow = tile->transparent_shadow;
+    const glint_plan_light *lights = &frame->plan->lights[index];
+    begin(transparent_shadow, tile, frame, index, slot, count, from, end);
+    if (frame->plan->derivatives)
+        glint_tile_begin_tints(tile, frame->plan);
+    memset(transparent_shadow->holes, 0, sizeof transparent_shadow->holes);
+    for (int k = 0; k < CROSSINGS_MAX && transparent_shadow->group_count; k++) {
+        if (glint_tile_cancelled(frame))
+            return false;
+        step(transparent_shadow, tile, frame, lights);
+    }
+    for (uint32_t row = 0; row < count; row++)
+        add_row(transparent_shadow, tile, frame, &lights[row], row, slot + row);
+    return true;
+}
+
+/// How many rays begin at a group's points.
+static uint32_t rays_from(const glint_tile *tile, const glint_plan *plan, uint32_t slot, uint32_t count, uint32_t g)
+{
+    uint32_t rays = 0;
+    for (uint32_t i = slot; i < slot + count; i++)
+        rays += (uint32_t)__builtin_popcount(followed(tile, i, g) | dimmed(tile, plan, i, g));
+    return rays;
+}
+
+/// One light, or samples of it that follow each other in a chunk.
+static void add_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t index, uint32_t slot, uint32_t count)
+{
+    const glint_plan *plan = frame->plan;
+    uint32_t from = 0, rays = 0;
+    if (!choose_points(tile, frame, index, slot, count) && !plan->dims)
+        return;
+    tile->transparent_shadow->planes = plan->patterns && plan->patterns->plane[GLINT_FIELD_TRANSMISSION] >= 0
+                                           ? glint_pattern_planes(tile->pattern, GLINT_WALK_SHADOW)
+                                           : NULL;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const uint32_t more = rays_from(tile, plan, slot, count, g);
+        if (rays + more > GLINT_TILE_SAMPLES) {
+            if (!follow(tile, frame, index, slot, count, from, g))
+                return;
+            from = g;
+            rays = 0;
+        }
+        rays += more;
+    }
+    if (rays)
+        follow(tile, frame, index, slot, count, from, tile->group_count);
+}
+
+void glint_tile_transparent_shadows(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t count)
+{
+    const glint_plan *plan = frame->plan;
+    for (uint32_t slot = 0, next; slot < count; slot = next) {
+        for (next = slot + 1; next < count && plan->lights[first + next].joined; next++)
+            continue;
+        bool shadowed = false;
+        for (uint32_t i = slot; i < next; i++)
+            shadowed = shadowed || is_kept_off(tile, plan, i);
+        if (shadowed && plan->lights[first + slot].shadows)
+            add_light(tile, frame, first + slot, slot, next - slot);
+    }
+}

@@ -1,0 +1,63 @@
+#include "engine/effects/vertex_shading/shading_points.h"
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+
+#include <stdlib.h>
+
+void glint_shading_points_clear(glint_shading_points_cached *shading_points, glint_reuse *reuse)
+{
+    if (shading_points->reserved)
+        glint_reuse_unreserve(reuse, shading_points->reserved);
+    free(shading_points->light);
+    free(shading_points->slopes);
+    free(shading_points->state);
+    *shading_points = (glint_shading_points_cached) { 0 };
+}
+
+static glint_status make_room(glint_shading_points_cached *shading_points, uint32_t blocks, size_t derivatives, glint_reuse *reuse,
+                              glint_error *error)
+{
+    const size_t count = 2 * (size_t)blocks, slopes = derivatives ? 3 * (derivatives + 1) : 0,
+                 each = sizeof *shading_points->light + slopes * sizeof *shading_points->slopes,
+                 bytes = count * (GLINT_SHADING_POINT_BLOCK * each + 1);
+    glint_shading_points_clear(shading_points, reuse);
+    shading_points->light = glint_alloc(count * GLINT_SHADING_POINT_BLOCK, sizeof *shading_points->light);
+    shading_points->state = glint_alloc(count, sizeof *shading_points->state);
+    if (derivatives)
+        shading_points->slopes = glint_alloc(count * GLINT_SHADING_POINT_BLOCK * slopes, sizeof *shading_points->slopes);
+    if (!shading_points->light || !shading_points->state || (derivatives && !shading_points->slopes)) {
+        glint_shading_points_clear(shading_points, reuse);
+        return glint_fail_nomem(error);
+    }
+    shading_points->blocks = blocks;
+    shading_points->slope_count = derivatives;
+    shading_points->reserved = glint_reuse_reserve(reuse, bytes) ? bytes : 0;
+    return GLINT_OK;
+}
+
+glint_status glint_shading_points_begin(glint_shading_points_cached *shading_points, const glint_plan *plan,
+                                        glint_reuse *reuse, glint_error *error)
+{
+    const uint32_t count = plan->geometry->table.shading_point_count;
+    const uint32_t blocks = (count + GLINT_SHADING_POINT_BLOCK - 1) / GLINT_SHADING_POINT_BLOCK;
+    if (!plan->runs[GLINT_STAGE_VERTEX]) {
+        glint_shading_points_clear(shading_points, reuse);
+        return GLINT_OK;
+    }
+    const size_t derivatives = plan->derivatives ? plan->derivatives->count : 0;
+    if (shading_points->blocks != blocks || shading_points->slope_count != derivatives) {
+        glint_status status = make_room(shading_points, blocks, derivatives, reuse, error);
+        if (status)
+            return status;
+    }
+    const bool known = shading_points->reserved && glint_key_equal(shading_points->key, plan->vertex_key);
+    shading_points->ready = 0;
+    for (uint32_t i = 0; i < 2 * blocks; i++) {
+        if (!known)
+            atomic_store_explicit(&shading_points->state[i], GLINT_BLOCK_NONE, memory_order_relaxed);
+        shading_points->ready +=
+            atomic_load_explicit(&shading_points->state[i], memory_order_relaxed) == GLINT_BLOCK_DONE;
+    }
+    shading_points->key = plan->vertex_key;
+    return GLINT_OK;
+}
