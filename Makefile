@@ -1,5 +1,13 @@
 # glint: `make` builds the command and the Lua module, `make help` lists the rest. One file, every source by wildcard.
 
+# Jobs: as many as there are processors, unless -j says otherwise.
+JOBS := $(shell case " $$MAKEFLAGS" in (*" -j"* | *" --jobs"*) ;; (*) nproc 2>/dev/null || getconf _NPROCESSORS_ONLN 2>/dev/null || \
+          getconf NPROCESSORS_ONLN 2>/dev/null ;; esac)
+MAKEFLAGS += $(JOBS:%=-j%)
+ifneq ($(filter clean,$(MAKECMDGOALS)),)
+.NOTPARALLEL: # `make clean all`
+endif
+
 BUILD    ?= build
 CC       ?= cc
 AR       ?= ar
@@ -119,8 +127,14 @@ LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(LINK_NEEDED)
 
 ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/*/*/*.c))
 BINDINGS_SRC := $(sort $(wildcard bindings/*/*.c))
-# The instruction sets of this machine; KERNELS=avx2 compiles that alone, in a quarter of the time, for work on a kernel.
-KERNELS := generic $(if $(PORTABLE),,$(if $(filter x86_64-% amd64-%,$(TARGET)),sse2 avx2 avx512))
+# The instruction sets of this machine's kind. KERNELS=native compiles generic and the best that this very machine runs; KERNELS=avx2
+# only that one, for work on a kernel.
+KERNELS := generic $(if $(PORTABLE),,$(if $(filter x86_64-% amd64-%,$(TARGET)),avx2 avx512))
+NATIVE   = $(shell $(CC) -march=native -dM -E - </dev/null 2>/dev/null)
+ifeq ($(KERNELS),native)
+  override KERNELS := generic $(if $(PORTABLE),,$(if $(and $(findstring __AVX512BW__,$(NATIVE)),$(findstring __AVX512DQ__,$(NATIVE)),$(findstring \
+                        __AVX512VL__,$(NATIVE))),avx512,$(if $(and $(findstring __AVX2__,$(NATIVE)),$(findstring __FMA__,$(NATIVE))),avx2)))
+endif
 ENGINE_SRC   := $(filter-out engine/stages/simd/isa_%,$(ENGINE_SRC)) $(KERNELS:%=engine/stages/simd/isa_%.c)
 ENGINE_OBJ   := $(ENGINE_SRC:%.c=$(BUILD)/%.o)
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
@@ -149,7 +163,6 @@ all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/g
 # Processors with AVX2 have instructions for masks too; select.c asks.
 X86_BITS := -mbmi -mbmi2 -mpopcnt
 $(BUILD)/engine/stages/simd/isa_generic.o: ISA := $(KERNEL_CFLAGS)
-$(BUILD)/engine/stages/simd/isa_sse2.o:   ISA := $(KERNEL_CFLAGS)
 $(BUILD)/engine/stages/simd/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) $(X86_BITS) -mavx2 -mfma
 $(BUILD)/engine/stages/simd/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw $(X86_BITS) -mavx2 -mfma
 # An engine's object has the flags of its own in the archive and in the shared library.
@@ -161,6 +174,7 @@ UNROLLED := $(addprefix engine/,compare/flip.c frame/stats.c tile/batch.c $(addp
 $(if $(filter-out $(ENGINE_SRC),$(UNROLLED)),$(error no such source: $(filter-out $(ENGINE_SRC),$(UNROLLED))))
 $(call objects_of,$(UNROLLED)): OWN := $(KERNEL_CFLAGS)
 $(call objects_of,engine/stages/simd/select.c): OWN := $(KERNELS:%=-DGLINT_KERNEL_%)
+$(call objects_of,engine/stages/simd/select.c): $(BUILD)/kernels
 $(call objects_of,engine/text/letters.c): OWN := $(FONT_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)
@@ -216,10 +230,12 @@ $(BUILD)/$(SHARED): $(SHARED_OBJ) $(BUILD)/libglint.map
 .PHONY: shared
 shared: $(BUILD)/$(SHARED) ## the shared library, build/libglint.so.VERSION
 
-# Other flags or libraries than last time: everything is compiled again.
-$(BUILD)/flags: FORCE
+# Other flags or libraries than last time: everything is compiled again. Other kernels: only their table is.
+$(BUILD)/flags: SAID = $(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(SIXEL_CFLAGS)
+$(BUILD)/kernels: SAID = $(KERNELS)
+$(BUILD)/flags $(BUILD)/kernels: FORCE
 	@mkdir -p $(@D)
-	@echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(SIXEL_CFLAGS) $(KERNELS)' | cmp -s - $@ || echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(SIXEL_CFLAGS) $(KERNELS)' > $@
+	@echo '$(SAID)' | cmp -s - $@ || echo '$(SAID)' > $@
 
 need:
 	@tests/deps.sh need
@@ -454,8 +470,7 @@ BENCH_H := $(wildcard tests/bench/*.h)
 bench_c  = $(addprefix tests/bench/,$(addsuffix .c,$(1)))
 # The comparators are no part of the engine: they may have all that makes them fast.
 FAST    := -I. -std=c11 -D_GNU_SOURCE $(WARN) -O3 -march=native -ffast-math -ffp-contract=fast -pthread
-# Asked when the bench is made: may this machine run AVX-512, and is Embree there?
-NATIVE   = $(shell $(CC) -march=native -dM -E - </dev/null 2>/dev/null)
+# Asked when the bench is made: may this machine run AVX-512 (NATIVE), and is Embree there?
 EMBREE   = $(shell echo '\#include <embree3/rtcore.h>' | $(CC) -E - >/dev/null 2>&1 && echo embree)
 PACKETS  = $(if $(and $(findstring __AVX512BW__,$(NATIVE)),$(findstring __AVX512DQ__,$(NATIVE))),hand $(EMBREE))
 
@@ -516,7 +531,7 @@ $(BUILD)/without/%/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 
 demo: ## renders scripts/moving_light.lua, 120 frames, into build/demo/
 	@tests/deps.sh build
-	@$(MAKE) --no-print-directory demo-run
+	@$(MAKE) --no-print-directory $(if $(filter file,$(origin KERNELS)),KERNELS=native) demo-run
 
 demo-run: all
 	@mkdir -p $(BUILD)/demo

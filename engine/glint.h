@@ -1122,7 +1122,7 @@ typedef enum glint_hits_choice {
 /// The fields of a renderer.
 typedef struct glint_renderer_desc {
     int threads; ///< 1 .. 1024 workers; 0 (default): one per processor the process may use
-    const char *isa; ///< "ref", "generic", "sse2", "avx2", "avx512"; NULL: the environment's GLINT_ISA, else the best
+    const char *isa; ///< "ref", "generic" (also "sse2"), "avx2", "avx512"; NULL: the environment's GLINT_ISA, else the best
     bool time_stages; ///< measure each stage on each tile (costs a few per cent)
     bool count_work; ///< fill in the work of the stats (costs some per cent)
     bool no_reuse; ///< keep nothing from frame to frame; the pictures are the same

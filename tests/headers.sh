@@ -8,7 +8,7 @@ for header in engine/*.h engine/*/*.h engine/stages/*/*.h engine/effects/*/*.h b
     case $header in
     *simd/avx2.h) flags=(-mavx2 -mfma) ;;
     *simd/avx512.h) flags=(-mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma) ;;
-    */simd/sse2.h | */simd/generic.h | engine/stages/stages.h | engine/stages/contract/*.h | */coefficients.h) ;;
+    */simd/generic.h | engine/stages/stages.h | engine/stages/contract/*.h | */coefficients.h) ;;
     engine/stages/*/*.h) continue ;;
     esac
     # Twice: the guard holds.

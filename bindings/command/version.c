@@ -5,7 +5,7 @@
 
 #include "bindings/command/cli.h"
 
-static const char *const KERNELS[] = { "ref", "generic", "sse2", "avx2", "avx512" };
+static const char *const KERNELS[] = { "ref", "generic", "avx2", "avx512" };
 
 // The kernels that the build has and the machine runs. False: out of memory, which would pass for a kernel that is not there.
 static bool print_kernels(FILE *out)

@@ -22,7 +22,7 @@ glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_e
     if (*out)
         return GLINT_OK;
     if (unknown)
-        return glint_fail(error, GLINT_ERR_INVALID, "%s: ref, generic, sse2, avx2 or avx512 expected, got '%s'", who,
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: ref, generic, avx2 or avx512 expected, got '%s'", who,
                           requested);
     return glint_fail(error, GLINT_ERR_UNSUPPORTED, "%s: this machine lacks '%s'", who, requested);
 }

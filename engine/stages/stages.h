@@ -61,13 +61,12 @@ typedef struct glint_stages {
     void (*tone)(const glint_tone_args *args);
 } glint_stages;
 
-extern const glint_stages glint_stages_ref, glint_stages_generic, glint_stages_sse2, glint_stages_avx2,
-    glint_stages_avx512;
+extern const glint_stages glint_stages_ref, glint_stages_generic, glint_stages_avx2, glint_stages_avx512;
 
 /// Those that are in this build, NULL-terminated, best last.
 extern const glint_stages *const glint_stages_built[];
 bool glint_stages_usable(const glint_stages *stages);
-/// By name; NULL takes the environment's GLINT_ISA, else the best usable. Returns NULL with *unknown telling whether
+/// By name, "sse2" for generic; NULL takes the environment's GLINT_ISA, else the best usable. Returns NULL with *unknown telling whether
 /// the name is unknown (true) or the machine lacks it (false); *requested is that name.
 const glint_stages *glint_stages_select(const char *name, const char **requested, bool *unknown);
 

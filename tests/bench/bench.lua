@@ -157,7 +157,7 @@ local function print_stages()
     end
   end
   table.sort(names)
-  print(("\n%-20s"):format "Stages, ns a pixel" .. (" %22s"):rep(4):format("ref", "sse2", "avx2", "avx512"))
+  print(("\n%-20s"):format "Stages, ns a pixel" .. (" %22s"):rep(4):format("ref", "generic", "avx2", "avx512"))
   for _, name in ipairs(names) do
     local cells = {}
     for i, id in ipairs(cases.stage_sides) do

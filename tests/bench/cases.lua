@@ -131,7 +131,7 @@ local measurements = {
   { "g.marble.light", "glint", "reuse change=light pattern=marble" },
 
   { "g.ref", "glint", "stages isa=ref", runs = 3 },
-  { "g.sse2", "glint", "stages isa=sse2" },
+  { "g.generic", "glint", "stages isa=generic" },
   { "g.avx2", "glint", "stages isa=avx2" },
   { "g.avx512", "glint", "stages isa=avx512" },
 
@@ -324,7 +324,7 @@ local rows = {
 }
 
 -- Stages by instruction set: one row for each that the engine names, found as they come.
-local stage_sides = { "g.ref", "g.sse2", "g.avx2", "g.avx512" }
+local stage_sides = { "g.ref", "g.generic", "g.avx2", "g.avx512" }
 
 -- The README's table, by the processor's time of one thread: what it is, then glint, hand-written, Embree, POV-Ray, where they have one.
 local readme = {

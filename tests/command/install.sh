@@ -85,9 +85,9 @@ cat >"$work/kernels.c" <<'END'
 #include <stdio.h>
 int main(void)
 {
-    static const char *const names[] = { "ref", "generic", "sse2", "avx2", "avx512", NULL };
+    static const char *const names[] = { "ref", "generic", "avx2", "avx512", NULL };
     printf("kernels:");
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < 5; i++) {
         glint_renderer_desc desc = glint_renderer_desc_default();
         glint_renderer *renderer;
         desc.isa = names[i];

@@ -298,14 +298,14 @@ static glint_scene *random_scene(uint64_t seed)
 
 static void same_on_every_instruction_set(void **unused)
 {
-    static const char *const sets[] = { "generic", "sse2", "avx2", "avx512" };
+    static const char *const sets[] = { "generic", "avx2", "avx512" };
     (void)unused;
     for (uint64_t seed = 1; seed <= 40; seed++)
         for (int precision = 0; precision < 2; precision++) {
             glint_scene *scene = random_scene(seed);
             glint_image *want = render(scene, "ref", 1, 50, (glint_precision)precision);
-            for (int i = 0; i < 4; i++) {
-                glint_image *got = render(scene, sets[i], 1 + i, 50, (glint_precision)precision);
+            for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
+                glint_image *got = render(scene, sets[i], 1 + (int)i, 50, (glint_precision)precision);
                 if (got && differing(want, got))
                     fail_msg("seed %d, %s, precision %d: %d pixels", (int)seed, sets[i], precision,
                              differing(want, got));

@@ -82,7 +82,7 @@ static void check_scales(int stills)
 static void check_machines(int stills)
 {
     hard_test("N1", "instruction sets and threads");
-    static const char *const names[] = { "ref", "generic", "sse2", "avx2", "avx512" };
+    static const char *const names[] = { "ref", "generic", "avx2", "avx512" };
     static const int threads[] = { 1, 2, 3, 7 };
     for (int i = 0; i < stills; i++) {
         const hard_still still = still_random(1, 100);

@@ -352,7 +352,7 @@ end }
       check(usual, "a picture: %s", message)
       for _, way in ipairs {
         { "", "--threads 1" }, { "", "--threads 7 --no-reuse" }, { "", "--shard " .. frame .. "/4" }, { "", "--reuse-memory 1M" },
-        { "GLINT_ISA=ref", "" }, { "GLINT_ISA=generic", "" }, { "GLINT_ISA=sse2", "" }, { "GLINT_ISA=avx2", "" }, { "GLINT_ISA=avx512", "" },
+        { "GLINT_ISA=ref", "" }, { "GLINT_ISA=generic", "" }, { "GLINT_ISA=avx2", "" }, { "GLINT_ISA=avx512", "" },
       } do
         local frames = way[2]:find "shard" and "" or "-f " .. frame
         local other, said = run(way[1], ("%s %s --precision %s"):format(way[2], frames, precision), frame)

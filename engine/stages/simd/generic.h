@@ -1,5 +1,5 @@
 /// The vector vocabulary in the vector extensions of GCC and clang, for any processor that is little-endian: ARM's NEON
-/// (with the few intrinsics of simd/neon.h), RISC-V's V, and SSE2 to test it with. What the words mean: simd/avx512.h.
+/// (with the few intrinsics of simd/neon.h), RISC-V's V, x86's SSE2. What the words mean: simd/avx512.h.
 #ifndef GLINT_SIMD_H
 #define GLINT_SIMD_H
 

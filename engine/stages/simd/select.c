@@ -9,9 +9,6 @@ const glint_stages *const glint_stages_built[] = {
 #ifdef GLINT_KERNEL_generic
     &glint_stages_generic,
 #endif
-#ifdef GLINT_KERNEL_sse2
-    &glint_stages_sse2,
-#endif
 #ifdef GLINT_KERNEL_avx2
     &glint_stages_avx2,
 #endif
@@ -40,7 +37,7 @@ bool glint_stages_usable(const glint_stages *stages)
 /// Whether some machine has an instruction set of this name.
 static bool is_known(const char *name)
 {
-    static const char *const known[] = { "ref", "generic", "sse2", "avx2", "avx512" };
+    static const char *const known[] = { "ref", "generic", "avx2", "avx512" };
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (strcmp(known[i], name) == 0)
             return true;
@@ -52,6 +49,8 @@ const glint_stages *glint_stages_select(const char *name, const char **requested
     const glint_stages *best = NULL;
     if (!name || !*name)
         name = getenv("GLINT_ISA");
+    if (name && strcmp(name, "sse2") == 0) // whose kernels are the generic ones
+        name = "generic";
     *requested = name && *name ? name : NULL;
     *unknown = *requested && !is_known(*requested);
     for (const glint_stages *const *isa = glint_stages_built; *isa; isa++) {
