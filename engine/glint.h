@@ -447,6 +447,7 @@ typedef struct glint_light_desc {
     bool two_sided; ///< polygon: shines to both sides; default false
     double samples; ///< area lights: shadow rays a sample of a pixel; whole number, 1 .. 65536; default 16
     bool has_radiance; ///< area lights: `radiance` says how strong it is; `intensity` must then be 1
+    char group[GLINT_NAME_SIZE]; ///< the light pass that the light belongs to, with all lights of this group; "": that of its name
     double radiance; ///< >= 0: light adds kd times the integral of radiance cos cos' / distance^2 over the surface.
         ///< With `intensity` it adds the mean over the surface of what a point light there adds
     char name[GLINT_NAME_SIZE];
@@ -876,6 +877,8 @@ size_t glint_scene_overlay_count(const glint_scene *scene);
 glint_shape *glint_scene_shape_at(const glint_scene *scene, size_t index);
 glint_light *glint_scene_light_at(const glint_scene *scene, size_t index);
 glint_overlay *glint_scene_overlay_at(const glint_scene *scene, size_t index);
+/// Writes the name of the light pass that light number `index`, < the count, belongs to: see glint_render_desc.
+void glint_scene_light_pass(const glint_scene *scene, size_t index, char name[GLINT_NAME_SIZE]);
 
 /// What a ray meets first; lengths in units of its direction or of the world.
 typedef struct glint_hit {
@@ -926,7 +929,9 @@ typedef enum glint_pass {
     GLINT_PASS_ALBEDO, ///< diffuse reflectance, 0 where nothing is hit; of the first sample
     GLINT_PASS_COUNT, ///< how many there are
     /// The first of the frame's derivatives, see glint_render_desc; the others follow it. Three channels
-    GLINT_PASS_DERIVATIVE = GLINT_PASS_COUNT
+    GLINT_PASS_DERIVATIVE = GLINT_PASS_COUNT,
+    /// The first of the frame's light passes, see glint_render_desc; the others follow it. Three channels
+    GLINT_PASS_LIGHT = GLINT_PASS_DERIVATIVE + 8
 } glint_pass;
 
 /// "beauty", "background", ...; NULL when out of range.
@@ -969,7 +974,7 @@ glint_tone_desc glint_tone_desc_default(void);
 /// Lines drawn into a PNG of beauty where the pass `outline` is 1.
 typedef enum glint_outline_color { GLINT_OUTLINE_NONE, GLINT_OUTLINE_BLACK, GLINT_OUTLINE_WHITE } glint_outline_color;
 
-#define GLINT_DERIVATIVES_MAX 8 ///< of one frame
+#define GLINT_DERIVATIVES_MAX (GLINT_PASS_LIGHT - GLINT_PASS_DERIVATIVE) ///< of one frame
 #define GLINT_DERIVATIVE_NAME_SIZE 32 ///< bytes of a derivative's name, with the ending NUL
 
 /// How fast one field of the scene changes with a parameter. At most one of the four objects is not NULL; without any it is a
@@ -1034,6 +1039,15 @@ typedef struct glint_render_desc {
     /// description has the count alone
     const glint_derivative *derivatives;
     size_t derivative_count; ///< 0 (default) .. GLINT_DERIVATIVES_MAX
+    /// Light passes, divided by commas: names of groups of lights, "ambient" for the light that no lamp sends, "*" for all
+    /// groups of the scene in the order of their first lights, then "ambient". NULL (default): none. A light belongs to the pass of
+    /// its `group`, or else of its name, or else to "point_light_2", by its kind and its number among the scene's lights.
+    ///
+    /// A light pass holds all light of the picture that those lights send: direct, in mirrors, through glass, indirect, and
+    /// their visible surfaces. "ambient" is the rest: the scene's ambient light, background, the depth cue's colour. Number i is
+    /// kept in the image as pass GLINT_PASS_LIGHT + i. Beauty is the same with or without light passes, and all of them
+    /// add up to it within 2^-21 of itself. Borrowed by glint_plan_create; a plan's own description has them without "*".
+    const char *light_passes;
 } glint_render_desc;
 
 /// 1280 x 720, 1 sample, double, passes = beauty, codes = false.
@@ -1081,6 +1095,8 @@ glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_ren
 void glint_plan_destroy(glint_plan *plan);
 /// The frame as planned: passes that others are made of are added. Belongs to the plan.
 const glint_render_desc *glint_plan_render_desc(const glint_plan *plan);
+/// The name of the frame's light pass number `index`, from 0; the plan's. NULL: it has not so many.
+const char *glint_plan_light_pass(const glint_plan *plan, size_t index);
 /// The lists belong to the plan.
 size_t glint_plan_effects(const glint_plan *plan, const glint_effect **list);
 size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list);
@@ -1204,6 +1220,8 @@ int glint_image_height(const glint_image *image);
 bool glint_image_has_pass(const glint_image *image, glint_pass pass);
 /// The name of its derivative number `index`, from 0; the image's. NULL: it has not so many.
 const char *glint_image_derivative(const glint_image *image, size_t index);
+/// The name of its light pass number `index`, from 0; the image's. NULL: it has not so many.
+const char *glint_image_light_pass(const glint_image *image, size_t index);
 /// Whether codes are there and all are 0, but for alpha; without codes, whether no value of beauty is above 0. Looks no
 /// further than the first that is. False where there is neither.
 bool glint_image_is_black(const glint_image *image);

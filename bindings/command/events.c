@@ -77,13 +77,17 @@ static void print_pass_files(FILE *out, const glintL_record *record)
 {
     int count = 0;
     char name[GLINTL_PASS_NAME_SIZE];
-    for (int pass = 0; pass < GLINTL_PASSES_MAX; pass++) {
-        const bool own = pass < GLINT_PASS_DERIVATIVE;
+    for (int pass = 0; pass < record->slots; pass++) {
+        char light[GLINT_NAME_SIZE];
         if (pass == GLINT_PASS_BEAUTY || !record->files[pass])
             continue;
         fputs(count++ ? "," : ",\"passes\":{", out);
-        snprintf(name, sizeof name, "%s%s", own ? "" : "d:",
-                 own ? glint_pass_name((glint_pass)pass) : record->derivative[pass - GLINT_PASS_DERIVATIVE]);
+        if (pass < GLINT_PASS_DERIVATIVE)
+            snprintf(name, sizeof name, "%s", glint_pass_name((glint_pass)pass));
+        else if (pass < GLINT_PASS_LIGHT)
+            snprintf(name, sizeof name, "d:%s", record->derivative[pass - GLINT_PASS_DERIVATIVE]);
+        else if (glintL_light_pass_at(record->light_passes, (size_t)pass - GLINT_PASS_LIGHT, light))
+            snprintf(name, sizeof name, "light:%s", light);
         glintL_json_string(out, name);
         fputc(':', out);
         glintL_json_string(out, record->files[pass]);

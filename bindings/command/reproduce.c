@@ -22,7 +22,7 @@ typedef struct reproduction {
     char *params, *options, *pass, *sweep; // cut up: the sets and render texts point into them
     char folder[256]; // of the new file
     char output[300]; // its pattern
-    char *made[GLINTL_PASSES_MAX]; // by pass; owned
+    char *made[GLINTL_PASSES_MAX + 1]; // by pass, the last of a light; owned
     const char *made_path; // the one to compare
     bool lacks_memory; // a name in `made` is missing for it
     char reason[GLINTL_MESSAGE_SIZE];
@@ -183,7 +183,7 @@ static void take_frame(void *context, const glintL_run *run, const glintL_record
 {
     reproduction *r = context;
     (void)run;
-    for (int pass = 0; pass < GLINTL_PASSES_MAX; pass++) {
+    for (int pass = 0; pass <= GLINTL_PASSES_MAX && pass < record->slots; pass++) {
         free(r->made[pass]);
         r->made[pass] = record->files[pass] ? strdup(record->files[pass]) : NULL;
         r->lacks_memory = r->lacks_memory || (record->files[pass] && !r->made[pass]);
@@ -215,7 +215,9 @@ static int render(reproduction *r, cli_options *options, glintL_run *run, char *
     glint_pass pass = *r->pass ? glint_pass_from_name(r->pass) : GLINT_PASS_BEAUTY;
     if (strncmp(r->pass, "d:", 2) == 0)
         pass = GLINT_PASS_DERIVATIVE; // the only one
-    r->made_path = pass < GLINTL_PASSES_MAX ? r->made[pass] : NULL;
+    if (strncmp(r->pass, "light:", 6) == 0)
+        pass = GLINT_PASS_LIGHT; // likewise
+    r->made_path = pass <= GLINTL_PASSES_MAX ? r->made[pass] : NULL;
     if (r->made_path)
         return 0;
     if (r->lacks_memory) {
@@ -333,7 +335,7 @@ static void report(const reproduction *r, cli_output *output, const cli_options 
 
 static void clean_up(reproduction *r)
 {
-    for (int pass = 0; pass < GLINTL_PASSES_MAX; pass++) {
+    for (int pass = 0; pass <= GLINTL_PASSES_MAX; pass++) {
         if (r->made[pass])
             unlink(r->made[pass]); // as a rule all that is in the folder, which takes memory to list
         free(r->made[pass]);

@@ -32,7 +32,7 @@ static void print_line(FILE *out, const char *head, const char *help, bool lists
         print_words(out, &at, name);
     }
     if (lists_passes)
-        print_words(out, &at, "d:NAME, or all");
+        print_words(out, &at, "d:NAME, light:NAME, or all");
     fputc('\n', out);
 }
 

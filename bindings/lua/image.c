@@ -32,6 +32,10 @@ static int get_passes(lua_State *L)
         lua_pushfstring(L, "d:%s", name);
         lua_rawseti(L, -2, ++count);
     }
+    for (size_t i = 0; (name = glint_image_light_pass(glintL_check_object(L, 1, GLINTL_IMAGE), i)); i++) {
+        lua_pushfstring(L, "light:%s", name);
+        lua_rawseti(L, -2, ++count);
+    }
     return 1;
 }
 
@@ -75,6 +79,16 @@ static glint_pass find_derivative(const glint_image *image, const char *name)
     return (glint_pass)(GLINT_PASS_DERIVATIVE + i);
 }
 
+// GLINT_PASS_COUNT: the image has no light pass by that name.
+static glint_pass find_light_pass(const glint_image *image, const char *name)
+{
+    const char *own;
+    for (size_t i = 0; (own = glint_image_light_pass(image, i)); i++)
+        if (strcmp(own, name) == 0)
+            return (glint_pass)(GLINT_PASS_LIGHT + i);
+    return GLINT_PASS_COUNT;
+}
+
 // The pass named at `index`, of the image at 1; nil: beauty.
 static glint_pass check_pass(lua_State *L, int index, const char *path)
 {
@@ -90,6 +104,12 @@ static glint_pass check_pass(lua_State *L, int index, const char *path)
         if (pass == GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX)
             glintL_error(L, "%s: 'd:%s' was not kept in this image", path, name);
         return pass;
+    }
+    if (pass == GLINT_PASS_COUNT && lua_type(L, index) == LUA_TSTRING && strncmp(lua_tostring(L, index), "light:", 6) == 0) {
+        const char *name = lua_tostring(L, index) + 6;
+        pass = find_light_pass(glintL_check_object(L, 1, GLINTL_IMAGE), name);
+        if (pass == GLINT_PASS_COUNT)
+            glintL_error(L, "%s: 'light:%s' was not kept in this image", path, name);
     }
     if (pass == GLINT_PASS_COUNT)
         glintL_refuse(L, index, path, "name of a pass");

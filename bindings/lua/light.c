@@ -20,7 +20,8 @@ static const char *const SHADOWS[] = { "rays", "hard", "caps", NULL };
     {.name = "attenuation", .kind = GLINTL_VECTOR, .offset = AT(attenuation), .slopes = true}, \
     {.name = "shadows", .kind = GLINTL_BOOLEAN, .offset = AT(shadows)}, \
     {.name = "visible", .kind = GLINTL_BOOLEAN, .offset = AT(visible)}, \
-    {.name = "name", .kind = GLINTL_STRING, .offset = AT(name)}
+    {.name = "name", .kind = GLINTL_STRING, .offset = AT(name)}, \
+    {.name = "group", .kind = GLINTL_STRING, .offset = AT(group)}
 
 #define EVERY_AREA_LIGHT \
     EVERY_LIGHT, \

@@ -126,7 +126,8 @@ function glint.material(fields) end
 --- shows pi L color, by `intensity` I color I A(D) with D its radius (of a polygon, that of a disk of its area). It throws
 --- no shadow, and is no object: to the passes it is background with a depth and a normal. Does nothing to lights without a
 --- surface. Default false
----@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
+---@field name? string  for messages, `glint explain` and its pass "light:NAME", at most 63 bytes. Default ""
+---@field group? string  the pass "light:GROUP" holds the light of all lights of this group together, at most 63 bytes. Default "": by `name`
 
 ---@class glint.point_light_fields: glint.light_fields
 ---@field position glint.vec3  world units
@@ -740,7 +741,8 @@ function glint.scene(fields) end
 ---| "alpha"  # the share of the samples that hit something, one number, 0 .. 1
 ---| "refined"  # 1 where `adaptive` took all samples, else 0; one number
 ---| "albedo"  # diffuse reflectance, as patterns give it; 0 where nothing is hit
----| string  # "d:NAME": how fast beauty changes with the variable or parameter NAME; three numbers
+---| string  # "d:NAME": how fast beauty changes with the variable or parameter NAME; three numbers. "light:NAME": the light of the lamps
+--- of that group or name; "light:ambient": the light that no lamp sends; "light:*": all of these
 ---| "outline"  # 1 where objects end, hide each other or have an edge, else 0; one number, of the first sample
 
 --- What a frame and its file are to be. What the command line says beats it.

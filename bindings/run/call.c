@@ -225,6 +225,7 @@ int glintL_render_call(lua_State *L, glint_scene *scene, int index)
         return raise_failure(L, run);
     glintL_trace_scene(L, scene);
     glintL_find_derivatives(L, scene, &render);
+    glintL_render_point(&render);
     if (run->mode == GLINTL_MODE_EXPLAIN && run->count == run->explain_frame) {
         glint_error error;
         if (glint_plan_create(scene, &render.desc, &run->explain_plan, &error))
@@ -238,6 +239,7 @@ int glintL_render_call(lua_State *L, glint_scene *scene, int index)
         desc.codes = !glintL_name_is_linear(render.output);
         desc.passes = desc.codes ? 0 : 1u << GLINT_PASS_BEAUTY;
         desc.derivative_count = 0;
+        desc.light_passes = NULL;
         if (glint_plan_create(scene, &desc, &run->kept_neighbour, &error))
             return glintL_error(L, PATH "%s", error.message);
     }

@@ -22,14 +22,6 @@ bool glintL_wants_variable(const glintL_run *run, const char *name)
     return false;
 }
 
-const char *glintL_pass_name(const glintL_render *render, glint_pass pass, char room[GLINTL_PASS_NAME_SIZE])
-{
-    if (pass < GLINT_PASS_DERIVATIVE)
-        return glint_pass_name(pass);
-    snprintf(room, GLINTL_PASS_NAME_SIZE, "d:%s", render->derivative[pass - GLINT_PASS_DERIVATIVE]);
-    return room;
-}
-
 // What the C API calls a field that Lua has in degrees.
 static const char *engine_name(const glintL_field *field)
 {

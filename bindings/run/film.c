@@ -86,7 +86,7 @@ bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *re
         return refuse(message, path,
                       "it takes all frames of one run; give the shards a pattern such as %04d.png, and then "
                       "make it with glint assemble");
-    if (render->file_passes || render->derivative_count)
+    if (render->file_passes || render->derivative_count || *render->light_passes)
         return refuse(message, path,
                       "it has no room for passes; write frames, and make a film of each pass with glint "
                       "assemble");

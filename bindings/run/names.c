@@ -177,10 +177,13 @@ bool glintL_name_file(const glintL_naming *naming, int64_t number, const char *p
         snprintf(insert, sizeof insert, "_%04" PRId64, number);
     if (strcmp(pass, "beauty") != 0) {
         size_t used = strlen(insert);
+        const bool light = strncmp(pass, "light:", 6) == 0;
         snprintf(insert + used, sizeof insert - used, ".%s", pass);
-        for (char *at = insert + used + 1; *at; at++) // of d:NAME whatever the script calls it
-            if (!isalnum((unsigned char)*at))
+        for (char *at = insert + used + 1; *at; at++) // of d:NAME and light:NAME whatever the script calls it
+            if (!isalnum((unsigned char)*at) && *at != '-')
                 *at = '_';
+        if (light)
+            insert[used + 6] = '.'; // x.light.key.png
     }
     const char *dot = ending(path);
     size_t stem = dot ? (size_t)(dot - path) : strlen(path);

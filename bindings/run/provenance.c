@@ -61,7 +61,7 @@ bool glintL_provenance_take(glintL_provenance *out, const glintL_run *run, const
     add(out, "glint:source", run->source);
     add(out, "glint:params", run->params_text);
     add(out, "glint:frame", out->frame);
-    add(out, "glint:pass", file->pass == GLINT_PASS_BEAUTY ? NULL : glintL_pass_name(&work->render, file->pass, out->pass));
+    add(out, "glint:pass", file->pass == GLINT_PASS_BEAUTY ? NULL : glintL_pass_name(work, file->pass, out->pass));
     add(out, "glint:options", out->options);
     add(out, "glint:sweep", out->sweep);
     add(out, "glint:encoder", glint_encoder_name(work->render.encode));

@@ -22,8 +22,10 @@ glintL_run *glintL_run_create(void)
 
 static void destroy_record(glintL_record *record)
 {
-    for (int pass = 0; pass < GLINTL_PASSES_MAX; pass++)
+    for (int pass = 0; pass < record->slots; pass++)
         free(record->files[pass]);
+    free(record->files);
+    free(record->light_passes);
     free(record);
 }
 
@@ -89,6 +91,8 @@ void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_ren
     run->kept_render.desc.derivatives = NULL; // which the scene's next frame has others of
     run->kept_render.desc.derivative_count = 0;
     run->kept_render.derivative_count = 0;
+    run->kept_render.desc.light_passes = NULL; // costs are of the picture
+    run->kept_render.light_passes[0] = '\0';
 }
 
 // ---- The run of plain Lua, which the state owns ----
@@ -186,6 +190,15 @@ glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work)
     record->film = work->film;
     memcpy(record->derivative, work->render.derivative, sizeof record->derivative);
     record->pixel_count = (double)work->stats.pixels; // of a frame that is kept none, and nothing is counted
+    const char *lights = glint_plan_render_desc(work->plan)->light_passes;
+    size_t light_count = 0;
+    while (glint_plan_light_pass(work->plan, light_count))
+        light_count++;
+    if (lights && !(record->light_passes = strdup(lights)))
+        goto no_memory;
+    if (!(record->files = calloc(GLINTL_PASSES_MAX + light_count, sizeof *record->files)))
+        goto no_memory;
+    record->slots = GLINTL_PASSES_MAX + (int)light_count;
     for (int i = 0; i < work->file_count; i++) {
         char *copy = strdup(work->files[i].path);
         if (!copy)

@@ -110,7 +110,7 @@ static void describe(const detail *what, char out[256])
     case PASSES:
         for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
             used += (size_t)snprintf(out + used, 256 - used, "%s%s", pass ? ", " : "list of ", glint_pass_name(pass));
-        snprintf(out + used, 256 - used, ", d:NAME, all");
+        snprintf(out + used, 256 - used, ", d:NAME, light:NAME, all");
         break;
     }
 }
@@ -172,9 +172,10 @@ static bool add_derivative(glintL_render *to, const char *name)
     for (int i = 0; i < to->derivative_count; i++)
         if (strcmp(to->derivative[i], name) == 0)
             return true;
-    if (!*name || to->derivative_count == GLINT_DERIVATIVES_MAX)
+    const size_t length = strlen(name);
+    if (length == 0 || length >= sizeof *to->derivative || to->derivative_count == GLINT_DERIVATIVES_MAX)
         return false;
-    snprintf(to->derivative[to->derivative_count++], sizeof *to->derivative, "%s", name);
+    memcpy(to->derivative[to->derivative_count++], name, length + 1);
     return true;
 }
 
@@ -192,6 +193,8 @@ static bool add_pass(glintL_render *to, const char *name, size_t length)
         to->file_passes |= ((1u << GLINT_PASS_COUNT) - 1) & ~(1u << GLINT_PASS_BEAUTY);
         return true;
     }
+    if (strncmp(copy, "light:", 6) == 0)
+        return glintL_add_light_pass(to, copy + 6);
     glint_pass pass = glint_pass_from_name(copy);
     if (pass == GLINT_PASS_COUNT)
         return false;
@@ -204,6 +207,7 @@ static void clear_passes(glintL_render *render)
 {
     render->file_passes = 0;
     render->derivative_count = 0;
+    memset(render->light_passes, 0, sizeof render->light_passes);
     memset(render->derivative, 0, sizeof render->derivative);
 }
 
@@ -216,6 +220,11 @@ static void complain_pass(const char *name, size_t length, char message[GLINTL_M
     if (strncmp(copy, "d:", 2) == 0) {
         snprintf(message, GLINTL_MESSAGE_SIZE, "'%s': a name of 1 .. %d bytes after d: expected, of at most %d derivatives",
                  copy, GLINT_DERIVATIVE_NAME_SIZE - 1, GLINT_DERIVATIVES_MAX);
+        return;
+    }
+    if (strncmp(copy, "light:", 6) == 0) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "'%s': a light's name or group of 1 .. %d bytes after light: expected, of all passes %zu bytes",
+                 copy, GLINT_NAME_SIZE - 1, sizeof ((glintL_render *)0)->light_passes - 1);
         return;
     }
     for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
@@ -415,6 +424,12 @@ static void push_passes(lua_State *L, const glintL_render *render)
     }
     for (int i = 0; i < render->derivative_count; i++) {
         lua_pushfstring(L, "d:%s", render->derivative[i]);
+        lua_rawseti(L, -2, ++count);
+    }
+    char name[GLINT_NAME_SIZE];
+    const char *lights = *render->light_passes ? render->light_passes : NULL;
+    for (size_t i = 0; glintL_light_pass_at(lights, i, name); i++) {
+        lua_pushfstring(L, "light:%s", name);
         lua_rawseti(L, -2, ++count);
     }
 }

@@ -6,6 +6,7 @@
 ///   params.c          glint.params; param_spec.c one parameter and its --set
 ///   animation.c       the job object and its fields; sweep.c its other kind
 ///   derivatives.c     passes d:NAME: the slopes of a frame's scene
+///   light_passes.c    passes light:NAME
 ///   work.c            one frame: plan, names, keys, render, hand to the writer
 ///   provenance.c      what a file says of itself, and whether files belong together; source.c the script's text
 ///   film.c            films: their frames, kept in a folder until they are made; film_pipe.c through ffmpeg
@@ -27,8 +28,8 @@
 
 #define GLINTL_PATH_SIZE 4096
 #define GLINTL_MESSAGE_SIZE 1024
-#define GLINTL_PASSES_MAX (GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX) ///< of a frame
-#define GLINTL_PASS_NAME_SIZE (GLINT_DERIVATIVE_NAME_SIZE + 2) ///< bytes of "d:lamp_x"
+#define GLINTL_PASSES_MAX (GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX) ///< of a frame, light passes not counted, which follow them
+#define GLINTL_PASS_NAME_SIZE (GLINT_NAME_SIZE + 6) ///< bytes of "d:lamp_x", "light:key"
 #define GLINTL_FRAMES_MAX 100000000 ///< of one job
 
 typedef enum glintL_exit {
@@ -119,11 +120,20 @@ bool glintL_name_is_plain(const char *name, size_t length);
 
 /// Whether the command line wants the pass d:NAME.
 bool glintL_wants_variable(const glintL_run *run, const char *name);
-/// "ambient", "d:lamp_x".
-const char *glintL_pass_name(const glintL_render *render, glint_pass pass, char room[GLINTL_PASS_NAME_SIZE]);
 /// Fills the derivatives of a frame's description with the slopes of the scene as it is; they last until the next call. May
 /// raise.
 void glintL_find_derivatives(lua_State *L, const glint_scene *scene, glintL_render *render);
+
+// ---- light_passes.c ----
+
+/// Points a frame's description at its own list of light passes: before it is planned, and after each copy.
+void glintL_render_point(glintL_render *render);
+/// False: too long, or too many.
+bool glintL_add_light_pass(glintL_render *to, const char *name);
+/// Number `index` of a list, from 0. False: there are not so many, or list is NULL.
+bool glintL_light_pass_at(const char *list, size_t index, char name[GLINT_NAME_SIZE]);
+/// Fails with the nearest name where a scene has not the lights that a frame wants passes of.
+glint_status glintL_check_light_passes(const glint_scene *scene, const glintL_render *render, glint_error *error);
 
 // ---- The request ----
 
@@ -174,7 +184,9 @@ typedef struct glintL_record {
     int files_left; ///< at the writer
     bool failed;
     char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names
-    char *files[GLINTL_PASSES_MAX]; ///< by pass; owned; NULL: none
+    char **files; ///< by pass; owned; NULL: none
+    int slots; ///< of `files`: GLINTL_PASSES_MAX and the light passes
+    char *light_passes; ///< owned; their names, divided by commas; NULL: there are none
     struct glintL_film *film; ///< its beauty goes into; NULL: none
     struct glintL_record *next;
 } glintL_record;
@@ -196,8 +208,11 @@ typedef struct glintL_work {
     char *sweep; ///< owned; "name=value" lines of the frame's place in a glint.sweep; NULL: none
     struct glintL_film *film;
     int file_count;
-    glintL_file files[GLINTL_PASSES_MAX];
+    glintL_file *files; ///< owned
 } glintL_work;
+
+/// work.c: "ambient", "d:lamp_x", "light:key".
+const char *glintL_pass_name(const glintL_work *work, glint_pass pass, char room[GLINTL_PASS_NAME_SIZE]);
 
 // ---- state.c, records.c ----
 

@@ -38,7 +38,11 @@ glint_status glintL_work_create(const glint_scene *scene, const glintL_render *r
     if (keep_image || is_linear)
         desc->passes |= 1u << GLINT_PASS_BEAUTY;
     desc->codes = writes ? !is_linear : !keep_image; // a run that writes nothing makes the codes all the same: to time it
-    glint_status status = glint_plan_create(scene, desc, &work->plan, error);
+    glint_status status = glintL_check_light_passes(scene, render, error);
+    if (writes || keep_image)
+        glintL_render_point(&work->render);
+    if (!status)
+        status = glint_plan_create(scene, desc, &work->plan, error);
     if (status) {
         free(work);
         return status;
@@ -65,6 +69,7 @@ void glintL_work_destroy(glintL_work *work)
         return;
     glint_plan_destroy(work->plan);
     glint_image_release(work->image);
+    free(work->files);
     free(work->sweep);
     free(work);
 }
@@ -79,42 +84,72 @@ static glint_write_desc write_desc(const glintL_work *work, const glintL_file *f
     return desc;
 }
 
+const char *glintL_pass_name(const glintL_work *work, glint_pass pass, char room[GLINTL_PASS_NAME_SIZE])
+{
+    if (pass < GLINT_PASS_DERIVATIVE)
+        return glint_pass_name(pass);
+    if (pass < GLINT_PASS_LIGHT)
+        snprintf(room, GLINTL_PASS_NAME_SIZE, "d:%s", work->render.derivative[pass - GLINT_PASS_DERIVATIVE]);
+    else
+        snprintf(room, GLINTL_PASS_NAME_SIZE, "light:%s", glint_plan_light_pass(work->plan, (size_t)pass - GLINT_PASS_LIGHT));
+    return room;
+}
+
+// Names one pass's file, and finds its keys.
+static glint_status add_file(glintL_work *work, const glintL_naming *naming, glint_pass pass, glint_error *error)
+{
+    char name[GLINTL_PASS_NAME_SIZE];
+    glintL_file *file = &work->files[work->file_count];
+    file->pass = pass;
+    if (!glintL_name_file(naming, work->index, glintL_pass_name(work, pass, name), file->path))
+        return fail(error, GLINT_ERR_INVALID, "output: the file name '", naming->pattern, "...' is too long");
+    for (int i = 0; i < work->file_count && pass >= GLINT_PASS_LIGHT; i++)
+        if (strcmp(work->files[i].path, file->path) == 0)
+            return fail(error, GLINT_ERR_INVALID, "passes: ", name, ": another light's file has the same name; set the light's group to a "
+                        "name of other letters and digits");
+    file->key[0] = file->whole[0] = '\0';
+    if (!glintL_name_is_linear(file->path) && !glintL_name_is_special(file->path)) {
+        glint_write_desc desc = write_desc(work, file);
+        glint_frame_key(work->plan, &desc, file->key);
+        if (work->render.desc.region[2] > 0)
+            glint_whole_key(work->plan, &desc, file->whole);
+    }
+    work->file_count++;
+    return GLINT_OK;
+}
+
 glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, glint_error *error)
 {
     uint32_t passes = work->render.file_passes | 1u << GLINT_PASS_BEAUTY;
+    size_t lights = 0;
+    glint_status status = GLINT_OK;
     work->file_count = 0;
     work->film = naming->film;
     if (!naming->pattern)
         return GLINT_OK;
-    if (glintL_name_is_exr(naming->pattern))
+    if (glintL_name_is_exr(naming->pattern)) {
         passes = 1u << GLINT_PASS_BEAUTY; // that file has them all
-    else
+    } else {
         passes |= ((1u << work->render.derivative_count) - 1) << GLINT_PASS_DERIVATIVE;
-    for (unsigned pass = 0; pass < GLINTL_PASSES_MAX; pass++) {
-        char name[GLINTL_PASS_NAME_SIZE];
-        glintL_file *file = &work->files[work->file_count];
-        if (!(passes >> pass & 1))
-            continue;
-        file->pass = (glint_pass)pass;
-        if (!glintL_name_file(naming, work->index, glintL_pass_name(&work->render, file->pass, name), file->path))
-            return fail(error, GLINT_ERR_INVALID, "output: the file name '", naming->pattern, "...' is too long");
-        file->key[0] = file->whole[0] = '\0';
-        if (!glintL_name_is_linear(file->path) && !glintL_name_is_special(file->path)) {
-            glint_write_desc desc = write_desc(work, file);
-            glint_frame_key(work->plan, &desc, file->key);
-            if (work->render.desc.region[2] > 0)
-                glint_whole_key(work->plan, &desc, file->whole);
-        }
-        work->file_count++;
+        while (glint_plan_light_pass(work->plan, lights))
+            lights++;
     }
-    return GLINT_OK;
+    free(work->files);
+    if (!(work->files = calloc(GLINTL_PASSES_MAX + lights, sizeof *work->files)))
+        return fail(error, GLINT_ERR_NOMEM, "out of memory", "", "");
+    for (unsigned pass = 0; pass < GLINTL_PASSES_MAX && !status; pass++)
+        if (passes >> pass & 1)
+            status = add_file(work, naming, (glint_pass)pass, error);
+    for (size_t i = 0; i < lights && !status; i++)
+        status = add_file(work, naming, (glint_pass)(GLINT_PASS_LIGHT + i), error);
+    return status;
 }
 
 // Whether an earlier frame of this run is on its way to one of the work's files.
 static bool is_awaited(const glintL_run *run, const glintL_work *work)
 {
     for (const glintL_record *record = run->head; record; record = record->next)
-        for (int pass = 0; pass < GLINTL_PASSES_MAX; pass++)
+        for (int pass = 0; pass < record->slots; pass++)
             for (int i = 0; i < work->file_count && record->files[pass]; i++)
                 if (strcmp(record->files[pass], work->files[i].path) == 0)
                     return true;

@@ -355,6 +355,7 @@ typedef struct glintL_render {
     uint32_t file_passes; ///< passes to write as files beside the beauty: bits 1u << GLINT_PASS_...
     char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< likewise: names of the passes d:NAME
     int derivative_count;
+    char light_passes[4096]; ///< likewise: names of the passes light:NAME, divided by commas; see glintL_render_point
 } glintL_render;
 
 // ---- state.c: what is being run. One per lua_State, in the registry; plain Lua has one with no options ----

@@ -10,7 +10,7 @@
 #ifdef GLINT_HAVE_OPENEXR
 #include <openexr.h>
 
-#define CHANNELS_MAX (3 * GLINT_PLANE_COUNT)
+#define CHANNEL_NAME (GLINT_PLANE_NAME_SIZE + 2)
 #define FIRST_ROOM ((size_t)1 << 20)
 
 static char library_name[48];
@@ -31,7 +31,7 @@ const char *glint_exr_library(void)
 }
 
 typedef struct channel {
-    char name[48];
+    char name[CHANNEL_NAME];
     const float *plane;
     int of; ///< channels of its pass
     bool half;
@@ -41,26 +41,28 @@ typedef struct exr_file {
     exr_context_t context;
     glint_bytes bytes;
     bool no_memory;
-    channel list[CHANNELS_MAX];
+    channel *list; ///< owned
     int count, width, height;
 } exr_file;
 
 // ---- Channels -----------------------------------------------------------------------------------------------------
 
-static void name_channel(const glint_image *image, glint_pass pass, int c, char out[48])
+static void name_channel(const glint_image *image, glint_pass pass, int c, char out[CHANNEL_NAME])
 {
-    char room[GLINT_DERIVATIVE_NAME_SIZE + 2];
+    char room[GLINT_PLANE_NAME_SIZE];
     const char *name = glint_plane_name(image, pass, room);
     const bool is_place = pass == GLINT_PASS_NORMAL;
     const char letter = is_place ? "XYZ"[c] : "RGB"[c];
-    if (pass == GLINT_PASS_BEAUTY)
-        snprintf(out, 48, "%c", letter);
+    if (pass >= GLINT_PASS_LIGHT)
+        snprintf(out, CHANNEL_NAME, "light.%s.%c", glint_image_light_pass(image, (size_t)pass - GLINT_PASS_LIGHT), letter);
+    else if (pass == GLINT_PASS_BEAUTY)
+        snprintf(out, CHANNEL_NAME, "%c", letter);
     else if (pass == GLINT_PASS_ALPHA)
-        snprintf(out, 48, "A");
+        snprintf(out, CHANNEL_NAME, "A");
     else if (glint_pass_channels(pass) == 3)
-        snprintf(out, 48, "%s.%c", name, letter);
+        snprintf(out, CHANNEL_NAME, "%s.%c", name, letter);
     else
-        snprintf(out, 48, "%s.%s", name,
+        snprintf(out, CHANNEL_NAME, "%s.%s", name,
                  pass == GLINT_PASS_DEPTH       ? "Z"
                  : pass == GLINT_PASS_OBJECT_ID ? "ID"
                                                 : "Y");
@@ -68,15 +70,17 @@ static void name_channel(const glint_image *image, glint_pass pass, int c, char 
 
 static void list_channels(exr_file *file, const glint_image *image, bool half)
 {
-    for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
+    const int passes = GLINT_PASS_LIGHT + (int)image->light_count;
+    for (int pass = 0; pass < passes; pass++)
         for (int c = 0; c < 3; c++) {
-            if (!image->plane[pass][c])
+            const float *plane = glint_image_planes(image, (glint_pass)pass)[c];
+            if (!plane)
                 continue;
             channel *added = &file->list[file->count++];
             name_channel(image, (glint_pass)pass, c, added->name);
-            added->plane = image->plane[pass][c];
+            added->plane = plane;
             added->of = glint_pass_channels((glint_pass)pass);
-            added->half = half && ((added->of == 3 && pass < GLINT_PASS_DERIVATIVE) || pass == GLINT_PASS_ALPHA);
+            added->half = half && ((added->of == 3 && (pass < GLINT_PASS_DERIVATIVE || pass >= GLINT_PASS_LIGHT)) || pass == GLINT_PASS_ALPHA);
         }
 }
 
@@ -194,6 +198,11 @@ glint_status glint_exr_encode(const glint_image *image, bool half, const glint_t
         return glint_fail_nomem(error);
     file->width = image->width;
     file->height = image->height;
+    file->list = calloc(GLINT_PLANE_COUNT + image->light_count, 3 * sizeof *file->list);
+    if (!file->list) {
+        free(file);
+        return glint_fail_nomem(error);
+    }
     list_channels(file, image, half);
     how.user_data = file;
     how.write_fn = put_bytes;
@@ -209,6 +218,7 @@ glint_status glint_exr_encode(const glint_image *image, bool half, const glint_t
                            result == EXR_ERR_CORRUPT_CHUNK || // zlib's, when it gets no memory to compress in
                            (!result && !appended);
     free(file->bytes.data);
+    free(file->list);
     free(file);
     if (appended)
         return GLINT_OK;

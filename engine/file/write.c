@@ -258,7 +258,7 @@ static void find_steepest(picture *p)
 
 static bool is_color(glint_pass pass)
 {
-    return pass < GLINT_PASS_DERIVATIVE && pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL &&
+    return (pass < GLINT_PASS_DERIVATIVE || pass >= GLINT_PASS_LIGHT) && pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL &&
            pass != GLINT_PASS_OBJECT_ID && pass != GLINT_PASS_ALPHA && pass != GLINT_PASS_OUTLINE &&
            pass != GLINT_PASS_REFINED;
 }
@@ -267,6 +267,8 @@ static glint_status fail_not_kept(const glint_image *image, glint_pass pass, gli
 {
     if (pass == GLINT_PASS_BEAUTY && image->codes)
         return glint_fail(error, GLINT_ERR_INVALID, "tone: the image holds codes of another tone and no 'beauty' pass");
+    if (pass >= GLINT_PASS_LIGHT)
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: this image has no light pass number %d", (int)pass - GLINT_PASS_LIGHT);
     if (pass >= GLINT_PASS_DERIVATIVE)
         return glint_fail(error, GLINT_ERR_INVALID, "pass: this image has no derivative number %d",
                           (int)pass - GLINT_PASS_DERIVATIVE);
@@ -300,14 +302,14 @@ static glint_status lay_over(picture *p, glint_png_source *source, double dpi, u
 static glint_status encode_rows(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
                                 glint_bytes *out, double *reused, glint_error *error)
 {
-    picture p = { .image = image, .plane = image->plane[desc->pass], .tone = desc->tone };
+    picture p = { .image = image, .plane = glint_image_planes(image, desc->pass), .tone = desc->tone };
     glint_status status = glint_tone_check(&desc->tone, error);
     if (status)
         return status;
     glint_png_source source = { .width = image->width, .height = image->height, .tone = desc->tone, .user = &p };
     source.alpha = desc->pass == GLINT_PASS_BEAUTY && image->alpha;
     glint_png_desc png = { desc->encode, desc->text, desc->text_count, desc->dpi };
-    if (desc->colormap && (desc->pass == GLINT_PASS_DEPTH || desc->pass >= GLINT_PASS_DERIVATIVE))
+    if (desc->colormap && (desc->pass == GLINT_PASS_DEPTH || (desc->pass >= GLINT_PASS_DERIVATIVE && desc->pass < GLINT_PASS_LIGHT)))
         p.map = glint_colormap_table((glint_colormap)(desc->colormap - 1));
     if (!is_color(desc->pass))
         source.tone.transfer = p.map ? GLINT_TRANSFER_SRGB : GLINT_TRANSFER_LINEAR;
@@ -377,7 +379,7 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
         return encode_png(image, desc, bands, out, reused, error);
     if (kind == GLINT_FILE_EXR)
         return glint_exr_encode(image, desc->tone.bits == 16, desc->text, desc->text_count, out, error);
-    float *const *plane = image->plane[desc->pass];
+    float *const *plane = glint_image_planes(image, desc->pass);
     if (!plane[0])
         return fail_not_kept(image, desc->pass, error);
     const bool done = kind == GLINT_FILE_NPY ? glint_npy_encode(image->width, image->height, channels, plane, out)

@@ -26,6 +26,17 @@ static bool is_pass(glint_pass pass) { return (unsigned)pass < GLINT_PASS_COUNT;
 
 static bool is_plane(glint_pass pass) { return (unsigned)pass < GLINT_PLANE_COUNT; }
 
+_Static_assert((int)GLINT_PASS_LIGHT == GLINT_PLANE_COUNT, "light passes follow the derivatives");
+
+float *const *glint_image_planes(const glint_image *image, glint_pass pass)
+{
+    static float *const none[3];
+    const size_t light = (size_t)pass - GLINT_PASS_LIGHT;
+    if (is_plane(pass))
+        return image->plane[pass];
+    return pass >= GLINT_PASS_LIGHT && light < image->light_count ? image->light[light] : none;
+}
+
 const char *glint_pass_name(glint_pass pass) { return is_pass(pass) ? pass_table[pass].name : NULL; }
 
 glint_pass glint_pass_from_name(const char *name)
@@ -38,14 +49,19 @@ glint_pass glint_pass_from_name(const char *name)
 
 int glint_pass_channels(glint_pass pass)
 {
-    return is_pass(pass) ? pass_table[pass].channels : is_plane(pass) ? 3 : 0;
+    return is_pass(pass) ? pass_table[pass].channels : pass >= GLINT_PASS_DERIVATIVE ? 3 : 0;
 }
 
-const char *glint_plane_name(const glint_image *image, glint_pass pass, char room[GLINT_DERIVATIVE_NAME_SIZE + 2])
+const char *glint_plane_name(const glint_image *image, glint_pass pass, char room[GLINT_PLANE_NAME_SIZE])
 {
-    if (!is_plane(pass) || is_pass(pass))
+    if (pass < GLINT_PASS_DERIVATIVE)
         return glint_pass_name(pass);
-    snprintf(room, GLINT_DERIVATIVE_NAME_SIZE + 2, "d:%s", image->derivative[pass - GLINT_PASS_DERIVATIVE]);
+    if (is_plane(pass))
+        snprintf(room, GLINT_PLANE_NAME_SIZE, "d:%s", image->derivative[pass - GLINT_PASS_DERIVATIVE]);
+    else if (glint_image_light_pass(image, (size_t)pass - GLINT_PASS_LIGHT))
+        snprintf(room, GLINT_PLANE_NAME_SIZE, "light:%s", image->light_name[pass - GLINT_PASS_LIGHT]);
+    else
+        return NULL;
     return room;
 }
 
@@ -105,6 +121,36 @@ glint_status glint_image_create(int width, int height, uint32_t passes, const gl
     return create(width, height, passes, false, codes_tone, out, error);
 }
 
+glint_status glint_image_add_lights(glint_image *image, size_t count, const char (*names)[GLINT_NAME_SIZE], glint_error *error)
+{
+    const size_t pixels = (size_t)image->width * (size_t)image->height;
+    if (!(image->light = calloc(count, sizeof *image->light)) || !(image->light_name = calloc(count, sizeof *image->light_name)))
+        return glint_fail_nomem(error);
+    for (; image->light_count < count; image->light_count++) {
+        memcpy(image->light_name[image->light_count], names[image->light_count], GLINT_NAME_SIZE);
+        for (int c = 0; c < 3; c++)
+            if (!allocate_plane(pixels, &image->light[image->light_count][c])) {
+                image->light_count++; // those it has are freed
+                return glint_fail_nomem(error);
+            }
+    }
+    return GLINT_OK;
+}
+
+/// The light passes of a plan's description: names divided by commas.
+static glint_status add_lights_of(glint_image *image, const char *list, glint_error *error)
+{
+    size_t count = 1, i = 0;
+    for (const char *at = list; *at; at++)
+        count += *at == ',';
+    char(*names)[GLINT_NAME_SIZE] = calloc(count, sizeof *names);
+    for (const char *at = list; names && i < count; at += strcspn(at, ",") + 1)
+        snprintf(names[i++], GLINT_NAME_SIZE, "%.*s", (int)strcspn(at, ","), at);
+    glint_status status = names ? glint_image_add_lights(image, count, (const char(*)[GLINT_NAME_SIZE])names, error) : glint_fail_nomem(error);
+    free(names);
+    return status;
+}
+
 glint_status glint_image_create_for(const glint_render_desc *desc, glint_image **out, glint_error *error)
 {
     glint_status status = create((int)desc->width, (int)desc->height, desc->passes, desc->alpha,
@@ -114,10 +160,13 @@ glint_status glint_image_create_for(const glint_render_desc *desc, glint_image *
     (*out)->outline = desc->outline;
     if (desc->derivative_count)
         (*out)->shadows = glint_alloc_large((size_t)desc->width * (size_t)desc->height, sizeof *(*out)->shadows);
-    if (!desc->derivative_count || (*out)->shadows)
-        return GLINT_OK;
-    glint_image_release(*out);
-    return glint_fail_nomem(error);
+    if (desc->derivative_count && !(*out)->shadows)
+        status = glint_fail_nomem(error);
+    if (!status && desc->light_passes)
+        status = add_lights_of(*out, desc->light_passes, error);
+    if (status)
+        glint_image_release(*out);
+    return status;
 }
 
 static void copy_rows(const void *from, size_t stride, void *to, size_t row, size_t count)
@@ -145,6 +194,15 @@ glint_status glint_image_crop(const glint_image *image, int x, int y, int width,
             if (image->plane[pass][c])
                 copy_rows(image->plane[pass][c] + first, stride * sizeof(float), (*out)->plane[pass][c],
                           row * sizeof(float), rows);
+    if (image->light_count)
+        status = glint_image_add_lights(*out, image->light_count, (const char(*)[GLINT_NAME_SIZE])image->light_name, error);
+    for (size_t i = 0; i < image->light_count && !status; i++)
+        for (int c = 0; c < 3; c++)
+            copy_rows(image->light[i][c] + first, stride * sizeof(float), (*out)->light[i][c], row * sizeof(float), rows);
+    if (status) {
+        glint_image_release(*out);
+        return status;
+    }
     if (image->codes)
         copy_rows((const uint8_t *)image->codes + first * bytes, stride * bytes, (*out)->codes, row * bytes, rows);
     return GLINT_OK;
@@ -162,6 +220,9 @@ glint_status glint_image_cover(glint_image *under, glint_overlays *overlays, int
     image->width = under->width;
     image->height = under->height;
     memcpy(image->plane, under->plane, sizeof image->plane);
+    image->light = under->light;
+    image->light_name = under->light_name;
+    image->light_count = under->light_count;
     image->codes = under->codes;
     image->alpha = under->alpha;
     image->outline = under->outline;
@@ -204,6 +265,7 @@ size_t glint_image_bytes(const glint_image *image)
     for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
         for (int c = 0; c < 3; c++)
             bytes += image->plane[pass][c] ? pixels * sizeof(float) : 0;
+    bytes += 3 * image->light_count * pixels * sizeof(float);
     return bytes + (image->shadows ? pixels * sizeof *image->shadows : 0);
 }
 
@@ -227,6 +289,11 @@ void glint_image_release(glint_image *image)
     for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
         for (int c = 0; c < 3; c++)
             free(image->plane[pass][c]);
+    for (size_t i = 0; i < image->light_count; i++)
+        for (int c = 0; c < 3; c++)
+            free(image->light[i][c]);
+    free(image->light);
+    free(image->light_name);
     free(image->codes);
     free(image->row_stamp);
     free(image->shadows);
@@ -239,25 +306,31 @@ const char *glint_image_derivative(const glint_image *image, size_t index)
     return index < GLINT_DERIVATIVES_MAX && *image->derivative[index] ? image->derivative[index] : NULL;
 }
 
+const char *glint_image_light_pass(const glint_image *image, size_t index)
+{
+    return index < image->light_count ? image->light_name[index] : NULL;
+}
+
 int glint_image_width(const glint_image *image) { return image->width; }
 
 int glint_image_height(const glint_image *image) { return image->height; }
 
 bool glint_image_has_pass(const glint_image *image, glint_pass pass)
 {
-    return is_plane(pass) && image->plane[pass][0] != NULL;
+    return glint_image_planes(image, pass)[0] != NULL;
 }
 
 glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3],
                                glint_error *error)
 {
-    if (!is_plane(pass))
+    float *const *plane = glint_image_planes(image, pass);
+    if ((int)pass < 0)
         return glint_fail(error, GLINT_ERR_INVALID, "pass: one of the %d passes expected, got %d", GLINT_PASS_COUNT,
                           (int)pass);
-    if (!image->plane[pass][0] && !is_pass(pass))
-        return glint_fail(error, GLINT_ERR_INVALID, "pass: this image has no derivative number %d",
-                          (int)pass - GLINT_PASS_DERIVATIVE);
-    if (!image->plane[pass][0])
+    if (!plane[0] && !is_pass(pass))
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: this image has no %s number %d", is_plane(pass) ? "derivative" : "light pass",
+                          (int)pass - (int)(is_plane(pass) ? GLINT_PASS_DERIVATIVE : GLINT_PASS_LIGHT));
+    if (!plane[0])
         return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", pass_table[pass].name);
     glint_status status = glint_check_whole("x", x, 0, image->width - 1, error);
     if (!status)
@@ -266,6 +339,6 @@ glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x,
         return status;
     size_t at = (size_t)y * (size_t)image->width + (size_t)x;
     for (int c = 0; c < 3; c++)
-        out[c] = image->plane[pass][glint_pass_channels(pass) == 1 ? 0 : c][at];
+        out[c] = plane[glint_pass_channels(pass) == 1 ? 0 : c][at];
     return GLINT_OK;
 }

@@ -28,6 +28,9 @@ struct glint_image {
     bool alpha; ///< beauty is light times coverage, and the pass `alpha` is there wherever beauty is
     glint_outline_color outline; ///< drawn over beauty in a PNG; the pass `outline` is then there
     char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names; "": there is none
+    float *(*light)[3]; ///< planes of its light passes, `light_count` of them; NULL: it has none. Owned, as their names
+    char (*light_name)[GLINT_NAME_SIZE];
+    size_t light_count;
     uint32_t *shadows; ///< of frames whose derivatives move shadows, a number a pixel: in equal ones the same lights are
         ///< kept from all samples or from none, and where shapes or the eye move the same surface is seen; 0: that differs among the samples. NULL: none. Owned
     int channels; ///< of codes: 3, RGB; with alpha 4
@@ -46,8 +49,13 @@ static inline size_t glint_image_stamps(const glint_image *image)
     return ((size_t)image->height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
 }
 
-/// "ambient", or "d:lamp_x" of the image's derivatives; NULL: there is no such pass.
-const char *glint_plane_name(const glint_image *image, glint_pass pass, char room[GLINT_DERIVATIVE_NAME_SIZE + 2]);
+#define GLINT_PLANE_NAME_SIZE (GLINT_NAME_SIZE + 6) ///< bytes of the name of a pass, with the ending NUL
+
+/// "ambient"; "d:lamp_x" of the image's derivatives, "light:key" of its light passes; NULL: there is no such pass.
+const char *glint_plane_name(const glint_image *image, glint_pass pass, char room[GLINT_PLANE_NAME_SIZE]);
+
+/// The planes of a pass, of a derivative or of a light pass; those of one that was not kept are NULL, or all are.
+float *const *glint_image_planes(const glint_image *image, glint_pass pass);
 
 /// Bytes of its planes and codes.
 size_t glint_image_bytes(const glint_image *image);
@@ -63,6 +71,9 @@ glint_status glint_image_create(int width, int height, uint32_t passes, const gl
 
 /// The same for a frame that is rendered so.
 glint_status glint_image_create_for(const glint_render_desc *desc, glint_image **out, glint_error *error);
+
+/// Adds light passes to an image that has none, not initialised. On error they are incomplete, and the image good to be released.
+glint_status glint_image_add_lights(glint_image *image, size_t count, const char (*names)[GLINT_NAME_SIZE], glint_error *error);
 
 /// A part of an image as an image of its own.
 glint_status glint_image_crop(const glint_image *image, int x, int y, int width, int height, glint_image **out,

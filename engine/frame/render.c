@@ -187,6 +187,19 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
     return status;
 }
 
+/// Whether an image has these light passes, and no others. list: as in a plan's description.
+static bool has_lights(const glint_image *image, const char *list)
+{
+    size_t i = 0;
+    for (const char *at = list; at; i++) {
+        const size_t length = strcspn(at, ",");
+        if (i == image->light_count || strlen(image->light_name[i]) != length || strncmp(image->light_name[i], at, length) != 0)
+            return false;
+        at = at[length] ? at + length + 1 : NULL;
+    }
+    return i == image->light_count;
+}
+
 static bool has_format(const glint_image *image, const glint_render_desc *desc)
 {
     uint32_t passes = 0;
@@ -194,7 +207,7 @@ static bool has_format(const glint_image *image, const glint_render_desc *desc)
         passes |= (uint32_t)glint_image_has_pass(image, (glint_pass)pass) << pass;
     return image->width == (int)desc->width && image->height == (int)desc->height && passes == desc->passes &&
            image->alpha == desc->alpha && image->outline == desc->outline && (image->codes != NULL) == desc->codes &&
-           (!desc->codes || glint_tone_same(&image->code_tone, &desc->tone));
+           (!desc->codes || glint_tone_same(&image->code_tone, &desc->tone)) && has_lights(image, desc->light_passes);
 }
 
 static frame frame_of(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,

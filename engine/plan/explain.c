@@ -343,6 +343,8 @@ static void list_effects(explainer *e, const glint_scene *scene)
         one(e, plan->desc.passes >> pass & 1, "pass", "passes: %s", glint_pass_name((glint_pass)pass));
     for (size_t i = 0; plan->derivatives && i < plan->derivatives->count; i++)
         one(e, true, "derivative", "passes: d:%s", plan->derivatives->of[i].name);
+    for (size_t i = 0; glint_plan_light_pass(plan, i); i++)
+        one(e, true, "light pass", "passes: light:%s", glint_plan_light_pass(plan, i));
 }
 
 static void list_stages(glint_plan *plan)

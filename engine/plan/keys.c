@@ -3,7 +3,7 @@
 /// every description and finds what a row forgets.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
-#include "engine/plan/plan.h"
+#include "engine/effects/light_groups/plan.h"
 #include "engine/program/program.h"
 
 #include <stdlib.h>
@@ -206,6 +206,8 @@ static glint_key output_key(const glint_plan *plan, uint32_t which, glint_key ke
     };
     if (which & READS(PASSES))
         ADD(key, plan->desc.passes);
+    if (which & READS(PASSES))
+        key = glint_light_groups_key(plan, key);
     if (which & READS(PASSES) && plan->desc.outline)
         ADD(key, plan->desc.outline);
     if (which & READS(TONE))
@@ -289,6 +291,7 @@ static glint_key vertex_key(const glint_plan *plan)
     const double frame[] = { plan->desc.precision, seen ? 1 + c->orthographic : 0 };
     glint_key key = { 0 };
     ADD(key, frame);
+    key = glint_light_groups_key(plan, key);
     if (seen)
         key = c->orthographic ? glint_key_add(key, c->forward, sizeof c->forward)
                               : glint_key_add(glint_key_add(key, c->eye, sizeof c->eye), c->forward, sizeof c->forward);

@@ -1,4 +1,5 @@
 #include "engine/effects/raster/plan.h"
+#include "engine/effects/light_groups/plan.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -116,7 +117,7 @@ static bool is_local(const glint_plan *plan)
     for (size_t i = 0; i < sizeof other / sizeof *other; i++)
         if (plan->runs[other[i]])
             return false;
-    return !plan->derivatives && !plan->tints && plan->light_count <= GLINT_LIGHT_CHUNK;
+    return !plan->derivatives && !plan->light_groups && !plan->tints && plan->light_count <= GLINT_LIGHT_CHUNK;
 }
 
 /// Whether the samples of a tile can be shaded in one: what was found for each fits the tile.
@@ -140,7 +141,7 @@ static void choose_stages(glint_plan *plan)
     plan->depth_cue.on = plan->depth_cue.on && (surfaces || plan->visible_light_count > 0);
     plan->runs[GLINT_STAGE_DEPTH_CUE] = plan->depth_cue.on || plan->veil.on;
     plan->accumulate = plan->runs[GLINT_STAGE_DEPTH_CUE] || plan->desc.samples > 1 || plan->visible_light_count > 0 ||
-                       plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT] || plan->tints ||
+                       plan->light_groups || plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT] || plan->tints ||
                        plan->environment || plan->light_count > GLINT_LIGHT_CHUNK ||
                        (lit && plan->geometry->table.shading_point_count > 0);
     plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->visible_light_count > 0 || plan->environment;
@@ -326,6 +327,7 @@ void glint_plan_destroy(glint_plan *plan)
     glint_plan_environment_free(plan->environment);
     free(plan->bouncing);
     glint_plan_derivatives_free(plan->derivatives);
+    glint_light_groups_free(plan->light_groups);
     free(plan->indirect.rest);
     free(plan->indirect.light_rows);
     free(plan->material_keys);
@@ -414,7 +416,8 @@ glint_key glint_plan_picture_key(const glint_plan *plan, glint_stage_id stage)
 
 static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
 {
-    const int pass = desc->pass < GLINT_PASS_DERIVATIVE ? desc->pass : GLINT_PASS_DERIVATIVE; // whatever its number
+    const int pass = desc->pass < GLINT_PASS_DERIVATIVE ? desc->pass : // whatever its number
+                         desc->pass < GLINT_PASS_LIGHT ? GLINT_PASS_DERIVATIVE : GLINT_PASS_LIGHT;
     const int options[] = { pass,                desc->tone.curve, desc->tone.transfer,
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
     glint_key key = glint_key_add(glint_plan_picture_key(plan, GLINT_STAGE_REFINE), options, sizeof options);
@@ -426,7 +429,9 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
     const size_t derivative = (size_t)desc->pass - GLINT_PASS_DERIVATIVE;
     if (desc->pass >= GLINT_PASS_DERIVATIVE && plan->derivatives && derivative < plan->derivatives->count)
         key = glint_derivative_key(plan, derivative, key);
-    if (desc->colormap && (desc->pass == GLINT_PASS_DEPTH || desc->pass >= GLINT_PASS_DERIVATIVE))
+    if (desc->pass >= GLINT_PASS_LIGHT)
+        key = glint_light_pass_key(plan, (uint32_t)desc->pass - GLINT_PASS_LIGHT, key);
+    if (desc->colormap && (desc->pass == GLINT_PASS_DEPTH || (desc->pass >= GLINT_PASS_DERIVATIVE && desc->pass < GLINT_PASS_LIGHT)))
         key = glint_key_add(key, &desc->colormap, sizeof desc->colormap);
     if (desc->dpi > 0)
         key = glint_key_add(key, &desc->dpi, sizeof desc->dpi);

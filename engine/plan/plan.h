@@ -69,6 +69,7 @@ typedef struct glint_plan_light {
     bool is_spot;
     glint_spot spot;
     uint32_t source; ///< which light of the scene
+    uint32_t group; ///< of the frame's light passes; GLINT_NO_GROUP: none
     const glint_light_sample *light_samples; ///< of an area light: the pattern of each turn, turn after turn; else NULL
     const glint_light_sample *cap; ///< shadows by caps: the whole light; else NULL
     bool hard; ///< area: one ray to `position`, its middle, decides for all samples
@@ -96,6 +97,7 @@ typedef struct glint_plan_visible_light {
     const glint_plan_edge *edges; ///< polygon
     size_t edge_count; ///< 0: a disk
     double shown[3]; ///< pi times its radiance: as everything in the film
+    uint32_t group; ///< as a light's
 } glint_plan_visible_light;
 
 /// A background that a program gives.
@@ -170,6 +172,7 @@ struct glint_plan {
     size_t visible_light_edge_count;
 
     glint_plan_derivatives *derivatives; ///< NULL: none is wanted
+    struct glint_light_groups *light_groups; ///< NULL: no light pass is wanted
 
     glint_bounce_material *bouncing; ///< beside materials; NULL: none of them sends rays on
     bool mirrors, transmits, absorbs; ///< some material; the last: one that transmits

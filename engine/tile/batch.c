@@ -1,5 +1,5 @@
 /// The walk of a batch of rays: cast, what they meet packed into few groups, through the stages, and where they go on.
-#include "engine/tile/batch.h"
+#include "engine/effects/light_groups/light_groups.h"
 #include "engine/base/vec.h"
 #include "engine/effects/cut_out/cut_out.h"
 
@@ -29,6 +29,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     batch->by_lane = has_area_light(frame->plan);
     tile->batch = batch;
     tile->vertex = to->vertex;
+    tile->group_sums = glint_group_sums_of(to, walk == GLINT_WALK_SITES);
     tile->facets = to->facets;
     tile->shadow_room = to->shadow_room;
     tile->visible_light = to->visible_light;

@@ -1,6 +1,7 @@
 /// What a tile's working memory has beside the tile itself: allocated for the first frame that needs it, kept for those after it.
 #include "engine/base/alloc.h"
 #include "engine/effects/pattern/pattern.h"
+#include "engine/effects/light_groups/light_groups.h"
 
 #include <stdlib.h>
 
@@ -58,6 +59,10 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = glint_vertex_derives(tile->vertex, plan) && good;
     if (plan->derivatives && tile->bounce)
         good = glint_bounce_derives(tile->bounce, plan) && good;
+    glint_group_sums_destroy(tile->group_sums); // its size is the plan's
+    tile->group_sums = NULL;
+    if (plan->light_groups)
+        good = (tile->group_sums = glint_group_sums_create(plan)) && good;
     good = fit_pattern(tile, plan) && good;
     glint_environment_destroy(tile->environment); // its size is the plan's
     tile->environment = NULL;
@@ -85,6 +90,7 @@ void glint_tile_destroy(glint_tile *tile)
     glint_pattern_destroy(tile->pattern);
     glint_environment_destroy(tile->environment);
     glint_derivative_destroy(tile->derivative);
+    glint_group_sums_destroy(tile->group_sums);
     free(tile->facets);
     free(tile->shadow_room);
     free(tile);

@@ -1,6 +1,7 @@
 #include "engine/effects/pattern/pattern.h"
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
+#include "engine/effects/light_groups/light_groups.h"
 
 #include <string.h>
 
@@ -252,6 +253,7 @@ void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_store_pass(tile, frame, GLINT_PASS_BEAUTY, tile->film.beauty[0]);
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         glint_tile_store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film.terms[k][0]);
+    glint_groups_store(tile, frame);
 }
 
 static void tone_alpha(glint_tile *tile, const glint_tile_frame *frame)
@@ -379,5 +381,8 @@ void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame, cons
             for (int c = 0; c < 3; c++)
                 if (from->plane[pass][c] && frame->image->plane[pass][c])
                     memcpy(frame->image->plane[pass][c] + row, from->plane[pass][c] + row, tile->width * sizeof(float));
+        for (size_t i = 0; i < frame->image->light_count; i++)
+            for (int c = 0; c < 3; c++)
+                memcpy(frame->image->light[i][c] + row, from->light[i][c] + row, tile->width * sizeof(float));
     }
 }

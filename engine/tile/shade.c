@@ -3,6 +3,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/effects/pattern/pattern.h"
+#include "engine/effects/light_groups/light_groups.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -86,7 +87,8 @@ static bool is_direct(const glint_tile *tile, const glint_tile_frame *frame)
     for (size_t i = 0; i < sizeof adding / sizeof *adding; i++)
         if (plan->runs[adding[i]])
             return false;
-    if (!plan->accumulate || plan->desc.samples > 1 || plan->light_count > GLINT_LIGHT_CHUNK || plan->derivatives)
+    if (!plan->accumulate || plan->desc.samples > 1 || plan->light_count > GLINT_LIGHT_CHUNK || plan->derivatives ||
+        plan->light_groups)
         return false;
     if (!glint_has_lanes(tile->at.hits, tile->group_count))
         return true;
@@ -113,6 +115,8 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     glint_shade_planes planes;
     if (!tile->batch && tile->sample == 0 && from == 0)
         begin_sums(tile, frame);
+    if (from == 0 && (tile->batch || tile->sample == 0))
+        glint_groups_begin(tile, plan);
     glint_shade_args args = glint_tile_shade_args(tile, frame, from, count, lights, &planes);
     const bool dims = plan->dims && count > 0 && glint_tile_find_dim(tile, frame);
     for (uint32_t i = 0; i < count && dims; i++) { // no light is summed
@@ -128,9 +132,10 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         for (int c = 0; c < 3; c++)
             args.sum[k][c] = plan->accumulate && !tile->direct ? tile->film.sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
-    if (count > 0 && plan->runs[GLINT_STAGE_SHADER])
+    if (count > 0 && plan->runs[GLINT_STAGE_SHADER] && glint_tile_shows_shader(tile, plan)) // then no light is summed
         run_shaders(tile, frame, from, count, lights);
     frame->stages->shade(&args);
+    glint_groups_shade(tile, frame, &args, from, count);
     if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && args.first)
         glint_tile_add_visible_light(tile, frame);
     if (plan->environment && args.first)
@@ -148,6 +153,7 @@ void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame)
             args.sum[k][c] = glint_plan_has_term(plan, (glint_term)k) ? tile->film.sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
     frame->stages->resolve(&args);
+    glint_groups_resolve(tile, frame);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_RESOLVE, false);
 }
 

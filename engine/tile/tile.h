@@ -188,6 +188,7 @@ typedef struct glint_tile {
     void *shadow_room; ///< of occlude; owned; NULL until a frame has shadows of area lights
     struct glint_pattern *pattern; ///< memory of effects/pattern/pattern.c; NULL in frames without programs
     struct glint_derivative_work *derivative; ///< of effects/derivative/; NULL until a frame has derivatives
+    struct glint_group_sums *group_sums; ///< of effects/light_groups/; NULL in frames without light passes; of a batch the tile's
     double *unbumped[3]; ///< real: the normals that bumps have turned, as they were; NULL: there are no bumps
     uint32_t own_planes; ///< of the planes that samples have which are shaded together, the current sample's
 } glint_tile;

@@ -67,6 +67,7 @@ static glint_status render_in_place(glint_renderer *renderer, const glint_plan *
     *base = *image;
     base->film = NULL;
     desc.codes = false;
+    desc.light_passes = NULL;
     desc.passes &= ~plan->desc.passes;
     if (desc.passes)
         status = glint_renderer_take_image(renderer->base, &desc, more, error);
@@ -143,7 +144,7 @@ glint_status glint_renderer_run_adaptive(glint_renderer *renderer, const glint_p
                     !(plan->lens && glint_tile_wants_geometry(plan));
     refine->in_place = refine->whole && alone;
     refine->in_codes = refine->in_place && plan->desc.codes && plan->desc.tone.bits == 8 &&
-                       !(plan->desc.passes & GLINT_LIGHT_PASSES);
+                       !(plan->desc.passes & GLINT_LIGHT_PASSES) && !plan->light_groups;
     glint_status status = open_base(renderer, error);
     if (!status)
         status = refine->in_place ? render_in_place(renderer, plan, image, table, &in_place, &kept, &first, error)

@@ -15,6 +15,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/effects/derivative/work.h"
+#include "engine/effects/light_groups/light_groups.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -269,8 +270,13 @@ static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]];
             const uint32_t pixel = rays->pixel[i];
-            for (int c = 0; c < 3; c++)
-                sum[c][pixel] += rays->weight[c][i] * glint_batch_light_of(batch, plan, c, i);
+            double weight[3];
+            for (int c = 0; c < 3; c++) {
+                weight[c] = rays->weight[c][i];
+                sum[c][pixel] += weight[c] * glint_batch_light_of(batch, plan, c, i);
+            }
+            if (glint_batch_has_sample(batch, i))
+                glint_groups_collect(batch, plan, to, batch->sample[i], pixel, weight);
         }
 }
 

@@ -5,7 +5,7 @@
 /// All of it is double, and the same code for every instruction set: a frame without either has none of it.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/tile/tile.h"
+#include "engine/effects/light_groups/light_groups.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -63,6 +63,7 @@ void glint_tile_depth_cue(glint_tile *tile, const glint_tile_frame *frame)
                 sum[i] = 0;
             }
         }
+    glint_groups_fade(tile, plan, (const double(*)[GLINT_TILE_SAMPLES])tile->depth_cue->left);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_DEPTH_CUE, false);
 }
 

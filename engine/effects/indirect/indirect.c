@@ -15,6 +15,7 @@
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
 #include "engine/effects/indirect/paths.h"
+#include "engine/effects/light_groups/light_groups.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -222,11 +223,14 @@ static void collect_group(const glint_batch *batch, const glint_plan *plan, uint
     for (unsigned left = lanes; left; left &= left - 1) {
         const uint32_t lane = (uint32_t)__builtin_ctz(left), at = g * GLINT_GROUP + lane, i = batch->ray_of[at];
         const bool last = rays->scatters[i] == plan->indirect.bounces && batch->tile.at.hits[g] >> lane & 1;
-        double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]];
+        double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]], weight[3];
         for (int c = 0; c < 3; c++) {
             const double rest = last ? glint_tile_ambient_rest(&batch->tile, plan, at, c) : 0;
-            sum[c][rays->pixel[i]] += rays->weight[c][i] * (found[c][lane] + rest);
+            weight[c] = rays->weight[c][i];
+            sum[c][rays->pixel[i]] += weight[c] * (found[c][lane] + rest);
+            glint_groups_add_ambient(to, plan, rays->pixel[i], c, weight[c] * rest);
         }
+        glint_groups_collect(batch, plan, to, at, rays->pixel[i], weight);
     }
 }
 

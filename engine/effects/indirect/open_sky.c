@@ -3,6 +3,7 @@
 /// scene says, but for what transmits: there rays go on refracted, weaker by what the surface takes.
 #include "engine/effects/indirect/paths.h"
 #include "engine/effects/pattern/pattern.h"
+#include "engine/effects/light_groups/light_groups.h"
 
 #include <math.h>
 
@@ -65,5 +66,8 @@ bool glint_indirect_open_sky(struct glint_indirect *indirect, const glint_tile_f
         open_far(batch, frame->plan);
     glint_batch_find_missed(batch, missed);
     glint_indirect_collect_missed(indirect, frame, missed, white, to);
+    for (uint32_t i = 0; frame->plan->light_groups && i < batch->rays->group_count * GLINT_GROUP; i++)
+        for (int c = 0; c < 3 && glint_has_lane(missed, i); c++) // weights are of ambient light
+            glint_groups_add_ambient(to, frame->plan, batch->rays->pixel[i], c, batch->rays->weight[c][i]);
     return any && frame->plan->transmits && go_through(indirect, frame, step);
 }

@@ -4,6 +4,7 @@
 /// and the program's results are added up in double before the next sixteen come.
 #include "engine/program/program.h"
 #include "engine/effects/pattern/work.h"
+#include "engine/effects/light_groups/light_groups.h"
 
 #include <math.h>
 #include <string.h>
@@ -182,6 +183,11 @@ static void add_light(glint_tile *tile, const glint_tile_frame *frame, const bat
                                           : NULL;
     }
     glint_pattern_call(pattern, frame, &b->program->code, lit->first, &args);
+    if (frame->plan->light_groups && from->light->group != GLINT_NO_GROUP) {
+        for (int k = 0; k < GLINT_SHADER_TERMS; k++)
+            args.total[k] = glint_group_sum(tile, from->light->group)[k / 3][k % 3];
+        glint_pattern_call(pattern, frame, &b->program->code, lit->first, &args);
+    }
     for (uint32_t k = 0; k < lit->count; k++)
         tile->counts.work.patterns += glint_count_lanes(lit->lanes[lit->first + k]);
 }

@@ -6,7 +6,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
-#include "engine/plan/plan.h"
+#include "engine/effects/light_groups/plan.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -43,7 +43,7 @@ static bool differ_in_lights(const glint_plan *a, const glint_plan *b)
             return false;
     return glint_key_equal(a->all_materials_key, b->all_materials_key) &&
            glint_key_equal(a->background_key, b->background_key) && equal_depth_cue(a, b) &&
-           vec_equal(a->ambient, b->ambient);
+           vec_equal(a->ambient, b->ambient) && glint_light_groups_equal(a, b);
 }
 
 bool glint_plan_adds_up(const glint_plan *plan, glint_plan *const *times, size_t count)

@@ -15,13 +15,12 @@ typedef struct mean {
     int pass, channel;
 } mean;
 
-#define MEANS_MAX (3 * (GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX))
 #define DERIVATIVE_PASSES (((1u << GLINT_DERIVATIVES_MAX) - 1) << GLINT_PASS_DERIVATIVE)
 
 typedef struct exposure {
     const glint_plan *plan;
     glint_extent extent;
-    mean means[MEANS_MAX];
+    mean *means; ///< owned
     size_t mean_count;
     glint_image *image;
     const glint_image *part; ///< of one time
@@ -38,11 +37,16 @@ static size_t row_at(const exposure *e, size_t index)
     return ((size_t)e->extent.y + index) * (size_t)e->image->width;
 }
 
-/// What a time has of a mean; NULL: nothing depends on the derivative then.
+/// What a time has of a mean; NULL: nothing depends on the derivative then, or the group has no lights.
 static const float *plane_of(const exposure *e, const mean *m)
 {
     if (m->pass < GLINT_PASS_DERIVATIVE)
         return e->part->plane[m->pass][m->channel];
+    for (size_t i = 0; m->pass >= GLINT_PASS_LIGHT && i < e->part->light_count; i++)
+        if (strcmp(e->part->light_name[i], e->image->light_name[m->pass - GLINT_PASS_LIGHT]) == 0)
+            return e->part->light[i][m->channel];
+    if (m->pass >= GLINT_PASS_LIGHT)
+        return NULL;
     const char *name = e->image->derivative[m->pass - GLINT_PASS_DERIVATIVE];
     for (int i = 0; i < GLINT_DERIVATIVES_MAX; i++)
         if (strcmp(e->part->derivative[i], name) == 0)
@@ -137,9 +141,13 @@ static glint_status make_means(exposure *e, glint_error *error)
     const size_t pixels = (size_t)e->image->width * (size_t)e->image->height;
     const uint32_t passes = (e->plan->desc.passes & GLINT_LIGHT_PASSES) | 1u << GLINT_PASS_BEAUTY |
                             (uint32_t)e->plan->desc.alpha << GLINT_PASS_ALPHA | (e->plan->desc.passes & DERIVATIVE_PASSES);
-    for (int pass = 0; pass < GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX; pass++)
-        for (int c = 0; c < glint_pass_channels((glint_pass)pass) && passes >> pass & 1; c++)
-            e->means[e->mean_count++] = (mean) { .out = e->image->plane[pass][c], .pass = pass, .channel = c };
+    const int count = GLINT_PLANE_COUNT + (int)e->image->light_count;
+    if (!(e->means = glint_alloc((size_t)count, 3 * sizeof *e->means)))
+        return glint_fail_nomem(error);
+    for (int pass = 0; pass < count; pass++)
+        for (int c = 0; c < glint_pass_channels((glint_pass)pass) && (pass >= GLINT_PASS_LIGHT || passes >> pass & 1); c++)
+            e->means[e->mean_count++] =
+                (mean) { .out = glint_image_planes(e->image, (glint_pass)pass)[c], .pass = pass, .channel = c };
     e->sums = glint_alloc(e->mean_count * pixels, sizeof *e->sums);
     e->counts = glint_alloc((size_t)e->extent.height, sizeof *e->counts);
     e->own = glint_alloc(4 * pixels, sizeof *e->own);
@@ -204,6 +212,7 @@ glint_status glint_render_times(glint_renderer *renderer, const glint_plan *plan
         status = make_means(&e, error);
     if (!status)
         status = render_all(&e, renderer, &counted, error);
+    free(e.means);
     free(e.sums);
     free(e.own);
     free(e.counts);

@@ -10,6 +10,7 @@
 #include "engine/tile/batch.h"
 #include "engine/effects/cut_out/cut_out.h"
 #include "engine/effects/transparent_shadow/plan.h"
+#include "engine/effects/light_groups/light_groups.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -466,6 +467,7 @@ static void shade(struct glint_transparent_shadow *transparent_shadow, glint_til
             args.sum[k][c] = tile->film.sum[k][c];
     }
     frame->stages->shade(&args);
+    glint_groups_shade_one(tile, frame, &args, light->group);
     if (!glint_tile_shows_shader(tile, frame->plan))
         return;
     glint_shader_light reach = { .light = light, .lit = transparent_shadow->reached };

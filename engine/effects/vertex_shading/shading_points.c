@@ -1,6 +1,7 @@
 #include "engine/effects/vertex_shading/shading_points.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
+#include "engine/effects/light_groups/plan.h"
 
 #include <stdlib.h>
 
@@ -14,14 +15,14 @@ void glint_shading_points_clear(glint_shading_points_cached *shading_points, gli
     *shading_points = (glint_shading_points_cached) { 0 };
 }
 
-static glint_status make_room(glint_shading_points_cached *shading_points, uint32_t blocks, size_t derivatives, glint_reuse *reuse,
+static glint_status make_room(glint_shading_points_cached *shading_points, uint32_t blocks, size_t derivatives, size_t groups, glint_reuse *reuse,
                               glint_error *error)
 {
     const size_t count = 2 * (size_t)blocks, slopes = derivatives ? 3 * (derivatives + 1) : 0,
-                 each = sizeof *shading_points->light + slopes * sizeof *shading_points->slopes,
+                 each = (1 + groups) * sizeof *shading_points->light + slopes * sizeof *shading_points->slopes,
                  bytes = count * (GLINT_SHADING_POINT_BLOCK * each + 1);
     glint_shading_points_clear(shading_points, reuse);
-    shading_points->light = glint_alloc(count * GLINT_SHADING_POINT_BLOCK, sizeof *shading_points->light);
+    shading_points->light = glint_alloc((1 + groups) * count * GLINT_SHADING_POINT_BLOCK, sizeof *shading_points->light);
     shading_points->state = glint_alloc(count, sizeof *shading_points->state);
     if (derivatives)
         shading_points->slopes = glint_alloc(count * GLINT_SHADING_POINT_BLOCK * slopes, sizeof *shading_points->slopes);
@@ -31,6 +32,7 @@ static glint_status make_room(glint_shading_points_cached *shading_points, uint3
     }
     shading_points->blocks = blocks;
     shading_points->slope_count = derivatives;
+    shading_points->group_count = groups;
     shading_points->reserved = glint_reuse_reserve(reuse, bytes) ? bytes : 0;
     return GLINT_OK;
 }
@@ -45,8 +47,9 @@ glint_status glint_shading_points_begin(glint_shading_points_cached *shading_poi
         return GLINT_OK;
     }
     const size_t derivatives = plan->derivatives ? plan->derivatives->count : 0;
-    if (shading_points->blocks != blocks || shading_points->slope_count != derivatives) {
-        glint_status status = make_room(shading_points, blocks, derivatives, reuse, error);
+    const size_t groups = plan->light_groups ? plan->light_groups->count : 0;
+    if (shading_points->blocks != blocks || shading_points->slope_count != derivatives || shading_points->group_count != groups) {
+        glint_status status = make_room(shading_points, blocks, derivatives, groups, reuse, error);
         if (status)
             return status;
     }

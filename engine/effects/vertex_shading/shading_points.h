@@ -20,7 +20,8 @@ typedef struct glint_shading_points_cached {
     glint_key key; ///< of what is there; all zero: nothing
     uint32_t blocks; ///< of one side; those of the backs follow those of the fronts
     uint32_t ready; ///< blocks that were there before this frame
-    glint_shading_point_light *light; ///< of the fronts, then of the backs
+    glint_shading_point_light *light; ///< of the fronts, then of the backs; then of each group of light passes likewise
+    size_t group_count; ///< of light passes
     double *slopes; ///< of each its light, three numbers, and as many slopes by each derivative; NULL: the frame has none
     size_t slope_count; ///< derivatives
     atomic_uchar *state; ///< of each block: a glint_block_state

@@ -8,6 +8,7 @@
 #include "engine/base/vec.h"
 #include "engine/tile/batch.h"
 #include "engine/effects/vertex_shading/shading_points.h"
+#include "engine/effects/light_groups/light_groups.h"
 
 #include <float.h>
 #include <sched.h>
@@ -271,6 +272,7 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
     glint_batch_shine(&vertex->batch, frame, true);
     glint_batch_end(&vertex->batch, to);
     keep_block(vertex, frame, block);
+    glint_groups_keep_block(tile, frame, block);
     if (frame->plan->derivatives)
         glint_derive_keep_block(tile, frame, block);
     for (uint32_t g = 0; frame->count_work && g < tile->group_count; g++)
@@ -382,6 +384,7 @@ static void spread(glint_tile *tile, const glint_tile_frame *frame, double (*con
             args.sum[term][c] = sum[term][c];
     }
     frame->stages->geometry[plan->desc.precision].vertex(&args);
+    glint_groups_spread(tile, frame, &args);
 }
 
 void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES])

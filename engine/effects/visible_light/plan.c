@@ -3,7 +3,7 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/area_light.h"
-#include "engine/plan/plan.h"
+#include "engine/effects/light_groups/plan.h"
 
 #define PI 0x1.921fb54442d18p+1
 #define STRENGTH_MAX 1e150 ///< white in any film; keeping below it, products stay finite
@@ -82,8 +82,10 @@ glint_status glint_plan_visible_lights(glint_plan *plan, const glint_scene *scen
         return glint_fail_nomem(error);
     for (size_t i = 0; i < scene->lights.count; i++) {
         const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
-        if (glint_light_shows(desc, shown))
-            add_visible_light(plan, desc, shown);
+        if (!glint_light_shows(desc, shown))
+            continue;
+        add_visible_light(plan, desc, shown);
+        plan->visible_lights[plan->visible_light_count - 1].group = glint_light_group_of(plan, i);
     }
     return GLINT_OK;
 }

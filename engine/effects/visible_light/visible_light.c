@@ -4,7 +4,7 @@
 /// All of it is double, and the same code for every instruction set: few pixels see a light.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/tile/tile.h"
+#include "engine/effects/light_groups/light_groups.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -265,8 +265,9 @@ void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *fram
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = tile->visible_light->seen[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const glint_plan_visible_light *light = &frame->plan->visible_lights[tile->visible_light->which[i]];
             for (int c = 0; c < 3; c++)
-                tile->film.sum[GLINT_TERM_BACKGROUND][c][i] +=
-                    frame->plan->visible_lights[tile->visible_light->which[i]].shown[c];
+                tile->film.sum[GLINT_TERM_BACKGROUND][c][i] += light->shown[c];
+            glint_groups_add(tile, light->group, i, light->shown);
         }
 }

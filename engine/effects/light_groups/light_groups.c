@@ -1,0 +1,281 @@
+#include "engine/effects/light_groups/light_groups.h"
+#include "engine/base/alloc.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// Share of a pixel's light below which the rest is rounding, and none: of sums in double; of faces and vertices, whose light is float.
+#define ROUNDING 0x1p-40
+#define ROUNDING_OF_SITES 0x1p-22
+
+enum { DIFFUSE, SPECULAR, OTHER, SUMS }; ///< other: all that is not light of lamps on the hits of the tile itself
+
+typedef double term_sums[SUMS][3][GLINT_TILE_SAMPLES];
+
+struct glint_group_sums {
+    _Alignas(64) double local[GLINT_TERM_LOCAL][3][GLINT_TILE_SAMPLES]; ///< of one call of shade without lights
+    uint32_t count;
+    term_sums *sum; ///< of each group
+    double (*faded)[3][GLINT_TILE_SAMPLES]; ///< of each group, over the samples that are done; NULL: nothing fades
+    float (*mean)[3][GLINT_TILE_SAMPLES]; ///< of each pass
+    struct glint_group_sums *batch, *sites; ///< of rays that left surfaces, and of faces and vertices; owned by the tile's own
+};
+
+// ---- Memory ----
+
+static struct glint_group_sums *create(uint32_t count)
+{
+    struct glint_group_sums *sums = glint_alloc(1, sizeof *sums);
+    if (sums)
+        sums->sum = glint_alloc(count, sizeof *sums->sum);
+    if (sums && !sums->sum) {
+        free(sums);
+        return NULL;
+    }
+    if (sums)
+        sums->count = count;
+    return sums;
+}
+
+void glint_group_sums_destroy(struct glint_group_sums *sums)
+{
+    if (!sums)
+        return;
+    if (sums->batch)
+        sums->batch->sites = NULL; // the tile's
+    glint_group_sums_destroy(sums->batch);
+    glint_group_sums_destroy(sums->sites);
+    free(sums->sum);
+    free(sums->faded);
+    free(sums->mean);
+    free(sums);
+}
+
+struct glint_group_sums *glint_group_sums_create(const glint_plan *plan)
+{
+    const struct glint_light_groups *groups = plan->light_groups;
+    struct glint_group_sums *sums = create(groups->count);
+    if (!sums)
+        return NULL;
+    bool good = (sums->mean = glint_alloc(groups->pass_count, sizeof *sums->mean)) != NULL;
+    if (plan->runs[GLINT_STAGE_DEPTH_CUE])
+        good = (sums->faded = glint_alloc(groups->count, sizeof *sums->faded)) && good;
+    if (plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT])
+        good = (sums->batch = create(groups->count)) && good;
+    if (plan->runs[GLINT_STAGE_VERTEX])
+        good = (sums->sites = create(groups->count)) && good;
+    if (sums->batch)
+        sums->batch->sites = sums->sites; // batches show them, too
+    if (good)
+        return sums;
+    glint_group_sums_destroy(sums);
+    return NULL;
+}
+
+struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool sites)
+{
+    const struct glint_group_sums *own = to->group_sums;
+    return !own ? NULL : sites ? own->sites : own->batch;
+}
+
+// ---- A sample ----
+
+/// What a group has of a sample.
+static double sum_of(const struct glint_group_sums *sums, uint32_t group, int c, uint32_t i)
+{
+    double(*sum)[3][GLINT_TILE_SAMPLES] = sums->sum[group];
+    return (sum[DIFFUSE][c][i] + sum[SPECULAR][c][i]) + sum[OTHER][c][i];
+}
+
+void glint_groups_begin(glint_tile *tile, const glint_plan *plan)
+{
+    if (plan->light_groups)
+        memset(tile->group_sums->sum, 0, tile->group_sums->count * sizeof *tile->group_sums->sum);
+}
+
+double (*glint_group_sum(const glint_tile *tile, uint32_t group))[3][GLINT_TILE_SAMPLES]
+{
+    return tile->group_sums->sum[group];
+}
+
+void glint_groups_add(const glint_tile *tile, uint32_t group, uint32_t i, const double light[3])
+{
+    for (int c = 0; tile->group_sums && group != GLINT_NO_GROUP && c < 3; c++)
+        tile->group_sums->sum[group][OTHER][c][i] += light[c];
+}
+
+/// The ambient term that every hit gets, of which lights bring their share.
+static void shade_ambient(const glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args)
+{
+    const struct glint_light_groups *groups = frame->plan->light_groups;
+    double(*local)[3][GLINT_TILE_SAMPLES] = tile->group_sums->local;
+    glint_shade_args ambient = *args;
+    memset(local, 0, sizeof tile->group_sums->local);
+    ambient.light_count = 0;
+    for (int k = 0; k < GLINT_TERM_LOCAL; k++)
+        for (int c = 0; c < 3; c++)
+            ambient.sum[k][c] = local[k][c];
+    frame->stages->shade(&ambient);
+    for (uint32_t g = 0; g < groups->count; g++)
+        for (int c = 0; c < 3; c++)
+            for (uint32_t i = 0; groups->ambient[g][c] > 0 && i < tile->group_count * GLINT_GROUP; i++)
+                tile->group_sums->sum[g][OTHER][c][i] += groups->ambient[g][c] * local[GLINT_TERM_AMBIENT][c][i];
+}
+
+void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t group)
+{
+    glint_shade_args own = *args;
+    if (!frame->plan->light_groups || group == GLINT_NO_GROUP || args->light_count == 0)
+        return;
+    own.first = false;
+    for (int term = 0; term < 2; term++)
+        for (int c = 0; c < 3; c++)
+            own.sum[GLINT_TERM_DIFFUSE + term][c] =
+                args->sum[GLINT_TERM_DIFFUSE + term][c] ? tile->group_sums->sum[group][DIFFUSE + term][c] : NULL;
+    frame->stages->shade(&own);
+}
+
+/// Fills in the lights of a call that belong to a group, and the next group that any belongs to. Samples of a light whose sum stands
+/// in the first of them have no place of their own in the call.
+static uint32_t choose_lights(const glint_tile *tile, const glint_plan_light *rows, uint32_t count, const glint_shade_light *lights,
+                              uint32_t group, glint_shade_light *chosen, uint32_t *next)
+{
+    uint32_t chosen_count = 0, at = 0;
+    *next = GLINT_NO_GROUP;
+    for (uint32_t i = 0; i < count; i++) {
+        if (tile->at.light[i].summed && rows[i].joined && i > 0)
+            continue;
+        if (rows[i].group == group)
+            chosen[chosen_count++] = lights[at];
+        else if (rows[i].group > group && rows[i].group < *next)
+            *next = rows[i].group;
+        at++;
+    }
+    return chosen_count;
+}
+
+void glint_groups_shade(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from, uint32_t count)
+{
+    glint_shade_light lights[GLINT_LIGHT_CHUNK];
+    glint_shade_args own = *args;
+    if (!frame->plan->light_groups)
+        return;
+    own.lights = lights;
+    for (uint32_t group = 0, next; group < frame->plan->light_groups->count; group = next) {
+        own.light_count = choose_lights(tile, &frame->plan->lights[from], count, args->lights, group, lights, &next);
+        glint_groups_shade_one(tile, frame, &own, group);
+    }
+    if (args->first && frame->plan->light_groups->has_ambient)
+        shade_ambient(tile, frame, args);
+}
+
+void glint_groups_collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to, uint32_t at, uint32_t pixel,
+                          const double weight[3])
+{
+    for (uint32_t g = 0; plan->light_groups && g < plan->light_groups->count; g++) {
+        for (int c = 0; c < 3; c++)
+            to->group_sums->sum[g][OTHER][c][pixel] += weight[c] * sum_of(batch->tile.group_sums, g, c, at);
+    }
+}
+
+void glint_groups_add_ambient(const glint_tile *to, const glint_plan *plan, uint32_t pixel, int c, double light)
+{
+    const struct glint_light_groups *groups = plan->light_groups;
+    for (uint32_t g = 0; groups && groups->has_ambient && g < groups->count; g++)
+        to->group_sums->sum[g][OTHER][c][pixel] += groups->ambient[g][c] * light;
+}
+
+void glint_groups_fade(const glint_tile *tile, const glint_plan *plan, const double (*left)[GLINT_TILE_SAMPLES])
+{
+    struct glint_group_sums *sums = tile->group_sums;
+    for (uint32_t g = 0; plan->light_groups && g < sums->count; g++)
+        for (int c = 0; c < 3; c++)
+            for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+                const double before = tile->sample == 0 ? 0 : sums->faded[g][c][i];
+                sums->faded[g][c][i] = before + (left[c][i] > 0 ? sum_of(sums, g, c, i) * left[c][i] : 0);
+                for (int k = 0; k < SUMS; k++)
+                    sums->sum[g][k][c][i] = 0;
+            }
+}
+
+// ---- Light that is found once a face or vertex ----
+
+/// What group `group` gives both sides' faces and vertices; those of the picture come first.
+static glint_shading_point_light *kept_light(const glint_tile_frame *frame, uint32_t group)
+{
+    const size_t each = 2 * (size_t)frame->shading_points->blocks * GLINT_SHADING_POINT_BLOCK;
+    return frame->shading_points->light + (group + 1) * each;
+}
+
+void glint_groups_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
+{
+    for (uint32_t g = 0; frame->plan->light_groups && g < frame->plan->light_groups->count; g++) {
+        glint_shading_point_light *light = kept_light(frame, g) + (size_t)block * GLINT_SHADING_POINT_BLOCK;
+        for (uint32_t i = 0; i < GLINT_SHADING_POINT_BLOCK; i++)
+            for (int term = 0; term < 2; term++)
+                for (int c = 0; c < 3; c++)
+                    light[i].term[term][c] = (float)fmin(tile->group_sums->sum[g][term][c][i], FLT_MAX);
+    }
+}
+
+void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, glint_vertex_args *args)
+{
+    for (uint32_t g = 0; frame->plan->light_groups && g < frame->plan->light_groups->count; g++) {
+        args->light[0] = kept_light(frame, g);
+        args->light[1] = args->light[0] + (size_t)frame->shading_points->blocks * GLINT_SHADING_POINT_BLOCK;
+        for (int term = 0; term < 2; term++)
+            for (int c = 0; c < 3; c++)
+                args->sum[term][c] = args->sum[term][c] ? tile->group_sums->sum[g][term][c] : NULL;
+        frame->stages->geometry[frame->plan->desc.precision].vertex(args);
+    }
+}
+
+// ---- The picture ----
+
+/// What a group has of a pixel in all samples.
+static double light_of(const struct glint_group_sums *sums, uint32_t group, int c, uint32_t i)
+{
+    return sums->faded ? sums->faded[group][c][i] : sum_of(sums, group, c, i);
+}
+
+/// The light of a pixel that no lamp sends.
+static double rest_of(const glint_tile *tile, const glint_plan *plan, int c, uint32_t i)
+{
+    double all = 0, lamps = 0;
+    for (int k = 0; k < GLINT_TERM_COUNT; k++)
+        if (glint_plan_has_term(plan, (glint_term)k))
+            all += tile->film.sum[k][c][i];
+    for (uint32_t g = 0; g < plan->light_groups->count; g++)
+        if (g != plan->light_groups->rest)
+            lamps += light_of(tile->group_sums, g, c, i);
+    const double rest = all - lamps;
+    return fabs(rest) <= (plan->runs[GLINT_STAGE_VERTEX] ? ROUNDING_OF_SITES : ROUNDING) * all ? 0 : rest;
+}
+
+void glint_groups_resolve(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const struct glint_light_groups *groups = frame->plan->light_groups;
+    const double samples = frame->plan->desc.samples;
+    for (uint32_t g = 0; groups && g < groups->pass_count; g++)
+        for (int c = 0; c < 3; c++)
+            for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+                const double light = g == groups->rest ? rest_of(tile, frame->plan, c, i) : light_of(tile->group_sums, g, c, i);
+                tile->group_sums->mean[g][c][i] = (float)(light / samples);
+            }
+}
+
+void glint_groups_take_base(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    for (size_t g = 0; g < frame->image->light_count; g++)
+        for (int c = 0; c < 3; c++)
+            glint_tile_take_plane(tile, frame, frame->base->light[g][c], tile->group_sums->mean[g][c]);
+}
+
+void glint_groups_store(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    for (size_t g = 0; g < frame->image->light_count; g++)
+        for (int c = 0; c < 3; c++)
+            glint_tile_store_plane(tile, tile->group_sums->mean[g][c], frame->image->light[g][c], frame->image->width);
+}

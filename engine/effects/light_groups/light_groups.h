@@ -1,0 +1,43 @@
+/// Light passes: the light of each group of lights, summed beside the picture's own sums. Internal.
+///
+/// Every place that adds light to the sums of a tile adds it once more to those of the light's group: shade, shaders, transparent
+/// shadows, visible lights, mirrors and glass, indirect light, and what is found once a face or vertex. Rays, hits, shadows and
+/// weights are the picture's own. The light that no lamp sends is the difference to the picture's sums.
+#ifndef GLINT_LIGHT_GROUPS_H
+#define GLINT_LIGHT_GROUPS_H
+
+#include "engine/effects/light_groups/plan.h"
+#include "engine/tile/batch.h"
+
+struct glint_group_sums *glint_group_sums_create(const glint_plan *plan);
+void glint_group_sums_destroy(struct glint_group_sums *sums); ///< NULL: nothing
+/// The sums of a batch that is made for a tile; sites: of faces and vertices. NULL: the frame has no light passes.
+struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool sites);
+
+/// Begins a tile's sums; then, for each call of shade, adds what its lights give, and the ambient light that lights bring where it has `first`.
+void glint_groups_begin(glint_tile *tile, const glint_plan *plan);
+/// The lights of the call are `count` rows of the plan from row `from` on, by glint_tile_shade_args; or all of one group.
+void glint_groups_shade(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from, uint32_t count);
+void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t group);
+/// Where the diffuse and specular light of a group is summed.
+double (*glint_group_sum(const glint_tile *tile, uint32_t group))[3][GLINT_TILE_SAMPLES];
+/// A light of this group shows `light` to pixel i.
+void glint_groups_add(const glint_tile *tile, uint32_t group, uint32_t i, const double light[3]);
+/// Adds to pixel `pixel` of `to` what sample `at` of a batch has found, times a weight.
+void glint_groups_collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to, uint32_t at, uint32_t pixel,
+                          const double weight[3]);
+/// Of ambient light that is added to a pixel, the part that lights bring.
+void glint_groups_add_ambient(const glint_tile *to, const glint_plan *plan, uint32_t pixel, int c, double light);
+/// Fades the sums of the current sample, in each pixel and channel; see tile/depth_cue.c.
+void glint_groups_fade(const glint_tile *tile, const glint_plan *plan, const double (*left)[GLINT_TILE_SAMPLES]);
+
+/// Keeps the light of a block of faces or vertices, and gives it to the samples that show them; see tile/vertex.c.
+void glint_groups_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
+void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, glint_vertex_args *args);
+
+/// Makes the means of all samples; takes those of the pixels that are not refined from the base; stores them.
+void glint_groups_resolve(const glint_tile *tile, const glint_tile_frame *frame);
+void glint_groups_take_base(const glint_tile *tile, const glint_tile_frame *frame);
+void glint_groups_store(const glint_tile *tile, const glint_tile_frame *frame);
+
+#endif
