@@ -15,7 +15,7 @@ local glint = {}
 
 --- Three numbers that do not change. To change an object's vector, assign a whole one (`lamp.position = {0, 20, 0}`),
 --- or one component where the object has a place (`lamp.x = 3`).
---- `a + b`, `a - b`, `-a`, `a * b`, `a / b` work component by component; in `*` and `/` either side may be a number.
+--- `a + b`, `a - b`, `a * b`, `a / b`, `a % b`, `a // b`, `a ^ b` and `-a` work component by component; either side may be a number.
 --- An array `{x, y, z}` may stand for a vector. `#v` is 3, `==` compares the numbers.
 ---@class glint.vector
 ---@field x number  also v[1]
@@ -24,11 +24,16 @@ local glint = {}
 ---@field r number  the same as x
 ---@field g number  the same as y
 ---@field b number  the same as z
+---@field u number  the same as x, of s.uv
+---@field v number  the same as y, of s.uv
 ---@field [integer] number
----@operator add(glint.vec3): glint.vector
----@operator sub(glint.vec3): glint.vector
+---@operator add(glint.vec3|number): glint.vector
+---@operator sub(glint.vec3|number): glint.vector
 ---@operator mul(glint.vec3|number): glint.vector
 ---@operator div(glint.vec3|number): glint.vector
+---@operator mod(glint.vec3|number): glint.vector
+---@operator idiv(glint.vec3|number): glint.vector
+---@operator pow(glint.vec3|number): glint.vector
 ---@operator unm: glint.vector
 local vector = {}
 
@@ -42,19 +47,19 @@ function vector:unpack() end
 function vector:dot(b) end
 
 ---@param b glint.values
----@return glint.triple
+---@return glint.vector
 function vector:cross(b) end
 
 ---@return number
 function vector:length() end
 
 --- Divided by its length.
----@return glint.triple
+---@return glint.vector
 function vector:unit() end
 
 --- A direction that arrives, after a mirror of that unit normal: d - 2 (n.d) n.
 ---@param n glint.values
----@return glint.triple
+---@return glint.vector
 function vector:reflect(n) end
 
 --- A vector, or an array of exactly three numbers. Read from an object it is always a vector.

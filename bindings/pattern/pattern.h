@@ -88,9 +88,14 @@ void glintL_push_operand(lua_State *L, const glintL_operand *operand);
 
 // ---- symbol.c, triple.c ----
 
-/// The metamethods that symbols and triples share: operators, and those that raise.
+/// The metamethods of arithmetic, of symbols, triples and vectors.
+void glintL_set_arithmetic(lua_State *L);
+/// Those that symbols and triples share: arithmetic, and what raises.
 void glintL_set_operators(lua_State *L);
+/// Three numbers are pushed as a vector.
 void glintL_push_triple(lua_State *L, const glintL_term v[3]);
+/// The same of red, green, blue and alpha, with a field `a`.
+void glintL_push_color(lua_State *L, const glintL_term v[4]);
 
 // ---- input.c ----
 

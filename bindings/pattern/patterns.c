@@ -13,10 +13,7 @@ static const luaL_Reg METHODS[] = {
 
 const glintL_tracing glintL_patterns = {
     .place = glintL_traced_place,
-    .to_numbers = glintL_to_numbers,
     .is_source = glintL_is_source,
-    .is_traced = glintL_is_traced,
-    .operate = glintL_operator,
     .refuse = glintL_refuse_within_trace,
     .keep = glintL_keep_source,
     .keep_closed = glintL_keep_closed,

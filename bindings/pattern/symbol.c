@@ -50,7 +50,7 @@ static glintL_term operate(lua_State *L, glint_op op, glintL_term a, glintL_term
     return glintL_apply2(L, op, a, b);
 }
 
-int glintL_operator(lua_State *L, glint_op op)
+static int apply_operator(lua_State *L, glint_op op)
 {
     static const char *const signs[] = {
         [GLINT_OP_ADD] = "a + b", [GLINT_OP_SUB] = "a - b", [GLINT_OP_MUL] = "a * b",    [GLINT_OP_DIV] = "a / b",
@@ -69,19 +69,19 @@ int glintL_operator(lua_State *L, glint_op op)
     return 1;
 }
 
-static int add(lua_State *L) { return glintL_operator(L, GLINT_OP_ADD); }
+static int add(lua_State *L) { return apply_operator(L, GLINT_OP_ADD); }
 
-static int subtract(lua_State *L) { return glintL_operator(L, GLINT_OP_SUB); }
+static int subtract(lua_State *L) { return apply_operator(L, GLINT_OP_SUB); }
 
-static int multiply(lua_State *L) { return glintL_operator(L, GLINT_OP_MUL); }
+static int multiply(lua_State *L) { return apply_operator(L, GLINT_OP_MUL); }
 
-static int divide(lua_State *L) { return glintL_operator(L, GLINT_OP_DIV); }
+static int divide(lua_State *L) { return apply_operator(L, GLINT_OP_DIV); }
 
-static int modulo(lua_State *L) { return glintL_operator(L, GLINT_OP_MOD); }
+static int modulo(lua_State *L) { return apply_operator(L, GLINT_OP_MOD); }
 
-static int power(lua_State *L) { return glintL_operator(L, GLINT_OP_POW); }
+static int power(lua_State *L) { return apply_operator(L, GLINT_OP_POW); }
 
-static int floor_divide(lua_State *L) { return glintL_operator(L, GLINT_OP_FLOOR); }
+static int floor_divide(lua_State *L) { return apply_operator(L, GLINT_OP_FLOOR); }
 
 static int negate(lua_State *L)
 {
@@ -118,29 +118,26 @@ static int refuse_bits(lua_State *L)
     return glintL_error(L, "& | ~ << >> of a symbol: it is no integer; write products and glint.floor, or glint.hash");
 }
 
-void glintL_set_operators(lua_State *L)
+void glintL_set_arithmetic(lua_State *L)
 {
     static const luaL_Reg operators[] = {
-        { "__add", add },
-        { "__sub", subtract },
-        { "__mul", multiply },
-        { "__div", divide },
-        { "__mod", modulo },
-        { "__pow", power },
-        { "__idiv", floor_divide },
-        { "__unm", negate },
-        { "__lt", refuse_less },
-        { "__le", refuse_less_equal },
-        { "__concat", refuse_concat },
-        { "__band", refuse_bits },
-        { "__bor", refuse_bits },
-        { "__bxor", refuse_bits },
-        { "__bnot", refuse_bits },
-        { "__shl", refuse_bits },
-        { "__shr", refuse_bits },
+        { "__add", add },   { "__sub", subtract }, { "__mul", multiply },      { "__div", divide },
+        { "__mod", modulo }, { "__pow", power },    { "__idiv", floor_divide }, { "__unm", negate },
         { NULL, NULL },
     };
     luaL_setfuncs(L, operators, 0);
+}
+
+void glintL_set_operators(lua_State *L)
+{
+    static const luaL_Reg refused[] = {
+        { "__lt", refuse_less },  { "__le", refuse_less_equal }, { "__concat", refuse_concat },
+        { "__band", refuse_bits }, { "__bor", refuse_bits },      { "__bxor", refuse_bits },
+        { "__bnot", refuse_bits }, { "__shl", refuse_bits },      { "__shr", refuse_bits },
+        { NULL, NULL },
+    };
+    glintL_set_arithmetic(L);
+    luaL_setfuncs(L, refused, 0);
     lua_pushboolean(L, false);
     lua_setfield(L, -2, "__metatable");
 }

@@ -141,10 +141,7 @@ static int look_up(lua_State *L)
     if (lua_gettop(L) > next)
         return glintL_error(L, "texture: u, v and a footprint, or s.uv and a footprint expected, got more");
     glintL_apply_texture(L, pattern->texture, in, out);
-    glintL_push_triple(L, out);
-    lua_pushliteral(L, "a");
-    glintL_push_term(L, out[3]);
-    lua_rawset(L, -3);
+    glintL_push_color(L, out);
     return 1;
 }
 

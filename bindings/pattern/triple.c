@@ -1,11 +1,21 @@
-// glint.triple: a table of three numbers or symbols x, y, z, with the operators of vectors.
+// glint.triple: a table of three numbers or symbols x, y, z, one of them a symbol, with the operators of vectors. Three numbers are
+// a vector.
 #include "bindings/pattern/pattern.h"
 
 #include <string.h>
 
-void glintL_push_triple(lua_State *L, const glintL_term v[3])
+static bool read_numbers(const glintL_term *v, int count, double *out)
 {
-    luaL_checkstack(L, 4, "vector");
+    bool good = true;
+    for (int i = 0; i < count; i++) {
+        out[i] = v[i].number;
+        good = good && !v[i].is_symbol;
+    }
+    return good;
+}
+
+static void push_table(lua_State *L, const glintL_term v[3])
+{
     lua_createtable(L, 0, 3);
     for (int i = 0; i < 3; i++) {
         glintL_push_term(L, v[i]);
@@ -14,32 +24,28 @@ void glintL_push_triple(lua_State *L, const glintL_term v[3])
     luaL_setmetatable(L, GLINTL_TRIPLE);
 }
 
-static bool is_triple(lua_State *L, int index)
+void glintL_push_triple(lua_State *L, const glintL_term v[3])
 {
-    if (!lua_istable(L, index) || !lua_getmetatable(L, index))
-        return false;
-    luaL_getmetatable(L, GLINTL_TRIPLE);
-    const bool found = lua_rawequal(L, -1, -2);
-    lua_pop(L, 2);
-    return found;
+    double numbers[3];
+    luaL_checkstack(L, 4, "vector");
+    if (read_numbers(v, 3, numbers))
+        glintL_push_vector(L, numbers);
+    else
+        push_table(L, v);
 }
 
-bool glintL_is_traced(lua_State *L, int index)
+void glintL_push_color(lua_State *L, const glintL_term v[4])
 {
-    return luaL_testudata(L, index, GLINTL_SYMBOL) || is_triple(L, index);
-}
-
-bool glintL_to_numbers(lua_State *L, int index, double out[3])
-{
-    glintL_operand operand;
-    if (!is_triple(L, index) || !glintL_to_operand(L, index, false, &operand))
-        return false;
-    for (int i = 0; i < 3; i++)
-        if (operand.at[i].is_symbol)
-            return false;
-    for (int i = 0; i < 3; i++)
-        out[i] = operand.at[i].number;
-    return true;
+    double numbers[4];
+    luaL_checkstack(L, 4, "color");
+    if (read_numbers(v, 4, numbers)) {
+        glintL_push_texel(L, numbers);
+        return;
+    }
+    push_table(L, v);
+    lua_pushliteral(L, "a");
+    glintL_push_term(L, v[3]);
+    lua_rawset(L, -3);
 }
 
 // A vector argument; a scalar is not taken for one.
@@ -244,7 +250,9 @@ void glintL_open_triple(lua_State *L)
     luaL_newmetatable(L, GLINTL_TRIPLE);
     glintL_set_operators(L);
     luaL_setfuncs(L, meta, 0);
-    lua_pop(L, 1);
+    luaL_getmetatable(L, GLINTL_VECTOR_TYPE);
+    glintL_set_arithmetic(L);
+    lua_pop(L, 2);
     glintL_list_variant(L, &variant, METHODS);
     luaL_setfuncs(L, functions, 0);
 }

@@ -179,8 +179,6 @@ void glintL_read_three(lua_State *L, int index, const char *path, const char *ex
         memcpy(out, vector, sizeof read);
         return;
     }
-    if (glintL_get_tracing(L)->to_numbers(L, index, out))
-        return;
     refuse_dual(L, index, path);
     if (!lua_istable(L, index))
         glintL_refuse(L, index, path, expected);

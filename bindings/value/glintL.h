@@ -102,6 +102,8 @@ size_t glintL_check_list(lua_State *L, int index, const char *path, bool allow_f
 
 /// Pushes a userdata "glint.vector": v[1..3], v.x/y/z, v.r/g/b, #v, unpack(), ==, tostring, + - * /; assigning raises.
 void glintL_push_vector(lua_State *L, const double v[3]);
+/// The same with a field `a`.
+void glintL_push_texel(lua_State *L, const double v[4]);
 #define GLINTL_VECTOR_TYPE "glint.vector"
 /// NULL when the value at index is not one.
 const double *glintL_to_vector(lua_State *L, int index);
@@ -164,10 +166,7 @@ const glint_transform *glintL_to_transform(lua_State *L, int index);
 
 typedef struct glintL_tracing {
     const char *(*place)(lua_State *L, lua_CFunction reached); ///< glintL_traced_place, and so on: see below
-    bool (*to_numbers)(lua_State *L, int index, double out[3]);
     bool (*is_source)(lua_State *L, int index, bool is_shader);
-    bool (*is_traced)(lua_State *L, int index);
-    int (*operate)(lua_State *L, glint_op op);
     void (*refuse)(lua_State *L, const char *what);
     void (*keep)(lua_State *L, int index, const glintL_field *field, int value);
     void (*keep_closed)(lua_State *L, int index);
@@ -186,12 +185,6 @@ const glintL_tracing *glintL_get_tracing(lua_State *L); ///< NULL before the mod
 
 /// Whether a field can have the value's program: of a shader's field, a shader; of others, a pattern or a texture.
 bool glintL_is_source(lua_State *L, int index, bool is_shader);
-/// Whether the value takes part in a program: a symbol, or a triple of numbers or symbols.
-bool glintL_is_traced(lua_State *L, int index);
-/// The three numbers of a triple; false: it is none, or has symbols.
-bool glintL_to_numbers(lua_State *L, int index, double out[3]);
-/// The operator of the values at 1 and 2 where one of them is traced; pushes the result.
-int glintL_operator(lua_State *L, glint_op op);
 /// Methods of vectors and triples, and glint.dot and so on.
 int glintL_dot(lua_State *L);
 int glintL_cross(lua_State *L);

@@ -1,15 +1,20 @@
-// glint.vector: three numbers that do not change, read by x, y, z, by r, g, b and by 1, 2, 3.
+// glint.vector: three numbers that do not change, read by x, y, z, by r, g, b, by u, v and by 1, 2, 3. Its operators are those of
+// patterns, see bindings/pattern/symbol.c.
 #include <stdio.h>
 #include <string.h>
 
 #include "bindings/value/glintL.h"
 
-void glintL_push_vector(lua_State *L, const double v[3])
+static void push(lua_State *L, const double *v, size_t count)
 {
-    double *out = lua_newuserdatauv(L, 3 * sizeof *out, 0);
-    memcpy(out, v, 3 * sizeof *out);
+    double *out = lua_newuserdatauv(L, count * sizeof *out, 0);
+    memcpy(out, v, count * sizeof *out);
     luaL_setmetatable(L, GLINTL_VECTOR_TYPE);
 }
+
+void glintL_push_vector(lua_State *L, const double v[3]) { push(L, v, 3); }
+
+void glintL_push_texel(lua_State *L, const double v[4]) { push(L, v, 4); }
 
 static const double *check_self(lua_State *L)
 {
@@ -17,75 +22,6 @@ static const double *check_self(lua_State *L)
     if (!v)
         glintL_refuse(L, 1, "", "vector");
     return v;
-}
-
-// A vector, or an array of three numbers, or (when allowed) one number for all three.
-static void read_operand(lua_State *L, int index, bool allow_number, double out[3])
-{
-    if (allow_number && lua_type(L, index) == LUA_TNUMBER)
-        out[0] = out[1] = out[2] = lua_tonumber(L, index);
-    else if (glintL_to_vector(L, index))
-        memcpy(out, glintL_to_vector(L, index), 3 * sizeof *out);
-    else
-        glintL_read_three(L, index, "vector", allow_number ? "vector or number" : "vector", out);
-}
-
-// Such a sum or product is one of patterns, see bindings/pattern.
-static bool has_traced(lua_State *L)
-{
-    const glintL_tracing *tracing = glintL_get_tracing(L);
-    return tracing->is_traced(L, 1) || tracing->is_traced(L, 2);
-}
-
-static int add(lua_State *L)
-{
-    double a[3], b[3];
-    if (has_traced(L))
-        return glintL_get_tracing(L)->operate(L, GLINT_OP_ADD);
-    read_operand(L, 1, false, a);
-    read_operand(L, 2, false, b);
-    glintL_push_vector(L, (const double[3]) { a[0] + b[0], a[1] + b[1], a[2] + b[2] });
-    return 1;
-}
-
-static int subtract(lua_State *L)
-{
-    double a[3], b[3];
-    if (has_traced(L))
-        return glintL_get_tracing(L)->operate(L, GLINT_OP_SUB);
-    read_operand(L, 1, false, a);
-    read_operand(L, 2, false, b);
-    glintL_push_vector(L, (const double[3]) { a[0] - b[0], a[1] - b[1], a[2] - b[2] });
-    return 1;
-}
-
-static int multiply(lua_State *L)
-{
-    double a[3], b[3];
-    if (has_traced(L))
-        return glintL_get_tracing(L)->operate(L, GLINT_OP_MUL);
-    read_operand(L, 1, true, a);
-    read_operand(L, 2, true, b);
-    glintL_push_vector(L, (const double[3]) { a[0] * b[0], a[1] * b[1], a[2] * b[2] });
-    return 1;
-}
-
-static int divide(lua_State *L)
-{
-    double a[3], b[3];
-    if (has_traced(L))
-        return glintL_get_tracing(L)->operate(L, GLINT_OP_DIV);
-    read_operand(L, 1, true, a);
-    read_operand(L, 2, true, b);
-    glintL_push_vector(L, (const double[3]) { a[0] / b[0], a[1] / b[1], a[2] / b[2] });
-    return 1;
-}
-
-static int negate(lua_State *L)
-{
-    const double *v = check_self(L);
-    glintL_push_vector(L, (const double[3]) { -v[0], -v[1], -v[2] });
-    return 1;
 }
 
 static int equal(lua_State *L)
@@ -133,7 +69,7 @@ static int read_method(lua_State *L, const char *name)
 
 static int read_field(lua_State *L)
 {
-    static const char letters[] = "xyzrgb";
+    static const char letters[] = "xyzrgbuv";
     const double *v = check_self(L);
     if (lua_isinteger(L, 2)) {
         lua_Integer i = lua_tointeger(L, 2);
@@ -149,6 +85,8 @@ static int read_field(lua_State *L)
     const char *letter = *name && !name[1] ? strchr(letters, *name) : NULL;
     if (letter)
         lua_pushnumber(L, v[(letter - letters) % 3]);
+    else if (strcmp(name, "a") == 0 && lua_rawlen(L, 1) == 4 * sizeof *v)
+        lua_pushnumber(L, v[3]);
     else
         return read_method(L, name);
     return 1;
@@ -166,11 +104,6 @@ static int write_field(lua_State *L)
 void glintL_open_vector(lua_State *L)
 {
     static const luaL_Reg meta[] = {
-        { "__add", add },
-        { "__sub", subtract },
-        { "__mul", multiply },
-        { "__div", divide },
-        { "__unm", negate },
         { "__eq", equal },
         { "__len", length },
         { "__tostring", to_string },
@@ -180,7 +113,8 @@ void glintL_open_vector(lua_State *L)
     };
     static const glintL_field fields[] = {
         { .name = "x" }, { .name = "y" }, { .name = "z" },  { .name = "r" },
-        { .name = "g" }, { .name = "b" }, { .name = NULL },
+        { .name = "g" }, { .name = "b" }, { .name = "u" }, { .name = "v" },
+        { .name = NULL },
     };
     static const glintL_variant variant = { .name = "vector", .fields = fields };
     luaL_newmetatable(L, GLINTL_VECTOR_TYPE);

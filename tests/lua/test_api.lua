@@ -59,9 +59,11 @@ function tests.vectors()
   raises("vector.w: no such field", function() return v.w end)
   raises("vector.unpak: no such field; did you mean 'unpack'?", function() return v.unpak end)
   raises("vector: name of a field expected, got true", function() return v[true] end)
-  raises('vector: vector expected, got string "1"', function() return v + "1" end)
-  raises("vector: vector expected, got 1", function() return v + 1 end)
-  raises("vector: vector or number expected, got nil", function() return v * nil end)
+  raises('a + b: number, symbol or vector expected, got string "1"', function() return v + "1" end)
+  check(v + 1 == glint.vector(v.x + 1, v.y + 1, v.z + 1) and v == glint.vector(v:unpack()) and v ~= glint.vector(0, 0, 0))
+  raises("vector.x: a vector does not change; assign a whole one to the object's field: object.field = {x, y, z}",
+    function() glint.vector(1, 2, 3).x = 4 end)
+  raises("a * b: number, symbol or vector expected, got nil: is a variable or a field not set?", function() return v * nil end)
   raises("vector expected, got no value", function() v.unpack() end)
 end
 
