@@ -42,7 +42,7 @@ layer engine/program engine/file $stages $base
 # An effect's plan.h belongs to the plan; its other headers belong to the walk of a tile, and to the frame around it.
 effects='engine/effects/[a-z_]*'
 for files in 'engine/plan/*.[ch]' 'engine/effects/*/plan*.[ch]' 'engine/effects/derivative/slopes.h'; do
-    includes "$files" engine/plan "$effects/(plan|slopes).h" engine/program engine/geometry engine/scene engine/overlay engine/film $stages $base
+    includes "$files" engine/plan engine/effects "$effects/(plan|slopes).h" engine/program engine/geometry engine/scene engine/overlay engine/film $stages $base
 done
 layer engine/reuse engine/program engine/plan engine/film $stages $base
 layer engine/tile "$effects" engine/program engine/reuse engine/plan engine/film $stages engine/stages/light $base

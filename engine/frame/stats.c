@@ -56,7 +56,7 @@ static void list_stages(const glint_tile_counts *sum, const glint_plan *plan, bo
             continue;
         const uint64_t calls = sum->runs[id] + sum->reuses[id];
         const int i = out->stage_count++;
-        out->stage_name[i] = glint_stage_names[id];
+        out->stage_name[i] = glint_stage_table[id]->name;
         out->stage_ms[i] = timed ? (double)sum->ns[id] * 1e-6 : 0;
         out->stage_reused[i] = calls ? (double)sum->reuses[id] / (double)calls : sum->reuses[GLINT_STAGE_CAST] > 0;
     }
@@ -161,7 +161,7 @@ void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more,
     add_odd(to, more);
     for (int i = 0; i < to->stage_count; i++)
         for (int k = 0; k < more->stage_count; k++) {
-            if (to->stage_name[i] != more->stage_name[k] || to->stage_name[i] == glint_stage_names[GLINT_STAGE_TONE])
+            if (to->stage_name[i] != more->stage_name[k] || to->stage_name[i] == glint_stage_table[GLINT_STAGE_TONE]->name)
                 continue;
             to->stage_ms[i] += more->stage_ms[k];
             to->stage_reused[i] += share * (more->stage_reused[k] - to->stage_reused[i]);

@@ -349,35 +349,12 @@ static void list_effects(explainer *e, const glint_scene *scene)
 
 static void list_stages(glint_plan *plan)
 {
-    static const char *const why[GLINT_STAGE_COUNT] = {
-        "rays of each sample",
-        "nearest object and distance of each ray",
-        "which rays see a light before any object",
-        "point, normal and material of each hit",
-        "programs of materials at each point that shows them",
-        "cosine of the angle each point is seen at, for microfacets",
-        "direction, distance and highlight angle of each light",
-        "half vector and Fresnel factor of each light, for microfacets",
-        "which points each shadow-casting light reaches",
-        "light worked out once for a face or a vertex",
-        "ambient, diffuse and specular terms",
-        "shaders of materials, once a light",
-        "the background's program, for rays that leave the scene",
-        "light that surfaces get from other surfaces and the background",
-        "mirrored and refracted rays, and what they find",
-        "light faded by the way from the eye",
-        "which pixels get all samples: edges of objects, normals and contrast",
-        "mean of samples and lights",
-        "light to 8 or 16-bit codes",
-        "lines where depth, normal or object changes",
-        "derivatives of the picture by parameters",
-    };
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
         if (!plan->runs[id])
             continue;
         glint_stage_info *stage = &plan->stage_list[plan->stage_count++];
-        stage->name = glint_stage_names[id];
-        stage->why = why[id];
+        stage->name = glint_stage_table[id]->name;
+        stage->why = glint_stage_table[id]->doc;
         glint_key_hex(plan->keys[id], stage->key);
     }
 }

@@ -9,12 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const glint_stage_names[GLINT_STAGE_COUNT] = {
-    "camera", "cast",   "visible_lights", "surface", "pattern",   "view",   "light",   "facet", "occlude", "vertex",
-    "shade",  "shader", "environment",    "indirect", "bounce", "depth_cue", "refine", "resolve", "tone",  "outline",
-    "derivative"
-};
-
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
 {
     const char *requested, *who = isa && *isa ? "isa" : "GLINT_ISA";
@@ -88,21 +82,13 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
     return status;
 }
 
-/// Stages that never walk the index, but for the cast.
-static const uint32_t without_index =
-    1u << GLINT_STAGE_CAMERA | 1u << GLINT_STAGE_CAST | 1u << GLINT_STAGE_VISIBLE_LIGHT | 1u << GLINT_STAGE_SURFACE |
-    1u << GLINT_STAGE_PATTERN | 1u << GLINT_STAGE_VIEW | 1u << GLINT_STAGE_LIGHT | 1u << GLINT_STAGE_FACET |
-    1u << GLINT_STAGE_VERTEX | 1u << GLINT_STAGE_SHADE | 1u << GLINT_STAGE_SHADER | 1u << GLINT_STAGE_ENVIRONMENT |
-    1u << GLINT_STAGE_RESOLVE | 1u << GLINT_STAGE_DERIVATIVE |
-    1u << GLINT_STAGE_TONE | 1u << GLINT_STAGE_OUTLINE;
-
 /// Whether triangles are to be scanned.
 static void choose_visibility(glint_plan *plan)
 {
     const glint_visibility requested = plan->desc.visibility;
     bool needs_index = false;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
-        needs_index = needs_index || (plan->runs[id] && !(1u << id & without_index));
+        needs_index = needs_index || (plan->runs[id] && glint_stage_table[id]->walks);
     plan->raster = plan->geometry->table.triangles > 0 && !plan->lens && requested != GLINT_VISIBILITY_CAST &&
                    (requested == GLINT_VISIBILITY_SCAN || glint_raster_pays(plan, needs_index));
     plan->needs_index = !plan->raster || needs_index || glint_plan_cuts(plan);
@@ -111,13 +97,10 @@ static void choose_visibility(glint_plan *plan)
 /// Whether light comes from nowhere but the stages shade, in one call a sample, and vertex.
 static bool is_local(const glint_plan *plan)
 {
-    static const glint_stage_id other[] = { GLINT_STAGE_BOUNCE,    GLINT_STAGE_INDIRECT, GLINT_STAGE_VISIBLE_LIGHT,
-                                            GLINT_STAGE_DEPTH_CUE, GLINT_STAGE_FACET,    GLINT_STAGE_SHADER,
-                                            GLINT_STAGE_ENVIRONMENT };
-    for (size_t i = 0; i < sizeof other / sizeof *other; i++)
-        if (plan->runs[other[i]])
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        if (plan->runs[id] && glint_stage_table[id]->remote)
             return false;
-    return !plan->derivatives && !plan->light_groups && !plan->tints && plan->light_count <= GLINT_LIGHT_CHUNK;
+    return !plan->light_groups && !plan->tints && plan->light_count <= GLINT_LIGHT_CHUNK;
 }
 
 /// Whether the samples of a tile can be shaded in one: what was found for each fits the tile.
@@ -130,36 +113,16 @@ static bool shades_together(const glint_plan *plan)
 /// Lists the stages this frame needs.
 static void choose_stages(glint_plan *plan)
 {
-    const bool surfaces = plan->geometry->table.prim_count > 0, lit = surfaces && plan->light_count > 0;
-    plan->runs[GLINT_STAGE_BOUNCE] = surfaces && (plan->mirrors || plan->transmits) && plan->desc.max_depth > 0;
-    plan->runs[GLINT_STAGE_INDIRECT] = plan->indirect.samples > 0;
-    plan->tints = lit && plan->transmits && plan->shadow_count > 0;
+    plan->tints = glint_plan_is_lit(plan) && plan->transmits && plan->shadow_count > 0;
     plan->dims = plan->tints && plan->absorbs;
-    plan->runs[GLINT_STAGE_VISIBLE_LIGHT] = plan->visible_light_count > 0;
-    plan->runs[GLINT_STAGE_SHADER] = lit && plan->patterns && plan->patterns->shaders;
-    plan->runs[GLINT_STAGE_ENVIRONMENT] = plan->environment;
-    plan->depth_cue.on = plan->depth_cue.on && (surfaces || plan->visible_light_count > 0);
-    plan->runs[GLINT_STAGE_DEPTH_CUE] = plan->depth_cue.on || plan->veil.on;
-    plan->accumulate = plan->runs[GLINT_STAGE_DEPTH_CUE] || plan->desc.samples > 1 || plan->visible_light_count > 0 ||
-                       plan->light_groups || plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT] || plan->tints ||
-                       plan->environment || plan->light_count > GLINT_LIGHT_CHUNK ||
-                       (lit && plan->geometry->table.shading_point_count > 0);
-    plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->visible_light_count > 0 || plan->environment;
-    plan->runs[GLINT_STAGE_CAST] = surfaces;
-    plan->runs[GLINT_STAGE_SURFACE] = surfaces;
-    plan->runs[GLINT_STAGE_PATTERN] = surfaces && plan->patterns && (plan->patterns->any || plan->patterns->bumps);
-    plan->runs[GLINT_STAGE_LIGHT] = lit;
-    plan->runs[GLINT_STAGE_VIEW] = plan->runs[GLINT_STAGE_FACET] = lit && plan->facets;
-    plan->runs[GLINT_STAGE_OCCLUDE] = lit && plan->shadow_count > 0;
-    plan->runs[GLINT_STAGE_VERTEX] = lit && plan->geometry->table.shading_point_count > 0;
-    plan->runs[GLINT_STAGE_SHADE] = true;
-    plan->runs[GLINT_STAGE_DERIVATIVE] = plan->derivatives;
+    plan->depth_cue.on = plan->depth_cue.on && (plan->geometry->table.prim_count > 0 || plan->visible_light_count > 0);
+    plan->accumulate = plan->light_groups || plan->desc.samples > 1 || plan->tints || plan->light_count > GLINT_LIGHT_CHUNK;
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
+        plan->runs[id] = glint_stage_table[id]->called(plan);
+        plan->accumulate = plan->accumulate || (plan->runs[id] && glint_stage_table[id]->sums);
+    }
     plan->local = is_local(plan);
     plan->together = shades_together(plan);
-    plan->runs[GLINT_STAGE_REFINE] = plan->desc.adaptive > 0 && plan->desc.samples > 1;
-    plan->runs[GLINT_STAGE_RESOLVE] = plan->accumulate;
-    plan->runs[GLINT_STAGE_TONE] = plan->desc.codes;
-    plan->runs[GLINT_STAGE_OUTLINE] = plan->desc.passes >> GLINT_PASS_OUTLINE & 1;
 }
 
 /// times: of `shutter_times`, whose lights the frame has; NULL: it has its own. `desc`: with its derivatives.

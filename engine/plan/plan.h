@@ -1,6 +1,7 @@
 /// A frame's plan: the tables its stages read, which stages there are, and the key of each. Internal.
 ///
 ///   plan.c            puts it together
+///   plan/stage.h      what a stage declares; core.c has the core's, effects/*/ the others
 ///   plan/keys.c       what each stage reads, hashed
 ///   geometry.c        what rays meet, shared by the plans of one scene
 ///   plan/camera.c     the view
@@ -17,34 +18,7 @@
 #include "engine/overlay/overlay.h"
 #include "engine/effects/derivative/plan.h"
 #include "engine/effects/pattern/plan.h"
-
-/// In the order a frame runs them.
-typedef enum glint_stage_id {
-    GLINT_STAGE_CAMERA,
-    GLINT_STAGE_CAST,
-    GLINT_STAGE_VISIBLE_LIGHT,
-    GLINT_STAGE_SURFACE,
-    GLINT_STAGE_PATTERN,
-    GLINT_STAGE_VIEW,
-    GLINT_STAGE_LIGHT,
-    GLINT_STAGE_FACET,
-    GLINT_STAGE_OCCLUDE,
-    GLINT_STAGE_VERTEX,
-    GLINT_STAGE_SHADE,
-    GLINT_STAGE_SHADER,
-    GLINT_STAGE_ENVIRONMENT, ///< beside `shade`, whose plain background it stands for
-    GLINT_STAGE_INDIRECT,
-    GLINT_STAGE_BOUNCE,
-    GLINT_STAGE_DEPTH_CUE,
-    GLINT_STAGE_REFINE, ///< before all others: which pixels they run for
-    GLINT_STAGE_RESOLVE,
-    GLINT_STAGE_TONE,
-    GLINT_STAGE_OUTLINE, ///< of the whole picture, when its tiles are done
-    GLINT_STAGE_DERIVATIVE, ///< beside `shade`, of which no stage reads it
-    GLINT_STAGE_COUNT
-} glint_stage_id;
-
-extern const char *const glint_stage_names[GLINT_STAGE_COUNT];
+#include "engine/plan/stage.h"
 
 typedef struct glint_plan_camera {
     bool orthographic;
@@ -218,6 +192,12 @@ static inline const double *glint_plan_diffuse(const glint_plan *plan, uint32_t 
     return plan->patterns ? plan->patterns->of[material].desc.diffuse : plan->materials[material].diffuse;
 }
 
+/// Whether lights give light to surfaces.
+static inline bool glint_plan_is_lit(const glint_plan *plan)
+{
+    return plan->geometry->table.prim_count > 0 && plan->light_count > 0;
+}
+
 /// Whether some material turns normals.
 static inline bool glint_plan_bumps(const glint_plan *plan) { return plan->patterns && plan->patterns->bumps; }
 /// Whether some surface has holes.
@@ -281,6 +261,8 @@ bool glint_plan_has_indirect(const glint_scene_desc *scene);
 glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
 /// Fills what mirrors and transparent materials need, after that.
 glint_status glint_plan_bounce(glint_plan *plan, glint_error *error);
+/// Continues a key with what light is left of by a transparent material.
+glint_key glint_transmission_key(const glint_bounce_material *m, glint_key key);
 /// Fills what the eye of a perspective camera is inside of, which glint_plan_bounce does where something transmits.
 glint_status glint_plan_eye(glint_plan *plan, glint_error *error);
 

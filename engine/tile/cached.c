@@ -336,11 +336,6 @@ void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const 
 
 // ---- The tile's pixels ----
 
-static bool is_per_light(glint_stage_id id)
-{
-    return id == GLINT_STAGE_LIGHT || id == GLINT_STAGE_FACET || id == GLINT_STAGE_OCCLUDE;
-}
-
 static bool is_known(glint_key key) { return !glint_key_equal(key, (glint_key) { 0 }); }
 
 /// Which pixels of the base the tile has, and of which it has all samples; 0: not known.
@@ -396,7 +391,7 @@ bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
     tile->counts.nonfinite += tile->cached->nonfinite;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         if (plan->runs[id])
-            tile->counts.reuses[id] += is_per_light((glint_stage_id)id) ? plan->light_count : 1;
+            tile->counts.reuses[id] += glint_stage_table[id]->per_light ? plan->light_count : 1;
     return true;
 }
 

@@ -97,7 +97,7 @@ static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const
         to->tone_ms += base->tone_ms;
     }
     for (int i = 0; i < to->stage_count; i++)
-        if (time_stages && to->stage_name[i] == glint_stage_names[GLINT_STAGE_REFINE])
+        if (time_stages && to->stage_name[i] == glint_stage_table[GLINT_STAGE_REFINE]->name)
             to->stage_ms[i] = choose_ms + compare_ms;
 }
 

@@ -135,3 +135,22 @@ void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame)
     mark_refined(tile, frame);
     glint_tile_activate(tile);
 }
+
+/// How much neighbours must differ, and how they are shown.
+static glint_key own_key(const glint_plan *plan, glint_key key)
+{
+    const double seen[] = { plan->desc.adaptive, plan->desc.tone.curve, plan->desc.tone.exposure };
+    return GLINT_KEY_ADD(key, seen);
+}
+
+static bool called(const glint_plan *plan) { return plan->desc.adaptive > 0 && plan->desc.samples > 1; }
+
+/// It comes before all other stages: it chooses the pixels that they run for.
+const glint_stage glint_stage_refine = {
+    .name = "refine",
+    .doc = "which pixels get all samples: edges of objects, normals and contrast",
+    .called = called,
+    .own = own_key,
+    .reads = GLINT_READS_OWN(REFINE),
+    .walks = true,
+};

@@ -73,3 +73,28 @@ void glint_tile_take_faded(glint_tile *tile, const glint_plan *plan)
         if (glint_plan_has_term(plan, (glint_term)k))
             memcpy(tile->film.sum[k], tile->depth_cue->total[k], sizeof tile->film.sum[k]);
 }
+
+static glint_key own_key(const glint_plan *plan, glint_key key)
+{
+    if (plan->depth_cue.on) {
+        GLINT_KEY_ADD(key, plan->depth_cue.color);
+        GLINT_KEY_ADD(key, plan->depth_cue.near);
+        GLINT_KEY_ADD(key, plan->depth_cue.far);
+    }
+    if (plan->veil.on)
+        GLINT_KEY_ADD(key, plan->veil.absorption);
+    return key;
+}
+
+static bool called(const glint_plan *plan) { return plan->depth_cue.on || plan->veil.on; }
+
+const glint_stage glint_stage_depth_cue = {
+    .name = "depth_cue",
+    .doc = "light faded by the way from the eye",
+    .called = called,
+    .own = own_key,
+    .reads = GLINT_READS_OWN(DEPTH_CUE),
+    .walks = true,
+    .sums = true,
+    .remote = true,
+};

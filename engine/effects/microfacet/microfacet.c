@@ -92,3 +92,20 @@ void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     glint_tile_count_stage(tile, frame, GLINT_STAGE_FACET, false);
     tile->counts.runs[GLINT_STAGE_FACET] += count - 1;
 }
+
+static bool called(const glint_plan *plan) { return glint_plan_is_lit(plan) && plan->facets; }
+
+const glint_stage glint_stage_view = {
+    .name = "view",
+    .doc = "cosine of the angle each point is seen at, for microfacets",
+    .called = called,
+    .reads = GLINT_READS(BUMPS),
+};
+
+const glint_stage glint_stage_facet = {
+    .name = "facet",
+    .doc = "half vector and Fresnel factor of each light, for microfacets",
+    .called = called,
+    .per_light = true,
+    .remote = true,
+};

@@ -81,3 +81,12 @@ void glint_outline(const glint_plan *plan, const glint_extent *extent, glint_poo
     glint_plan_sample_offset(plan, 0, o.offset);
     glint_pool_run(pool, (size_t)extent->height, draw_row, &o);
 }
+
+static bool called(const glint_plan *plan) { return plan->desc.passes >> GLINT_PASS_OUTLINE & 1; }
+
+/// Of the whole picture, when its tiles are done.
+const glint_stage glint_stage_outline = {
+    .name = "outline",
+    .doc = "lines where depth, normal or object changes",
+    .called = called,
+};

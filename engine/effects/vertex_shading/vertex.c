@@ -405,3 +405,16 @@ void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame)
     double(*const sum[2])[GLINT_TILE_SAMPLES] = { tile->film.sum[GLINT_TERM_DIFFUSE], tile->film.sum[GLINT_TERM_SPECULAR] };
     glint_tile_vertex_to(tile, frame, sum);
 }
+
+static bool called(const glint_plan *plan)
+{
+    return glint_plan_is_lit(plan) && plan->geometry->table.shading_point_count > 0;
+}
+
+const glint_stage glint_stage_vertex = {
+    .name = "vertex",
+    .doc = "light worked out once for a face or a vertex",
+    .called = called,
+    .reads = GLINT_READS(LIGHT_COLORS) | GLINT_READS(MATERIALS),
+    .sums = true,
+};

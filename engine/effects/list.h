@@ -1,0 +1,29 @@
+/// The stages of a frame, in the order in which a frame runs them: STAGE(ID, name) for each, whose declaration is glint_stage_NAME.
+/// Internal. A new stage is a folder and a row here.
+#ifndef GLINT_EFFECTS_LIST_H
+#define GLINT_EFFECTS_LIST_H
+
+#define GLINT_STAGES(STAGE) \
+    STAGE(CAMERA, camera) \
+    STAGE(CAST, cast) \
+    STAGE(VISIBLE_LIGHT, visible_light) \
+    STAGE(SURFACE, surface) \
+    STAGE(PATTERN, pattern) \
+    STAGE(VIEW, view) \
+    STAGE(LIGHT, light) \
+    STAGE(FACET, facet) \
+    STAGE(OCCLUDE, occlude) \
+    STAGE(VERTEX, vertex) \
+    STAGE(SHADE, shade) \
+    STAGE(SHADER, shader) \
+    STAGE(ENVIRONMENT, environment) \
+    STAGE(INDIRECT, indirect) \
+    STAGE(BOUNCE, bounce) \
+    STAGE(DEPTH_CUE, depth_cue) \
+    STAGE(REFINE, refine) \
+    STAGE(RESOLVE, resolve) \
+    STAGE(TONE, tone) \
+    STAGE(OUTLINE, outline) \
+    STAGE(DERIVATIVE, derivative)
+
+#endif

@@ -1,0 +1,58 @@
+/// A stage of a frame as one declaration: when a frame needs it, and what it reads. Internal.
+///
+/// The list of a plan's stages, `glint explain`, the keys, what is cached, and the times and counts of a frame follow from the table of
+/// these declarations, which effects/list.h lists. An effect's declaration is in its folder.
+#ifndef GLINT_STAGE_H
+#define GLINT_STAGE_H
+
+#include "engine/base/hash.h"
+#include "engine/effects/list.h"
+
+#define GLINT_STAGE_ID(id, name) GLINT_STAGE_##id,
+typedef enum glint_stage_id { GLINT_STAGES(GLINT_STAGE_ID) GLINT_STAGE_COUNT } glint_stage_id;
+
+struct glint_plan;
+
+/// Continues a key with the bytes of a value.
+#define GLINT_KEY_ADD(key, value) ((key) = glint_key_add((key), &(value), sizeof(value)))
+
+/// Parts of the scene that several stages may read.
+typedef enum glint_scene_part {
+    GLINT_PART_VIEW, ///< camera, picture size, samples
+    GLINT_PART_PLACES, ///< where the surfaces are
+    GLINT_PART_LOOKS, ///< which material each has, and its sides
+    GLINT_PART_PATTERNS, ///< programs that give numbers of materials, and where the shapes' own spaces are
+    GLINT_PART_CUT_OUTS, ///< programs that say where surfaces have holes, and materials that are not there
+    GLINT_PART_BUMPS, ///< programs that turn normals
+    GLINT_PART_HIGHLIGHTS, ///< what kind of highlight each material has
+    GLINT_PART_LIGHT_PLACES, ///< kind, position, fall-off
+    GLINT_PART_SHADOWS, ///< which lights cast them
+    GLINT_PART_LIGHT_COLORS,
+    GLINT_PART_MATERIALS, ///< reflectances, exponents
+    GLINT_PART_BACKGROUND, ///< a colour or a program, and what lights look like
+    GLINT_PART_TINTS, ///< what light is left of by the transparent, where it tints shadows
+    GLINT_PART_PASSES,
+    GLINT_PART_TONE,
+    GLINT_PART_OWN ///< and on, by glint_stage_id: what only this stage reads, if it runs
+} glint_scene_part;
+
+#define GLINT_READS(input) (UINT64_C(1) << GLINT_PART_##input)
+#define GLINT_READS_OWN(stage) (UINT64_C(1) << (GLINT_PART_OWN + GLINT_STAGE_##stage))
+
+typedef struct glint_stage {
+    const char *name; ///< in `glint explain`, --json and the statistics of a frame
+    const char *doc; ///< what it computes, for `glint explain`
+    bool (*called)(const struct glint_plan *plan); ///< whether the frame needs the stage; the plan's tables are filled
+    uint64_t reads; ///< GLINT_READS and GLINT_READS_OWN: with the stages before it, what its result depends on
+    glint_key (*own)(const struct glint_plan *plan,
+                     glint_key key); ///< continues a key with what only this stage reads; NULL: nothing
+    bool aside; ///< the stages after it do not read its result, or read what it is made from
+    bool per_light; ///< it runs once for each light
+    bool walks; ///< it needs the index
+    bool sums; ///< it adds light to the sums of a sample
+    bool remote; ///< it is light, or slopes of light, that one call of `shade` for a sample does not give
+} glint_stage;
+
+extern const glint_stage *const glint_stage_table[GLINT_STAGE_COUNT];
+
+#endif
