@@ -1,4 +1,5 @@
 // glint.material
+#include <math.h>
 #include <string.h>
 
 #include "bindings/run/run.h"
@@ -96,25 +97,43 @@ static void accepted(lua_State *L, const glintL_field *field, const void *desc)
     if (field->offset == AT(specular))
         glintL_note_specular(L, 1);
     const double *kd = ((const desc_type *)desc)->diffuse;
-    if (field->offset == AT(diffuse) && (kd[0] > 1 || kd[1] > 1 || kd[2] > 1) && is_first(L))
-        glintL_warn(L, "material.diffuse above 1: the surface gives off more light than it gets");
+    const double most = fmax(fmax(kd[0], kd[1]), kd[2]);
+    if (field->offset == AT(diffuse) && most > 1 && is_first(L))
+        glintL_warn(L, most > 2 ? "material.diffuse above 1: the surface gives off more light than it gets; colours are numbers "
+                                  "from 0 to 1, or \"#rrggbb\""
+                                : "material.diffuse above 1: the surface gives off more light than it gets");
+}
+
+// Whether the table at 2 says n, l and v, as shaders do.
+static bool has_short_name(lua_State *L)
+{
+    bool has = false;
+    for (const char *name = "n\0l\0v\0"; *name && !has && lua_istable(L, 2); name += 2) {
+        lua_pushstring(L, name);
+        has = lua_rawget(L, 2) != LUA_TNIL;
+        lua_pop(L, 1);
+    }
+    return has;
 }
 
 static int evaluate(lua_State *L)
 {
     typedef glintL_geometry geometry;
-    static const glintL_field fields[] = {
-        { .name = "normal", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, normal), .required = true },
-        { .name = "to_light", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_light), .required = true },
-        { .name = "to_eye", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_eye), .required = true },
-        { .name = "p", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, p) },
-        { .name = NULL },
-    };
+#define DIRECTIONS(n, l, v)                                                                                               \
+    {                                                                                                                     \
+        { .name = (n), .kind = GLINTL_VECTOR, .offset = offsetof(geometry, normal), .required = true },                   \
+        { .name = (l), .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_light), .required = true },                 \
+        { .name = (v), .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_eye), .required = true },                   \
+        { .name = "p", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, p) },                                          \
+        { .name = NULL },                                                                                                 \
+    }
+    static const glintL_field long_names[] = DIRECTIONS("normal", "to_light", "to_eye"), short_names[] = DIRECTIONS("n", "l", "v");
+#undef DIRECTIONS
     geometry at = { .p = { 0 } };
     glint_reflection out;
     glint_error error;
     glintL_check_object(L, 1, GLINTL_MATERIAL);
-    glintL_read_table(L, 2, "evaluate", fields, &at, false);
+    glintL_read_table(L, 2, "evaluate", has_short_name(L) ? short_names : long_names, &at, false);
     glintL_trace_material(L, 1);
     const glint_material *material = glintL_check_object(L, 1, GLINTL_MATERIAL); // again: reading may run finalizers
     glintL_check_status(L, "evaluate", &error, glintL_evaluate_material(material, &at, &out, &error));

@@ -149,12 +149,38 @@ typedef struct member {
     glint_overlay *overlay;
 } member;
 
+// Whether the value is an object of a scene, or a list that begins with one.
+static bool has_object(lua_State *L, int value)
+{
+    value = lua_absindex(L, value);
+    luaL_checkstack(L, 2, "scene");
+    if (lua_istable(L, value))
+        lua_rawgeti(L, value, 1);
+    else
+        lua_pushvalue(L, value);
+    const bool has = glintL_test_object(L, -1, GLINTL_SHAPE) || glintL_test_object(L, -1, GLINTL_LIGHT) ||
+                     glintL_test_object(L, -1, GLINTL_OVERLAY);
+    lua_pop(L, 1);
+    return has;
+}
+
+static void refuse_member(lua_State *L, int value, const char *path)
+{
+    const char *expected = "shape, light, label, colorbar or axes";
+    if (lua_istable(L, value) && has_object(L, value))
+        glintL_error(L, "%s: %s expected, got a list; its objects stand in the scene itself, or in a glint.group", path, expected);
+    if (lua_istable(L, value) && !glintL_is_module(L, value))
+        glintL_error(L, "%s: %s expected, got table; write glint.sphere { ... }, glint.point_light { ... } or another", path,
+                     expected);
+    glintL_refuse(L, value, path, expected);
+}
+
 static member check_member(lua_State *L, int value, const char *path)
 {
     member m = { .shape = glintL_test_object(L, value, GLINTL_SHAPE), .light = glintL_test_object(L, value, GLINTL_LIGHT),
                  .overlay = glintL_test_object(L, value, GLINTL_OVERLAY) };
     if (!m.shape && !m.light && !m.overlay)
-        glintL_refuse(L, value, path, "shape, light, label, colorbar or axes");
+        refuse_member(L, value, path);
     return m;
 }
 
@@ -336,6 +362,17 @@ static void add_list(lua_State *L)
     }
 }
 
+// lights = { lamp }, ball = glint.sphere { ... }
+static void refuse_named(lua_State *L)
+{
+    if (!lua_istable(L, 1))
+        return;
+    for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1))
+        if (lua_type(L, -2) == LUA_TSTRING && !glintL_find_field(FIELDS, lua_tostring(L, -2)) && has_object(L, -1))
+            glintL_error(L, "scene.%s: shapes and lights stand in a scene without a name: glint.scene { camera = ..., lamp, ball }",
+                         lua_tostring(L, -2));
+}
+
 static int new_scene(lua_State *L)
 {
     desc_type desc = { .camera = NULL };
@@ -345,6 +382,7 @@ static int new_scene(lua_State *L)
     glintL_box *box = glintL_new_box(L, GLINTL_SCENE);
     glintL_check_status(L, "scene", &error, glint_scene_create(&scene, &error));
     box->object = scene;
+    refuse_named(L);
     glintL_read_table(L, 1, "scene", FIELDS, &desc, true);
     glintL_check_status(L, "scene", &error, glint_scene_set(scene, &desc, &error));
     if (desc.camera) {

@@ -1108,17 +1108,19 @@ function glint.abs(a) end
 ---@return any
 function glint.sqrt(a) end
 
---- a < b ? a : b.
+--- a < b ? a : b; of more values the least.
 ---@param a glint.values
 ---@param b glint.values
+---@param ... glint.values
 ---@return any
-function glint.min(a, b) end
+function glint.min(a, b, ...) end
 
---- a > b ? a : b.
+--- a > b ? a : b; of more values the greatest.
 ---@param a glint.values
 ---@param b glint.values
+---@param ... glint.values
 ---@return any
-function glint.max(a, b) end
+function glint.max(a, b, ...) end
 
 ---@param a glint.values
 ---@return any
@@ -1350,17 +1352,17 @@ function glint.brick(p, mortar, footprint) end
 
 -- ---- Numbers alone ----
 
----@param radians number
----@return number
+---@param radians glint.values
+---@return any
 function glint.tan(radians) end
 
----@param x number
----@return number
+---@param x glint.values
+---@return any
 function glint.exp(x) end
 
 --- The natural logarithm.
----@param x number
----@return number
+---@param x glint.values
+---@return any
 function glint.log(x) end
 
 return glint

@@ -49,7 +49,7 @@ static int make(lua_State *L, glint_program_kind kind, const char *type)
 {
     const char *name = type + sizeof "glint." - 1;
     if (lua_gettop(L) != 1 || !lua_isfunction(L, 1)) {
-        if (lua_gettop(L) > 1)
+        if (lua_gettop(L) > 1 && !glintL_is_module(L, 1))
             return glintL_error(L, "%s: one function expected, got %d values", name, lua_gettop(L));
         return glintL_refuse(L, 1, name, "function");
     }

@@ -3,10 +3,8 @@
 
 #include <string.h>
 
-#define SURROUNDINGS "glint.surroundings"
-
 typedef struct field {
-    const char *name;
+    const char *name, *long_name; // the long one is material:evaluate's; NULL: it has none
     glint_input first; // of `count` inputs that follow one another
     int count;
     bool is_of_shaders;
@@ -14,19 +12,19 @@ typedef struct field {
 } field;
 
 static const field FIELDS[] = {
-    { "p", GLINT_INPUT_P_X, 3, false, { 0, 0, 0 } },
-    { "world", GLINT_INPUT_WORLD_X, 3, false, { 0, 0, 0 } },
-    { "n", GLINT_INPUT_N_X, 3, false, { 0, 0, 1 } },
-    { "v", GLINT_INPUT_V_X, 3, false, { 0, 0, 1 } },
-    { "uv", GLINT_INPUT_UV_U, 2, false, { 0, 0, 0 } },
-    { "footprint", GLINT_INPUT_FOOTPRINT, 1, false, { 0 } },
-    { "uv_footprint", GLINT_INPUT_UV_FOOTPRINT, 1, false, { 0 } },
-    { "l", GLINT_INPUT_L_X, 3, true, { 0, 0, 1 } },
-    { "light", GLINT_INPUT_LIGHT_R, 3, true, { 1, 1, 1 } },
-    { "distance", GLINT_INPUT_DISTANCE, 1, true, { 1 } },
-    { "kd", GLINT_INPUT_KD_R, 3, true, { 0.8, 0.8, 0.8 } },
-    { "ks", GLINT_INPUT_KS_R, 3, true, { 0, 0, 0 } },
-    { "shininess", GLINT_INPUT_SHININESS, 1, true, { 32 } },
+    { "p", NULL, GLINT_INPUT_P_X, 3, false, { 0, 0, 0 } },
+    { "world", NULL, GLINT_INPUT_WORLD_X, 3, false, { 0, 0, 0 } },
+    { "n", "normal", GLINT_INPUT_N_X, 3, false, { 0, 0, 1 } },
+    { "v", "to_eye", GLINT_INPUT_V_X, 3, false, { 0, 0, 1 } },
+    { "uv", NULL, GLINT_INPUT_UV_U, 2, false, { 0, 0, 0 } },
+    { "footprint", NULL, GLINT_INPUT_FOOTPRINT, 1, false, { 0 } },
+    { "uv_footprint", NULL, GLINT_INPUT_UV_FOOTPRINT, 1, false, { 0 } },
+    { "l", "to_light", GLINT_INPUT_L_X, 3, true, { 0, 0, 1 } },
+    { "light", NULL, GLINT_INPUT_LIGHT_R, 3, true, { 1, 1, 1 } },
+    { "distance", NULL, GLINT_INPUT_DISTANCE, 1, true, { 1 } },
+    { "kd", NULL, GLINT_INPUT_KD_R, 3, true, { 0.8, 0.8, 0.8 } },
+    { "ks", NULL, GLINT_INPUT_KS_R, 3, true, { 0, 0, 0 } },
+    { "shininess", NULL, GLINT_INPUT_SHININESS, 1, true, { 32 } },
 };
 
 #define FIELD_COUNT (sizeof FIELDS / sizeof *FIELDS)
@@ -34,7 +32,7 @@ static const field FIELDS[] = {
 static const field *find_field(const char *name)
 {
     for (size_t i = 0; i < FIELD_COUNT; i++)
-        if (strcmp(FIELDS[i].name, name) == 0)
+        if (strcmp(FIELDS[i].name, name) == 0 || (FIELDS[i].long_name && strcmp(FIELDS[i].long_name, name) == 0))
             return &FIELDS[i];
     return NULL;
 }
@@ -96,7 +94,7 @@ static int write_surroundings(lua_State *L)
 void glintL_push_surroundings(lua_State *L)
 {
     lua_newtable(L);
-    luaL_setmetatable(L, SURROUNDINGS);
+    luaL_setmetatable(L, GLINTL_SURROUNDINGS);
 }
 
 void glintL_open_input(lua_State *L)
@@ -110,7 +108,7 @@ void glintL_open_input(lua_State *L)
     const glintL_variant variant = { .name = "surroundings", .fields = fields };
     for (size_t i = 0; i < FIELD_COUNT; i++)
         fields[i].name = FIELDS[i].name;
-    luaL_newmetatable(L, SURROUNDINGS);
+    luaL_newmetatable(L, GLINTL_SURROUNDINGS);
     luaL_setfuncs(L, meta, 0);
     lua_pushboolean(L, false);
     lua_setfield(L, -2, "__metatable");
@@ -173,7 +171,12 @@ void glintL_read_inputs(lua_State *L, int index, bool is_shader, double inputs[G
         double value[3];
         memcpy(value, f->initial, sizeof value);
         lua_pushstring(L, f->name);
-        if (lua_rawget(L, index) != LUA_TNIL) {
+        if (lua_rawget(L, index) == LUA_TNIL && f->long_name) {
+            lua_pushstring(L, f->long_name);
+            lua_rawget(L, index);
+            lua_replace(L, -2);
+        }
+        if (!lua_isnil(L, -1)) {
             read_value(L, lua_gettop(L), f, value);
         } else if (f->first == GLINT_INPUT_WORLD_X) {
             memcpy(value, &inputs[GLINT_INPUT_P_X], sizeof value);

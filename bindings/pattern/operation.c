@@ -12,6 +12,8 @@ static void check_count(lua_State *L, const glint_op_info *info, int least, int 
     const int count = lua_gettop(L);
     if (count >= least && count <= most)
         return;
+    if (glintL_is_module(L, 1))
+        glintL_error(L, "%s: write glint.%s with a dot, not with a colon", info->name, info->name);
     if (least == most)
         glintL_error(L, "%s: %d argument%s expected, got %d", info->name, least, least == 1 ? "" : "s", count);
     glintL_error(L, "%s: %d or %d arguments expected, got %d", info->name, least, most, count);
@@ -78,33 +80,79 @@ static bool is_of_places(glint_op op)
            op == GLINT_OP_PARITY;
 }
 
-// Functions of plain numbers that programs do not have.
-static int refuse_symbol(lua_State *L)
+// min and max of more than two: of the first two, then of that and the next.
+static int apply_fold(lua_State *L)
 {
-    if (luaL_testudata(L, 1, GLINTL_SYMBOL))
-        return glintL_error(L, "%s", lua_tostring(L, lua_upvalueindex(2)));
-    lua_pushvalue(L, lua_upvalueindex(1));
-    lua_insert(L, 1);
-    lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
-    return lua_gettop(L);
+    if (lua_gettop(L) <= 2)
+        return apply_each(L);
+    luaL_checkstack(L, 4, "arguments");
+    while (lua_gettop(L) > 1) {
+        lua_pushvalue(L, lua_upvalueindex(1));
+        lua_pushcclosure(L, apply_each, 1);
+        lua_pushvalue(L, 1);
+        lua_pushvalue(L, 2);
+        lua_call(L, 2, 1);
+        lua_replace(L, 1);
+        lua_remove(L, 2);
+    }
+    return 1;
 }
 
-static void guard(lua_State *L, const char *name, const char *cure)
+// ---- exp, log and tan: of plain numbers by the functions of math.c, within a pattern by operations ----
+
+static glintL_term exp_term(lua_State *L, glintL_term x)
 {
-    lua_getfield(L, -1, name);
-    lua_pushstring(L, cure);
-    lua_pushcclosure(L, refuse_symbol, 2);
-    lua_setfield(L, -2, name);
+    return glintL_apply1(L, GLINT_OP_EXP2, glintL_apply2(L, GLINT_OP_MUL, glintL_number_term(0x1.71547652b82fep+0), x));
+}
+
+static glintL_term log_term(lua_State *L, glintL_term x)
+{
+    return glintL_apply2(L, GLINT_OP_MUL, glintL_number_term(0x1.62e42fefa39efp-1), glintL_apply1(L, GLINT_OP_LOG2, x));
+}
+
+static glintL_term tan_term(lua_State *L, glintL_term x)
+{
+    return glintL_apply2(L, GLINT_OP_DIV, glintL_apply1(L, GLINT_OP_SIN, x), glintL_apply1(L, GLINT_OP_COS, x));
+}
+
+static const struct {
+    const char *name;
+    glintL_term (*apply)(lua_State *L, glintL_term x);
+} COMPOSED[] = { { "exp", exp_term }, { "log", log_term }, { "tan", tan_term } };
+
+#define COMPOSED_COUNT (sizeof COMPOSED / sizeof *COMPOSED)
+
+// The upvalues: the function of plain numbers, the place in COMPOSED.
+static int apply_composed(lua_State *L)
+{
+    const lua_Integer place = lua_tointeger(L, lua_upvalueindex(2));
+    glintL_operand x;
+    const bool is_alone = lua_gettop(L) == 1 && (glintL_current_trace(L) || glintL_to_vector(L, 1) || lua_istable(L, 1));
+    if (!is_alone || glintL_is_module(L, 1)) {
+        lua_pushvalue(L, lua_upvalueindex(1));
+        lua_insert(L, 1);
+        lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
+        return lua_gettop(L);
+    }
+    glintL_read_operand(L, 1, COMPOSED[place].name, &x);
+    for (int i = 0; i < (x.is_vector ? 3 : 1); i++)
+        x.at[i] = COMPOSED[place].apply(L, x.at[i]);
+    glintL_push_operand(L, &x);
+    return 1;
 }
 
 void glintL_open_operation(lua_State *L)
 {
     for (glint_op op = 0; op <= GLINT_OP_PARITY; op++) {
+        const bool folds = op == GLINT_OP_MIN || op == GLINT_OP_MAX;
         lua_pushinteger(L, (lua_Integer)op);
-        lua_pushcclosure(L, is_of_places(op) ? apply_place : apply_each, 1);
+        lua_pushcclosure(L, is_of_places(op) ? apply_place : folds ? apply_fold : apply_each, 1);
         lua_setfield(L, -2, glint_op_info_of(op)->name);
     }
-    guard(L, "tan", "tan of a symbol: write glint.sin(x) / glint.cos(x)");
-    guard(L, "exp", "exp of a symbol: write glint.exp2(1.4426950408889634 * x)");
-    guard(L, "log", "log of a symbol: write 0.6931471805599453 * glint.log2(x)");
+    for (size_t i = 0; i < COMPOSED_COUNT; i++) {
+        lua_getfield(L, -1, COMPOSED[i].name);
+        lua_pushinteger(L, (lua_Integer)i);
+        lua_pushcclosure(L, apply_composed, 2);
+        lua_setfield(L, -2, COMPOSED[i].name);
+    }
 }

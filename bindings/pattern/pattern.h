@@ -21,6 +21,7 @@
 
 #define GLINTL_SYMBOL "glint.symbol"
 #define GLINTL_TRIPLE "glint.triple"
+#define GLINTL_SURROUNDINGS "glint.surroundings" ///< s
 
 // ---- term.c ----
 
@@ -57,6 +58,9 @@ typedef struct glintL_trace {
     uint64_t serial; ///< no two of a Lua state have the same
     struct glintL_trace *outer; ///< the function within which this one was called, or NULL
     char place[96]; ///< where the function begins: "scene.lua:12: "
+    int64_t steps; ///< of Lua, about, of the outermost one
+    lua_Hook hook; ///< what the state had before the outermost one
+    int hook_mask, hook_count;
 } glintL_trace;
 
 /// The innermost one, or NULL.
@@ -121,6 +125,9 @@ glintL_traced *glintL_make_program(lua_State *L, int index, bool is_background);
 /// Runs the function of the pattern at `index` with the numbers of a point.
 /// Returns how many numbers it gave, as the program's outputs are counted.
 size_t glintL_run_on_numbers(lua_State *L, int index, const double inputs[GLINT_INPUT_COUNT], double *outputs);
+
+/// Pushes where the function of the pattern at `index` begins, "scene.lua:12: "; "": it has none.
+const char *glintL_push_pattern_place(lua_State *L, int index);
 
 // ---- points.c ----
 

@@ -110,6 +110,30 @@ static bool changes(const glint_program *program)
     return any;
 }
 
+// Pushes where the function of the field's pattern begins.
+static const char *push_place(lua_State *L, int index, const glintL_field *field)
+{
+    luaL_checkstack(L, 4, "message");
+    return glintL_push_kept(L, index, field->name) ? glintL_push_pattern_place(L, -1) : lua_pushliteral(L, "");
+}
+
+// The engine names the field first: the message begins where the function of its pattern does.
+static void refuse_field(lua_State *L, int index, const char *name, const glintL_field *fields, glint_status status,
+                         const glint_error *error)
+{
+    const size_t length = strcspn(error->message, ":");
+    for (const glintL_field *field = fields; field->name && status == GLINT_ERR_INVALID; field++) {
+        if (!field->program_offset || strncmp(field->name, error->message, length) != 0 || field->name[length])
+            continue;
+        const char *place = push_place(L, index, field);
+        if (!*place)
+            break;
+        lua_pushfstring(L, "%s%s.%s", place, name, error->message);
+        lua_error(L);
+    }
+    glintL_check_status(L, name, error, status);
+}
+
 // Gives the object whose userdata is at `index` the programs of its patterns.
 static void trace_object(lua_State *L, int index, const char *type, int frame)
 {
@@ -140,12 +164,16 @@ static void trace_object(lua_State *L, int index, const char *type, int frame)
         if (traced)
             program = traced->program;
         sloped = sloped || (program && changes(program));
-        if (program && changes(program) && glint_program_constant(program, outputs))
-            glintL_error(L, "%s.%s: a pattern that gives one number everywhere has no derivative by it; the number itself has",
-                         type + sizeof "glint." - 1, field->name);
+        if (program && changes(program) && glint_program_constant(program, outputs)) {
+            lua_pushfstring(L, "%s%s.%s: a pattern that gives one number everywhere has no derivative by it; the number itself has",
+                            push_place(L, index, field), type + sizeof "glint." - 1, field->name);
+            lua_error(L);
+        }
         memcpy(desc.bytes + field->program_offset, &program, sizeof program);
     }
-    glintL_check_status(L, type + sizeof "glint." - 1, &error, class->set(object, &desc, &error));
+    const glint_status status = class->set(object, &desc, &error);
+    if (status)
+        refuse_field(L, index, type + sizeof "glint." - 1, fields, status, &error);
     lua_settop(L, top);
     if (sloped)
         glintL_note_sloped(L, index);

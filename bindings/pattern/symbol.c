@@ -2,6 +2,7 @@
 #include "bindings/pattern/pattern.h"
 
 #include <math.h>
+#include <string.h>
 
 // ---- Powers ----
 
@@ -95,8 +96,20 @@ static int negate(lua_State *L)
 
 // ---- What a function that is traced cannot do ----
 
+// math.min and math.max compare what they are given.
+static void refuse_least(lua_State *L)
+{
+    lua_Debug caller;
+    if (!lua_getstack(L, 1, &caller) || !lua_getinfo(L, "Sn", &caller) || *caller.what != 'C' || !caller.name)
+        return;
+    if (strcmp(caller.name, "min") == 0 || strcmp(caller.name, "max") == 0)
+        glintL_error(L, "math.%s of a symbol: the point is not known when the function is called; write glint.%s", caller.name,
+                     caller.name);
+}
+
 static int refuse_less(lua_State *L)
 {
+    refuse_least(L);
     return glintL_error(L, "a < b or a > b of a symbol: the point is not known when the function is called; write "
                            "glint.select(glint.less(a, b), x, y)");
 }

@@ -62,6 +62,17 @@ static bool has_place(const char *text)
     return false;
 }
 
+// What to write for a function of Lua that wants a number.
+static const char *push_own_function(lua_State *L, const char *text)
+{
+    const char *name = glintL_push_name_after(L, text, "bad argument #1 to '");
+    if (name && strcmp(name, "fmod") == 0)
+        return lua_pushliteral(L, "a symbol has no number yet; write a % b");
+    if (name && glintL_makes(L, name))
+        return lua_pushfstring(L, "a symbol has no number yet; write glint.%s", name);
+    return lua_pushliteral(L, "a symbol has no number yet; write glint's own function, glint.sin(x) for math.sin(x)");
+}
+
 // Lua's own messages about symbols, with what to write instead.
 static int explain(lua_State *L)
 {
@@ -69,15 +80,21 @@ static int explain(lua_State *L)
     const char *text = lua_tostring(L, 1), *cure = NULL;
     if (lua_type(L, 1) != LUA_TSTRING)
         return 1;
+    luaL_checkstack(L, 8, "message");
     if (strstr(text, "'for' ") && strstr(text, "number"))
         cure = "a loop runs over numbers, not over values of the point";
     else if (strstr(text, "got " GLINTL_SYMBOL) || strstr(text, "got " GLINTL_TRIPLE))
-        cure = "a symbol has no number yet; write glint's own function, glint.sin(x) for math.sin(x)";
+        cure = push_own_function(L, text);
     else if (strstr(text, "stack overflow"))
         cure = "functions call each other without an end";
-    if (!cure || !trace || strstr(text, cure)) // a pattern within a pattern has said it
+    else if (strstr(text, "a nil value (field '?')"))
+        cure = "a table has nothing at a value of the point; use glint.select";
+    else if (strstr(text, "values expected, numbers included"))
+        cure = "is it a loop without an end? To Lua a comparison of values of the point is always true";
+    if (!cure || !trace || strstr(text, cure)) { // a pattern within a pattern has said it
+        lua_settop(L, 1);
         return 1;
-    luaL_checkstack(L, 4, "message");
+    }
     lua_pushfstring(L, "%s%s: %s", has_place(text) ? "" : trace->place, text, cure);
     return 1;
 }
@@ -86,7 +103,8 @@ static int explain(lua_State *L)
 
 static void refuse_result(lua_State *L, const glintL_trace *trace, int index)
 {
-    const char *hint = lua_isnoneornil(L, index) ? ": is a return missing?" : "";
+    const char *hint = lua_isnoneornil(L, index) ? ": is a return missing, or a table indexed by a value of the point? use glint.select"
+                                                 : "";
     const char *got = lua_istable(L, index) ? "a table that is no vector" : glintL_push_spelling(L, index);
     lua_pushfstring(L, "%s%s: a number, a symbol or a vector of three expected from the function, got %s%s",
                     trace->place, trace->is_shader ? "shader" : "pattern", got, hint);
@@ -97,8 +115,16 @@ static void refuse_result(lua_State *L, const glintL_trace *trace, int index)
 static void read_results(lua_State *L, session *s)
 {
     const int count = lua_gettop(L) - 1, most = s->trace.is_shader ? 2 : 1;
-    if (count > most)
-        refuse_result(L, &s->trace, most + 2);
+    if (count > most && !s->trace.is_shader) {
+        lua_pushfstring(L, "%spattern: one value expected from the function, got %d; a colour is glint.vector(r, g, b) or { r, g, b }",
+                        s->trace.place, count);
+        lua_error(L);
+    }
+    if (count > most) {
+        lua_pushfstring(L, "%sshader: the diffuse part, or it and the specular part expected from the function, got %d values",
+                        s->trace.place, count);
+        lua_error(L);
+    }
     s->count = 0;
     for (int i = 0; i < (count > 1 ? count : 1); i++) {
         glintL_operand operand;
@@ -145,19 +171,99 @@ static session *push_session(lua_State *L, int index)
     return s;
 }
 
-// Calls the function of the pattern at `index`; the session is a userdata at `held`.
+// ---- A loop without an end ----
+
+#define STEPS_MAX 200000000 // of Lua, in one call: some seconds
+#define STEPS_BETWEEN 1000000
+
+static glintL_trace *outermost(lua_State *L)
+{
+    glintL_trace *trace = glintL_current_trace(L);
+    while (trace && trace->outer)
+        trace = trace->outer;
+    return trace;
+}
+
+static void count_steps(lua_State *L, lua_Debug *where)
+{
+    glintL_trace *trace = outermost(L);
+    if (!trace)
+        return;
+    if (trace->hook)
+        trace->hook(L, where);
+    trace->steps += STEPS_BETWEEN;
+    if (trace->steps > STEPS_MAX)
+        glintL_error(L, "%s: its function has not returned after %d million steps; is it a loop without an end?",
+                     trace->is_shader ? "shader" : "pattern", STEPS_MAX / 1000000);
+}
+
+// The hook that was there goes on being called, unless it is to be at each step: an interrupt.
+static void begin_steps(lua_State *L, glintL_trace *trace)
+{
+    const int count = lua_gethookcount(L);
+    if (trace->outer || (lua_gethook(L) && count < 2))
+        return;
+    trace->hook = lua_gethook(L);
+    trace->hook_mask = lua_gethookmask(L);
+    trace->hook_count = count;
+    lua_sethook(L, count_steps, LUA_MASKCOUNT, STEPS_BETWEEN);
+}
+
+static void end_steps(lua_State *L, const glintL_trace *trace)
+{
+    if (!trace->outer && lua_gethook(L) == count_steps) // an interrupt has put its own in place
+        lua_sethook(L, trace->hook, trace->hook_mask, trace->hook_count);
+}
+
+// ---- Prints ----
+
+static int print_nothing(lua_State *L)
+{
+    (void)L;
+    return 0;
+}
+
+// Puts the function on top in the place of the global `print`, and leaves the one that was there.
+static void swap_print(lua_State *L)
+{
+    luaL_checkstack(L, 4, "pattern");
+    lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
+    lua_pushliteral(L, "print");
+    lua_rawget(L, -2);
+    lua_insert(L, -3);
+    lua_insert(L, -2);
+    lua_pushliteral(L, "print");
+    lua_insert(L, -2);
+    lua_rawset(L, -3);
+    lua_pop(L, 1);
+}
+
+// Calls the function of the pattern at `index`; the session is a userdata at `held`. It prints when it is called with symbols the first
+// time, not at each of the points where it is tried.
 static void call(lua_State *L, int index, int held)
 {
     session *s = lua_touserdata(L, held);
+    const bool is_quiet = s->trace.point || s->trace.before;
     const int top = lua_gettop(L);
     luaL_checkstack(L, 12, "pattern");
+    if (is_quiet) {
+        lua_pushcfunction(L, print_nothing);
+        swap_print(L);
+    }
     lua_pushcfunction(L, explain);
     lua_pushcfunction(L, glintL_call_function);
     lua_pushvalue(L, held);
     lua_getiuservalue(L, index, 1);
     glintL_enter_trace(L, &s->trace);
-    const int status = lua_pcall(L, 2, 0, top + 1);
+    begin_steps(L, &s->trace);
+    const int status = lua_pcall(L, 2, 0, top + 1 + is_quiet);
+    end_steps(L, &s->trace);
     glintL_leave_trace(L, &s->trace);
+    if (is_quiet) {
+        lua_pushvalue(L, top + 1);
+        swap_print(L);
+        lua_pop(L, 1);
+    }
     if (status)
         lua_error(L);
     lua_settop(L, top);
@@ -324,6 +430,14 @@ glintL_traced *glintL_make_program(lua_State *L, int index, bool is_background)
         compare_once(L, index, top + 1, traced);
     lua_settop(L, top);
     return traced;
+}
+
+const char *glintL_push_pattern_place(lua_State *L, int index)
+{
+    glintL_trace trace = { .is_shader = false };
+    if (glintL_to_pattern(L, index))
+        set_place(L, lua_absindex(L, index), &trace);
+    return lua_pushstring(L, trace.place);
 }
 
 void glintL_open_trace(lua_State *L)

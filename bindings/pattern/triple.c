@@ -52,6 +52,8 @@ void glintL_push_color(lua_State *L, const glintL_term v[4])
 static void read_vector(lua_State *L, int index, const char *path, glintL_term out[3])
 {
     glintL_operand operand;
+    if (lua_gettop(L) == 0)
+        glintL_error(L, "%s: a vector expected, got no value; a method takes a colon: v:%s()", path, path);
     glintL_read_operand(L, index, path, &operand);
     if (!operand.is_vector)
         glintL_error(L, "%s: a vector expected, got one %s", path, operand.at[0].is_symbol ? "symbol" : "number");

@@ -71,8 +71,15 @@ static int add_callers(lua_State *L)
 
 int glintL_message_handler(lua_State *L)
 {
-    if (lua_type(L, 1) == LUA_TSTRING)
+    if (lua_type(L, 1) == LUA_TSTRING) {
+        const char *cure = glintL_push_lua_cure(L, lua_tostring(L, 1));
+        if (cure && !strstr(lua_tostring(L, 1), cure)) {
+            lua_pushfstring(L, "%s%s", lua_tostring(L, 1), cure);
+            lua_replace(L, 1);
+        }
+        lua_settop(L, 1);
         return add_callers(L);
+    }
     // Hooks, which end a script that goes on for ever, may be off here.
     if (!glintL_get_run(L)->request.is_untrusted && luaL_callmeta(L, 1, "__tostring") && lua_type(L, -1) == LUA_TSTRING)
         return 1;

@@ -124,8 +124,8 @@ const char *glintL_push_spelling(lua_State *L, int index)
 
 int glintL_refuse(lua_State *L, int index, const char *path, const char *expected)
 {
-    const char *got = glintL_push_spelling(L, index);
-    return glintL_error(L, "%s%s%s expected, got %s", path, *path ? ": " : "", expected, got);
+    const char *got = glintL_push_spelling(L, index), *cure = glintL_push_dot_cure(L, index);
+    return glintL_error(L, "%s%s%s expected, got %s%s", path, *path ? ": " : "", expected, got, cure);
 }
 
 // ---- Numbers, vectors and lists ----

@@ -86,9 +86,12 @@ static void read_object(lua_State *L, int index, const char *path, const glintL_
     const char *type = field->names[0];
     void *object = NULL;
     if (!lua_isnil(L, index) || field->required) {
+        const char *name = type + sizeof "glint." - 1;
         object = glintL_test_object(L, index, type);
+        if (!object && lua_istable(L, index) && glintL_makes(L, name))
+            glintL_error(L, "%s: %s expected, got table; write glint.%s { ... }", path, name, name);
         if (!object)
-            glintL_refuse(L, index, path, type + sizeof "glint." - 1);
+            glintL_refuse(L, index, path, name);
     }
     memcpy(out, &object, sizeof object);
 }
@@ -156,6 +159,22 @@ static void read_nested(lua_State *L, int index, const char *path, const glintL_
     lua_settop(L, top);
 }
 
+// A function or a pattern where the field wants the other kind.
+static void refuse_source(lua_State *L, int index, const char *path, bool is_shader)
+{
+    const bool is_other = glintL_get_tracing(L)->is_source(L, index, !is_shader);
+    if (!is_other && !lua_isfunction(L, index))
+        return;
+    const char *got = glintL_push_spelling(L, index);
+    if (is_shader)
+        glintL_error(L, "%s: a name or a shader expected, got %s; write glint.shader(function(s) ... end)", path, got);
+    if (is_other)
+        glintL_error(L, "%s: a value or a pattern expected, got %s; a shader is a material's model, and this is "
+                        "glint.pattern(function(p, s) ... end)",
+                     path, got);
+    glintL_error(L, "%s: a value or a pattern expected, got %s; write glint.pattern(function(p, s) ... end)", path, got);
+}
+
 // Nothing here but read_points allocates unless it raises, so that no finalizer of the script can run meanwhile and close an object
 // whose pointer was read.
 void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
@@ -174,6 +193,7 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
                 memcpy(base + field->set_offset, &set, sizeof set);
             return;
         }
+        refuse_source(L, index, full, field->kind == GLINTL_ENUM);
     }
     if (field->set_offset && !field->required && lua_isnil(L, index)) {
         set = false;
@@ -382,6 +402,14 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
 
 // ---- Whole tables ----
 
+static const char *first_required(const glintL_field *fields)
+{
+    for (const glintL_field *field = fields; field->name; field++)
+        if (field->required)
+            return field->name;
+    return fields->name;
+}
+
 static void check_keys(lua_State *L, int index, const char *path, const glintL_field *fields, bool allow_array)
 {
     lua_pushnil(L);
@@ -392,7 +420,10 @@ static void check_keys(lua_State *L, int index, const char *path, const glintL_f
             const char *name = lua_tolstring(L, -1, &length);
             if (!glintL_find_field(fields, name) || strlen(name) != length)
                 glintL_no_such_field(L, path, name, glintL_nearest(name, fields));
-        } else if (!allow_array || !lua_isinteger(L, -1)) {
+        } else if (!allow_array && lua_isinteger(L, -1)) {
+            glintL_error(L, "%s: a name with each value expected, %s { %s = ... }, got a value without", path, path,
+                         first_required(fields));
+        } else if (!lua_isinteger(L, -1)) {
             glintL_bad_key(L, path, -1);
         }
     }
@@ -404,6 +435,8 @@ void glintL_read_table(lua_State *L, int index, const char *path, const glintL_f
     index = lua_absindex(L, index);
     if (!lua_istable(L, index))
         glintL_refuse(L, index, path, "table");
+    if (glintL_is_module(L, index))
+        glintL_error(L, "%s: write glint.%s { ... } with a dot, not with a colon", path, path);
     luaL_checkstack(L, 6, "table");
     check_keys(L, index, path, fields, allow_array);
     // Objects last: see glintL_read_field.

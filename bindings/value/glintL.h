@@ -98,6 +98,18 @@ const char *glintL_push_spelling(lua_State *L, int index);
 /// Checks that the table at `index` holds 1 .. n and nothing else (string keys pass when `allow_fields`); returns n.
 size_t glintL_check_list(lua_State *L, int index, const char *path, bool allow_fields);
 
+// ---- cure.c: what messages add to common mistakes ----
+
+bool glintL_is_module(lua_State *L, int index); ///< whether the value is the table that require "glint" gives
+bool glintL_makes(lua_State *L, const char *name); ///< whether glint has a function of that name
+/// Each pushes the end of a message, "" where it has no cure: of glint:sphere { ... }, of scene.add(x).
+const char *glintL_push_dot_cure(lua_State *L, int index);
+const char *glintL_push_colon_cure(lua_State *L, int index);
+/// The end of one of Lua's own messages, pushed; NULL: it has no cure. May leave other values on the stack.
+const char *glintL_push_lua_cure(lua_State *L, const char *text);
+/// Pushes the name after `before` in the text, up to "'" or ")"; NULL, and nothing pushed: the text has no `before`.
+const char *glintL_push_name_after(lua_State *L, const char *text, const char *before);
+
 // ---- vector.c: the immutable value of a vector or colour ----
 
 /// Pushes a userdata "glint.vector": v[1..3], v.x/y/z, v.r/g/b, #v, unpack(), ==, tostring, + - * /; assigning raises.

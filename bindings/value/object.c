@@ -30,9 +30,10 @@ void *glintL_check_object(lua_State *L, int index, const char *type)
 {
     const char *name = type + sizeof "glint." - 1;
     const glintL_box *box = luaL_testudata(L, index, type);
-    if (!box)
-        glintL_refuse(L, index, "", name);
-    else if (!box->object)
+    if (!box) {
+        const char *got = glintL_push_spelling(L, index);
+        glintL_error(L, "%s expected, got %s%s", name, got, glintL_push_colon_cure(L, index));
+    } else if (!box->object)
         glintL_error(L, "%s is closed", name);
     return box ? box->object : NULL;
 }

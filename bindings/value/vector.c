@@ -19,8 +19,10 @@ void glintL_push_texel(lua_State *L, const double v[4]) { push(L, v, 4); }
 static const double *check_self(lua_State *L)
 {
     const double *v = glintL_to_vector(L, 1);
-    if (!v)
-        glintL_refuse(L, 1, "", "vector");
+    if (!v) {
+        const char *got = glintL_push_spelling(L, 1);
+        glintL_error(L, "vector expected, got %s%s", got, glintL_push_colon_cure(L, 1));
+    }
     return v;
 }
 

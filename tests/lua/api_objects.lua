@@ -208,7 +208,8 @@ function tests.scene()
   raises("scene.add: shape, light, label, colorbar or axes expected, got material", function() scene:add(red) end)
   raises("scene.remove: shape, light, label, colorbar or axes expected, got 1", function() scene:remove(1) end)
   raises("scene[2]: shape, light, label, colorbar or axes expected, got camera", function() glint.scene { lamp, camera } end)
-  raises("scene[1]: shape, light, label, colorbar or axes expected, got table", function() glint.scene { { lamp } } end)
+  raises("scene[1]: shape, light, label, colorbar or axes expected, got a list; its objects stand in the scene itself, or in a glint.group",
+    function() glint.scene { { lamp } } end)
   raises("scene[2]: a list without holes expected, got nil", function() glint.scene { lamp, nil, far } end)
   raises("scene[1]: a list without holes expected, got nil", function() glint.scene { nil, far } end)
   raises("scene: a list expected, got a table with the key 0", function() glint.scene { [0] = lamp } end)
@@ -221,7 +222,7 @@ function tests.scene()
   raises("cast.direction: vector that is not zero expected, got {0, 0, 0}",
     function() scene:cast({ 0, 0, 0 }, { 0, 0, 0 }) end)
   raises("cast.direction[1]: finite number expected, got nan", function() scene:cast({ 0, 0, 0 }, { 0 / 0, 0, 0 }) end)
-  raises("scene expected, got sphere", function() scene.cast(far, { 0, 0, 0 }, { 0, 0, 1 }) end)
+  raises("scene expected, got sphere; a method takes a colon: object:cast(...)", function() scene.cast(far, { 0, 0, 0 }, { 0, 0, 1 }) end)
 end
 
 function tests.image()

@@ -64,7 +64,7 @@ function tests.vectors()
   raises("vector.x: a vector does not change; assign a whole one to the object's field: object.field = {x, y, z}",
     function() glint.vector(1, 2, 3).x = 4 end)
   raises("a * b: number, symbol or vector expected, got nil: is a variable or a field not set?", function() return v * nil end)
-  raises("vector expected, got no value", function() v.unpack() end)
+  raises("vector expected, got no value; a method takes a colon: object:unpack(...)", function() v.unpack() end)
 end
 
 function tests.vector_arguments()
@@ -195,7 +195,7 @@ function tests.material()
   check(m.shininess == 64 and m.model == "phong", "the material is as it was")
   raises("material: table expected, got nil", function() glint.material() end)
   raises("material: table expected, got 5", function() glint.material(5) end)
-  raises("material: name of a field expected, got 1", function() glint.material { 0.5 } end)
+  raises("material: a name with each value expected, material { model = ... }, got a value without", function() glint.material { 0.5 } end)
   raises("material.shinines: no such field; did you mean 'shininess'?", function() glint.material { shinines = 1 } end)
 end
 
@@ -212,8 +212,8 @@ function tests.evaluate()
   raises("evaluate.to_eye[1]: finite number expected, got nan",
     function() m:evaluate(with(at, "to_eye", { 0 / 0, 0, 0 })) end)
   raises("evaluate.eye: no such field", function() m:evaluate(with(at, "eye", { 0, 0, 1 })) end)
-  raises("material expected, got nil", function() m.evaluate(nil, at) end)
-  raises("material expected, got sphere", function() m.evaluate(glint.sphere(SPHERE), at) end)
+  raises("material expected, got nil; a method takes a colon: object:evaluate(...)", function() m.evaluate(nil, at) end)
+  raises("material expected, got sphere; a method takes a colon: object:evaluate(...)", function() m.evaluate(glint.sphere(SPHERE), at) end)
 end
 
 function tests.lights()

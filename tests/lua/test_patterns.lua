@@ -73,6 +73,30 @@ function tests.operations_take_plain_numbers()
   check(glint.hash(1, 2, 3) ~= glint.hash(1, 2, 4) and glint.hash(1, 2, 3) == glint.hash { 1, 2, 3 })
 end
 
+-- Within a pattern the plain numbers of the 64 points go through the same operations.
+function tests.exp_log_tan_min_and_max_take_symbols()
+  local at = { p = { 0.3, 1.2, -0.7 } }
+  local function value(f) return glint.pattern(f):evaluate(at).x end
+  check(math.abs(value(function(p) return glint.exp(p.x) end) - math.exp(0.3)) < 1e-7)
+  check(math.abs(value(function(p) return glint.log(p.y) end) - math.log(1.2)) < 1e-7)
+  check(math.abs(value(function(p) return glint.tan(p.z) end) - math.tan(-0.7)) < 1e-7)
+  check(value(function(p) return glint.min(p.x, p.y, p.z, 5) end) == -0.7)
+  check(value(function(p) return glint.max(p.x, 0, p.y) end) == 1.2)
+  check(glint.max(1, 7, 3, 5) == 7 and glint.min(V(1, 5, 3), 4, 2) == V(1, 2, 2))
+  check(glint.exp(0.5) == glint.exp(0.5) and math.abs(glint.exp(V(0, 1, 2)).z - math.exp(2)) < 1e-6)
+end
+
+function tests.evaluate_takes_both_names()
+  local shade = glint.shader(function(s) return s.n:dot(s.l) + s.v.z end)
+  local short = shade:evaluate { n = { 0, 0, 1 }, l = { 0, 0.6, 0.8 }, v = { 0.6, 0, 0.8 } }.diffuse
+  check(short == shade:evaluate { normal = { 0, 0, 1 }, to_light = { 0, 0.6, 0.8 }, to_eye = { 0.6, 0, 0.8 } }.diffuse)
+  check(math.abs(short.x - 1.6) < 1e-12)
+  local matt = glint.material { diffuse = 0.5 }
+  check(matt:evaluate { n = { 0, 0, 1 }, l = { 0, 0, 1 }, v = { 0, 0, 1 } }.diffuse
+    == matt:evaluate { normal = { 0, 0, 1 }, to_light = { 0, 0, 1 }, to_eye = { 0, 0, 1 } }.diffuse)
+  check(glint.shader(function(s) return s.normal.z end):evaluate { n = { 0, 0, 1 } }.diffuse.x == 1)
+end
+
 function tests.operations_take_vectors()
   local v = glint.mix({ 1, 2, 3 }, V(3, 2, 1), 0.5)
   check(v.x == 2 and v.y == 2 and v.z == 2)
@@ -190,10 +214,10 @@ function tests.errors_tell_the_place_and_the_cure()
   raises("makes no text", function(p) return p.x .. "" end)
   raises("makes no text", function(p) return "a" .. p end)
   raises("glint.length(v)", function(p) return #p.x end)
-  raises("write glint's own function", function(p) local x = math.sin(p.x) return x end)
-  raises("write glint's own function", function(p) return math.sin(p.x) end)
-  raises("write glint's own function", function(p) return math.abs(p) end)
-  raises("write glint's own function", function(p) return math.floor(p.x) + 1 end)
+  raises("a symbol has no number yet; write glint.", function(p) local x = math.sin(p.x) return x end)
+  raises("a symbol has no number yet; write glint.", function(p) return math.sin(p.x) end)
+  raises("a symbol has no number yet; write glint.", function(p) return math.abs(p) end)
+  raises("a symbol has no number yet; write glint.", function(p) return math.floor(p.x) + 1 end)
   raises("vector.w: no such field", function(p) return p.w end)
   raises("vector.lenght: no such field; did you mean 'length'?", function(p) return p:lenght() end)
   raises("s.norml: no such field", function(_, s) return s.norml end)
@@ -216,11 +240,25 @@ function tests.errors_tell_the_place_and_the_cure()
   raises("a + b: number, symbol or vector expected, got string \"1\"", function(p) return p.x + "1" end)
   raises("noise: a vector, or x, y and z expected", function(p) return glint.noise(p.x) end)
   raises("mix: 3 arguments expected, got 2", function(p) return glint.mix(p.x, 1) end)
-  raises("is a return missing?", function(p) local _ = p.x end)
+  raises("is a return missing,", function(p) local _ = p.x end)
   raises("or \"#rrggbb\" expected, got string \"hello\"", function() return "hello" end)
   raises("expected from the function, got a table that is no vector", function(p) return { p.x, 2 } end)
-  raises("expected from the function, got true", function(p) return p.x, true end)
-  raises("log of a symbol: write", function(p) return glint.log(p.x) end)
+  raises("pattern: one value expected from the function, got 3; a colour is glint.vector", function(p) return p.x, p.y, p.z end)
+  raises("math.min of a symbol: the point is not known when the function is called; write glint.min", function(p) return math.min(p.x, 1) end)
+  raises("a symbol has no number yet; write glint.exp", function(p) return math.exp(p.x) end)
+  raises("a symbol has no number yet; write a % b", function(p) return math.fmod(p.x, 1) end)
+  raises("a table has nothing at a value of the point; use glint.select", function(p)
+    local list = { 0.1, 0.2 }
+    return list[glint.floor(p.x)] * 2
+  end)
+  raises("or a table indexed by a value of the point?", function(p) return ({ 1 })[glint.floor(p.x)] end)
+  raises("got s, what is known of the point", function(x, y) return x + y end)
+  raises("a loop without an end? To Lua a comparison", function(p)
+    local x = p.x
+    while glint.less(x, 4) do x = x + 1 end
+    return x
+  end)
+  raises("length: a vector expected, got no value; a method takes a colon: v:length()", function(p) return p.length() end)
   raises("a pattern changes no objects", function(p)
     local m = glint.material {}
     m.diffuse = 1
