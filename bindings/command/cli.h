@@ -154,6 +154,8 @@ bool cli_read_sweep(char *text, cli_sweep *sweep, char message[GLINTL_MESSAGE_SI
 int64_t cli_sweep_points(const cli_options *options); ///< the product of the counts; 0: there is no --sweep
 /// Gives the swept parameters their values at a point, 1 ..: the first --sweep changes fastest.
 void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point);
+/// Writes the values of a point, "radius=2 plain=1", as far as there is room.
+void cli_spell_point(const cli_options *options, int64_t point, char *out, size_t size);
 void cli_free_sweep(cli_sweep *sweep);
 
 // ---- output.c, events.c, progress.c ----

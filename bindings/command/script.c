@@ -133,22 +133,13 @@ static void take_results(lua_State *L, const task *work)
     script->frames = glintL_jobs_total(L, 1);
 }
 
+// The frames of --sweep are returned at every value or at none.
 static bool check_sweep(const task *work)
 {
     glintL_run *run = work->run;
-    int64_t frames = work->script->frames;
-    if (run->point_count == 0 || run->mode != GLINTL_MODE_RENDER)
-        return true;
-    if (run->call_count > 0)
-        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
-                               "--sweep: the script both calls scene:render and returns frames; one of them expected");
-    if (frames > GLINTL_FRAMES_MAX / run->point_count)
-        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--sweep: at most %d frames together expected",
-                               GLINTL_FRAMES_MAX);
-    if (run->count != frames * (run->point - 1))
-        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
-                               "--sweep: the script must have the same number of frames at every value");
-    return true;
+    return run->point_count == 0 || run->mode != GLINTL_MODE_RENDER ||
+           glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
+                           "--sweep: the script both calls scene:render and returns frames; one of them expected");
 }
 
 // Runs the jobs whose list is at 1.
@@ -159,9 +150,7 @@ static void run_results(lua_State *L, const task *work)
     } else if (work->run->mode == GLINTL_MODE_EXPLAIN) {
         glintL_jobs_explain(L, 1, work->run);
     } else if (work->run->mode == GLINTL_MODE_RENDER) {
-        int64_t total = work->run->point_count ? work->script->frames * work->run->point_count
-                                               : work->run->count + work->script->frames;
-        if (work->run->point <= 1 && !glintL_selection_settle(work->run, 1, total))
+        if (!glintL_selection_settle(work->run, 1, work->run->count + work->script->frames))
             return;
         glintL_call_settle(work->run);
         glintL_jobs_run(L, 1, work->run);

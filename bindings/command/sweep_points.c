@@ -152,6 +152,19 @@ void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point)
     }
 }
 
+void cli_spell_point(const cli_options *options, int64_t point, char *out, size_t size)
+{
+    int64_t rest = point - 1;
+    size_t used = 0;
+    *out = '\0';
+    for (size_t i = 0; i < options->sweep_count && used < size; i++) {
+        const cli_sweep *sweep = &options->sweeps[i];
+        used += (size_t)snprintf(out + used, size - used, "%s%s=%s", used ? " " : "", sweep->name,
+                                 sweep->values[rest % sweep->count]);
+        rest /= sweep->count;
+    }
+}
+
 void cli_free_sweep(cli_sweep *sweep)
 {
     free(sweep->values);

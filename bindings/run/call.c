@@ -18,6 +18,12 @@ int glintL_stop_script(lua_State *L)
     return lua_error(L);
 }
 
+void glintL_check_may_render(lua_State *L, const glintL_run *run)
+{
+    if (run->mode == GLINTL_MODE_WATCH && run->point > 1)
+        glintL_error(L, "--sweep: the script must return its frames at every value or at none, and the first must not fail");
+}
+
 static void read_fields(lua_State *L, int index, glintL_render *render)
 {
     *render = glintL_render_default();
@@ -211,6 +217,7 @@ int glintL_render_call(lua_State *L, glint_scene *scene, int index)
         return glintL_stop_script(L);
     if (run->in_frame)
         return glintL_error(L, PATH "not inside the frame function of an animation");
+    glintL_check_may_render(L, run);
     if (!run->is_command)
         run->exit_code = 0;
     else if (run->exit_code)

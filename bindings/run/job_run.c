@@ -172,6 +172,7 @@ int glintL_job_run(lua_State *L)
         return glintL_stop_script(L);
     if (run->in_frame)
         return glintL_error(L, "run: not inside the frame function of an animation");
+    glintL_check_may_render(L, run);
     if (glintL_push_unknown_set(L))
         return lua_error(L);
     read_options(L, 2, &request, &render);

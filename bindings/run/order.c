@@ -11,6 +11,7 @@
 // The axis of each digit, from the one that changes most often.
 static void sort_axes(glintL_order *order)
 {
+    order->is_found = true;
     for (int i = 0; i < order->axis_count; i++) {
         int at = i;
         for (; at > 0 && order->axes[order->by_work[at - 1]].work > order->axes[i].work; at--)
@@ -23,26 +24,37 @@ void glintL_order_init(glintL_order *order)
 {
     order->axis_count = 0;
     order->frames = 1;
+    order->is_found = false;
 }
 
 glintL_order_axis *glintL_order_add(glintL_order *order, int64_t count)
 {
     glintL_order_axis *axis = &order->axes[order->axis_count];
-    *axis = (glintL_order_axis) { .count = count, .stride = order->frames };
+    *axis = (glintL_order_axis) { .count = count, .stride = order->frames, .middle = count / 2 };
     order->by_work[order->axis_count] = order->axis_count;
     order->axis_count++;
     order->frames *= count;
     return axis;
 }
 
+bool glintL_order_is_grid(const glintL_order *order)
+{
+    int several = 0;
+    for (int i = 0; i < order->axis_count; i++)
+        several += order->axes[i].count > 1;
+    return several > 1;
+}
+
 int64_t glintL_order_frame(const glintL_order *order, int64_t place)
 {
+    if (!order->is_found)
+        return place + 1;
     int64_t n = 1, below = order->frames; // below: frames of the digits not yet read, from the slowest
     bool back = false; // the number that the slower digits are is odd
     for (int i = order->axis_count - 1; i >= 0; i--) {
         const glintL_order_axis *axis = &order->axes[order->by_work[i]];
         below /= axis->count;
-        const int64_t digit = place / below, step = back ? axis->count - 1 - digit % axis->count : digit % axis->count;
+        const int64_t digit = place / below, step = back && !axis->is_forward ? axis->count - 1 - digit % axis->count : digit % axis->count;
         n += step * axis->stride;
         back = digit % 2 != 0;
     }
@@ -80,20 +92,22 @@ static void add_stages(glintL_order_axis *axis, const glint_plan *plan, uint32_t
             add_stage(axis, stages[i].name);
 }
 
-// Compares the first values of an axis, at the first values of all others. False: a frame cannot be planned.
-static bool probe_axis(glintL_order_axis *axis, const glint_plan *first, glintL_plan_frame *plan_frame, void *context)
+// Compares the first values of an axis, with all others as in frame `middle`. False: a frame cannot be planned.
+static bool probe_axis(glintL_order_axis *axis, int64_t middle, glintL_plan_frame *plan_frame, void *context)
 {
-    const int64_t steps = axis->count < PROBES_MAX ? axis->count - 1 : PROBES_MAX - 1;
+    const int64_t count = axis->count < PROBES_MAX ? axis->count : PROBES_MAX, first = middle - axis->middle * axis->stride;
     glint_plan *last = NULL;
     bool good = true;
-    for (int64_t step = 1; step <= steps && good; step++) {
+    for (int64_t i = 0; i < count && count > 1 && good; i++) {
         uint32_t runs = 0;
-        glint_plan *next = plan_frame(context, 1 + step * axis->stride);
-        good = next != NULL;
-        if (good) {
-            axis->work += glint_plan_work_after(next, last ? last : first, &runs) / (double)steps;
+        glint_plan *next = plan_frame(context, first + i * axis->stride);
+        good = next || axis->may_fail;
+        if (next && last) {
+            axis->work += glint_plan_work_after(next, last, &runs) / (double)(count - 1);
             add_stages(axis, next, runs);
         }
+        if (!next)
+            continue;
         glint_plan_destroy(last);
         last = next;
     }
@@ -103,11 +117,12 @@ static bool probe_axis(glintL_order_axis *axis, const glint_plan *first, glintL_
 
 bool glintL_order_find(glintL_order *order, glintL_plan_frame *plan_frame, void *context)
 {
-    glint_plan *first = plan_frame(context, 1);
-    bool good = first != NULL;
+    int64_t middle = 1;
+    bool good = true;
+    for (int i = 0; i < order->axis_count; i++) // what changes nothing at the ends may do so between them
+        middle += order->axes[i].middle * order->axes[i].stride;
     for (int i = 0; i < order->axis_count && good; i++)
-        good = probe_axis(&order->axes[i], first, plan_frame, context);
-    glint_plan_destroy(first);
+        good = probe_axis(&order->axes[i], middle, plan_frame, context);
     if (good)
         sort_axes(order);
     return good;

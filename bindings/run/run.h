@@ -13,6 +13,7 @@
 ///   sheet.c           contact sheets of files; sheet_axes.c their axes, sheet_page.c as an HTML page, sweep_sheet.c of sweeps
 ///   state.c           the run of a Lua state, and its failure; records.c its frames in order
 ///   order.c           in which order a sweep's frames are rendered
+///   walk.c            one frame of a list of jobs; job_frames.c a list frame by frame
 ///   jobs.c            frames of jobs; job_run.c :run; call.c scene:render
 ///   kept_image.c      the picture of a file that was kept
 ///
@@ -470,6 +471,24 @@ int64_t glintL_jobs_total(lua_State *L, int index);
 /// Renders the selected frames of a list of jobs, numbered after those the run has numbered already. Raises
 /// for want of memory only. False: the run has failed.
 bool glintL_jobs_run(lua_State *L, int index, glintL_run *run);
+
+// ---- job_frames.c: a list of jobs frame by frame, g = 1 .. glintL_jobs_total ----
+
+/// What the frames rendered so far have left in the scenes of a list; all 0 at first.
+typedef struct glintL_jobs_state {
+    int64_t settled; ///< jobs that left their scene as the next job finds it
+    int64_t sweeping; ///< the sweep whose axes have values of a frame; 0: none
+} glintL_jobs_state;
+
+/// Renders frame g, as number run->point_first + g. Jobs come in ascending order. False: the run has failed.
+bool glintL_jobs_frame(lua_State *L, int index, glintL_run *run, glintL_jobs_state *state, int64_t g);
+/// Plans frame g with what decides its keys. NULL: it cannot be planned, or the run has failed.
+glint_plan *glintL_jobs_probe(lua_State *L, int index, glintL_run *run, glintL_jobs_state *state, int64_t g);
+/// Adds the axes of job i; none: there is no such job. False: its frames go to a pipe, as they are numbered.
+bool glintL_jobs_axes(lua_State *L, int index, glintL_run *run, int64_t i, struct glintL_order *order);
+/// Draws the sheets of the sweeps. False: the run has failed.
+bool glintL_jobs_end(lua_State *L, int index, glintL_run *run, glintL_jobs_state *state);
+
 /// The plan of one frame of the list into run->explain_plan, when the frame is among them; run->keeps_scene: what else
 /// is kept of it.
 bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run);
@@ -478,6 +497,8 @@ bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run);
 
 /// Settles the name of the first call now that the script has ended. False: the run has failed.
 bool glintL_call_settle(glintL_run *run);
+/// Raises an error where the frames of --sweep must be returned: after a point that returned some, or failed.
+void glintL_check_may_render(lua_State *L, const glintL_run *run);
 /// Raises the error that ends a script which has shown what was requested (its parameters, one frame's plan).
 int glintL_stop_script(lua_State *L);
 void glintL_open_kept_image(lua_State *L);

@@ -66,4 +66,47 @@ sed 's/{ 5, 50, 500, 5000 }/{ 5, 50, -1 }/' grid.lua >wrong.lua
 exits 2 "a wrong value" wrong.lua -o 'wrong/%02d.png' -q
 says "is named with its frame" 'frame 13: .*shininess: number >= 0 expected, got -1'
 check "what came before is there" test "$(ls wrong | wc -l)" -eq 12
+
+# ---- --sweep: the runs of the script advance together where that costs less ----
+
+cat >film.lua <<'LUA'
+local glint, S = require "glint", require "S"
+local P = glint.params { shininess = 20, radius = { 3, min = 1, max = 9 }, frames = 3, broken = { 0, doc = "frame that fails" } }
+S.red.shininess = P.shininess
+local function film(output) return glint.animation { scene = S.scene, frames = P.frames, width = 48, height = 32, output = output,
+  frame = function(t, n) S.lamp.position = { P.radius * t, 9, 1 }; if n == P.broken then S.lamp.intensity = -1 end end } end
+if P.frames > 3 then return { film "a_%02d.png", film "b_%02d.png" } end
+return film "film_%02d.png"
+LUA
+rm -rf plain
+for n in $(seq 12); do
+    "$GLINT" film.lua -f "$n" --sweep shininess=5,50,500,5000 --no-reuse -o 'plain/%02d.png' -q 2>err || fail "frame $n: $(cat err)"
+done
+sweep=(film.lua --sweep shininess=5,50,500,5000)
+check "frame 1 of every value, then frame 2" test "$(order "${sweep[@]}" -o 'film/%02d.png')" = "1 4 7 10 11 8 5 2 3 6 9 12 "
+same "the pictures of single frames" film
+for shard in 3 1 2; do check "shard $shard of 3" "$GLINT" "${sweep[@]}" --shard $shard/3 -o 'parts/%02d.png' -q; done
+same "shards have every frame once" parts
+check "a second run keeps them" test "$("$GLINT" "${sweep[@]}" --json -q -o 'plain/%02d.png' | grep -c '"status":"kept"')" -eq 12
+check "little memory has groups of values" test "$(order "${sweep[@]}" -o 'film/%02d.png' --reuse-memory 20M | wc -w)" -eq 12
+same "with the same pictures" film
+check "a swept place of the lamp waits for its frames" test "$(order film.lua --sweep radius=2,3,4 -o none)" = "1 2 3 4 5 6 7 8 9 "
+check "two parameters" test "$(order film.lua --sweep shininess=5,50 --sweep radius=2,4 -f 1-11:2 -o none | wc -w)" -eq 6
+check "two jobs in a list" test "$(order film.lua --set frames=4 --sweep shininess=5,50)" = "1 9 10 2 3 11 12 4 5 13 14 6 7 15 16 8 "
+
+# A value that makes the script fail fails alone.
+exits 2 "a wrong value" film.lua --sweep shininess=5,-1,50 -o 'some/%02d.png' -q
+says "is named" '^glint: error: --sweep shininess=-1: .*shininess: number >= 0 expected, got -1'
+check "the others are there" test "$(ls some | tr '\n' ' ')" = "01.png 02.png 03.png 07.png 08.png 09.png "
+rm -r some
+exits 2 "the first value" film.lua --sweep shininess=-1,5 -o 'some/%02d.png' -q
+check "also fails alone" test "$(ls some | tr '\n' ' ')" = "04.png 05.png 06.png "
+rm -r some
+exits 2 "a frame of one value" film.lua --sweep broken=0,2,3 -o 'some/%02d.png' -q
+check "ends that value" test "$(ls some | tr '\n' ' ')" = "01.png 02.png 03.png 04.png 07.png 08.png "
+says "with its message" '--sweep broken=2: frame 5: .*intensity'
+rm -r some
+echo 'local = 3' >syntax.lua
+exits 2 "a script that fails at every value" syntax.lua --sweep n=1:100:100 -q
+check "says so once" test "$(wc -l <err)" -eq 1
 totals

@@ -1,0 +1,495 @@
+// The points of --sweep: the script is run once for each, in a Lua state of its own, and the frames of all of them are
+// rendered in the order that costs least. Where a step of the swept parameter costs less than one to the next frame, the
+// runs advance together. A point whose script fails is reported, and the others go on.
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "bindings/command/points.h"
+#include "bindings/run/order.h"
+
+#define TOGETHER_MAX 64 // states that are open at a time
+
+typedef struct point {
+    int64_t number; // 1 ..; 0: nothing is open
+    cli_script script;
+    glintL_jobs_state jobs;
+    char *params_text; // owned; the run's while another point is at hand
+    bool has_frames; // it has rendered some
+} point;
+
+typedef struct points {
+    cli_options *options;
+    cli_output *output;
+    glintL_run *run;
+    point open[TOGETHER_MAX];
+    int most; // of `open` are used
+    point *at_hand; // whose script runs; NULL: none
+    int64_t frames; // of each point; 0: not known yet
+    unsigned char *failed; // owned; by number
+    bool has_failed; // some point
+    bool together, in_order; // some job's runs advance together; its frames go to a pipe
+    int64_t job, frame; // at hand: of the list, 1 ..
+    glint_plan *plan; // of the frame at hand
+    glintL_order order; // of the job at hand
+    int64_t *list; // owned; numbers of the frames to render, in order
+    int64_t count;
+} points;
+
+// ---- The point at hand ----
+
+static void exchange_text(points *p)
+{
+    char *text = p->run->params_text;
+    p->run->params_text = p->at_hand->params_text;
+    p->at_hand->params_text = text;
+}
+
+// What the run says of its script from here on is of this point; NULL: of none.
+static void take(points *p, point *next)
+{
+    if (p->at_hand == next)
+        return;
+    if (p->at_hand)
+        exchange_text(p);
+    p->at_hand = next;
+    cli_set_state(next ? next->script.state : NULL);
+    if (!next)
+        return;
+    exchange_text(p);
+    p->run->point = next->number;
+    p->run->point_first = (next->number - 1) * p->frames;
+    cli_sweep_to(p->options, p->run, next->number);
+}
+
+// Whether what has failed, if anything, is a script's mistake, which ends its own point: not one of the command line.
+static bool is_own(const glintL_run *run)
+{
+    return !run->interrupted && (run->exit_code == GLINTL_EXIT_DONE ||
+                                 (run->exit_code == GLINTL_EXIT_USAGE && run->request.warnings != GLINTL_WARNINGS_ERROR &&
+                                  strncmp(run->message, "--", 2) != 0));
+}
+
+static void report(points *p, int64_t number, const char *said)
+{
+    char message[GLINTL_MESSAGE_SIZE], values[200];
+    cli_spell_point(p->options, number, values, sizeof values);
+    snprintf(message, sizeof message, "--sweep %s: %.800s", values, said);
+    cli_report_error(p->output, p->run->failed_index, GLINTL_EXIT_USAGE, message);
+}
+
+// Takes a failure from the run and marks the point.
+static void set_aside(points *p, int64_t number)
+{
+    p->failed[number - 1] = 1;
+    p->has_failed = true;
+    p->run->exit_code = GLINTL_EXIT_DONE;
+    p->run->failed_index = 0;
+}
+
+// Whether the run goes on after what has just happened at a point.
+static bool goes_on(points *p, int64_t number)
+{
+    if (!is_own(p->run))
+        return false;
+    if (p->run->exit_code == GLINTL_EXIT_DONE)
+        return true;
+    report(p, number, p->run->message);
+    set_aside(p, number);
+    return true;
+}
+
+static int report_protected(lua_State *L)
+{
+    const points *p = lua_touserdata(L, 1);
+    glintL_report_observed(L, p->run, p->options->script);
+    return 0;
+}
+
+static int end_protected(lua_State *L)
+{
+    points *p = lua_touserdata(L, 1);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, p->at_hand->script.jobs);
+    glintL_jobs_end(L, 2, p->run, &p->at_hand->jobs);
+    return 0;
+}
+
+// Calls a function of the state at hand. False: it raised, or the run has failed.
+static bool call(points *p, lua_CFunction function)
+{
+    lua_State *L = p->at_hand->script.state;
+    lua_settop(L, 0);
+    lua_pushcfunction(L, glintL_message_handler);
+    lua_pushcfunction(L, function);
+    lua_pushlightuserdata(L, p);
+    const int status = lua_pcall(L, 1, 0, 1);
+    if (status != LUA_OK && !p->run->interrupted)
+        glintL_run_fail(p->run, glintL_script_exit(p->run, status), 0, "%s", lua_tostring(L, -1));
+    lua_settop(L, 0);
+    return status == LUA_OK && !p->run->exit_code && !p->run->interrupted;
+}
+
+// Ends a point: its sheets, and what all its frames have shown. False: the run has failed.
+static bool close_point(points *p, point *which)
+{
+    const int64_t number = which->number;
+    bool good = true;
+    if (!number)
+        return true;
+    take(p, which);
+    if (which->has_frames && !p->failed[number - 1])
+        good = (call(p, end_protected) && call(p, report_protected)) || goes_on(p, number);
+    take(p, NULL);
+    cli_close_script(&which->script);
+    free(which->params_text);
+    memset(which, 0, sizeof *which);
+    return good;
+}
+
+// ---- Opening ----
+
+// Whether a script that has just run returned jobs as the other points did. False: the run has failed.
+static bool check_jobs(points *p, const point *which)
+{
+    glintL_run *run = p->run;
+    const int64_t frames = which->script.frames;
+    if (run->count > run->point_first)
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
+                               "--sweep: the script both calls scene:render and returns frames; one of them expected");
+    if (frames > GLINTL_FRAMES_MAX / run->point_count)
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--sweep: at most %d frames together expected", GLINTL_FRAMES_MAX);
+    if (!which->script.has_jobs || (p->frames && frames != p->frames))
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--sweep: the script must have the same number of frames at every value");
+    return true;
+}
+
+static point *find_open(points *p, int64_t number)
+{
+    for (int i = 0; i < TOGETHER_MAX; i++)
+        if (p->open[i].number == number)
+            return &p->open[i];
+    return NULL;
+}
+
+// Runs the script for a point, in a free place, with frames that are rendered later. NULL: the run has failed.
+static point *open_point(points *p, int64_t number)
+{
+    glintL_run *run = p->run;
+    point *which = find_open(p, 0);
+    take(p, NULL);
+    which->number = number;
+    take(p, which);
+    run->count = run->point_first;
+    run->mode = GLINTL_MODE_WATCH;
+    bool good = cli_run_script(&which->script, p->options, run);
+    run->mode = GLINTL_MODE_RENDER;
+    const bool renders = !which->script.has_jobs && number == 1; // by calls, which are no matter of order
+    if (good && (renders || check_jobs(p, which))) {
+        p->frames = which->script.frames;
+        run->point_first = (number - 1) * p->frames;
+        return which;
+    }
+    take(p, NULL);
+    cli_close_script(&which->script);
+    free(which->params_text);
+    memset(which, 0, sizeof *which);
+    return NULL;
+}
+
+// The state of a point, which is opened when it is not; others go where there is no place. NULL: it has failed; *good: the run
+// goes on.
+static point *reach(points *p, int64_t number, bool *good)
+{
+    *good = true;
+    point *which = p->failed[number - 1] ? NULL : find_open(p, number);
+    if (which || p->failed[number - 1])
+        return which;
+    int used = 0;
+    for (int i = 0; i < TOGETHER_MAX; i++)
+        used += p->open[i].number > 0;
+    for (int i = 0; i < TOGETHER_MAX && used >= p->most && *good; i++)
+        if (p->open[i].number && (p->open[i].number - 1) / p->most != (number - 1) / p->most)
+            *good = close_point(p, &p->open[i]);
+    which = *good && find_open(p, 0) ? open_point(p, number) : NULL;
+    *good = *good && (which || goes_on(p, number));
+    return which;
+}
+
+// Opens the first point that can be opened. A script that fails at two values with the same words, or while it renders, fails as a
+// whole. NULL: the run has failed, or all that failed is reported.
+static point *open_first(points *p)
+{
+    glintL_run *run = p->run;
+    char said[GLINTL_MESSAGE_SIZE] = "";
+    for (int64_t number = 1; number <= run->point_count; number++) {
+        point *which = open_point(p, number);
+        const bool whole = !which && (!is_own(run) || run->point_count == 1 || run->count > 0 || strcmp(said, run->message) == 0);
+        if (whole)
+            return NULL;
+        if (number > 1)
+            report(p, number - 1, said);
+        if (which)
+            return which;
+        snprintf(said, sizeof said, "%s", run->message);
+        set_aside(p, number);
+    }
+    report(p, run->point_count, said);
+    return NULL;
+}
+
+// ---- The order ----
+
+typedef struct job { // of every point's list
+    points *p;
+    int64_t before, frames; // of the list before it, and its own
+    bool good; // the run has not failed
+} job;
+
+static int probe_protected(lua_State *L)
+{
+    points *p = lua_touserdata(L, 1);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, p->at_hand->script.jobs);
+    p->plan = glintL_jobs_probe(L, 2, p->run, &p->at_hand->jobs, p->frame);
+    return 0;
+}
+
+// Plans frame x of a job's order: of frame n at point k it is n + (k - 1) * frames.
+static glint_plan *plan_frame(void *context, int64_t x)
+{
+    job *of = context;
+    points *p = of->p;
+    point *which = of->good ? reach(p, (x - 1) / of->frames + 1, &of->good) : NULL;
+    if (!which)
+        return NULL;
+    take(p, which);
+    p->frame = of->before + (x - 1) % of->frames + 1;
+    p->plan = NULL;
+    call(p, probe_protected);
+    if (!p->run->interrupted) // it will be said of the frame when that is rendered
+        p->run->exit_code = GLINTL_EXIT_DONE;
+    return p->plan;
+}
+
+static int axes_protected(lua_State *L)
+{
+    points *p = lua_touserdata(L, 1);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, p->at_hand->script.jobs);
+    p->in_order = !glintL_jobs_axes(L, 2, p->run, p->job, &p->order) || p->in_order;
+    return 0;
+}
+
+// Adds to the order of a job the axes of --sweep; returns how many axes the job has of its own.
+static int add_sweeps(points *p)
+{
+    const int own = p->order.axis_count;
+    for (size_t i = 0; i < p->options->sweep_count; i++) {
+        glintL_order_axis *axis = glintL_order_add(&p->order, p->options->sweeps[i].count);
+        axis->may_fail = true;
+        axis->middle = 0; // its states are the fewest
+    }
+    return own;
+}
+
+// Whether a point's frame is followed by one of another point where the order has several of both.
+static bool changes_points_first(const glintL_order *order, int own)
+{
+    bool has_point = false;
+    for (int i = 0; i < order->axis_count; i++) {
+        const int axis = order->by_work[i];
+        if (has_point && axis < own && order->axes[axis].count > 1)
+            return true;
+        has_point = has_point || (axis >= own && order->axes[axis].count > 1);
+    }
+    return false;
+}
+
+// Lists the selected frames of a job in its order.
+static void list_job(points *p, const job *of)
+{
+    for (int64_t place = 0; place < p->order.frames; place++) {
+        const int64_t x = glintL_order_frame(&p->order, place) - 1;
+        const int64_t number = x / of->frames * p->frames + of->before + x % of->frames + 1;
+        if (glintL_selection_has(&p->run->request.selection, number))
+            p->list[p->count++] = number;
+    }
+}
+
+// Lists all jobs. False: the run has failed.
+static bool list_jobs(points *p, point *first)
+{
+    job of = { .p = p, .good = true };
+    const bool searches = p->most > 1 && p->options->sweep_count <= GLINTL_ORDER_AXES / 2;
+    for (p->job = 1; of.before < p->frames; p->job++, of.before += of.frames) {
+        glintL_order_init(&p->order);
+        first = find_open(p, 1) ? find_open(p, 1) : first;
+        take(p, first);
+        if (!call(p, axes_protected))
+            return false;
+        of.frames = p->order.frames;
+        if (p->options->sweep_count > GLINTL_ORDER_AXES / 2) {
+            glintL_order_add(&p->order, p->run->point_count);
+        } else {
+            const int own = add_sweeps(p);
+            if (searches && !p->in_order && glintL_order_is_grid(&p->order) && glintL_order_find(&p->order, plan_frame, &of))
+                p->together = changes_points_first(&p->order, own) || p->together;
+        }
+        if (!of.good)
+            return false;
+        list_job(p, &of);
+    }
+    return true;
+}
+
+// Puts the frames of `most` points next to each other, group by group; the order within a group stays. False: no memory.
+static bool group(points *p, int64_t most)
+{
+    const int64_t groups = (p->run->point_count - 1) / most + 1;
+    int64_t *sorted = malloc(((size_t)p->count + 1) * sizeof *sorted), *at = calloc((size_t)groups + 1, sizeof *at);
+    if (sorted && at) {
+        for (int64_t i = 0; i < p->count; i++)
+            at[(p->list[i] - 1) / p->frames / most + 1]++;
+        for (int64_t i = 0; i < groups; i++)
+            at[i + 1] += at[i];
+        for (int64_t i = 0; i < p->count; i++)
+            sorted[at[(p->list[i] - 1) / p->frames / most]++] = p->list[i];
+        free(p->list);
+        p->list = sorted;
+        sorted = NULL;
+    }
+    const bool good = !sorted && at;
+    free(sorted);
+    free(at);
+    return good;
+}
+
+// Of the frames in order, those of this shard. False: no memory.
+static bool choose(points *p)
+{
+    int64_t from, to;
+    if (!p->together && !group(p, 1))
+        return false;
+    glintL_selection_part(&p->run->request.selection, 1, p->run->total, &from, &to);
+    p->count = to - from + 1;
+    memmove(p->list, p->list + from - 1, (size_t)p->count * sizeof *p->list);
+    p->most = p->together ? p->most : 1;
+    return group(p, p->most);
+}
+
+static size_t peak_bytes(void)
+{
+    struct rusage use;
+    return getrusage(RUSAGE_SELF, &use) == 0 ? (size_t)use.ru_maxrss << 10 : 0;
+}
+
+// How many states may be open: an eighth of what may be reused has room for twice what the script and its scene take, by what
+// opening the first has added to the process.
+static int most_together(const points *p, size_t first_bytes)
+{
+    const size_t memory = p->run->request.reuse_memory ? p->run->request.reuse_memory
+                                                       : (size_t)sysconf(_SC_PHYS_PAGES) / 4 * (size_t)sysconf(_SC_PAGESIZE);
+    const size_t count = memory / 8 / (2 * first_bytes + 1);
+    return p->options->untrusted_s > 0 || count < 1 ? 1 : count < TOGETHER_MAX ? (int)count : TOGETHER_MAX;
+}
+
+// ---- Rendering ----
+
+static int frame_protected(lua_State *L)
+{
+    points *p = lua_touserdata(L, 1);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, p->at_hand->script.jobs);
+    glintL_jobs_frame(L, 2, p->run, &p->at_hand->jobs, p->frame);
+    return 0;
+}
+
+static bool render_list(points *p)
+{
+    bool good = true;
+    for (int64_t i = 0; i < p->count && good; i++) {
+        const int64_t number = (p->list[i] - 1) / p->frames + 1;
+        point *which = reach(p, number, &good);
+        if (!which)
+            continue;
+        take(p, which);
+        p->frame = (p->list[i] - 1) % p->frames + 1;
+        which->has_frames = true;
+        good = call(p, frame_protected) || goes_on(p, number);
+    }
+    for (int i = 0; i < TOGETHER_MAX; i++)
+        good = close_point(p, &p->open[i]) && good;
+    return good;
+}
+
+// Renders the frames of all points, of which the first is open. False: the run has failed.
+static bool render_points(points *p, point *first)
+{
+    glintL_run *run = p->run;
+    glint_error error;
+    run->total = p->frames * run->point_count;
+    if (!glintL_selection_settle(run, 1, run->total))
+        return false;
+    p->list = malloc(((size_t)run->total + 1) * sizeof *p->list);
+    if (!p->list)
+        return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    if (!list_jobs(p, first))
+        return false;
+    if (!choose(p))
+        return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    for (int i = 0; i < TOGETHER_MAX && p->job > 2; i++) // plans of later jobs have changed scenes that earlier ones share
+        if (!close_point(p, &p->open[i]))
+            return false;
+    run->todo = p->count;
+    if (!glintL_run_open(run, &error))
+        return glintL_run_fail(run, glintL_run_exit_code(error.status), 0, "%s", error.message);
+    const bool good = render_list(p);
+    run->count = run->total;
+    return good;
+}
+
+// A script that renders by calls does so while it runs: point after point, of which the first is done.
+static bool run_calls(points *p, point *first)
+{
+    glintL_run *run = p->run;
+    cli_script script;
+    bool good = call(p, report_protected) && glintL_call_settle(run);
+    first->has_frames = false;
+    close_point(p, first);
+    for (int64_t number = 2; number <= run->point_count && good; number++) {
+        run->point = number;
+        run->point_first = run->count;
+        cli_sweep_to(p->options, run, number);
+        good = cli_run_script(&script, p->options, run) && glintL_call_settle(run);
+        cli_close_script(&script);
+    }
+    return good;
+}
+
+bool cli_run_points(cli_options *options, cli_output *output, glintL_run *run, bool *reported)
+{
+    points *p = calloc(1, sizeof *p);
+    run->point_count = cli_sweep_points(options);
+    unsigned char *failed = calloc((size_t)run->point_count, 1);
+    bool good = p && failed;
+    if (!good)
+        glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    if (good) {
+        *p = (points) { .options = options, .output = output, .run = run, .failed = failed };
+        const size_t before = peak_bytes();
+        point *first = open_first(p);
+        p->most = most_together(p, peak_bytes() - before);
+        good = first && (first->script.has_jobs ? render_points(p, first) : run_calls(p, first));
+        take(p, NULL);
+        for (int i = 0; i < TOGETHER_MAX; i++) { // after a failure
+            p->open[i].has_frames = false;
+            close_point(p, &p->open[i]);
+        }
+        *reported = p->has_failed && !run->exit_code && !run->interrupted;
+        run->exit_code = *reported ? GLINTL_EXIT_USAGE : run->exit_code;
+        good = good && !p->has_failed;
+        free(p->list);
+    }
+    free(failed);
+    free(p);
+    return good;
+}
