@@ -42,7 +42,11 @@ TARGET := $(shell $(CC) -dumpmachine)
 # Of Linux all; with PORTABLE=1 what POSIX has had since 2008 alone (and anonymous pages, which it has since 2024): what else is
 # used does not compile.
 FEATURES := $(if $(and $(PORTABLE),$(findstring linux,$(TARGET))),-D_XOPEN_SOURCE=700 -DMAP_ANONYMOUS=0x20,-D_GNU_SOURCE)
-STRICT := -std=c11 $(FEATURES) $(WARN) -fPIC -fvisibility=hidden -ffp-contract=off -fno-math-errno
+# THREADS= is for machines without threads: all work is the caller's. WebAssembly has none, and no code to be placed anywhere.
+WASM    := $(findstring wasm,$(TARGET))
+THREADS ?= $(if $(WASM),,yes)
+PTHREAD := $(if $(THREADS),-pthread)
+STRICT := -std=c11 $(FEATURES) $(WARN) $(if $(WASM),,-fPIC) -fvisibility=hidden -ffp-contract=off -fno-math-errno
 
 # What linkers and other tools call by other names: ELF's here, Apple's there; tests/machines/systems.sh forges TARGET.
 LINUX  := $(findstring linux,$(TARGET))
@@ -91,7 +95,7 @@ endif
 # plain also where the compiler or a package's flags harden by default. A sanitizer has its own.
 OPTIMIZED := $(filter -O1 -O2 -O3 -Os -Og,$(CFLAGS))
 PLAIN := -fno-stack-protector -U_FORTIFY_SOURCE
-ifndef SANITIZE
+ifeq ($(SANITIZE)$(WASM),)
   HARDEN      := -fstack-protector-strong $(if $(OPTIMIZED),-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
   HARDEN_LINK := $(if $(MACOS),,-Wl,-z,relro -Wl,-z,now)
 endif
@@ -101,7 +105,7 @@ DEFINES += $(WITHOUT:%=-DGLINT_WITH_%=0) $(if $(WITHOUT),-Wno-type-limits)
 
 # PORTABLE=1 takes here, too, what other machines have: generic kernels, POSIX in place of inotify, eventfd and the like, and no
 # --untrusted.
-DEFINES += $(if $(PORTABLE),-DGLINT_PORTABLE)
+DEFINES += $(if $(PORTABLE),-DGLINT_PORTABLE) $(if $(THREADS),,-DGLINT_NO_THREADS)
 
 # SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
 ifdef SANITIZE
@@ -116,17 +120,20 @@ MOVES := -mmemset-strategy=unrolled_loop:512:noalign,libcall:-1:noalign -mmemcpy
 MOVES := $(shell $(CC) -Werror $(MOVES) -x c -S -o /dev/null /dev/null 2>/dev/null && echo '$(MOVES)')
 
 COMPILE := $(HERE) -I. -I$(BUILD) $(DEFINES) $(shell pkg-config --cflags $(PACKAGES) 2>/dev/null) $(CPPFLAGS) \
-           $(filter-out $(UNWANTED),$(CFLAGS)) $(STRICT) $(MOVES) $(SAN_FLAGS) -pthread
+           $(filter-out $(UNWANTED),$(CFLAGS)) $(STRICT) $(MOVES) $(SAN_FLAGS) $(PTHREAD)
 LUA_CFLAGS := $(shell pkg-config --cflags $(LUA_PACKAGE) 2>/dev/null)
 LUA_LIBS   := $(shell pkg-config --libs $(LUA_PACKAGE) 2>/dev/null)
-LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(FONT_LIBS) $(SIXEL_LIBS) $(EXR_LIBS) -lm -pthread
+LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(FONT_LIBS) $(SIXEL_LIBS) $(EXR_LIBS) -lm $(PTHREAD)
 TEST_LIBS  := $(shell pkg-config --libs cmocka 2>/dev/null) $(if $(call have,mpfr),$(shell pkg-config --libs mpfr))
-LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(LINK_NEEDED)
+LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(if $(WASM),,$(LINK_NEEDED))
 
 # ---- Sources ----
 
 ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/*/*/*.c))
-BINDINGS_SRC := $(sort $(wildcard bindings/*/*.c))
+# The module for browsers has its own way in, and of the command what it needs.
+WEB_SRC      := $(filter-out bindings/run/film_pipe.c,$(wildcard $(addsuffix /*.c,$(addprefix bindings/,lua pattern run value web)))) \
+                  $(addprefix bindings/command/,$(addsuffix .c,describe events explain json output progress script signals untrusted_lua))
+BINDINGS_SRC := $(sort $(if $(WASM),$(WEB_SRC),$(filter-out bindings/web/%,$(wildcard bindings/*/*.c))))
 # The instruction sets of this machine's kind. KERNELS=native compiles generic and the best that this very machine runs; KERNELS=avx2
 # only that one, for work on a kernel.
 KERNELS := generic $(if $(PORTABLE),,$(if $(filter x86_64-% amd64-%,$(TARGET)),avx2 avx512))
@@ -185,6 +192,17 @@ $(CARRIED): $(BUILD)/%.h: %
 	@mkdir -p $(@D)
 	@{ echo '// The bytes of $<.'; od -An -v -tu1 $< | sed 's/[0-9][0-9]*/&,/g'; } > $@
 $(BINDINGS_OBJ): | $(CARRIED)
+
+# The modules glint.* as C, for a module that has no files: { name, bytes, size } each.
+LIBRARY := $(sort $(wildcard scripts/lib/glint/*.lua))
+$(BUILD)/bindings/web/library.h: $(LIBRARY)
+	@mkdir -p $(@D)
+	@{ for file in $^; do name=$$(basename $$file .lua); echo "static const unsigned char LIBRARY_$$name[] = {"; \
+	       od -An -v -tu1 $$file | sed 's/[0-9][0-9]*/&,/g'; echo '};'; done; \
+	   echo 'static const module LIBRARY[] = {'; \
+	   for file in $^; do name=$$(basename $$file .lua); echo "{ \"glint.$$name\", LIBRARY_$$name, sizeof LIBRARY_$$name },"; done; \
+	   echo '};'; } > $@
+$(BUILD)/bindings/web/web.o: | $(BUILD)/bindings/web/library.h
 
 $(BUILD)/%.o: %.c $(BUILD)/flags | need
 	@mkdir -p $(@D)
@@ -566,6 +584,54 @@ pages: $(BUILD)/doc/data.md ## the installed manual by topic, in build/doc/
 	        -e 's|](\.github/CHANGELOG\.md|](CHANGELOG.md|g' -e 's,](\([a-z_]*\.lua\)),](../../glint/examples/\1),g' \
 	        -e 's,](\([a-z_]*\.c\)),](../../glint/examples/\1),g' \
 	        -e 's|!\[[^]]*\]([^)]*)||g' -e 's|\[\([^]]*\)\]([a-z./]*/[A-Z]*\.md)|\1|g' "$${page#*:}" > "$(BUILD)/doc/$${page%%:*}" || exit 1; done
+
+# ---- The module for browsers and Node ----
+
+# Emscripten of Debian wants to be shown the modules of its loader.
+EM          := env NODE_PATH=/usr/share/nodejs
+WEB_OBJECTS := build-web
+WEB_MAKE    := PKG_CONFIG_LIBDIR=$(CURDIR)/$(WEB_OBJECTS)/libraries/lib/pkgconfig $(MAKE) --no-print-directory BUILD=$(WEB_OBJECTS) \
+                 PORTABLE=1 CC="$(EM) emcc" AR="$(EM) emar" CFLAGS=-O2 CPPFLAGS=-msimd128 KERNEL_CFLAGS="-O3 -fno-slp-vectorize"
+# Memory grows as far as a page may have it. The stack is that of a thread of a pool, and of Lua.
+WEB_LINK    := -O2 -msimd128 --no-entry -sMODULARIZE=1 -sEXPORT_NAME=createGlint -sENVIRONMENT=worker -sALLOW_MEMORY_GROWTH=1 \
+                 -sMAXIMUM_MEMORY=2GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=2MB -sFORCE_FILESYSTEM=1 \
+                 -sEXPORTED_FUNCTIONS=_malloc,_free -sEXPORTED_RUNTIME_METHODS=FS,UTF8ToString,stringToUTF8,lengthBytesUTF8
+
+.PHONY: web web-module web-files
+web: web-module ## build/web: the module glint-render for pages, workers and Node; installs emscripten and node through apt
+
+web-module:
+	@tests/deps.sh build web
+	@tests/machines/libraries.sh $(WEB_OBJECTS)/libraries "$(EM) emcc" "$(EM) emar"
+	+@$(WEB_MAKE) WEB=$(BUILD)/web web-files
+
+WEB ?= $(BUILD)/web
+web-files: $(addprefix $(WEB)/,glint.wasm glint.mjs worker.mjs package.json LICENSE)
+
+# The loader that emscripten writes and the worker around it are one file.
+$(BUILD)/glint.js: $(BINDINGS_OBJ) $(BUILD)/libglint.a
+	$(call say,LINK)
+	$(Q)$(CC) $(WEB_LINK) $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) -o $@
+
+$(WEB)/glint.wasm: $(BUILD)/glint.js
+	@mkdir -p $(@D)
+	@cp $(BUILD)/glint.wasm $@
+
+$(WEB)/worker.mjs: $(BUILD)/glint.js bindings/web/worker.mjs
+	@mkdir -p $(@D)
+	@cat $^ > $@
+
+$(WEB)/glint.mjs: bindings/web/glint.mjs
+	@mkdir -p $(@D)
+	@cp $< $@
+
+$(WEB)/package.json: bindings/web/package.json engine/glint.h
+	@mkdir -p $(@D)
+	@sed -e 's/@version@/$(VERSION)/' $< > $@
+
+$(WEB)/LICENSE: LICENSE
+	@mkdir -p $(@D)
+	@cp $< $@
 
 # What is installed: mode, from, to.
 define INSTALLED

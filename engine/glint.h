@@ -1277,6 +1277,10 @@ glint_status glint_image_write(const glint_image *image, const glint_write_desc 
 glint_status glint_image_to_bytes(const glint_image *image, const glint_write_desc *desc, uint8_t **data, size_t *size,
                                   glint_error *error);
 
+/// Fills `out`, which has 4 x width x height bytes, with the 8-bit codes of one pass as a .png would have them: RGBA, top row first,
+/// alpha 255 where the picture has none. Of `desc` the pass, the tone of 8 bits, dpi and colormap are read.
+glint_status glint_image_rgba(const glint_image *image, const glint_write_desc *desc, uint8_t *out, glint_error *error);
+
 /// Identifies a finished frame: 32 hex digits over engine version, everything the plan reads, `desc`'s tone, encode,
 /// encoder version and pass. Threads, instruction set, shard and path are not in it.
 void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char key[33]);

@@ -3,7 +3,7 @@
 #   deps.sh need          says what the build lacks, and fails; installs nothing
 #   deps.sh WHAT ...      installs what is missing, through apt: build, test, bench (comparing speeds), films (the test with
 #                         ffmpeg and Chromium), rock (the test of the rockspec), farm (the test of scripts/farm), arm64
-#                         (the tests under qemu), musl (those of a static command), fuzz (the fuzzers), package (the test of Debian's source package)
+#                         (the tests under qemu), musl (those of a static command), web (the module for browsers), fuzz (the fuzzers), package (the test of Debian's source package)
 set -eu
 
 # package  how to tell that it is there
@@ -61,6 +61,10 @@ qemu-user       command:qemu-aarch64
 '
 musl_required='
 musl-tools      command:musl-gcc
+'
+web_required='
+emscripten      command:emcc
+nodejs          command:node
 '
 package_optional='
 dpkg-dev        command:dpkg-buildpackage
@@ -166,11 +170,12 @@ for what in "$@"; do
     rock) require "$rock_required" ;;
     arm64) require "$arm64_required" ;;
     musl) require "$musl_required" ;;
+    web) require "$web_required" ;;
     package) prefer "$package_optional" "the test that needs it will be skipped" ;;
     fuzz) require "$fuzz_required" ;;
     farm) prefer "$farm_optional" "the test that needs it will be skipped" ;;
     *)
-        echo "usage: deps.sh need | build | test | bench | films | rock | farm | arm64 | musl | fuzz | package ..." >&2
+        echo "usage: deps.sh need | build | test | bench | films | rock | farm | arm64 | musl | web | fuzz | package ..." >&2
         exit 2
         ;;
     esac

@@ -163,7 +163,8 @@ bool glintL_run_open(glintL_run *run, glint_error *error)
         glint_writer_destroy(run->writer);
         run->writer = NULL;
     }
-    if (run->renderer && run->writer)
+    const bool writes = run->mode != GLINTL_MODE_WATCH; // whose pictures go to no file
+    if (run->renderer && (run->writer || !writes))
         return true;
     sigemptyset(&stops); // these are for the script's thread: the threads made here inherit the mask
     sigaddset(&stops, SIGINT);
@@ -171,7 +172,7 @@ bool glintL_run_open(glintL_run *run, glint_error *error)
     pthread_sigmask(SIG_BLOCK, &stops, &before);
     if (!run->renderer)
         status = open_renderer(run, error);
-    if (status == GLINT_OK && !run->writer)
+    if (status == GLINT_OK && writes && !run->writer)
         status = glint_writer_create(QUEUE_DEPTH, run->request.threads, &run->writer, error);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return status == GLINT_OK;

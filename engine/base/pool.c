@@ -160,7 +160,9 @@ void glint_run_items(glint_pool *pool, size_t count, glint_pool_item *item, void
 
 int glint_pool_processors(void)
 {
-#if defined(__linux__) && !defined(GLINT_PORTABLE)
+#ifdef GLINT_NO_THREADS
+    const long count = 1;
+#elif defined(__linux__) && !defined(GLINT_PORTABLE)
     cpu_set_t set;
     const long count = sched_getaffinity(0, sizeof set, &set) ? 1 : CPU_COUNT(&set);
 #else

@@ -7,7 +7,7 @@
 #include <errno.h>
 #include <unistd.h>
 
-#define PICTURE_LIMIT ((size_t)1 << 34)
+#define PICTURE_LIMIT ((size_t)1 << (sizeof(size_t) > 4 ? 34 : 31))
 #define HEAD_BYTES ((size_t)65536) // what says how large the picture is fits into it
 #define SLACK_BYTES ((size_t)64 << 20) // of a picture, for what is no pixel
 #define STORED_TIMES 16 // a byte of pixels takes 13 where each has a chunk of its own

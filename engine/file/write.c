@@ -298,62 +298,107 @@ static glint_status lay_over(picture *p, glint_png_source *source, double dpi, u
     return GLINT_OK;
 }
 
-/// Of an open store of tables.
-static glint_status encode_rows(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
-                                glint_bytes *out, double *reused, glint_error *error)
+/// The rows of a pass as codes, while the store of tables is open.
+typedef struct code_rows {
+    picture picture;
+    glint_png_source source; ///< its user is the picture
+    uint64_t *stamps; ///< owned
+} code_rows;
+
+/// To be closed in any case.
+static glint_status open_rows(const glint_image *image, const glint_write_desc *desc, code_rows *rows,
+                              glint_error *error)
 {
-    picture p = { .image = image, .plane = glint_image_planes(image, desc->pass), .tone = desc->tone };
+    picture *p = &rows->picture;
+    glint_png_source *source = &rows->source;
     glint_status status = glint_tone_check(&desc->tone, error);
+    memset(rows, 0, sizeof *rows);
+    glint_tone_store_open();
     if (status)
         return status;
-    glint_png_source source = { .width = image->width, .height = image->height, .tone = desc->tone, .user = &p };
-    source.alpha = desc->pass == GLINT_PASS_BEAUTY && image->alpha;
-    glint_png_desc png = { desc->encode, desc->text, desc->text_count, desc->dpi };
+    *p = (picture) { .image = image, .plane = glint_image_planes(image, desc->pass), .tone = desc->tone };
+    *source = (glint_png_source) { .width = image->width, .height = image->height, .tone = desc->tone, .user = p };
+    source->alpha = desc->pass == GLINT_PASS_BEAUTY && image->alpha;
     if (desc->colormap && (desc->pass == GLINT_PASS_DEPTH || (desc->pass >= GLINT_PASS_DERIVATIVE && desc->pass < GLINT_PASS_LIGHT)))
-        p.map = glint_colormap_table((glint_colormap)(desc->colormap - 1));
+        p->map = glint_colormap_table((glint_colormap)(desc->colormap - 1));
     if (!is_color(desc->pass))
-        source.tone.transfer = p.map ? GLINT_TRANSFER_SRGB : GLINT_TRANSFER_LINEAR;
+        source->tone.transfer = p->map ? GLINT_TRANSFER_SRGB : GLINT_TRANSFER_LINEAR;
     if (desc->pass == GLINT_PASS_BEAUTY && image->codes && glint_tone_same(&image->code_tone, &desc->tone)) {
-        source.row = row_of_codes;
-        source.stamp = image->row_stamp;
-    } else if (!p.plane[0]) {
+        source->row = row_of_codes;
+        source->stamp = image->row_stamp;
+    } else if (!p->plane[0]) {
         return fail_not_kept(image, desc->pass, error);
     } else if (is_color(desc->pass)) {
-        status = glint_tone_table_shared(&desc->tone, &p.table, error);
-        p.gain = glint_tone_gain(&desc->tone);
-        source.row = source.alpha ? row_of_covered : row_of_color;
+        status = glint_tone_table_shared(&desc->tone, &p->table, error);
+        p->gain = glint_tone_gain(&desc->tone);
+        source->row = source->alpha ? row_of_covered : row_of_color;
     } else if (desc->pass == GLINT_PASS_DEPTH) {
-        find_nearest(&p);
-        source.row = row_of_depth;
+        find_nearest(p);
+        source->row = row_of_depth;
     } else if (desc->pass >= GLINT_PASS_DERIVATIVE) {
-        find_steepest(&p);
-        source.row = row_of_slopes;
+        find_steepest(p);
+        source->row = row_of_slopes;
     } else if (desc->pass == GLINT_PASS_ALPHA || desc->pass == GLINT_PASS_OUTLINE || desc->pass == GLINT_PASS_REFINED) {
-        source.row = row_of_shares;
+        source->row = row_of_shares;
     } else {
-        source.row = desc->pass == GLINT_PASS_NORMAL ? row_of_normals : row_of_ids;
+        source->row = desc->pass == GLINT_PASS_NORMAL ? row_of_normals : row_of_ids;
     }
     if (desc->pass == GLINT_PASS_BEAUTY && image->outline) {
-        p.under = source.row;
-        source.row = row_of_outlined;
-        source.stamp = NULL; // of the codes without lines
+        p->under = source->row;
+        source->row = row_of_outlined;
+        source->stamp = NULL; // of the codes without lines
     }
-    uint64_t *stamps = NULL;
     if (!status && desc->pass == GLINT_PASS_BEAUTY && image->overlays)
-        status = lay_over(&p, &source, desc->dpi, &stamps, error);
-    if (!status)
-        status = glint_png_encode(bands, &source, &png, out, reused, error);
-    glint_stamps_free(&p.stamps);
-    free(stamps);
+        status = lay_over(p, source, desc->dpi, &rows->stamps, error);
     return status;
+}
+
+static void close_rows(code_rows *rows)
+{
+    glint_stamps_free(&rows->picture.stamps);
+    free(rows->stamps);
+    glint_tone_store_close();
 }
 
 static glint_status encode_png(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
                                glint_bytes *out, double *reused, glint_error *error)
 {
-    glint_tone_store_open();
-    glint_status status = encode_rows(image, desc, bands, out, reused, error);
-    glint_tone_store_close();
+    code_rows rows;
+    const glint_png_desc png = { desc->encode, desc->text, desc->text_count, desc->dpi };
+    glint_status status = open_rows(image, desc, &rows, error);
+    if (!status)
+        status = glint_png_encode(bands, &rows.source, &png, out, reused, error);
+    close_rows(&rows);
+    return status;
+}
+
+/// Copies a row of 8-bit codes as RGBA.
+static void copy_rgba(const glint_png_source *source, const uint8_t *row, uint8_t *out)
+{
+    const size_t channels = source->alpha ? 4 : 3;
+    for (size_t x = 0; x < (size_t)source->width; x++) {
+        memcpy(out + 4 * x, row + channels * x, channels);
+        out[4 * x + 3] = source->alpha ? row[4 * x + 3] : 0xff;
+    }
+}
+
+glint_status glint_image_rgba(const glint_image *image, const glint_write_desc *desc, uint8_t *out, glint_error *error)
+{
+    code_rows rows;
+    if (desc->tone.bits != 8)
+        return glint_fail(error, GLINT_ERR_INVALID, "tone.bits: 8 expected, got %d", desc->tone.bits);
+    if (!glint_pass_channels(desc->pass))
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: one of the %d passes expected, got %d", GLINT_PASS_COUNT,
+                          (int)desc->pass);
+    const size_t stride = 4 * (size_t)image->width;
+    glint_status status = open_rows(image, desc, &rows, error);
+    uint8_t *scratch = malloc(stride);
+    for (int y = 0; y < image->height && !status && scratch; y++)
+        copy_rgba(&rows.source, rows.source.row(rows.source.user, y, scratch), out + (size_t)y * stride);
+    if (!status && !scratch)
+        status = glint_fail_nomem(error);
+    free(scratch);
+    close_rows(&rows);
     return status;
 }
 

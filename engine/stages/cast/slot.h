@@ -15,7 +15,7 @@ INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, co
     const shape_on_screen shape = shape_of(node, seen, slot, &tile->args->geometry->prims[id], &tile->view);
     rod_on_screen rod = { .is = false };
     if (rods)
-        rod = rod_of(tile->args->geometry, &tile->args->geometry->prims[id], &tile->view);
+        see_rod(tile->args->geometry, &tile->args->geometry->prims[id], &tile->view, &rod);
     if (boxed)
         *box = see_box(tile->args->camera, &tile->view, node, slot);
     for (; left; left &= left - 1) {

@@ -318,14 +318,15 @@ typedef struct rod_on_screen {
     bool is; ///< false: nothing else is set
 } rod_on_screen;
 
-static inline rod_on_screen rod_of(const glint_geometry_table *geometry, const glint_prim *prim, const screen_view *view)
+/// Sees a primitive as a rod. Not returned by value: clang 14 for WebAssembly then loses `n`.
+static inline void see_rod(const glint_geometry_table *geometry, const glint_prim *prim, const screen_view *view, rod_on_screen *out)
 {
     const glint_solid *solid = prim->kind == GLINT_PRIM_SOLID ? &geometry->solids[prim->item] : NULL;
     const float inverse = view->inverse, base = view->base;
-    rod_on_screen out = { .is = solid && solid->thick < HUGE_VALF };
     float numbers = 2 * prim->filter_bound, c[3] = { 0 }, e[3] = { 0 };
-    if (!out.is)
-        return out;
+    out->is = solid && solid->thick < HUGE_VALF;
+    if (!out->is)
+        return;
     for (int k = 0; k < 3; k++) {
         const float from = (float)((prim->center[k] - geometry->reference[k]) * geometry->scale - view->exact[k]);
         numbers += fabsf(prim->filter_center[k]);
@@ -336,15 +337,14 @@ static inline rod_on_screen rod_of(const glint_geometry_table *geometry, const g
         }
     }
     const float du = view->unit[0] * inverse, dv = view->unit[1] * inverse;
-    out.beside[0] = c[1] * e[0] - c[0] * e[1];
-    out.beside[1] = du * (c[2] * e[1] - c[1] * e[2]) + view->unit[0] * (base * e[1]);
-    out.beside[2] = dv * (c[0] * e[2] - c[2] * e[0]) - view->unit[1] * (base * e[0]);
-    memcpy(out.n, (const float[3][2]) { { -e[1], dv * e[2] }, { e[0], -(du * e[2]) }, { du * e[1], -(dv * e[0]) } }, sizeof out.n);
+    out->beside[0] = c[1] * e[0] - c[0] * e[1];
+    out->beside[1] = du * (c[2] * e[1] - c[1] * e[2]) + view->unit[0] * (base * e[1]);
+    out->beside[2] = dv * (c[0] * e[2] - c[2] * e[0]) - view->unit[1] * (base * e[0]);
+    memcpy(out->n, (const float[3][2]) { { -e[1], dv * e[2] }, { e[0], -(du * e[2]) }, { du * e[1], -(dv * e[0]) } }, sizeof out->n);
     const float reach = 1.00001f * solid->thick + (view->reach + view->reach_of_numbers * numbers);
     const float sizes = (fabsf(c[0]) + fabsf(c[1])) + (fabsf(c[2]) + base * view->spread) + (numbers + reach);
-    out.reach2 = reach * reach;
-    out.margin = 0x1p-19f * sizes * (1 + inverse * view->spread);
-    return out;
+    out->reach2 = reach * reach;
+    out->margin = 0x1p-19f * sizes * (1 + inverse * view->spread);
 }
 
 /// Lanes whose rays, at places u, v, may meet it.

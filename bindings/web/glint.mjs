@@ -1,0 +1,318 @@
+// glint for pages, workers and Node: loads the engine, opens scripts and renders their frames, each job in a worker of its own.
+//
+//   import { load } from "./glint.mjs"
+//   const glint = await load()
+//   const job = await glint.open(source, { name: "scene.lua", files: { "earth.png": bytes }, set: { radius: 12 } })
+//   const image = await job.render({ frame: 7, width: 640, height: 360, set: { radius: 13 } })
+//
+// The manual is bindings/README.md, "In a browser".
+
+const isNode = !!globalThis.process?.versions?.node
+const GRACE_S = 1 // beyond the script's time, for code of the script that no hook of Lua interrupts
+
+/** An error of the engine or of the script: `message` has the words of the command. `file` and `line` say where, if that is known. */
+export class GlintError extends Error {
+  constructor(message) {
+    super(message)
+    this.name = "GlintError"
+    const where = /(?:^|: )([^\s:][^:\n]*):(\d+): /.exec(message)
+    this.file = where ? where[1] : undefined
+    this.line = where ? Number(where[2]) : undefined
+  }
+}
+
+// What a parameter or an option is in text, as after --set NAME=.
+const spell = value => Array.isArray(value) ? value.join(",") : String(value)
+const spellAll = values => Object.fromEntries(Object.entries(values ?? {}).map(([name, value]) => [name, spell(value)]))
+
+const aborted = signal => signal.reason ?? new DOMException("The operation was aborted.", "AbortError")
+
+// ---- PNG ----
+
+const crcTable = Uint32Array.from({ length: 256 }, (_, n) => {
+  for (let k = 0; k < 8; k++) n = n & 1 ? 0xedb88320 ^ n >>> 1 : n >>> 1
+  return n
+})
+
+function chunk(type, data) {
+  const out = new Uint8Array(12 + data.length), view = new DataView(out.buffer)
+  view.setUint32(0, data.length)
+  for (let i = 0; i < 4; i++) out[4 + i] = type.charCodeAt(i)
+  out.set(data, 8)
+  let crc = -1
+  for (let i = 4; i < 8 + data.length; i++) crc = crcTable[(crc ^ out[i]) & 255] ^ crc >>> 8
+  view.setUint32(8 + data.length, ~crc)
+  return out
+}
+
+// [extra bits, base] of the codes of lengths and distances of deflate.
+function bases(first, perBit, count) {
+  const list = []
+  let base = first
+  for (let code = 0; code < count; code++) {
+    const extra = Math.max(0, Math.floor(code / perBit) - 1)
+    list.push([extra, base])
+    base += 1 << extra
+  }
+  return list
+}
+const LENGTHS = [...bases(3, 4, 28), [0, 258]], DISTANCES = bases(1, 2, 30)
+
+// The bytes as a zlib stream of one block of fixed codes.
+function deflate(data) {
+  const out = new Uint8Array(data.length + (data.length >> 3) + 64), heads = new Int32Array(1 << 15).fill(-1)
+  let size = 2, bits = 0, held = 0
+  out[0] = 0x78, out[1] = 1
+  const put = (value, count) => {
+    bits |= value << held
+    held += count
+    for (; held >= 8; held -= 8, bits >>>= 8) out[size++] = bits
+  }
+  const putCode = (value, count) => { // codes begin with their highest bit
+    let turned = 0
+    for (let i = 0; i < count; i++) turned |= (value >> i & 1) << count - 1 - i
+    put(turned, count)
+  }
+  const putLiteral = n => n < 144 ? putCode(0x30 + n, 8) : n < 256 ? putCode(0x190 + n - 144, 9) : n < 280 ? putCode(n - 256, 7) : putCode(0xc0 + n - 280, 8)
+  const putMatch = (length, distance) => {
+    let l = LENGTHS.length - 1, d = DISTANCES.length - 1
+    while (LENGTHS[l][1] > length) l--
+    while (DISTANCES[d][1] > distance) d--
+    putLiteral(257 + l)
+    put(length - LENGTHS[l][1], LENGTHS[l][0])
+    putCode(d, 5)
+    put(distance - DISTANCES[d][1], DISTANCES[d][0])
+  }
+  put(3, 3) // the last block, fixed codes
+  for (let i = 0; i < data.length;) {
+    const hash = (data[i] << 10 ^ data[i + 1] << 5 ^ data[i + 2] ^ data[i + 3] << 7) & 0x7fff, from = heads[hash]
+    heads[hash] = i
+    let length = 0
+    if (from >= 0 && i - from <= 32768) while (length < 258 && i + length < data.length && data[from + length] === data[i + length]) length++
+    if (length >= 4) putMatch(length, i - from)
+    else putLiteral(data[i])
+    i += length >= 4 ? length : 1
+  }
+  putCode(0, 7)
+  put(0, 7) // to the end of the byte
+  let a = 1, b = 0
+  for (let i = 0; i < data.length; i++) a = (a + data[i]) % 65521, b = (b + a) % 65521
+  out.set([b >> 8, b, a >> 8, a], size)
+  return out.subarray(0, size + 4)
+}
+
+// A file of RGBA codes; alpha goes where the picture has none.
+function encodePng(width, height, rgba) {
+  let channels = 3
+  for (let i = 3; i < rgba.length && channels === 3; i += 4) if (rgba[i] !== 255) channels = 4
+  const stride = width * channels, rows = new Uint8Array(height * (stride + 1))
+  for (let y = 0; y < height; y++) {
+    const at = y * (stride + 1) + 1
+    rows[at - 1] = y ? 2 : 0 // the difference from the row above
+    for (let x = 0; x < width; x++)
+      for (let c = 0; c < channels; c++) {
+        const from = 4 * (y * width + x) + c
+        rows[at + channels * x + c] = rgba[from] - (y ? rgba[from - 4 * width] : 0)
+      }
+  }
+  const head = new Uint8Array(13), view = new DataView(head.buffer)
+  view.setUint32(0, width)
+  view.setUint32(4, height)
+  head.set([8, channels === 4 ? 6 : 2], 8)
+  const parts = [Uint8Array.of(137, 80, 78, 71, 13, 10, 26, 10), chunk("IHDR", head), chunk("IDAT", deflate(rows)), chunk("IEND", new Uint8Array(0))]
+  const out = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0))
+  let at = 0
+  for (const part of parts) out.set(part, at), at += part.length
+  return out
+}
+
+/** A rendered frame. */
+class Image {
+  #planes
+  constructor(result) {
+    const { planes, ...rest } = result
+    Object.assign(this, rest) // frame, width, height, rgba, warnings, printed, memory: bytes that the engine has
+    this.#planes = planes
+  }
+  /** The float32 numbers of a pass that was asked for, row by row from the top: those of the .pfm. */
+  plane(name = "beauty") {
+    if (!(name in this.#planes)) throw new GlintError(`plane: '${name}' was not rendered; passes: ["${name}"] asks for it`)
+    return this.#planes[name]
+  }
+  /** The picture as a file, in bytes. */
+  png() { return encodePng(this.width, this.height, this.rgba) }
+  /** For a canvas: context.putImageData(image.data(), 0, 0). */
+  data() { return new ImageData(this.rgba, this.width, this.height) }
+}
+
+// ---- A worker, and what is asked of it ----
+
+class Host {
+  #engine
+  #opening
+  #seconds
+  #queue = [] // the first one is at work
+  #worker
+  #timer
+  constructor(engine, opening) {
+    this.#engine = engine
+    this.#opening = opening
+    this.#seconds = opening.seconds
+  }
+
+  // Sends a message after those before it, and returns a promise of its answer.
+  ask(message, signal) {
+    if (signal?.aborted) return Promise.reject(aborted(signal))
+    return new Promise((resolve, reject) => {
+      const asked = { message, resolve, reject, signal }
+      asked.abort = () => this.#abort(asked)
+      signal?.addEventListener("abort", asked.abort, { once: true })
+      this.#queue.push(asked)
+      if (this.#queue.length === 1) this.#begin()
+    })
+  }
+
+  close(error = new GlintError("the job is closed")) {
+    this.#stop()
+    for (const asked of this.#queue.splice(0)) this.#settle(asked, "reject", error)
+  }
+
+  #settle(asked, how, value) {
+    asked.signal?.removeEventListener("abort", asked.abort)
+    asked[how](value)
+  }
+
+  // A new worker opens the script first. So does one that takes the place of a worker which was stopped.
+  #begin() {
+    const asked = this.#queue[0]
+    if (!asked) return this.#worker?.unref?.()
+    if (!this.#worker) {
+      this.#worker = this.#engine.start(data => this.#take(data), error => this.#fail(error))
+      this.#isOpen = false
+    }
+    this.#worker.ref?.()
+    const first = this.#isOpen || asked.message.call === "open" ? asked.message : this.#opening
+    this.#isReopening = first !== asked.message
+    this.#watch()
+    this.#worker.postMessage({ ...first, ...(first.call === "open" ? { module: this.#engine.module } : {}) })
+  }
+  #isOpen = false
+  #isReopening = false
+
+  #watch() {
+    clearTimeout(this.#timer)
+    this.#timer = setTimeout(() => this.#fail(new GlintError(`the script took longer than ${this.#seconds} s`)), 1e3 * (this.#seconds + GRACE_S))
+  }
+
+  #take(data) {
+    clearTimeout(this.#timer)
+    if (data.rendering === true) return
+    if (data.rendering === false) return this.#watch()
+    if (data.failed !== undefined) return this.#fail(new GlintError(data.failed), this.#isOpen && !data.broken)
+    this.#isOpen = true
+    if (!this.#isReopening) this.#settle(this.#queue.shift(), "resolve", data.result)
+    this.#begin()
+  }
+
+  #fail(error, goesOn = false) {
+    clearTimeout(this.#timer)
+    if (!goesOn) this.#stop()
+    const asked = this.#queue.shift()
+    if (asked) this.#settle(asked, "reject", error)
+    this.#begin()
+  }
+
+  #stop() {
+    clearTimeout(this.#timer)
+    this.#worker?.terminate()
+    this.#worker = undefined
+  }
+
+  #abort(asked) {
+    const place = this.#queue.indexOf(asked)
+    if (place < 0) return
+    this.#queue.splice(place, 1)
+    if (place === 0) this.#stop()
+    this.#settle(asked, "reject", aborted(asked.signal))
+    if (place === 0) this.#begin()
+  }
+}
+
+/** A script that was opened. */
+class Job {
+  #host
+  #set
+  constructor(host, set, opened) {
+    this.#host = host
+    this.#set = set
+    Object.assign(this, opened) // params, frames, width, height, warnings, printed
+  }
+  /** Renders a frame. `set` beats the values the job was opened with; other options are the fields of scene:render{}. */
+  async render({ frame = 1, passes = ["beauty"], set, signal, ...options } = {}) {
+    const named = [passes].flat().flatMap(list => String(list).split(",")).filter(name => name !== "")
+    const message = { call: "render", frame, set: { ...this.#set, ...spellAll(set) }, passes: named, options: spellAll(options) }
+    if (named.length) message.options.passes = named.join(",")
+    return new Image(await this.#host.ask(message, signal))
+  }
+  /** What `glint explain --json` prints of a frame. */
+  explain({ frame = 1, set, signal, ...options } = {}) {
+    return this.#host.ask({ call: "explain", frame, set: { ...this.#set, ...spellAll(set) }, options: spellAll(options) }, signal)
+  }
+  /** Ends the worker. What it was asked and has not answered is an error. */
+  close() { this.#host.close() }
+}
+
+// ---- The engine ----
+
+async function compile(wasm) {
+  if (wasm instanceof WebAssembly.Module) return wasm
+  if (wasm instanceof ArrayBuffer || ArrayBuffer.isView(wasm)) return WebAssembly.compile(wasm)
+  const url = new URL(wasm ?? "glint.wasm", import.meta.url)
+  if (isNode && url.protocol === "file:") return WebAssembly.compile(await (await import("node:fs/promises")).readFile(url))
+  const answer = await fetch(url)
+  if (!answer.ok) throw new GlintError(`${url}: ${answer.status} ${answer.statusText}`)
+  return WebAssembly.compile(await answer.arrayBuffer()) // whatever type the server says it has
+}
+
+class Engine {
+  #make
+  constructor(module, make) {
+    this.module = module
+    this.#make = make
+  }
+  // A worker that calls `take` with what it says, and `fail` when it cannot go on.
+  start(take, fail) {
+    const worker = this.#make()
+    if (worker.on) {
+      worker.on("message", take)
+      worker.on("error", error => fail(new GlintError(String(error))))
+    } else {
+      worker.onmessage = event => take(event.data)
+      worker.onerror = event => fail(new GlintError(event.message ?? "the worker could not be started"))
+    }
+    return worker
+  }
+}
+
+/**
+ * Loads the engine. wasm: where glint.wasm is (a URL, bytes or a module); worker: where worker.mjs is (a URL).
+ */
+export async function load({ wasm, worker } = {}) {
+  const url = new URL(worker ?? "worker.mjs", import.meta.url)
+  const Worker = isNode ? (await import("node:worker_threads")).Worker : globalThis.Worker
+  const engine = new Engine(await compile(wasm), () => new Worker(url, { type: "module" }))
+  return {
+    /** Runs a script. files: { name: text or bytes } that it may read; set: { name: value }; seconds that it may take at a time. */
+    async open(source, { name = "scene.lua", files = {}, set = {}, seconds = 10, signal } = {}) {
+      const given = spellAll(set)
+      const message = { call: "open", name, source, files, set: given, seconds }
+      const host = new Host(engine, message)
+      try {
+        return new Job(host, given, await host.ask(message, signal))
+      } catch (error) {
+        host.close()
+        throw error
+      }
+    },
+  }
+}

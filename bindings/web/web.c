@@ -1,0 +1,420 @@
+// The module for browsers and Node: one job in the memory of WebAssembly. worker.mjs calls the functions here.
+//
+// The files of the job are those of a file system in memory. The script runs once for each set of parameters, and its frames
+// are rendered as glint watch renders them, with one renderer, so that unchanged parts are reused.
+#include <emscripten.h>
+#include <inttypes.h>
+#include <lualib.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/command/untrusted.h"
+#include "bindings/run/carried.h"
+#include "bindings/run/film.h"
+
+#define INSTRUCTIONS 1000 // of the script, between two looks at the clock
+#define REUSE_MEMORY ((size_t)256 << 20)
+#define SETS_MAX 256
+#define WARNINGS_SIZE 8192
+
+typedef struct web_job {
+    cli_options options;
+    cli_script script;
+    glintL_run *run;
+    glintL_set sets[SETS_MAX]; // whose strings are owned
+    double seconds, until_ms; // that the script may take in one call; when its time is over
+    double render_ms; // when the render at work has begun
+    int64_t calls; // of scene:render in the script; the frames of its jobs are numbered after them
+    int64_t frames;
+    double width, height; // of the first frame
+    char *params, *plan; // JSON; owned
+    glint_image *image; // of the last frame
+    glintL_render render;
+    uint8_t *bytes; // that were asked for last; owned
+    char warnings[WARNINGS_SIZE]; // of the last call, a line each
+} web_job;
+
+static web_job job;
+
+typedef struct module { // of Lua, carried
+    const char *name;
+    const unsigned char *text;
+    size_t size;
+} module;
+
+#include "bindings/web/library.h" // LIBRARY
+
+static const unsigned char PRELUDE[] = {
+#include "bindings/web/prelude.lua.h"
+};
+
+// ---- What the command has, and this has not ----
+
+bool glintL_has_ffmpeg(void) { return false; }
+
+int glintL_film_pipe(glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE])
+{
+    (void)run, (void)film;
+    snprintf(message, GLINTL_MESSAGE_SIZE, "a page makes no films");
+    return GLINTL_EXIT_USAGE;
+}
+
+void cli_carry_dialect(lua_State *L) { (void)L; }
+
+void cli_open_dialect(lua_State *L, const cli_options *options) { (void)L, (void)options; }
+
+// ---- The script's Lua ----
+
+// Once it has raised, each next instruction raises again, so that no pcall goes on.
+static void look(lua_State *L, lua_Debug *where)
+{
+    (void)where;
+    if (glintL_now_ms() < job.until_ms)
+        return;
+    lua_sethook(L, look, LUA_MASKCOUNT, 1);
+    luaL_where(L, 0);
+    lua_pushfstring(L, "%sthe script took longer than %f s", lua_tostring(L, -1), (lua_Number)job.seconds);
+    lua_error(L);
+}
+
+// The name of a module -> its text, or nil.
+static int carried_text(lua_State *L)
+{
+    const char *name = luaL_checkstring(L, 1);
+    for (size_t i = 0; i < sizeof LIBRARY / sizeof *LIBRARY; i++)
+        if (strcmp(LIBRARY[i].name, name) == 0) {
+            lua_pushlstring(L, (const char *)LIBRARY[i].text, LIBRARY[i].size);
+            return 1;
+        }
+    return 0;
+}
+
+static int collect_garbage(lua_State *L)
+{
+    lua_gc(L, LUA_GCCOLLECT);
+    return 0;
+}
+
+// Runs prelude.lua in the small Lua of --untrusted, which cli_run_script has opened.
+static void prepare(void *context, lua_State *L)
+{
+    (void)context;
+    if (luaL_loadbufferx(L, (const char *)PRELUDE, sizeof PRELUDE, "=prelude", "t") != LUA_OK)
+        lua_error(L);
+    lua_pushcfunction(L, carried_text);
+    lua_pushcfunction(L, collect_garbage);
+    lua_pushcfunction(L, luaopen_io);
+    lua_call(L, 0, 1);
+    lua_pushcfunction(L, luaopen_os);
+    lua_call(L, 0, 1);
+    lua_call(L, 4, 0);
+    lua_settop(L, 0);
+    lua_sethook(L, look, LUA_MASKCOUNT, INSTRUCTIONS);
+}
+
+// ---- The run's reporter ----
+
+EM_JS(void, tell_rendering, (int begins), {
+    if (Module["rendering"])
+        Module["rendering"](!!begins);
+})
+
+// The time of a render is not the script's.
+static void around_render(void *context, const glintL_run *run, bool begins)
+{
+    (void)context, (void)run;
+    if (begins)
+        job.render_ms = glintL_now_ms();
+    else
+        job.until_ms += glintL_now_ms() - job.render_ms;
+    tell_rendering(begins);
+}
+
+static void take_image(void *context, const glintL_run *run, const glintL_work *work)
+{
+    (void)context, (void)run;
+    glint_image_release(job.image);
+    job.image = glint_image_retain(work->image);
+    job.render = work->render;
+}
+
+static void warn(void *context, const char *message)
+{
+    (void)context;
+    const size_t used = strlen(job.warnings);
+    snprintf(job.warnings + used, sizeof job.warnings - used, "%s%s", used ? "\n" : "", message);
+}
+
+static void ignore_frame(void *context, const glintL_run *run, const glintL_record *record)
+{
+    (void)context, (void)run, (void)record;
+}
+
+static void ignore_figure(void *context, const char *kind, const char *path, int64_t count)
+{
+    (void)context, (void)kind, (void)path, (void)count;
+}
+
+// ---- One run ----
+
+static void begin_run(void)
+{
+    glintL_run_reset(job.run);
+    job.run->mode = GLINTL_MODE_WATCH;
+    job.until_ms = glintL_now_ms() + 1e3 * job.seconds;
+}
+
+// Renders calls of scene:render as far as they are the frame; 0: none.
+static bool run_script(int64_t frame)
+{
+    glintL_selection *selection = &job.run->request.selection;
+    const int64_t number = frame ? frame : INT64_MAX;
+    cli_close_script(&job.script);
+    begin_run();
+    glintL_selection_clear(selection);
+    if (!glintL_selection_add(selection, (glintL_range) { number, number, 1 }))
+        return glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    return cli_run_script(&job.script, &job.options, job.run);
+}
+
+// The size of the first frame of the list of jobs.
+static void measure_job(lua_State *L)
+{
+    lua_rawgeti(L, LUA_REGISTRYINDEX, job.script.jobs);
+    lua_rawgeti(L, -1, 1);
+    glintL_render render = ((const glintL_job *)lua_touserdata(L, -1))->render;
+    lua_pop(L, 2);
+    glintL_run_apply(job.run, &render);
+    job.width = render.desc.width;
+    job.height = render.desc.height;
+}
+
+// Plans a frame in a run of its own. The plan is the run's.
+static bool explain(int64_t frame)
+{
+    cli_script script;
+    begin_run();
+    job.run->mode = GLINTL_MODE_EXPLAIN;
+    job.run->explain_frame = frame;
+    glintL_selection_clear(&job.run->request.selection);
+    cli_run_script(&script, &job.options, job.run);
+    cli_close_script(&script);
+    return job.run->explain_plan != NULL;
+}
+
+// The size of the first call of scene:render.
+static bool measure_call(void)
+{
+    if (!explain(1))
+        return false;
+    const glint_render_desc *desc = glint_plan_render_desc(job.run->explain_plan);
+    job.width = desc->width;
+    job.height = desc->height;
+    return true;
+}
+
+static int print_params(lua_State *L)
+{
+    cli_print_params(L, lua_touserdata(L, 1));
+    return 0;
+}
+
+static bool keep_params(void)
+{
+    char *text = NULL;
+    size_t size = 0;
+    lua_State *L = job.script.state;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    lua_pushcfunction(L, print_params);
+    lua_pushlightuserdata(L, out);
+    const bool good = lua_pcall(L, 1, 0, 0) == LUA_OK;
+    free(job.params);
+    job.params = glintL_close_text(out, &text);
+    return (good && job.params) || glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "out of memory");
+}
+
+// ---- What worker.mjs calls; each returns whether all is well, or NULL or 0 otherwise ----
+
+/// Begins the job of a script that is in the file system. seconds: time that the script may take in one call.
+EMSCRIPTEN_KEEPALIVE bool web_open(const char *path, double seconds)
+{
+    job.run = glintL_run_create();
+    char *script = strdup(path);
+    if (!job.run || !script)
+        return false;
+    job.seconds = seconds;
+    job.options = (cli_options) { .command = CLI_WATCH, .json = true, .script = script, .untrusted_s = seconds };
+    snprintf(job.run->script, sizeof job.run->script, "%s", cli_base_name(script));
+    job.run->is_command = true;
+    job.run->keeps_images = true;
+    job.run->request.sets = job.sets;
+    job.run->request.force = true;
+    job.run->request.reuse_memory = REUSE_MEMORY;
+    job.run->request.render_text[glintL_render_find("output")] = "none";
+    job.run->reporter = (glintL_reporter) {
+        .rendering = around_render, .frame = ignore_frame, .warn = warn, .figure = ignore_figure, .image = take_image, .prepare = prepare
+    };
+    return true;
+}
+
+EMSCRIPTEN_KEEPALIVE void web_clear_sets(void)
+{
+    for (; job.run->request.set_count > 0; job.run->request.set_count--) {
+        glintL_set *set = &job.sets[job.run->request.set_count - 1];
+        free((char *)(uintptr_t)set->name);
+        free((char *)(uintptr_t)set->text);
+    }
+}
+
+/// As --set name=text, for the runs to come.
+EMSCRIPTEN_KEEPALIVE bool web_set(const char *name, const char *text)
+{
+    glintL_set set = { .name = strdup(name), .text = strdup(text) };
+    if (!set.name || !set.text || job.run->request.set_count == SETS_MAX)
+        return glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "set: at most %d parameters expected", SETS_MAX);
+    job.sets[job.run->request.set_count++] = set;
+    return true;
+}
+
+/// Takes a field of scene:render{} for the frames to come, as text; NULL: the script's.
+EMSCRIPTEN_KEEPALIVE bool web_option(const char *name, const char *text)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    glintL_render render = glintL_render_default();
+    const int field = glintL_render_find(name);
+    glintL_run_reset(job.run);
+    if (field < 0)
+        return glintL_run_fail(job.run, GLINTL_EXIT_USAGE, 0, "render: %s: no such field", name);
+    if (text && !glintL_render_set_text(&render, field, text, message))
+        return glintL_run_fail(job.run, GLINTL_EXIT_USAGE, 0, "%s: %s", name, message);
+    free((char *)(uintptr_t)job.run->request.render_text[field]);
+    job.run->request.render_text[field] = text ? strdup(text) : NULL;
+    return true;
+}
+
+/// Runs the script with the parameters that are set; then what it says of itself is known.
+EMSCRIPTEN_KEEPALIVE bool web_run(void)
+{
+    job.warnings[0] = '\0';
+    if (!run_script(0))
+        return false;
+    job.calls = job.run->count;
+    job.frames = job.calls + (job.script.has_jobs ? job.script.frames : 0);
+    if (!keep_params())
+        return false;
+    if (job.calls == 0)
+        measure_job(job.script.state);
+    return job.calls == 0 || measure_call();
+}
+
+EMSCRIPTEN_KEEPALIVE double web_frames(void) { return (double)job.frames; }
+EMSCRIPTEN_KEEPALIVE double web_width(void) { return job.width; }
+EMSCRIPTEN_KEEPALIVE double web_height(void) { return job.height; }
+EMSCRIPTEN_KEEPALIVE const char *web_params(void) { return job.params; }
+EMSCRIPTEN_KEEPALIVE const char *web_warnings(void) { return job.warnings; }
+EMSCRIPTEN_KEEPALIVE const char *web_message(void) { return job.run && *job.run->message ? job.run->message : "out of memory"; }
+
+// A script that calls scene:render runs again; jobs are as it left them.
+static bool render(int64_t frame)
+{
+    glintL_run *run = job.run;
+    if (job.calls > 0 || !job.script.state) {
+        if (!run_script(frame))
+            return false;
+    } else {
+        begin_run();
+        glintL_selection_clear(&run->request.selection);
+        if (!glintL_selection_add(&run->request.selection, (glintL_range) { frame, frame, 1 }))
+            return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    }
+    run->count = job.calls;
+    return !job.script.has_jobs || cli_run_jobs(&job.script, run);
+}
+
+EMSCRIPTEN_KEEPALIVE bool web_render(double frame)
+{
+    job.warnings[0] = '\0';
+    glint_image_release(job.image);
+    job.image = NULL;
+    if (!(frame >= 1 && frame <= (double)job.frames) || frame != floor(frame)) {
+        glintL_run_reset(job.run);
+        return glintL_run_fail(job.run, GLINTL_EXIT_USAGE, 0,
+                               "frame: a frame of the script, 1 .. %" PRId64 ", expected, got '%g'", job.frames, frame);
+    }
+    const bool good = render((int64_t)frame);
+    if (!glintL_run_collect(job.run, true) || !good)
+        return false;
+    return job.image || glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "frame %g was not rendered", frame);
+}
+
+EMSCRIPTEN_KEEPALIVE int web_image_width(void) { return glint_image_width(job.image); }
+EMSCRIPTEN_KEEPALIVE int web_image_height(void) { return glint_image_height(job.image); }
+
+/// The codes of the last frame, RGBA; until the next call.
+EMSCRIPTEN_KEEPALIVE const uint8_t *web_rgba(void)
+{
+    glint_error error;
+    glint_write_desc desc = { .tone = job.render.desc.tone, .dpi = job.render.dpi };
+    desc.tone.bits = 8; // a screen shows no more
+    free(job.bytes);
+    job.bytes = malloc(4 * (size_t)web_image_width() * (size_t)web_image_height());
+    if (job.bytes && glint_image_rgba(job.image, &desc, job.bytes, &error) == GLINT_OK)
+        return job.bytes;
+    glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "%s", job.bytes ? error.message : "out of memory");
+    return NULL;
+}
+
+// The number of the pass with that name in the last frame, or -1.
+static int find_pass(const char *name)
+{
+    const char *of = strncmp(name, "d:", 2) == 0 ? name + 2 : strncmp(name, "light:", 6) == 0 ? name + 6 : NULL, *other;
+    const bool is_light = of && name[0] == 'l';
+    for (int pass = 0; pass < GLINT_PASS_COUNT && !of; pass++)
+        if (strcmp(glint_pass_name((glint_pass)pass), name) == 0)
+            return glint_image_has_pass(job.image, (glint_pass)pass) ? pass : -1;
+    for (size_t i = 0; of && (other = is_light ? glint_image_light_pass(job.image, i) : glint_image_derivative(job.image, i)); i++)
+        if (strcmp(other, of) == 0)
+            return (int)(i + (is_light ? GLINT_PASS_LIGHT : GLINT_PASS_DERIVATIVE));
+    return -1;
+}
+
+/// The name of light pass number `index` of the last frame, without "light:"; NULL: it has not so many.
+EMSCRIPTEN_KEEPALIVE const char *web_light_pass(int index) { return glint_image_light_pass(job.image, (size_t)index); }
+
+/// The float32 numbers of a pass of the last frame as a file .npy, its size in *size; until the next call.
+EMSCRIPTEN_KEEPALIVE const uint8_t *web_plane(const char *name, size_t *size)
+{
+    glint_error error;
+    const int pass = find_pass(name);
+    const glint_write_desc desc = { .path = "plane.npy", .pass = (glint_pass)pass, .tone = job.render.desc.tone };
+    free(job.bytes);
+    job.bytes = NULL;
+    if (pass < 0) {
+        glintL_run_fail(job.run, GLINTL_EXIT_USAGE, 0, "passes: '%s' was not rendered", name);
+        return NULL;
+    }
+    if (glint_image_to_bytes(job.image, &desc, &job.bytes, size, &error) == GLINT_OK)
+        return job.bytes;
+    glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "%s", error.message);
+    return NULL;
+}
+
+/// What `glint explain --json` prints of a frame; until the next call.
+EMSCRIPTEN_KEEPALIVE const char *web_explain(double frame)
+{
+    char *text = NULL;
+    size_t size = 0;
+    cli_output output = { .data = open_memstream(&text, &size), .json = true, .quiet = true };
+    job.warnings[0] = '\0';
+    if (!output.data)
+        return NULL;
+    begin_run();
+    job.options.frame = (int64_t)frame;
+    cli_explain(&job.options, &output, job.run);
+    free(job.plan);
+    job.plan = glintL_close_text(output.data, &text);
+    return job.run->exit_code ? NULL : job.plan;
+}

@@ -1,0 +1,143 @@
+// The worker of one job: the loader of emscripten (createGlint, before this) and what answers the messages of glint.mjs. One file
+// without imports, so that a page may make a worker of its text.
+//
+// A message is { call, ... }; the answer is { result } or { failed: message }. { rendering } says whether the time that passes
+// is the script's.
+
+const MESSAGE_LINES = 1000 // that a script may print in one call
+
+const port = globalThis.process?.versions?.node ? (await import("node:worker_threads")).parentPort : globalThis
+let engine, sets, printed = []
+const chosen = new Set() // options that differ from the script's
+
+function print(line) {
+  if (printed.length < MESSAGE_LINES) printed.push(line)
+}
+
+// Calls a function of web.c. Strings are passed for the time of the call; null stays NULL.
+function call(name, ...values) {
+  const texts = []
+  const numbers = values.map(value => {
+    if (typeof value !== "string") return value === null ? 0 : value
+    const size = engine.lengthBytesUTF8(value) + 1, at = engine._malloc(size)
+    engine.stringToUTF8(value, at, size)
+    texts.push(at)
+    return at
+  })
+  const result = engine["_" + name](...numbers)
+  for (const at of texts) engine._free(at)
+  return result
+}
+
+const text = name => engine.UTF8ToString(call(name))
+
+function check(good) {
+  if (!good) throw { failed: text("web_message") }
+  return good
+}
+
+const warnings = () => text("web_warnings").split("\n").filter(line => line !== "")
+
+// Puts a file into the memory's file system, with its folders.
+function write(path, bytes) {
+  engine.FS.mkdirTree(`/job/${path.slice(0, path.lastIndexOf("/") + 1)}`)
+  engine.FS.writeFile(path, bytes)
+}
+
+const describe = () => ({
+  params: JSON.parse(text("web_params")), frames: call("web_frames"), width: call("web_width"), height: call("web_height"),
+  warnings: warnings(), printed,
+})
+
+// Runs the script if these are other parameters than last time. { name: text }
+function run(given) {
+  const key = JSON.stringify(Object.entries(given).sort())
+  if (key === sets) return
+  sets = undefined // until it has run
+  call("web_clear_sets")
+  for (const [name, value] of Object.entries(given)) check(call("web_set", name, value))
+  check(call("web_run"))
+  sets = key
+}
+
+async function open({ module, name, source, files, set, seconds }) {
+  globalThis.self ??= globalThis // what the loader looks for in a worker
+  globalThis.location ??= { href: "" }
+  engine = await createGlint({
+    print, printErr: print,
+    rendering: begins => port.postMessage({ rendering: begins }),
+    instantiateWasm(imports, done) {
+      WebAssembly.instantiate(module, imports).then(instance => done(instance, module), error => port.postMessage({ failed: String(error) }))
+      return {}
+    },
+  })
+  engine.FS.mkdir("/job")
+  engine.FS.chdir("/job")
+  for (const [path, bytes] of Object.entries(files)) write(path, bytes)
+  write(name, source)
+  if (!call("web_open", name, seconds)) throw { failed: "out of memory" }
+  run(set)
+  return describe()
+}
+
+// Options of scene:render{}, as text; all others are the script's.
+function choose(options) {
+  for (const name of chosen) if (!(name in options)) check(call("web_option", name, null))
+  chosen.clear()
+  for (const [name, value] of Object.entries(options)) {
+    check(call("web_option", name, value))
+    chosen.add(name)
+  }
+}
+
+// The float32 numbers of a pass: what follows the head of an .npy.
+function plane(name) {
+  const size = engine._malloc(4), at = call("web_plane", name, size)
+  const length = new Uint32Array(engine.HEAPU8.buffer, size, 1)[0]
+  engine._free(size)
+  check(at)
+  const head = 10 + engine.HEAPU8[at + 8] + 256 * engine.HEAPU8[at + 9]
+  return new Float32Array(engine.HEAPU8.slice(at + head, at + length).buffer)
+}
+
+// The names of the passes; light:* stands for all light passes.
+function namePasses(passes) {
+  const lights = []
+  for (let at; passes.includes("light:*") && (at = call("web_light_pass", lights.length));) lights.push(`light:${engine.UTF8ToString(at)}`)
+  return passes.flatMap(name => name === "light:*" ? lights : [name])
+}
+
+function render({ set, frame, options, passes }) {
+  run(set)
+  choose(options)
+  check(call("web_render", frame))
+  const width = call("web_image_width"), height = call("web_image_height")
+  const at = check(call("web_rgba"))
+  const rgba = new Uint8ClampedArray(engine.HEAPU8.slice(at, at + 4 * width * height).buffer)
+  const planes = Object.fromEntries(namePasses(passes).map(name => [name, plane(name)]))
+  return { frame, width, height, rgba, planes, warnings: warnings(), printed, memory: engine.HEAPU8.length }
+}
+
+function explain({ set, frame, options }) {
+  run(set)
+  choose(options)
+  const at = check(call("web_explain", frame))
+  return engine.UTF8ToString(at)
+}
+
+const calls = { open, render, explain }
+
+async function answer(message) {
+  printed = []
+  try {
+    const result = await calls[message.call](message)
+    const moved = result.rgba ? [result.rgba.buffer, ...Object.values(result.planes).map(numbers => numbers.buffer)] : []
+    port.postMessage({ result }, moved)
+  } catch (error) {
+    // A failure of the engine itself leaves a memory that is not to be used again.
+    port.postMessage(error?.failed !== undefined ? { failed: error.failed } : { failed: String(error), broken: true })
+  }
+}
+
+if (port.on) port.on("message", answer)
+else port.onmessage = event => answer(event.data)

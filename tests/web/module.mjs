@@ -1,0 +1,272 @@
+// The module of `make web` in node: pictures have the bits of the command, errors its words, and no script or order of calls
+// stops the page. Run by module.sh, with GLINT and WEB.
+import assert from "node:assert/strict"
+import { execFileSync } from "node:child_process"
+import fs from "node:fs"
+import path from "node:path"
+import { pathToFileURL } from "node:url"
+import { decode } from "./png.mjs"
+
+const { GLINT, WEB, OUT } = process.env
+const { load, GlintError } = await import(pathToFileURL(path.resolve(WEB, "glint.mjs")))
+const glint = await load()
+const data = Object.fromEntries(fs.readdirSync("scripts/data").map(name => [`data/${name}`, fs.readFileSync(`scripts/data/${name}`)]))
+let bad = 0
+
+async function test(name, run) {
+  try {
+    await run()
+    console.log(`ok - ${name}`)
+  } catch (error) {
+    bad++
+    console.log(`not ok - ${name}\n${String(error.stack ?? error).slice(0, 2000)}`)
+  }
+}
+
+const native = (script, options, output) => execFileSync(GLINT, [script, ...options, "--quiet", "--force", "-o", output], { stdio: ["ignore", "pipe", "pipe"] })
+
+// A .pfm as numbers, row by row from the top.
+function readPfm(file) {
+  const bytes = fs.readFileSync(file), [kind, size] = bytes.subarray(0, 64).toString("latin1").split("\n")
+  const [width, height] = size.split(" ").map(Number), channels = kind === "PF" ? 3 : 1, row = width * channels
+  const numbers = new Float32Array(bytes.buffer.slice(bytes.byteOffset + bytes.length - 4 * row * height, bytes.byteOffset + bytes.length))
+  const out = new Float32Array(row * height)
+  for (let y = 0; y < height; y++) out.set(numbers.subarray((height - 1 - y) * row, (height - y) * row), y * row)
+  return out
+}
+
+const sameBits = (a, b) => a.length === b.length && Buffer.compare(Buffer.from(a.buffer, a.byteOffset, a.byteLength), Buffer.from(b.buffer, b.byteOffset, b.byteLength)) === 0
+
+// ---- The pictures of the command ----
+
+// What golden.sh and gallery.sh make: [name, script, options].
+function pictures(file, pattern) {
+  return fs.readFileSync(file, "utf8").split("\n").flatMap(line => {
+    const found = pattern.exec(line)
+    return found ? [[found[1].replaceAll('"', ""), found[2], (found[3] ?? "").trim().split(/ +/).filter(word => word !== "")]] : []
+  })
+}
+const steps = ["ambient", "diffuse", "specular", "all"].map(step => [`workshop_${step}`, "workshop", ["--set", `step=${step}`]])
+const golden = [...steps, ...pictures("tests/command/golden.sh", /^picture (\w+) scripts\/(\w+)\.lua(.*)$/)]
+// Scenes of the dialect have files, libraries and a debugger of their own; the others read or write files on a disk.
+const notHere = new Set(["gr_room", "gr_scene", "nff", "photometric", "scan", "trajectory", "fit"])
+const gallery = pictures("tests/command/gallery.sh", /^picture ((\w+))(.*)$/).map(([name, script, options]) => [name, script, options])
+
+// The options of the command as those of open and render.
+function readOptions(words) {
+  const set = {}, options = {}
+  for (let i = 0; i < words.length; i += 2) {
+    const value = words[i + 1]
+    if (words[i] === "--set") set[value.slice(0, value.indexOf("="))] = value.slice(value.indexOf("=") + 1)
+    else if (words[i] === "-f" || words[i] === "--frames") options.frame = Number(value)
+    else if (words[i] === "--size") [options.width, options.height] = value.split("x").map(Number)
+    else options[words[i].slice(2)] = value
+  }
+  return { set, options }
+}
+
+async function comparePicture(name, script, words, size, codes) {
+  const { set, options } = readOptions([...size, ...words])
+  const job = await glint.open(fs.readFileSync(`scripts/${script}.lua`, "utf8"), { name: `${script}.lua`, files: data, set, seconds: 60 })
+  const image = await job.render({ ...options, passes: ["beauty", "depth"] })
+  job.close()
+  native(`scripts/${script}.lua`, [...size, ...words, "--passes", "depth"], `${OUT}/${name}.pfm`)
+  const file = fs.readdirSync(OUT).find(other => other.startsWith(`${name}`) && /^(_\d+)?\.pfm$/.test(other.slice(name.length)))
+  const depth = file.replace(/\.pfm$/, ".depth.pfm")
+  assert(sameBits(image.plane("beauty"), readPfm(`${OUT}/${file}`)), "beauty has the bits of the .pfm")
+  assert(sameBits(image.plane("depth"), readPfm(`${OUT}/${depth}`)), "depth has the bits of the .pfm")
+  const kept = codes && decode(fs.readFileSync(codes))
+  if (kept && kept.bits === 8) {
+    assert(sameBits(image.rgba, kept.rgba), "the codes are those of the .png")
+    assert(sameBits(decode(image.png()).rgba, kept.rgba), "png() has them")
+  }
+}
+
+for (const [name, script, words] of golden)
+  if (!notHere.has(script)) await test(`golden ${name}`, () => comparePicture(name, script, words, ["--size", "64x48"], `tests/golden/${name}.png`))
+for (const [name, script, words] of gallery)
+  if (!notHere.has(script)) await test(`gallery ${name}`, () => comparePicture(`gallery_${name}`, script, words, ["--size", "80x50"]))
+
+
+// ---- The case of the twenty cylinders ----
+
+const cylinders = fs.readFileSync("tests/web/cylinders.lua", "utf8")
+await test("twenty cylinders are where they are", async () => {
+  const job = await glint.open(cylinders, { name: "cylinders.lua" })
+  const image = await job.render({ width: 160, height: 90, passes: "object_id" })
+  job.close()
+  native("tests/web/cylinders.lua", ["--size", "160x90", "--passes", "object_id"], `${OUT}/cylinders.pfm`)
+  assert(sameBits(image.plane("object_id"), readPfm(`${OUT}/cylinders.object_id.pfm`)), "the same pixels")
+  const count = id => image.plane("object_id").filter(other => other === id).length
+  assert.deepEqual([count(1), count(2)], [469, 469])
+})
+
+// ---- Jobs ----
+
+const ball = `local glint = require "glint"
+local P = glint.params { radius = { 4, min = 1, max = 9, doc = "of the ball" }, kind = { "phong", choices = { "phong", "lambert" } } }
+local red = glint.material { diffuse = { 0.8, 0.2, 0.2 }, specular = 0.7, shininess = 64, model = P.kind }
+local lamp = glint.point_light { position = { 0, 20, 0 } }
+local scene = glint.scene {
+  camera = glint.camera { eye = { 0, 2, 20 }, at = { 0, 0, 0 } }, ambient = 0.1, lamp,
+  glint.sphere { center = { 0, 0, 0 }, radius = P.radius, material = red },
+}
+return glint.animation { scene = scene, width = 96, height = 64, frames = 12, cyclic = true, frame = function(t)
+  lamp.position = { 10 * glint.cos(2 * math.pi * t), 15, 10 * glint.sin(2 * math.pi * t) }
+end }
+`
+const sameImages = (a, b) => sameBits(a.rgba, b.rgba) && sameBits(a.plane(), b.plane())
+
+await test("what a script says of itself", async () => {
+  const job = await glint.open(ball, { name: "ball.lua", set: { radius: 3 } })
+  assert.deepEqual([job.frames, job.width, job.height], [12, 96, 64])
+  assert.deepEqual(job.params, [
+    { name: "kind", type: "string", default: "phong", value: "phong", choices: ["phong", "lambert"] },
+    { name: "radius", type: "number", default: 4, value: 3, min: 1, max: 9, doc: "of the ball" },
+  ])
+  fs.writeFileSync(`${OUT}/ball.lua`, ball)
+  const command = execFileSync(GLINT, ["explain", `${OUT}/ball.lua`, "--json", "--frame", "3", "--set", "radius=3"], { encoding: "utf8" })
+  assert.equal(await job.explain({ frame: 3 }), command)
+  job.close()
+})
+
+await test("frames, parameters and sizes in any order are fresh frames", async () => {
+  const job = await glint.open(ball)
+  const asks = [{ frame: 3 }, { frame: 7 }, { frame: 3, set: { radius: 5 } }, { frame: 3, set: { kind: "lambert" }, width: 50, height: 40 },
+    { frame: 12, samples: 4 }, { frame: 3 }, { region: [10, 5, 40, 30] }, { frame: 3, transfer: "linear" }, { frame: 1 }]
+  for (const ask of asks) {
+    const fresh = await glint.open(ball)
+    assert(sameImages(await job.render(ask), await fresh.render(ask)), JSON.stringify(ask))
+    fresh.close()
+  }
+  job.close()
+})
+
+await test("two workers render halves of a frame, the same bits", async () => {
+  const jobs = await Promise.all([glint.open(ball), glint.open(ball)])
+  const [upper, lower] = await Promise.all(jobs.map((job, i) => job.render({ region: [0, 32 * i, 96, 32] })))
+  const whole = await jobs[0].render()
+  assert(sameBits(whole.rgba, Uint8ClampedArray.from([...upper.rgba, ...lower.rgba])))
+  for (const job of jobs) job.close()
+})
+
+await test("calls of scene:render are frames", async () => {
+  const job = await glint.open(ball.replace(/return glint.animation.*/s, "for n = 1, 3 do red.shininess = n; scene:render { width = 40, height = 30 } end"))
+  assert.deepEqual([job.frames, job.width, job.height], [3, 40, 30])
+  const [first, last] = [await job.render(), await job.render({ frame: 3 })]
+  assert(!sameBits(first.rgba, last.rgba))
+  assert(sameBits((await job.render({ frame: 1 })).rgba, first.rgba))
+  job.close()
+})
+
+await test("files and modules that the script was given, and warnings", async () => {
+  const source = `local own = require "shapes.own"
+    local text = assert(io.open("words/list.txt")):read "a"
+    assert(not io.open "/etc/passwd" and not io.open "other.txt")
+    print(text)
+    local glint = require "glint"
+    return glint.scene { glint.camera {}, own(), glint.mesh { file = "data/cottage.obj" } }`
+  const job = await glint.open(source, {
+    files: { "words/list.txt": "one two", "shapes/own.lua": "return function() return require 'glint'.sphere {} end", "data/cottage.obj": data["data/cottage.obj"], "data/cottage.mtl": data["data/cottage.mtl"] },
+  })
+  assert.deepEqual(job.printed, ["one two"])
+  const image = await job.render({ width: 20, height: 20 })
+  assert(image.warnings.some(line => line.includes("light")), image.warnings.join())
+  job.close()
+})
+
+await test("500 renders need no more memory than the first", async () => {
+  const job = await glint.open(ball)
+  let memory = 0
+  for (let n = 0; n < 500; n++) {
+    const image = await job.render({ frame: 1 + n % 12, set: { radius: 2 + n % 5 }, width: 160, height: 120 })
+    if (n === 60) memory = image.memory
+    if (n > 60) assert.equal(image.memory, memory, `render ${n}`)
+  }
+  job.close()
+})
+
+// ---- What goes wrong ----
+
+const refused = (promise, file, line, message) => assert.rejects(promise, error => {
+  assert(error instanceof GlintError, String(error))
+  assert.deepEqual([error.file, error.line], [file, line], error.message)
+  assert(message.test(error.message), error.message)
+  return true
+})
+
+// The command says the same of the same script.
+await test("wrong scripts: the words of the command", async () => {
+  const wrong = {
+    syntax: "local x = = 2", raised: "\n\nerror 'no'", nothing: "return 7", field: ball.replace("shininess", "shinyness"),
+    range: ball.replace("shininess = 64", "shininess = -1"), missing: "require 'glint'.mesh { file = 'none.obj' }",
+    frame: ball.replace("lamp.position = {", "lamp.position = nil + {"),
+  }
+  for (const [name, source] of Object.entries(wrong)) {
+    fs.writeFileSync(`${OUT}/${name}.lua`, source)
+    let said
+    try {
+      execFileSync(GLINT, [`${name}.lua`, "-o", "none", "--quiet"], { cwd: OUT, encoding: "utf8", stdio: "pipe" })
+    } catch (error) {
+      said = error.stderr.replace(/^glint: /, "").trim()
+    }
+    await assert.rejects(async () => {
+      const job = await glint.open(source, { name: `${name}.lua` })
+      try { await job.render() } finally { job.close() }
+    }, error => error instanceof GlintError && (assert.equal(error.message, said), true))
+  }
+  await refused(glint.open("\n\nlocal x = = 2", { name: "a.lua" }), "a.lua", 3, /unexpected symbol/)
+  await refused(glint.open(ball, { name: "folder/a.lua", set: { radios: 3 } }), undefined, undefined, /radios.*radius/)
+  await refused(glint.open(ball, { set: { radius: 30 } }), "scene.lua", 2, /radius/)
+})
+
+await test("the Lua of --untrusted", async () => {
+  await glint.open(`assert(not os.execute and not io.popen and not os.exit and not debug and not package and not dofile and not os.getenv)
+    assert(not load("\\27Lua"))
+    return require "glint".scene { require "glint".camera {} }`).then(job => job.close())
+  await refused(glint.open("require 'socket'"), "scene.lua", 1, /module 'socket' not found/)
+})
+
+await test("an error leaves the job as it was", async () => {
+  const job = await glint.open(ball), before = await job.render({ frame: 2 })
+  await refused(job.render({ frame: 13 }), undefined, undefined, /1 \.\. 12, expected, got '13'/)
+  await refused(job.render({ samples: 0 }), undefined, undefined, /samples/)
+  await refused(job.render({ sample: 1 }), undefined, undefined, /sample/)
+  await refused(job.render({ passes: ["colour"] }), undefined, undefined, /passes/)
+  await refused(job.render({ set: { radius: 0 } }), "scene.lua", 2, /radius/)
+  assert.throws(() => before.plane("depth"), GlintError)
+  assert(sameImages(await job.render({ frame: 2 }), before))
+  job.close()
+})
+
+await test("a script without an end is stopped, wherever it is", async () => {
+  await refused(glint.open("local n = 0\nwhile true do n = n + 1 end", { name: "loop.lua", seconds: 0.2 }), "loop.lua", 2, /took longer than 0.2 s/)
+  await refused(glint.open("while true do pcall(function() while true do end end) end", { name: "loop.lua", seconds: 0.2 }), "loop.lua", 1, /took longer/)
+  await refused(glint.open("coroutine.wrap(function() while true do end end)()", { seconds: 0.2 }), "scene.lua", 1, /took longer/)
+  await refused(glint.open("string.find(('a'):rep(40), ('a?'):rep(40) .. ('a'):rep(40))", { seconds: 0.2 }), undefined, undefined, /took longer/)
+  const job = await glint.open(ball.replace("lamp.position = {", "while P.radius == 6 do end lamp.position = {"), { seconds: 0.3 })
+  const before = await job.render()
+  await refused(job.render({ set: { radius: 6 } }), "scene.lua", 10, /took longer/)
+  assert(sameImages(await job.render(), before))
+  job.close()
+})
+
+await test("a render is cancelled, and the job goes on", async () => {
+  const job = await glint.open(ball), before = await job.render({ frame: 2 })
+  const late = AbortSignal.timeout(100), start = performance.now()
+  await assert.rejects(job.render({ width: 3000, height: 2000, samples: 64, signal: late }), { name: "TimeoutError" })
+  assert(performance.now() - start < 2000)
+  await assert.rejects(job.render({ signal: AbortSignal.abort() }), { name: "AbortError" })
+  const stop = new AbortController()
+  const [slow, next] = [job.render({ width: 3000, height: 2000, samples: 64 }), job.render({ frame: 5, signal: stop.signal })]
+  stop.abort() // it waits for the one before it
+  await assert.rejects(next, { name: "AbortError" })
+  job.close()
+  await assert.rejects(slow, GlintError)
+  const other = await glint.open(ball)
+  assert(sameImages(await other.render({ frame: 2 }), before))
+  other.close()
+})
+
+console.log(`${bad ? "not all" : "all"} is well`)
+process.exit(bad ? 1 : 0)

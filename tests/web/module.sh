@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# module.sh: the module of `make web` in node, see module.mjs.
+set -u
+command -v node >/dev/null || {
+    echo "node is not installed"
+    exit 77
+}
+export OUT=$BUILD/tests/web WEB=$BUILD/web
+rm -rf "$OUT"
+mkdir -p "$OUT"
+# A crash in WebAssembly prints megabytes.
+node tests/web/module.mjs 2> >(cut -c1-300 >&2)
