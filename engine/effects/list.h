@@ -24,6 +24,7 @@
     STAGE(RESOLVE, resolve) \
     STAGE(TONE, tone) \
     STAGE(OUTLINE, outline) \
-    STAGE(DERIVATIVE, derivative)
+    STAGE(DERIVATIVE, derivative) \
+    STAGE(TINT, tint)
 
 #endif

@@ -52,7 +52,7 @@ static void name_odd(const glint_odd_pattern *odd, const glint_plan *plan, glint
 static void list_stages(const glint_tile_counts *sum, const glint_plan *plan, bool timed, glint_frame_stats *out)
 {
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
-        if (!plan->runs[id])
+        if (!plan->runs[id] || !glint_stage_table[id]->name)
             continue;
         const uint64_t calls = sum->runs[id] + sum->reuses[id];
         const int i = out->stage_count++;

@@ -350,7 +350,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
 static void list_stages(glint_plan *plan)
 {
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
-        if (!plan->runs[id])
+        if (!plan->runs[id] || !glint_stage_table[id]->name)
             continue;
         glint_stage_info *stage = &plan->stage_list[plan->stage_count++];
         stage->name = glint_stage_table[id]->name;

@@ -39,8 +39,29 @@ typedef enum glint_scene_part {
 #define GLINT_READS(input) (UINT64_C(1) << GLINT_PART_##input)
 #define GLINT_READS_OWN(stage) (UINT64_C(1) << (GLINT_PART_OWN + GLINT_STAGE_##stage))
 
+struct glint_tile;
+struct glint_tile_frame;
+struct glint_sample_walk;
+
+/// A part of the walk of a tile. walk: the state of the current sample; NULL after the last sample.
+typedef void glint_stage_step(struct glint_tile *tile, const struct glint_tile_frame *frame, struct glint_sample_walk *walk);
+
+/// When the walk of a tile calls the steps of its stages. Stages that take the same time are called in the order of the list.
+typedef enum glint_stage_time {
+    GLINT_AT_HITS, ///< of a sample: the nearest objects are known
+    GLINT_AT_SIGHT, ///< lights are seen, too; what is visible does not change any more
+    GLINT_AT_LIT, ///< before the lights, where some point takes light for itself
+    GLINT_AT_LIGHT, ///< after each light, or the samples of one
+    GLINT_AT_SHADED, ///< after each chunk of lights is shaded
+    GLINT_AT_REST, ///< after all lights
+    GLINT_AT_SUMMED, ///< the sums of the sample are complete
+    GLINT_AT_DONE, ///< after the last sample, before the mean is taken
+    GLINT_AT_STORE, ///< the pixels go to the picture
+    GLINT_TIME_COUNT
+} glint_stage_time;
+
 typedef struct glint_stage {
-    const char *name; ///< in `glint explain`, --json and the statistics of a frame
+    const char *name; ///< in `glint explain`, --json and the statistics of a frame; NULL: it is a part of another stage, and not listed
     const char *doc; ///< what it computes, for `glint explain`
     bool (*called)(const struct glint_plan *plan); ///< whether the frame needs the stage; the plan's tables are filled
     uint64_t reads; ///< GLINT_READS and GLINT_READS_OWN: with the stages before it, what its result depends on
@@ -50,7 +71,15 @@ typedef struct glint_stage {
     bool per_light; ///< it runs once for each light
     bool walks; ///< it needs the index
     bool sums; ///< it adds light to the sums of a sample
+    bool normals; ///< it is likely to read the normals of points
     bool remote; ///< it is light, or slopes of light, that one call of `shade` for a sample does not give
+
+    glint_stage_step *step[GLINT_TIME_COUNT]; ///< NULL: nothing is to do then
+    void *(*create)(const struct glint_plan *plan); ///< the memory of a worker for it; NULL: out of memory. No function: it needs none
+    void (*destroy)(void *memory); ///< of NULL: nothing
+    bool (*fit)(void *memory, const struct glint_plan *plan); ///< grows it for a plan; false: out of memory. No function: its size is fixed
+    bool sized; ///< its size is the plan's: it is made anew for each frame
+    bool shared; ///< rays that leave a surface use the memory of the tile
 } glint_stage;
 
 extern const glint_stage *const glint_stage_table[GLINT_STAGE_COUNT];

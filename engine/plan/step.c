@@ -17,7 +17,7 @@ double glint_plan_work_after(const glint_plan *plan, const glint_plan *before, u
     double work = 0;
     *stages = 0;
     for (uint32_t id = 0, i = 0; id < GLINT_STAGE_COUNT; id++) {
-        if (!plan->runs[id])
+        if (!plan->runs[id] || !glint_stage_table[id]->name)
             continue;
         if (!before->runs[id] || !glint_key_equal(plan->keys[id], before->keys[id])) {
             *stages |= 1u << i;

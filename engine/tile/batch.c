@@ -22,18 +22,16 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
 {
     glint_tile *tile = &batch->tile;
     tile->camera = (glint_camera_args) { .orthographic = true }; // rays in arrays
-    tile->transparent_shadow = to->transparent_shadow;
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        if (glint_stage_table[id]->shared)
+            tile->own[id] = to->own[id];
     if (!batch->rays)
         batch->rays = &batch->own;
     batch->ordered = batch->distances = false;
     batch->by_lane = has_area_light(frame->plan);
     tile->batch = batch;
-    tile->vertex = to->vertex;
     tile->group_sums = glint_group_sums_of(to, walk == GLINT_WALK_SITES);
-    tile->facets = to->facets;
     tile->shadow_room = to->shadow_room;
-    tile->visible_light = to->visible_light;
-    tile->environment = to->environment;
     tile->sample = to->sample;
     tile->counts = (glint_tile_counts) { 0 };
     tile->clock = to->clock;
@@ -44,7 +42,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     glint_pattern_point(to->pattern, tile, walk);
     for (uint32_t i = 0; i < GLINT_LIGHT_CHUNK; i++)
         glint_tile_use_own_light(tile, i);
-    if (frame->plan->facets)
+    if (frame->plan->runs[GLINT_STAGE_VIEW])
         glint_tile_lend_facets(tile, to);
 }
 

@@ -167,27 +167,17 @@ typedef struct glint_tile {
     uint16_t own_light[GLINT_TILE_GROUPS]; ///< what at.sampled points to in frames with the stage vertex
     const uint32_t *owner; ///< for occlude: the primitives that points are on, of faces and vertices; NULL: those that were hit
     const void *viewed[3]; ///< for occlude: the rays that found the points; NULL: the tile's
-    struct glint_bounce
-        *bounce; ///< memory of effects/bounce/bounce.c and of effects/transparent_shadow/transparent_shadow.c; NULL until a frame needs it
-    struct glint_transparent_shadow *transparent_shadow;
+    void *own[GLINT_STAGE_COUNT]; ///< the memory of each stage; NULL until a frame needs it
     struct glint_samples *samples; ///< memory of tile/shade.c; likewise
     uint32_t own_lights; ///< the first of `lights` that is the current sample's
     const struct glint_batch *batch; ///< whose rays found the samples; NULL: the eye's did
-    struct glint_vertex *vertex; ///< likewise, of effects/vertex_shading/vertex.c
-    struct glint_depth_cue *depth_cue; ///< of effects/depth_cue/depth_cue.c; NULL until a frame fades
     struct glint_raster_rest *raster_rest; ///< of effects/raster/raster.c: what is cast because it is no triangle; likewise
-    struct glint_visible_light
-        *visible_light; ///< of effects/visible_light/visible_light.c; NULL unless the frame has lights that are seen
     struct glint_gathered *gathered; ///< of effects/adaptive/gather.c; NULL until a frame is adaptive
     struct glint_differ_work *differ; ///< of effects/adaptive/differ.c; NULL until a frame is a base
-    struct glint_indirect *indirect; ///< memory of effects/indirect/; likewise
-    struct glint_environment *environment; ///< of effects/environment/environment.c; NULL unless a program gives the background
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
-    glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
     void *shadow_room; ///< of occlude; owned; NULL until a frame has shadows of area lights
     struct glint_pattern *pattern; ///< memory of effects/pattern/pattern.c; NULL in frames without programs
-    struct glint_derivative_work *derivative; ///< of effects/derivative/; NULL until a frame has derivatives
     struct glint_group_sums *group_sums; ///< of effects/light_groups/; NULL in frames without light passes; of a batch the tile's
     double *unbumped[3]; ///< real: the normals that bumps have turned, as they were; NULL: there are no bumps
     uint32_t own_planes; ///< of the planes that samples have which are shaded together, the current sample's
@@ -218,6 +208,32 @@ static inline const glint_tile_light *glint_tile_own_light(const glint_tile *til
     return &tile->lights[tile->own_lights + slot];
 }
 
+/// The current sample of a tile, on its way through the stages.
+typedef struct glint_sample_walk {
+    uint32_t sample;
+    bool rays, points; ///< made already
+    bool patterns; ///< known, or nothing in sight has any
+    bool lit; ///< points and the only light's work are made, maybe without normals
+    bool shows; ///< its geometry is the picture's, and is stored when normals are known
+    bool any; ///< something is hit
+    bool shines; ///< of that, some point takes light for itself
+    uint32_t from, count; ///< the rows of the plan's lights that are looked at: the chunk; GLINT_AT_LIGHT: those in `count` slots from
+        ///< `slot` on, of the chunk from `from` on
+    uint32_t slot;
+} glint_sample_walk;
+
+/// Makes the rays of the sample, and finds the surfaces there, unless the walk has them.
+void glint_tile_need_rays(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk);
+void glint_tile_need_points(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk);
+
+/// Calls the steps that the stages of the frame take at a time.
+static inline void glint_tile_step(glint_tile *tile, const glint_tile_frame *frame, glint_stage_time time, glint_sample_walk *walk)
+{
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        if (frame->plan->runs[id] && glint_stage_table[id]->step[time])
+            glint_stage_table[id]->step[time](tile, frame, walk);
+}
+
 static inline bool glint_tile_cancelled(const glint_tile_frame *frame)
 {
     return atomic_load_explicit(frame->cancelled, memory_order_relaxed);
@@ -225,6 +241,9 @@ static inline bool glint_tile_cancelled(const glint_tile_frame *frame)
 
 /// tile/memory.c: makes what this plan's stages need beside the tile. False: out of memory.
 bool glint_tile_extend(glint_tile *tile, const glint_plan *plan);
+/// The memory of one stage, if it runs. False: out of memory.
+bool glint_tile_fit_stage(glint_tile *tile, const glint_plan *plan, glint_stage_id id);
+void glint_tile_free_stage(glint_tile *tile, glint_stage_id id);
 void glint_tile_destroy(glint_tile *tile); ///< NULL: nothing
 
 /// All pixels of the tile that the image has are active.
@@ -339,32 +358,15 @@ static inline uint64_t *glint_tile_tests_of(glint_tile *tile, const glint_tile_f
 }
 void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 
-/// effects/bounce/bounce.c: follows what materials send on, and adds it to the sums of the current sample, whose points are found.
-struct glint_bounce *glint_bounce_create(void);
-void glint_bounce_destroy(struct glint_bounce *bounce);
-/// Makes room for the slopes of rays; false: no memory.
-bool glint_bounce_derives(struct glint_bounce *bounce, const glint_plan *plan);
-void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame);
+/// effects/bounce/bounce.c:
 /// Whether any material in sight sends rays on. They have been named.
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
 
 /// effects/depth_cue/depth_cue.c: light that fades with the distance from the eye.
-struct glint_depth_cue *glint_depth_cue_create(void);
-void glint_depth_cue_destroy(struct glint_depth_cue *depth_cue);
-/// By what the current sample sees, before any other rays are followed. `any`: some ray sees something; the rays are made.
-void glint_tile_find_depth_cue(glint_tile *tile, const glint_plan *plan, bool any);
-/// Adds the sums of the current sample, faded, to the totals of the tile, and begins them anew.
-void glint_tile_depth_cue(glint_tile *tile, const glint_tile_frame *frame);
 /// The distance to what pixel i sees; infinite: to nothing.
 double glint_tile_way_of(const glint_tile *tile, const glint_plan *plan, uint32_t i);
-/// Puts the totals where resolve reads.
-void glint_tile_take_faded(glint_tile *tile, const glint_plan *plan);
 
 /// effects/visible_light/visible_light.c: lights that are seen.
-struct glint_visible_light *glint_visible_light_create(void);
-void glint_visible_light_destroy(struct glint_visible_light *visible_light);
-/// Makes room for the plan's lights; false: no memory.
-bool glint_visible_light_fits(struct glint_visible_light *visible_light, const glint_plan *plan);
 /// Forgets what was seen. False: no ray of the tile can see a light.
 bool glint_tile_visible_light_in_sight(glint_tile *tile, const glint_tile_frame *frame);
 /// Of the rays in `lanes`, which are made and whose hits are known, those that see a light become misses at its distance.
@@ -379,8 +381,6 @@ const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GL
 void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *frame);
 
 /// effects/environment/environment.c: a background that a program gives.
-struct glint_environment *glint_environment_create(const glint_plan *plan);
-void glint_environment_destroy(struct glint_environment *environment); ///< NULL: nothing
 /// Whether some ray may leave the scene and show it: then the tile's rays are needed.
 bool glint_tile_sees_environment(const glint_tile *tile);
 /// Adds what such rays see to the sums.
@@ -437,14 +437,10 @@ void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
 /// effects/indirect/: follows paths of light from the points that `seen` hits, and adds what they find to the sums of `tile`.
 /// `from`: the batch that `seen` belongs to; NULL: it is what the eye sees, `tile` itself.
 struct glint_batch;
-struct glint_indirect *glint_indirect_create(const glint_plan *plan);
-void glint_indirect_destroy(struct glint_indirect *indirect);
 void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
                          const struct glint_batch *from);
 
 /// effects/transparent_shadow/transparent_shadow.c: light through transparent objects.
-struct glint_transparent_shadow *glint_transparent_shadow_create(void);
-void glint_transparent_shadow_destroy(struct glint_transparent_shadow *transparent_shadow);
 /// Finds the points whose light goes through what absorbs from its first step on, and returns whether there are any. The points
 /// are found.
 bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame);
@@ -528,11 +524,7 @@ static inline void glint_real_put(void *array, glint_precision precision, uint32
         ((double *)array)[i] = x;
 }
 
-/// effects/microfacet/microfacet.c: for frames with microfacets. The first two point `at` to where results are or go, in sample k of each
-/// pixel, and return whether they are there already.
-bool glint_tile_view_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
-bool glint_tile_facet_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light,
-                             uint32_t slot);
+/// effects/microfacet/microfacet.c: for frames with microfacets.
 void glint_tile_view(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                       uint32_t count);
@@ -542,10 +534,6 @@ void glint_tile_lend_facets(glint_tile *to, const glint_tile *from);
 void glint_tile_sign_facets(glint_tile *tile, const glint_tile_frame *frame);
 
 /// effects/vertex_shading/vertex.c: flat and Gouraud shading.
-struct glint_vertex *glint_vertex_create(void);
-void glint_vertex_destroy(struct glint_vertex *vertex);
-/// Makes room for derivatives; false: no memory.
-bool glint_vertex_derives(struct glint_vertex *vertex, const glint_plan *plan);
 /// Points at.sampled to the hits whose light is worked out for themselves. Returns whether there are any.
 bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether there are others, of triangles with sites.
@@ -563,10 +551,6 @@ bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *
 void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args);
 
 /// effects/derivative/derivative.c: how fast the light of the current sample changes with parameters.
-struct glint_derivative_work *glint_derivative_create(void);
-void glint_derivative_destroy(struct glint_derivative_work *work); ///< NULL: nothing
-/// Makes room for what the plan's derivatives need beside; false: no memory.
-bool glint_derivative_fits(struct glint_derivative_work *work, const glint_plan *plan);
 /// What is there without lights, at the first call of a sample, and what `count` lights of the plan from `from` on add, of which
 /// it is known where they reach. The points are found.
 void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);

@@ -34,42 +34,17 @@ static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uin
 
 // ---- A sample ----
 
-/// Rays, hits and, as soon as a stage needs them, points: of one sample.
-typedef struct walk {
-    uint32_t sample;
-    bool rays, points; ///< made already
-    bool patterns; ///< known, or nothing in sight has any
-    bool lit; ///< points and the only light's work are made, maybe without normals
-    bool shows; ///< its geometry is the picture's, and is stored when normals are known
-} walk;
-
-static void need_rays(glint_tile *tile, const glint_tile_frame *frame, walk *w)
-{
-    if (!w->rays)
-        glint_tile_make_rays(tile, frame);
-    w->rays = true;
-}
-
-static void need_points(glint_tile *tile, const glint_tile_frame *frame, walk *w)
-{
-    if (w->points)
-        return;
-    need_rays(tile, frame, w);
-    glint_tile_find_surfaces(tile, frame);
-    w->points = true;
-}
-
 /// Finds the points of the lanes that are listed, and no more: their programs read nothing else.
-static void need_painted(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+static void need_painted(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w)
 {
     uint16_t painted[GLINT_TILE_GROUPS];
-    need_rays(tile, frame, w);
+    glint_tile_need_rays(tile, frame, w);
     glint_tile_painted_lanes(tile, painted);
     glint_tile_find_points(tile, frame, painted);
 }
 
 /// What programs give of the materials in sight, which are named.
-static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w)
 {
     const bool normals = glint_pattern_needs_normals(frame->plan) || frame->geometry.triangles || frame->geometry.solids;
     if (w->patterns || !frame->plan->runs[GLINT_STAGE_PATTERN])
@@ -82,7 +57,7 @@ static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, walk 
     if (!glint_tile_find_painted(tile, frame) || glint_tile_recall_pattern(tile, frame, w->sample))
         return;
     if (!w->lit && !w->points && normals) {
-        need_points(tile, frame, w);
+        glint_tile_need_points(tile, frame, w);
         glint_tile_find_painted(tile, frame); // bumps make lists of their own
     } else if (!w->lit && !w->points)
         need_painted(tile, frame, w);
@@ -90,7 +65,7 @@ static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, walk 
 }
 
 /// Whether the picture's geometry is that of this walk: of sample 0; where the camera has a lens, of the ray through its middle.
-static bool shows_geometry(const glint_tile *tile, const glint_tile_frame *frame, const walk *w)
+static bool shows_geometry(const glint_tile *tile, const glint_tile_frame *frame, const glint_sample_walk *w)
 {
     const glint_plan *plan = frame->plan;
     if (w->sample > 0 || !glint_tile_wants_geometry(plan))
@@ -100,7 +75,7 @@ static bool shows_geometry(const glint_tile *tile, const glint_tile_frame *frame
 
 /// Whether the points and what the light does there can be found in one: of one plain lamp, where bumps do not turn
 /// normals. Where stages are timed, each runs by itself.
-static bool is_plain(const glint_tile_frame *frame, const walk *w)
+static bool is_plain(const glint_tile_frame *frame, const glint_sample_walk *w)
 {
     const glint_plan *plan = frame->plan;
     return !w->points && !frame->time_stages && !glint_plan_bumps(plan) && plan->light_count == 1 &&
@@ -108,12 +83,12 @@ static bool is_plain(const glint_tile_frame *frame, const walk *w)
 }
 
 /// Stores the picture's geometry where this walk has it to store.
-static void store_geometry(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any)
+static void store_geometry(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w, bool any)
 {
     if (!w->shows)
         return;
     if (any)
-        need_points(tile, frame, w);
+        glint_tile_need_points(tile, frame, w);
     if (any && frame->plan->desc.passes >> GLINT_PASS_ALBEDO & 1)
         find_patterns(tile, frame, w);
     glint_tile_store_geometry(tile, frame);
@@ -121,7 +96,7 @@ static void store_geometry(glint_tile *tile, const glint_tile_frame *frame, walk
 }
 
 /// Returns whether anything is hit.
-static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w)
 {
     const glint_plan *plan = frame->plan;
     const bool known = glint_tile_hit_memory(tile, frame, w->sample);
@@ -131,17 +106,11 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
         glint_tile_count_stage(tile, frame, GLINT_STAGE_CAST, true);
     } else {
         if (!w->rays && glint_tile_in_sight(tile, frame))
-            need_rays(tile, frame, w);
+            glint_tile_need_rays(tile, frame, w);
         glint_tile_cast(tile, frame);
     }
-    if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT]) {
-        if (glint_tile_visible_light_in_sight(tile, frame)) {
-            need_rays(tile, frame, w);
-            glint_tile_see_lights(tile, frame, tile->active);
-        }
-        glint_tile_count_stage(tile, frame, GLINT_STAGE_VISIBLE_LIGHT, false);
-    }
-    const bool any = glint_has_lanes(tile->at.hits, tile->group_count);
+    glint_tile_step(tile, frame, GLINT_AT_HITS, w);
+    const bool any = w->any = glint_has_lanes(tile->at.hits, tile->group_count);
     if (!any)
         glint_tile_keep_box(tile, frame, NULL);
     if (tile->cached && !glint_key_equal(tile->cached->seen, plan->keys[GLINT_STAGE_SURFACE])) {
@@ -159,42 +128,15 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     return any;
 }
 
-/// What else a light's rows do to microfacets.
-static void find_facets(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t slot,
-                        uint32_t count)
-{
-    uint32_t unknown[GLINT_LIGHT_CHUNK], left = 0;
-    for (uint32_t i = slot; i < slot + count; i++) {
-        if (glint_tile_facet_memory(tile, frame, w->sample, first + i, i))
-            glint_tile_count_stage(tile, frame, GLINT_STAGE_FACET, true);
-        else
-            unknown[left++] = i;
-    }
-    if (!left)
-        return;
-    need_points(tile, frame, w);
-    glint_tile_facet(tile, frame, first, unknown, left);
-}
-
-/// The angles that microfacets are seen at.
-static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
-{
-    if (glint_tile_view_memory(tile, frame, w->sample)) {
-        glint_tile_count_stage(tile, frame, GLINT_STAGE_VIEW, true);
-        return;
-    }
-    need_points(tile, frame, w);
-    glint_tile_view(tile, frame);
-}
-
 /// Whether the light leaves normals: where a stage after it is likely to read them, and of triangles and solids, since they
 /// cost little beside these.
-static bool wants_normals(const glint_tile_frame *frame, const walk *w)
+static bool wants_normals(const glint_tile_frame *frame, const glint_sample_walk *w)
 {
     const glint_plan *plan = frame->plan;
-    return w->shows || plan->derivatives || glint_pattern_needs_normals(plan) || plan->runs[GLINT_STAGE_INDIRECT] ||
-           plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || plan->dims || frame->geometry.triangles ||
-           frame->geometry.solids;
+    bool wanted = w->shows || glint_pattern_needs_normals(plan) || frame->geometry.triangles || frame->geometry.solids;
+    for (int id = 0; id < GLINT_STAGE_COUNT && !wanted; id++)
+        wanted = plan->runs[id] && glint_stage_table[id]->normals;
+    return wanted;
 }
 
 /// Which lights a light's samples, or several that are alike, leave to be found: `shine` and `occlude` get their slots.
@@ -203,7 +145,7 @@ typedef struct light_work {
 } light_work;
 
 /// Of `count` rows of the plan from `first + slot` on.
-static light_work find_light_work(glint_tile *tile, const glint_tile_frame *frame, const walk *w, uint32_t first,
+static light_work find_light_work(glint_tile *tile, const glint_tile_frame *frame, const glint_sample_walk *w, uint32_t first,
                                   uint32_t slot, uint32_t count)
 {
     light_work work = { .shining = 0 };
@@ -224,20 +166,20 @@ static light_work find_light_work(glint_tile *tile, const glint_tile_frame *fram
 }
 
 /// What one light, or lights that are alike, do to this sample: `count` rows of the plan from `first + slot` on.
-static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t slot,
+static void find_light(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w, uint32_t first, uint32_t slot,
                        uint32_t count)
 {
     const glint_plan_light *lights = &frame->plan->lights[first];
     light_work work = find_light_work(tile, frame, w, first, slot, count);
     if (work.shining && is_plain(frame, w)) {
         const bool normals = wants_normals(frame, w);
-        need_rays(tile, frame, w);
+        glint_tile_need_rays(tile, frame, w);
         glint_tile_find_lit_surfaces(tile, frame, first, normals);
         w->lit = true;
         w->points = normals;
     } else {
         if (work.shining || work.occluding)
-            need_points(tile, frame, w);
+            glint_tile_need_points(tile, frame, w);
         if (work.shining == count && glint_tile_sum_light(tile, frame, first, slot, count))
             work.occluding = 0;
         else if (work.shining)
@@ -246,15 +188,15 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
     if (work.occluding)
         glint_tile_occlude(tile, frame, first, work.occlude, work.occluding);
     const uint32_t together = lights[slot].light_samples ? count : 1;
-    for (uint32_t i = slot; frame->plan->runs[GLINT_STAGE_FACET] && i < slot + count; i += together)
-        find_facets(tile, frame, w, first, i, together);
+    for (w->slot = slot, w->count = together; w->slot < slot + count; w->slot += together)
+        glint_tile_step(tile, frame, GLINT_AT_LIGHT, w);
     for (uint32_t i = slot; i < slot + count; i++)
         if (tile->cached && first + i < frame->reuse->light_count)
             glint_tile_note_light(tile, first + i, i, lights[i].shadows, w->sample);
 }
 
 /// A chunk of lights; the samples of one are found together, and what lights that are alike do to each point.
-static void find_lights(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t count)
+static void find_lights(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w, uint32_t first, uint32_t count)
 {
     for (uint32_t slot = 0, next; slot < count; slot = next) {
         const glint_plan_light *lights = &frame->plan->lights[first];
@@ -264,63 +206,8 @@ static void find_lights(glint_tile *tile, const glint_tile_frame *frame, walk *w
     }
 }
 
-/// What a chunk of lights gives through transparent objects.
-static void find_transparent_shadows(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first,
-                                     uint32_t count)
-{
-    if (!glint_tile_is_shadowed(tile, frame->plan, first, count))
-        return;
-    need_points(tile, frame, w);
-    glint_tile_transparent_shadows(tile, frame, first, count);
-}
-
-/// What other surfaces and the background light.
-static void find_indirect(glint_tile *tile, const glint_tile_frame *frame, walk *w)
-{
-    need_points(tile, frame, w);
-    glint_tile_indirect(tile, frame, tile, NULL);
-    glint_tile_count_stage(tile, frame, GLINT_STAGE_INDIRECT, false);
-}
-
-/// What materials send on.
-static void find_bounces(glint_tile *tile, const glint_tile_frame *frame, walk *w)
-{
-    if (!glint_tile_sends_on(tile, frame))
-        return;
-    need_points(tile, frame, w);
-    glint_tile_bounce(tile, frame);
-    glint_tile_count_stage(tile, frame, GLINT_STAGE_BOUNCE, false);
-}
-
-/// The light of faces and vertices.
-static void find_shading_points(glint_tile *tile, const glint_tile_frame *frame, walk *w)
-{
-    if (!glint_tile_has_shading_points(tile))
-        return;
-    need_points(tile, frame, w);
-    glint_tile_vertex(tile, frame);
-}
-
-static void find_depth_cue(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any)
-{
-    const bool seen = any || frame->plan->runs[GLINT_STAGE_VISIBLE_LIGHT];
-    if (seen)
-        need_rays(tile, frame, w);
-    glint_tile_find_depth_cue(tile, frame->plan, seen);
-}
-
-/// How fast what was shaded changes with parameters.
-static void derive(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any, uint32_t from, uint32_t count)
-{
-    if (any)
-        need_points(tile, frame, w);
-    glint_tile_derive(tile, frame, from, count);
-    if (from == 0)
-        glint_tile_count_stage(tile, frame, GLINT_STAGE_DERIVATIVE, false);
-}
-
 /// Names the materials and finds the points that shading a chunk of lights needs and that these have not found.
-static void need_shading(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any, bool lit, uint32_t from)
+static void need_shading(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w, bool any, bool lit, uint32_t from)
 {
     if (from == 0 && any && !w->points && !w->lit) {
         glint_tile_count_stage(tile, frame, GLINT_STAGE_SURFACE, true);
@@ -330,62 +217,41 @@ static void need_shading(glint_tile *tile, const glint_tile_frame *frame, walk *
         find_patterns(tile, frame, w);
     const bool inside = frame->plan->dims; // which points are inside what absorbs
     if (lit && !w->points && (inside || glint_tile_shows_shader(tile, frame->plan)))
-        need_points(tile, frame, w);
-}
-
-/// What is added when all lights have been shaded.
-static void find_rest(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any, bool shading_points)
-{
-    const bool *runs = frame->plan->runs;
-    if (shading_points)
-        find_shading_points(tile, frame, w);
-    if (any && runs[GLINT_STAGE_INDIRECT])
-        find_indirect(tile, frame, w);
-    if (any && runs[GLINT_STAGE_BOUNCE] && !tile->direct)
-        find_bounces(tile, frame, w);
-    if (runs[GLINT_STAGE_DEPTH_CUE] && frame->plan->derivatives)
-        glint_derive_fade(tile, frame);
-    if (runs[GLINT_STAGE_DEPTH_CUE])
-        glint_tile_depth_cue(tile, frame);
+        glint_tile_need_points(tile, frame, w);
 }
 
 /// One sample of every pixel: hits, then the lights, a chunk at a time.
 static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
-    walk w = { .sample = k };
+    glint_sample_walk w = { .sample = k };
     if (k == 0)
         tile->boxed = tile->painted = tile->kept = 0;
     tile->own_lights = frame->plan->together ? k * frame->plan->light_count : 0;
     glint_tile_aim(tile, frame, k);
     tile->own_planes = frame->plan->together ? k : 0;
     glint_pattern_point(tile->pattern, tile, GLINT_WALK_EYE);
-    const bool any = find_hits(tile, frame, &w);
-    if (frame->plan->runs[GLINT_STAGE_DEPTH_CUE])
-        find_depth_cue(tile, frame, &w, any);
-    if (frame->plan->environment && glint_tile_sees_environment(tile))
-        need_rays(tile, frame, &w);
-    const bool shading_points = any && frame->plan->runs[GLINT_STAGE_VERTEX];
-    const bool lit = shading_points ? glint_tile_choose_sampled(tile, frame) : any;
-    const uint32_t lights = lit ? frame->plan->light_count : 0;
+    w.shines = find_hits(tile, frame, &w);
+    glint_tile_step(tile, frame, GLINT_AT_SIGHT, &w);
+    const uint32_t lights = w.shines ? frame->plan->light_count : 0;
     uint32_t from = 0;
-    if (lit && frame->plan->runs[GLINT_STAGE_VIEW])
-        find_view(tile, frame, &w);
+    if (w.shines)
+        glint_tile_step(tile, frame, GLINT_AT_LIT, &w);
     do {
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
+        w.from = from;
         find_lights(tile, frame, &w, from, count);
-        store_geometry(tile, frame, &w, any);
-        need_shading(tile, frame, &w, any, lit, from);
+        store_geometry(tile, frame, &w, w.any);
+        need_shading(tile, frame, &w, w.any, w.shines, from);
+        w.count = count;
         if (frame->plan->together)
             glint_tile_remember_sample(tile, frame, count);
         else
             glint_tile_shade(tile, frame, from, count);
-        if (frame->plan->derivatives)
-            derive(tile, frame, &w, any, from, count);
-        if (frame->plan->tints && !tile->direct)
-            find_transparent_shadows(tile, frame, &w, from, count);
+        glint_tile_step(tile, frame, GLINT_AT_SHADED, &w);
         from += count;
     } while (from < lights && !glint_tile_cancelled(frame));
-    find_rest(tile, frame, &w, any, shading_points);
+    glint_tile_step(tile, frame, GLINT_AT_REST, &w);
+    glint_tile_step(tile, frame, GLINT_AT_SUMMED, &w);
 }
 
 /// Some samples, from number `first` on, of `count` pixels that are gathered.
@@ -393,7 +259,7 @@ static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, con
 {
     const uint32_t left = (uint32_t)frame->plan->desc.samples - first, most = glint_tile_gathered_samples(frame->plan);
     const uint32_t samples = left < most ? left : most;
-    walk w = { .rays = true };
+    glint_sample_walk w = { .rays = true };
     tile->own_lights = 0;
     glint_tile_gather(tile, frame, place, count, first, samples);
     const bool any = find_hits(tile, frame, &w);
@@ -403,7 +269,7 @@ static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, con
     find_lights(tile, frame, &w, 0, lights);
     need_shading(tile, frame, &w, any, lit, 0);
     if (shading_points && glint_tile_has_shading_points(tile)) {
-        need_points(tile, frame, &w);
+        glint_tile_need_points(tile, frame, &w);
         glint_tile_vertex_gathered(tile, frame);
     }
     glint_tile_shade_gathered(tile, frame, lights, place, count, first, samples);
@@ -429,8 +295,7 @@ static bool take_samples(glint_tile *tile, const glint_tile_frame *frame)
         sample(tile, frame, k);
     if (glint_tile_cancelled(frame))
         return false;
-    if (plan->runs[GLINT_STAGE_DEPTH_CUE])
-        glint_tile_take_faded(tile, plan);
+    glint_tile_step(tile, frame, GLINT_AT_DONE, NULL);
     if (plan->together && !gathered)
         glint_tile_resolve_samples(tile, frame);
     else if (plan->accumulate && !gathered && !tile->direct)
@@ -442,7 +307,7 @@ static bool take_samples(glint_tile *tile, const glint_tile_frame *frame)
 static void find_geometry(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_cached_tile *cached = tile->cached;
-    walk w = { .sample = 0 };
+    glint_sample_walk w = { .sample = 0 };
     tile->cached = NULL;
     glint_tile_aim(tile, frame, 0);
     if (frame->base)
@@ -512,8 +377,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
         return;
     if (refined)
         glint_tile_sign_cached(tile, frame);
-    if (plan->derivatives)
-        glint_tile_store_derivatives(tile, frame);
+    glint_tile_step(tile, frame, GLINT_AT_STORE, NULL);
     if (frame->base)
         glint_tile_take_base(tile, frame);
     store(tile, frame, before);

@@ -31,8 +31,9 @@ struct glint_bounce {
 };
 
 /// Not zeroed as a whole: the pages of a level are the system's until it is used.
-struct glint_bounce *glint_bounce_create(void)
+static void *create(const glint_plan *plan)
 {
+    (void)plan;
     struct glint_bounce *bounce = aligned_alloc(_Alignof(struct glint_bounce), sizeof *bounce);
     if (!bounce)
         return NULL;
@@ -46,27 +47,30 @@ struct glint_bounce *glint_bounce_create(void)
     return bounce;
 }
 
-void glint_bounce_destroy(struct glint_bounce *bounce)
+static void destroy(void *memory)
 {
+    struct glint_bounce *bounce = memory;
     if (!bounce)
         return;
-    glint_derivative_destroy(bounce->batch.tile.derivative);
+    glint_tile_free_stage(&bounce->batch.tile, GLINT_STAGE_DERIVATIVE);
     free(bounce->slopes);
     free(bounce);
 }
 
-bool glint_bounce_derives(struct glint_bounce *bounce, const glint_plan *plan)
+/// Makes space for the slopes of rays.
+static bool fit(void *memory, const glint_plan *plan)
 {
+    struct glint_bounce *bounce = memory;
     const size_t each = (size_t)GLINT_TILE_SAMPLES * GLINT_DERIVATIVES_MAX;
-    if (!bounce->batch.tile.derivative)
-        bounce->batch.tile.derivative = glint_derivative_create();
+    if (!plan->derivatives)
+        return true;
     if (!bounce->slopes)
         bounce->slopes = malloc((GLINT_BOUNCE_LEVELS + 1) * each * sizeof *bounce->slopes); // pages are the system's until used
     for (size_t i = 0; bounce->slopes && i < GLINT_BOUNCE_LEVELS; i++)
         bounce->room[i].slopes = bounce->slopes + i * each;
     if (bounce->slopes)
         bounce->batch.own.slopes = bounce->slopes + GLINT_BOUNCE_LEVELS * each;
-    return bounce->slopes && bounce->batch.tile.derivative && glint_derivative_fits(bounce->batch.tile.derivative, plan);
+    return bounce->slopes && glint_tile_fit_stage(&bounce->batch.tile, plan, GLINT_STAGE_DERIVATIVE);
 }
 
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
@@ -298,9 +302,9 @@ static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_t
         spawn(bounce, frame, level);
 }
 
-void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame)
+static void follow(glint_tile *tile, const glint_tile_frame *frame)
 {
-    struct glint_bounce *bounce = tile->bounce;
+    struct glint_bounce *bounce = tile->own[GLINT_STAGE_BOUNCE];
     glint_batch_begin(&bounce->batch, tile, frame, GLINT_WALK_BOUNCE);
     bounce->batch.ordered = frame->plan->runs[GLINT_STAGE_INDIRECT]; // whose paths begin in the order of samples
     memset(bounce->counts, 0, sizeof bounce->counts);
@@ -318,3 +322,48 @@ void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame)
     }
     glint_batch_end(&bounce->batch, tile);
 }
+
+/// What materials send on, how far, and through what.
+static glint_key own_key(const glint_plan *plan, glint_key key)
+{
+    GLINT_KEY_ADD(key, plan->desc.max_depth);
+    for (uint32_t i = 0; i < plan->material_count; i++) {
+        const glint_bounce_material *m = &plan->bouncing[i];
+        const double numbers[] = { m->ior, m->fresnel };
+        key = glint_transmission_key(m, key);
+        GLINT_KEY_ADD(key, m->mirror);
+        GLINT_KEY_ADD(key, numbers);
+    }
+    return key;
+}
+
+static bool called(const glint_plan *plan)
+{
+    return plan->geometry->table.prim_count > 0 && (plan->mirrors || plan->transmits) && plan->desc.max_depth > 0;
+}
+
+/// What materials send on.
+static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    if (!walk->any || tile->direct || !glint_tile_sends_on(tile, frame))
+        return;
+    glint_tile_need_points(tile, frame, walk);
+    follow(tile, frame);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_BOUNCE, false);
+}
+
+const glint_stage glint_stage_bounce = {
+    .name = "bounce",
+    .doc = "mirrored and refracted rays, and what they find",
+    .called = called,
+    .own = own_key,
+    .reads = GLINT_READS_OWN(BOUNCE),
+    .walks = true,
+    .sums = true,
+    .normals = true,
+    .remote = true,
+    .step[GLINT_AT_REST] = add,
+    .create = create,
+    .destroy = destroy,
+    .fit = fit,
+};

@@ -183,33 +183,3 @@ glint_key glint_transmission_key(const glint_bounce_material *m, glint_key key)
     GLINT_KEY_ADD(key, m->absorption);
     return key;
 }
-
-/// What materials send on, how far, and through what.
-static glint_key own_key(const glint_plan *plan, glint_key key)
-{
-    GLINT_KEY_ADD(key, plan->desc.max_depth);
-    for (uint32_t i = 0; i < plan->material_count; i++) {
-        const glint_bounce_material *m = &plan->bouncing[i];
-        const double numbers[] = { m->ior, m->fresnel };
-        key = glint_transmission_key(m, key);
-        GLINT_KEY_ADD(key, m->mirror);
-        GLINT_KEY_ADD(key, numbers);
-    }
-    return key;
-}
-
-static bool called(const glint_plan *plan)
-{
-    return plan->geometry->table.prim_count > 0 && (plan->mirrors || plan->transmits) && plan->desc.max_depth > 0;
-}
-
-const glint_stage glint_stage_bounce = {
-    .name = "bounce",
-    .doc = "mirrored and refracted rays, and what they find",
-    .called = called,
-    .own = own_key,
-    .reads = GLINT_READS_OWN(BOUNCE),
-    .walks = true,
-    .sums = true,
-    .remote = true,
-};

@@ -16,8 +16,13 @@ struct glint_depth_cue {
     double share[GLINT_TILE_SAMPLES]; ///< of the colour there
 };
 
-struct glint_depth_cue *glint_depth_cue_create(void) { return glint_alloc(1, sizeof(struct glint_depth_cue)); }
-void glint_depth_cue_destroy(struct glint_depth_cue *depth_cue) { free(depth_cue); }
+static void *create(const glint_plan *plan)
+{
+    (void)plan;
+    return glint_alloc(1, sizeof(struct glint_depth_cue));
+}
+
+static struct glint_depth_cue *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_DEPTH_CUE]; }
 
 double glint_tile_way_of(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
@@ -37,9 +42,14 @@ static double share_of(const glint_plan *plan, double way)
     return plan->depth_cue.on && way < HUGE_VAL && x > 0 ? fmin(x, 1) : 0;
 }
 
-void glint_tile_find_depth_cue(glint_tile *tile, const glint_plan *plan, bool any)
+/// By what the current sample sees, before any other rays are followed.
+static void find(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
-    struct glint_depth_cue *depth_cue = tile->depth_cue;
+    const glint_plan *plan = frame->plan;
+    const bool any = walk->any || plan->runs[GLINT_STAGE_VISIBLE_LIGHT];
+    if (any)
+        glint_tile_need_rays(tile, frame, walk);
+    struct glint_depth_cue *depth_cue = own_of(tile);
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const double way = any ? glint_tile_way_of(tile, plan, i) : HUGE_VAL;
         depth_cue->share[i] = share_of(plan, way);
@@ -48,14 +58,16 @@ void glint_tile_find_depth_cue(glint_tile *tile, const glint_plan *plan, bool an
     }
 }
 
-void glint_tile_depth_cue(glint_tile *tile, const glint_tile_frame *frame)
+/// Adds the sums of the current sample, faded, to the totals of the tile, and begins them anew.
+static void fade(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
+    (void)walk;
     const glint_plan *plan = frame->plan;
-    const double *share = tile->depth_cue->share;
+    const double *share = own_of(tile)->share;
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         for (int c = 0; c < 3 && glint_plan_has_term(plan, (glint_term)k); c++) {
-            double *sum = tile->film.sum[k][c], *total = tile->depth_cue->total[k][c];
-            const double *left = tile->depth_cue->left[c];
+            double *sum = tile->film.sum[k][c], *total = own_of(tile)->total[k][c];
+            const double *left = own_of(tile)->left[c];
             const double color = k == GLINT_TERM_BACKGROUND ? plan->depth_cue.color[c] : 0;
             for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
                 const double before = tile->sample == 0 ? 0 : total[i];
@@ -63,15 +75,18 @@ void glint_tile_depth_cue(glint_tile *tile, const glint_tile_frame *frame)
                 sum[i] = 0;
             }
         }
-    glint_groups_fade(tile, plan, (const double(*)[GLINT_TILE_SAMPLES])tile->depth_cue->left);
+    glint_groups_fade(tile, plan, (const double(*)[GLINT_TILE_SAMPLES])own_of(tile)->left);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_DEPTH_CUE, false);
 }
 
-void glint_tile_take_faded(glint_tile *tile, const glint_plan *plan)
+/// Puts the totals where resolve reads.
+static void take_faded(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
+    const glint_plan *plan = frame->plan;
+    (void)walk;
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         if (glint_plan_has_term(plan, (glint_term)k))
-            memcpy(tile->film.sum[k], tile->depth_cue->total[k], sizeof tile->film.sum[k]);
+            memcpy(tile->film.sum[k], own_of(tile)->total[k], sizeof tile->film.sum[k]);
 }
 
 static glint_key own_key(const glint_plan *plan, glint_key key)
@@ -97,4 +112,7 @@ const glint_stage glint_stage_depth_cue = {
     .walks = true,
     .sums = true,
     .remote = true,
+    .step = { [GLINT_AT_SIGHT] = find, [GLINT_AT_SUMMED] = fade, [GLINT_AT_DONE] = take_faded },
+    .create = create,
+    .destroy = free,
 };

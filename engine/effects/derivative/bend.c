@@ -299,7 +299,7 @@ void glint_bend_aim(const glint_tile *tile, const glint_plan *plan)
     const double across = 1 / vec_dot(c->right, c->right), down = 1 / vec_dot(c->up, c->up);
     for (size_t k = 0; k < plan->derivatives->count; k++) {
         const glint_derivative_view *view = &plan->derivatives->of[k].view;
-        glint_bend_camera *out = &tile->derivative->camera[k];
+        glint_bend_camera *out = &glint_derivative_of(tile)->camera[k];
         out->near = plan->lens ? 1 / c->focus : 0;
         out->orthographic = c->orthographic;
         vec_copy(out->eye, c->eye);
@@ -389,7 +389,7 @@ static unsigned begin(const glint_tile *tile, const glint_tile_frame *frame, siz
         out->args.prim = prim;
         out->args.part = part;
         out->args.view = &d->view;
-        out->args.camera = &tile->derivative->camera[index];
+        out->args.camera = &glint_derivative_of(tile)->camera[index];
         out->args.place[0] = NULL;
         if (d->view.moves && (plan->lens || plan->camera.orthographic))
             find_places(tile, plan, &d->view, g, out);

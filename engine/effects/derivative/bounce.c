@@ -160,20 +160,20 @@ void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *f
 /// What keeps neighbours from being alike: what a ray has met, and what lights that does not see.
 static void note_ray(const glint_batch *batch, glint_tile *to, uint32_t ray)
 {
-    const glint_derivative_work *work = batch->tile.derivative;
+    const glint_derivative_work *work = glint_derivative_of(&batch->tile);
     const uint32_t pixel = batch->rays->pixel[ray], i = batch->sample[ray];
     const bool sampled = glint_batch_has_sample(batch, ray);
-    uint32_t *hash = &to->derivative->shadows[pixel];
+    uint32_t *hash = &glint_derivative_of(to)->shadows[pixel];
     *hash = (*hash ^ (sampled ? work->shadows[i] : 1)) * GLINT_SHADOW_MIXER;
     if (sampled && glint_has_lane(work->mixed, i))
-        to->derivative->mixed[pixel / GLINT_GROUP] |= (uint16_t)(1u << pixel % GLINT_GROUP);
+        glint_derivative_of(to)->mixed[pixel / GLINT_GROUP] |= (uint16_t)(1u << pixel % GLINT_GROUP);
 }
 
 void glint_derive_collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to)
 {
     const glint_plan_derivatives *all = plan->derivatives;
     const glint_rays *rays = batch->rays;
-    const glint_derivative_work *work = batch->tile.derivative;
+    const glint_derivative_work *work = glint_derivative_of(&batch->tile);
     for (uint32_t g = 0; g < rays->group_count; g++)
         for (unsigned left = rays->active[g]; left; left &= left - 1) {
             const uint32_t ray = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), pixel = rays->pixel[ray];
@@ -184,10 +184,10 @@ void glint_derive_collect(const glint_batch *batch, const glint_plan *plan, glin
                 const double weight = rays->weight[c][ray];
                 const double light = own ? work->light[c][i] : glint_batch_light_of(batch, plan, c, ray);
                 if (glint_derivatives_read_light(to, plan))
-                    to->derivative->light[c][pixel] += weight * light;
+                    glint_derivative_of(to)->light[c][pixel] += weight * light;
                 for (size_t k = 0; k < all->count; k++) {
                     const double slope = sampled ? work->sum[k][c][i] : all->of[k].background[c];
-                    to->derivative->sum[k][c][pixel] += rays->slopes[ray * all->count + k].weight[c] * light + weight * slope;
+                    glint_derivative_of(to)->sum[k][c][pixel] += rays->slopes[ray * all->count + k].weight[c] * light + weight * slope;
                 }
             }
             if (all->moves)

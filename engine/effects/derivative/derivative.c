@@ -9,18 +9,6 @@
 
 #define NO_SHADOWS 0x811c9dc5u ///< where nothing is kept from a sample
 
-struct glint_derivative_work *glint_derivative_create(void) { return glint_alloc(1, sizeof(glint_derivative_work)); }
-
-void glint_derivative_destroy(struct glint_derivative_work *work)
-{
-    if (work) {
-        free(work->painted);
-        free(work->faded);
-        glint_shader_slopes_free(work->shader);
-    }
-    free(work);
-}
-
 // ---- Points ---------------------------------------------------------------------------------------------------------
 
 /// The group's rays, one by one.
@@ -42,7 +30,7 @@ static void gather_directions(const glint_tile *tile, glint_precision precision,
 /// Finds the group's ways to where it is seen from.
 static void find_eyes(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
-    double (*eye)[GLINT_TILE_SAMPLES] = tile->derivative->eye;
+    double (*eye)[GLINT_TILE_SAMPLES] = glint_derivative_of(tile)->eye;
     const size_t at = (size_t)g * GLINT_GROUP;
     _Alignas(64) double room[3][GLINT_GROUP];
     glint_eyes_args args = { .direction = room[0], .eye = { eye[0] + at, eye[1] + at, eye[2] + at } };
@@ -80,7 +68,7 @@ static bool reads_eyes(const glint_tile *tile, const glint_plan *plan, uint32_t 
 
 static void gather_points(glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     const glint_precision precision = frame->plan->desc.precision;
     const size_t at = (size_t)g * GLINT_GROUP;
     if (reads_eyes(tile, frame->plan, g))
@@ -93,7 +81,7 @@ static void gather_points(glint_tile *tile, const glint_tile_frame *frame, uint3
 
 void glint_derivative_find_points(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, glint_derivative_points *out)
 {
-    const glint_derivative_work *work = tile->derivative;
+    const glint_derivative_work *work = glint_derivative_of(tile);
     const bool is_float = frame->plan->desc.precision == GLINT_FLOAT;
     const size_t at = (size_t)g * GLINT_GROUP;
     for (int c = 0; c < 3; c++) {
@@ -110,7 +98,7 @@ void glint_derivative_find_points(const glint_tile *tile, const glint_tile_frame
 /// A light as all groups see it, but for GLINT_EMIT_CONE; a plain one's place is put into every lane.
 static glint_derivative_source source_of(glint_tile *tile, const glint_plan_light *light)
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
     glint_derivative_source out = { .weight = NULL };
     for (int c = 0; c < 3; c++) {
@@ -127,7 +115,7 @@ static glint_derivative_source source_of(glint_tile *tile, const glint_plan_ligh
 void glint_derivative_take_cone(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
                                 const glint_derivative_points *points, glint_derivative_source *out)
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
     const bool is_float = frame->plan->desc.precision == GLINT_FLOAT;
     for (uint32_t i = 0; i < GLINT_GROUP; i++) {
@@ -146,7 +134,7 @@ void glint_derivative_take_cone(glint_tile *tile, const glint_tile_frame *frame,
 
 void glint_derivative_take_tint(const glint_tile *tile, size_t index, uint32_t g, glint_derivative_source *out)
 {
-    const glint_derivative_work *work = tile->derivative;
+    const glint_derivative_work *work = glint_derivative_of(tile);
     for (int c = 0; c < 3; c++) {
         out->tint[c] = work->tint[c] + (size_t)g * GLINT_GROUP;
         out->tint_slope[c] = work->tint_slope[index][c] + (size_t)g * GLINT_GROUP;
@@ -158,7 +146,7 @@ void glint_derivative_take_tint(const glint_tile *tile, size_t index, uint32_t g
 static void take_field(const glint_tile *tile, const glint_plan *plan, size_t index, int field, int which, uint32_t g,
                        glint_derivative_planes *out)
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     for (int c = 0; c < glint_field_channels(field); c++) {
         glint_reals_of(glint_plane_of(tile->at.planes, plan, field, c), GLINT_FLOAT, g, work->planes[which + c]);
         const double *slope = glint_derivative_painted(tile, plan, index, field, c);
@@ -207,9 +195,9 @@ static void add_ambient(const glint_tile *tile, const glint_plan *plan, size_t i
         const glint_dual own = d->materials[material].ambient[c];
         const double *painted = planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE ? diffuse : planes & GLINT_PLANE_AMBIENT ? ambient : NULL;
         if (own.slope != 0)
-            tile->derivative->sum[index][c][i] += own.slope * ambient_plane(tile, plan, i, c);
+            glint_derivative_of(tile)->sum[index][c][i] += own.slope * ambient_plane(tile, plan, i, c);
         if (painted)
-            tile->derivative->sum[index][c][i] += own.value * painted[i];
+            glint_derivative_of(tile)->sum[index][c][i] += own.value * painted[i];
     }
 }
 
@@ -220,7 +208,7 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
                          glint_derivative_source source, uint32_t g, unsigned reached,
                          bool tinted)
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     const glint_plan_derivatives *all = frame->plan->derivatives;
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -289,7 +277,7 @@ static bool moves(const glint_plan_derivatives *all, uint32_t source)
 /// Notes which lanes above the horizon of a light it does not reach.
 static void note_shadows(glint_tile *tile, const glint_plan_light *light, uint32_t g, unsigned lit, unsigned open)
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     uint32_t *shadows = work->shadows + (size_t)g * GLINT_GROUP;
     const unsigned kept = lit & ~open, fresh = kept & ~(light->joined ? work->kept[g] : 0u);
     if (!light->joined)
@@ -331,14 +319,14 @@ static void derive_light(glint_tile *tile, const glint_tile_frame *frame, uint32
 
 void glint_tile_begin_tints(const glint_tile *tile, const glint_plan *plan)
 {
-    memset(tile->derivative->ray_tint, 0, plan->derivatives->count * sizeof *tile->derivative->ray_tint);
+    memset(glint_derivative_of(tile)->ray_tint, 0, plan->derivatives->count * sizeof *glint_derivative_of(tile)->ray_tint);
 }
 
 void glint_tile_derive_tint(const glint_tile *tile, const glint_plan *plan, uint32_t material, uint32_t ray, int c,
                             double color, double transmission, double left)
 {
     for (size_t k = 0; k < plan->derivatives->count; k++) {
-        double *slope = &tile->derivative->ray_tint[k][c][ray];
+        double *slope = &glint_derivative_of(tile)->ray_tint[k][c][ray];
         *slope = (*slope * transmission + color * plan->derivatives->of[k].bounces[material].transmission[c]) * left;
     }
 }
@@ -346,7 +334,7 @@ void glint_tile_derive_tint(const glint_tile *tile, const glint_plan *plan, uint
 void glint_tile_put_tint(const glint_tile *tile, const glint_plan *plan, uint32_t i, uint32_t ray,
                          const double (*color)[GLINT_TILE_SAMPLES])
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     for (int c = 0; c < 3; c++) {
         work->tint[c][i] = color[c][ray];
         for (size_t k = 0; k < plan->derivatives->count; k++)
@@ -374,7 +362,7 @@ void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, c
 /// What a derivative has without lights.
 static void begin_group(glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     const glint_plan_derivatives *all = frame->plan->derivatives;
     unsigned sky = tile->transparent ? 0 : tile->active[g] & ~(unsigned)tile->at.hits[g];
     for (unsigned left = frame->plan->visible_light_count ? sky : 0; left; left &= left - 1)
@@ -393,7 +381,7 @@ static void begin_light(glint_tile *tile, const glint_tile_frame *frame, uint32_
 {
     for (uint32_t i = g * GLINT_GROUP; i < (g + 1) * GLINT_GROUP; i++)
         for (int c = 0; c < 3; c++)
-            tile->derivative->light[c][i] =
+            glint_derivative_of(tile)->light[c][i] =
                 glint_has_lane(tile->at.hits, i) && !glint_derives_sites(tile)
                     ? frame->plan->derivatives->of[0].materials[tile->surface.material[i]].ambient[c].value *
                           ambient_plane(tile, frame->plan, i, c)
@@ -403,7 +391,7 @@ static void begin_light(glint_tile *tile, const glint_tile_frame *frame, uint32_
 /// After a sample: which lanes have not kept from them what the first had.
 static void end_shadows(glint_tile *tile, bool is_first)
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     const uint32_t count = tile->group_count * GLINT_GROUP;
     if (is_first) {
         memcpy(work->first, work->shadows, count * sizeof *work->first);
@@ -423,7 +411,7 @@ static void fill_group(uint32_t out[GLINT_GROUP], uint32_t number)
 /// Before lights keep anything from group g: which surfaces it shows, where these move.
 static void begin_shadows(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
-    uint32_t *shadows = tile->derivative->shadows + (size_t)g * GLINT_GROUP;
+    uint32_t *shadows = glint_derivative_of(tile)->shadows + (size_t)g * GLINT_GROUP;
     const uint32_t *prims = tile->at.prim + (size_t)g * GLINT_GROUP;
     fill_group(shadows, NO_SHADOWS);
     for (unsigned left = frame->plan->derivatives->bends ? tile->at.hits[g] : 0, same; left; left &= ~same) {
@@ -439,7 +427,7 @@ static void begin_shadows(const glint_tile *tile, const glint_tile_frame *frame,
 
 static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     const glint_plan_derivatives *all = frame->plan->derivatives;
     const size_t count = tile->group_count * (size_t)GLINT_GROUP;
     if (tile->sample == 0 || tile->batch) {
@@ -480,7 +468,7 @@ void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t
 
 static void store_shadows(glint_tile *tile, const glint_tile_frame *frame)
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     end_shadows(tile, frame->plan->desc.samples == 1);
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned rest = work->mixed[g]; rest; rest &= rest - 1)
@@ -492,7 +480,7 @@ static void store_shadows(glint_tile *tile, const glint_tile_frame *frame)
 
 void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *frame)
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     const glint_plan *plan = frame->plan;
     const double share = 1 / plan->desc.samples;
     double (*sum)[3][GLINT_TILE_SAMPLES] = plan->runs[GLINT_STAGE_DEPTH_CUE] ? work->faded : work->sum;

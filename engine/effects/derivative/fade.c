@@ -58,7 +58,7 @@ static fade find_fade(const glint_plan *plan, const glint_plan_derivative *d, gl
 
 void glint_derive_fade(glint_tile *tile, const glint_tile_frame *frame)
 {
-    glint_derivative_work *work = tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(tile);
     const glint_plan *plan = frame->plan;
     const glint_plan_derivatives *all = plan->derivatives;
     const bool weighs = glint_derivatives_weigh(all);

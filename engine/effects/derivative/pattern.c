@@ -29,7 +29,7 @@ const double *glint_derivative_painted(const glint_tile *tile, const glint_plan 
     const ptrdiff_t start = plan->derivatives->repaints ? glint_plane_start(plan->patterns, field, channel) : -1;
     if (start < 0)
         return NULL;
-    return tile->derivative->painted + index * plan->patterns->plane_count * GLINT_TILE_SAMPLES + start;
+    return glint_derivative_of(tile)->painted + index * plan->patterns->plane_count * GLINT_TILE_SAMPLES + start;
 }
 
 static double *painted_at(const glint_tile *tile, const glint_plan *plan, size_t index, int field, int channel)
@@ -169,7 +169,7 @@ void glint_derivative_repaint(const glint_tile *tile, const glint_tile_frame *fr
     const size_t planes = frame->plan->derivatives->count * frame->plan->patterns->plane_count;
     const glint_pattern_points points = glint_pattern_points_of(tile);
     for (size_t k = 0; k < planes; k++)
-        memset(tile->derivative->painted + k * GLINT_TILE_SAMPLES, 0, tile->group_count * GLINT_GROUP * sizeof(double));
+        memset(glint_derivative_of(tile)->painted + k * GLINT_TILE_SAMPLES, 0, tile->group_count * GLINT_GROUP * sizeof(double));
     glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, repaints);
     const glint_pattern_lanes *entries;
     for (uint32_t taken; (taken = glint_pattern_take(tile->pattern, &entries));)

@@ -490,22 +490,3 @@ glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key k
     key = glint_key_add(key, &d->fade, sizeof d->fade);
     return glint_key_add(key, d->background, sizeof d->background);
 }
-
-static glint_key own_key(const glint_plan *plan, glint_key key)
-{
-    for (size_t i = 0; i < plan->derivatives->count; i++)
-        key = glint_derivative_key(plan, i, key);
-    return key;
-}
-
-static bool called(const glint_plan *plan) { return plan->derivatives; }
-
-/// Next to `shade`; no stage reads its result.
-const glint_stage glint_stage_derivative = {
-    .name = "derivative",
-    .doc = "derivatives of the picture by parameters",
-    .called = called,
-    .own = own_key,
-    .reads = GLINT_READS_OWN(DERIVATIVE),
-    .remote = true,
-};

@@ -65,7 +65,7 @@ static void find_arrival(const shading *s, size_t index, uint32_t e, const glint
     const glint_plan_light *light = s->reach->light;
     const glint_light_sample *sample = glint_tile_light_sample_of(s->tile, light);
     const size_t at = (size_t)s->entries[e].group * GLINT_GROUP, slot = s->reach->slot;
-    glint_derivative_work *work = s->tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(s->tile);
     glint_derivative_source source = *s->reach->source;
     if (sample && sample->emission == GLINT_EMIT_CONE)
         glint_derivative_take_cone(s->tile, s->frame, light, points, &source);
@@ -194,7 +194,7 @@ static void run(const shading *s, const glint_program *program, double (*to)[GLI
 /// Adds what a shader gives to the light of its samples, as bounded as planes are.
 static void add_light(const shading *s, uint32_t terms)
 {
-    glint_derivative_work *work = s->tile->derivative;
+    glint_derivative_work *work = glint_derivative_of(s->tile);
     for (uint32_t k = 0; k < terms; k++)
         for (uint32_t e = 0; e < s->count; e++)
             for (unsigned left = s->slopes->wanted[e]; left; left &= left - 1) {
@@ -253,7 +253,7 @@ static void add_tangent(const shading *s, size_t index, const glint_program *tan
 /// Adds the sums to those of the samples. What has no slope, such as the root of what is 0 all around, stays.
 static void add_sums(const shading *s, size_t index)
 {
-    double (*to)[GLINT_TILE_SAMPLES] = s->tile->derivative->sum[index];
+    double (*to)[GLINT_TILE_SAMPLES] = glint_derivative_of(s->tile)->sum[index];
     for (uint32_t e = 0; e < s->count; e++)
         for (int c = 0; c < 3; c++) {
             const float *share = s->slopes->share + e * GLINT_GROUP;
@@ -276,7 +276,7 @@ static void find_views(const shading *s)
     for (uint32_t e = 1; e < s->count; e++)
         in_order = in_order && s->entries[e].group == s->entries[0].group + e;
     for (int c = 0; c < 3; c++) {
-        const double *eye = s->tile->derivative->eye[c];
+        const double *eye = glint_derivative_of(s->tile)->eye[c];
         double *row = glint_pattern_row(inputs, (glint_input)(GLINT_INPUT_V_X + c));
         if (in_order)
             inputs->from[GLINT_INPUT_V_X + c] = eye + (size_t)s->entries[0].group * GLINT_GROUP;
@@ -319,7 +319,7 @@ static bool sweep(const shading *s, size_t index, const glint_program *forward)
         args.input[GLINT_INPUT_COUNT + input] = own->input[input];
     }
     for (int c = 0; c < 3; c++)
-        args.added[c] = s->tile->derivative->sum[index][c];
+        args.added[c] = glint_derivative_of(s->tile)->sum[index][c];
     args.share = s->slopes->share;
     args.odd = s->slopes->odd;
     glint_pattern_call(s->tile->pattern, s->frame, &forward->code, 0, &args);
@@ -393,7 +393,7 @@ static void derive(const shading *s, const glint_pattern_points *points)
 void glint_derive_shaders(glint_tile *tile, const glint_tile_frame *frame, const glint_derivative_reach *reach)
 {
     const glint_pattern_points points = glint_shader_find_lanes(tile, frame->plan, tile->at.hits);
-    shading s = { tile, frame, reach, tile->derivative->shader, NULL, 0 };
+    shading s = { tile, frame, reach, glint_derivative_of(tile)->shader, NULL, 0 };
     while ((s.count = glint_pattern_take(tile->pattern, &s.entries)))
         derive(&s, &points);
 }

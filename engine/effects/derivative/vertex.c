@@ -12,7 +12,7 @@ static double *kept_of(const glint_tile_frame *frame, uint32_t side, uint32_t nu
 
 void glint_derive_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
 {
-    const glint_derivative_work *work = tile->derivative;
+    const glint_derivative_work *work = glint_derivative_of(tile);
     const bool weighs = glint_derivatives_read_light(tile, frame->plan);
     for (uint32_t i = 0; i < GLINT_SHADING_POINT_BLOCK; i++) {
         double *to = kept_of(frame, 0, block * GLINT_SHADING_POINT_BLOCK + i); // the backs' blocks follow
@@ -43,7 +43,7 @@ static void spread(const glint_tile *tile, double *const at[3], const double sha
         double slope = 0;
         for (int j = 0; j < 3; j++)
             slope += share[j] * at[j][3 * (index + 1) + (size_t)c] + (change ? change[j] * at[j][c] : 0);
-        tile->derivative->sum[index][c][i] += slope;
+        glint_derivative_of(tile)->sum[index][c][i] += slope;
     }
 }
 
@@ -62,7 +62,7 @@ static void derive_sample(const glint_tile *tile, const glint_tile_frame *frame,
     if (flat)
         vec_copy(share, whole);
     for (int c = 0; c < 3 && glint_derivatives_read_light(tile, frame->plan); c++)
-        tile->derivative->light[c][i] += (share[0] * at[0][c] + share[1] * at[1][c]) + share[2] * at[2][c];
+        glint_derivative_of(tile)->light[c][i] += (share[0] * at[0][c] + share[1] * at[1][c]) + share[2] * at[2][c];
     for (size_t k = 0; k < frame->plan->derivatives->count; k++) {
         glint_bend bend;
         double change[3];

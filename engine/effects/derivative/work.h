@@ -40,6 +40,8 @@ typedef struct glint_bend {
     double point[3], normal[3], eye[3], from[3];
 } glint_bend;
 
+static inline glint_derivative_work *glint_derivative_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_DERIVATIVE]; }
+
 /// Whether what is left of light on its way has a slope.
 static inline bool glint_derivatives_weigh(const glint_plan_derivatives *all)
 {
@@ -123,5 +125,8 @@ void glint_bend_aim(const glint_tile *tile, const glint_plan *plan);
 /// The shares of a triangle's corners at the end of a way `at` from the first of them, less the 1 that the first has at its own
 /// place: of the slope of a point, the slopes of its shares. scale: of the table.
 void glint_bend_shares(double scale, const glint_prim *prim, const double at[3], double out[3]);
+
+/// Makes room for what the plan's derivatives need beside; false: no memory.
+bool glint_derivative_fits(struct glint_derivative_work *work, const glint_plan *plan);
 
 #endif

@@ -19,7 +19,7 @@ struct glint_environment {
     double *rows; ///< scratch of the kernel
 };
 
-struct glint_environment *glint_environment_create(const glint_plan *plan)
+static void *create(const glint_plan *plan)
 {
     struct glint_environment *environment = glint_alloc(1, sizeof *environment);
     if (!environment)
@@ -32,8 +32,9 @@ struct glint_environment *glint_environment_create(const glint_plan *plan)
     return NULL;
 }
 
-void glint_environment_destroy(struct glint_environment *environment)
+static void destroy(void *memory)
 {
+    struct glint_environment *environment = memory;
     if (environment)
         free(environment->rows);
     free(environment);
@@ -197,7 +198,7 @@ static void run_rows(struct glint_environment *environment, const glint_tile_fra
 static void run_groups(glint_tile *tile, const glint_tile_frame *frame, const uint32_t *groups, const uint16_t *lanes,
                        uint32_t count)
 {
-    struct glint_environment *environment = tile->environment;
+    struct glint_environment *environment = tile->own[GLINT_STAGE_ENVIRONMENT];
     const uint32_t channels = frame->plan->environment->program->code.output_count;
     for (uint32_t k = 0; k < count; k++) {
         double d[3][GLINT_GROUP];
@@ -243,7 +244,7 @@ static void load_rays(const glint_rays *rays, glint_precision precision, const u
 static void run_rays(glint_tile *tile, const glint_tile_frame *frame, const glint_rays *rays, const uint16_t *ray,
                      uint32_t count, double (*light)[GLINT_TILE_SAMPLES])
 {
-    struct glint_environment *environment = tile->environment;
+    struct glint_environment *environment = tile->own[GLINT_STAGE_ENVIRONMENT];
     const uint32_t groups = (count + GLINT_GROUP - 1) / GLINT_GROUP;
     uint16_t lanes[GLINT_PROGRAM_GROUPS] = { 0 };
     for (uint32_t g = 0; g < groups; g++) {
@@ -282,3 +283,26 @@ void glint_tile_environment_of(glint_tile *tile, const glint_tile_frame *frame, 
         run_rays(tile, frame, rays, ray, count, light);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_ENVIRONMENT, false);
 }
+
+static bool called(const glint_plan *plan) { return plan->environment; }
+
+/// Rays that leave the scene show it by their direction.
+static void need_directions(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    if (glint_tile_sees_environment(tile))
+        glint_tile_need_rays(tile, frame, walk);
+}
+
+/// It stands for the plain background, which `shade` reads.
+const glint_stage glint_stage_environment = {
+    .name = "environment",
+    .doc = "the background's program, for rays that leave the scene",
+    .called = called,
+    .sums = true,
+    .remote = true,
+    .step[GLINT_AT_SIGHT] = need_directions,
+    .create = create,
+    .destroy = destroy,
+    .sized = true,
+    .shared = true,
+};

@@ -62,14 +62,3 @@ void glint_plan_environment_free(glint_plan_environment *environment)
     glint_program_release(environment->uv);
     free(environment);
 }
-
-static bool called(const glint_plan *plan) { return plan->environment; }
-
-/// It stands for the plain background, which `shade` reads.
-const glint_stage glint_stage_environment = {
-    .name = "environment",
-    .doc = "the background's program, for rays that leave the scene",
-    .called = called,
-    .sums = true,
-    .remote = true,
-};

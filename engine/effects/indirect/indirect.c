@@ -25,7 +25,7 @@
 
 typedef enum turn { TURN_NONE, TURN_SCATTERED, TURN_MIRRORED, TURN_REFRACTED } turn;
 
-struct glint_indirect *glint_indirect_create(const glint_plan *plan)
+static void *create(const glint_plan *plan)
 {
     struct glint_indirect *indirect = glint_alloc(1, sizeof *indirect);
     if (!indirect)
@@ -38,8 +38,9 @@ struct glint_indirect *glint_indirect_create(const glint_plan *plan)
     return indirect;
 }
 
-void glint_indirect_destroy(struct glint_indirect *indirect)
+static void destroy(void *memory)
 {
+    struct glint_indirect *indirect = memory;
     if (!indirect)
         return;
     free(indirect->lights);
@@ -326,7 +327,7 @@ static void follow(struct glint_indirect *indirect, const glint_tile_frame *fram
 void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
                          const glint_batch *from)
 {
-    struct glint_indirect *indirect = tile->indirect;
+    struct glint_indirect *indirect = tile->own[GLINT_STAGE_INDIRECT];
     glint_batch *batch = &indirect->batch;
     indirect->plan = *frame->plan;
     indirect->plan.lights = indirect->lights;
@@ -349,3 +350,40 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
     }
     glint_batch_end(batch, tile);
 }
+
+static glint_key own_key(const glint_plan *plan, glint_key key)
+{
+    GLINT_KEY_ADD(key, plan->indirect.samples);
+    GLINT_KEY_ADD(key, plan->indirect.bounces);
+    if (plan->indirect.is_sky)
+        GLINT_KEY_ADD(key, plan->indirect.distance);
+    return glint_key_add(key, plan->indirect.rest, plan->material_count * sizeof *plan->indirect.rest);
+}
+
+static bool called(const glint_plan *plan) { return plan->indirect.samples > 0; }
+
+/// What other surfaces and the background light.
+static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    if (!walk->any)
+        return;
+    glint_tile_need_points(tile, frame, walk);
+    glint_tile_indirect(tile, frame, tile, NULL);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_INDIRECT, false);
+}
+
+const glint_stage glint_stage_indirect = {
+    .name = "indirect",
+    .doc = "light that surfaces get from other surfaces and the background",
+    .called = called,
+    .own = own_key,
+    .reads = GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE),
+    .walks = true,
+    .sums = true,
+    .normals = true,
+    .remote = true,
+    .step[GLINT_AT_REST] = add,
+    .create = create,
+    .destroy = destroy,
+    .sized = true,
+};

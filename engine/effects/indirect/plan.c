@@ -75,25 +75,3 @@ glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *
         part_ambient(plan, i, indirect->rest[i]);
     return find_lights(plan, error);
 }
-
-static glint_key own_key(const glint_plan *plan, glint_key key)
-{
-    GLINT_KEY_ADD(key, plan->indirect.samples);
-    GLINT_KEY_ADD(key, plan->indirect.bounces);
-    if (plan->indirect.is_sky)
-        GLINT_KEY_ADD(key, plan->indirect.distance);
-    return glint_key_add(key, plan->indirect.rest, plan->material_count * sizeof *plan->indirect.rest);
-}
-
-static bool called(const glint_plan *plan) { return plan->indirect.samples > 0; }
-
-const glint_stage glint_stage_indirect = {
-    .name = "indirect",
-    .doc = "light that surfaces get from other surfaces and the background",
-    .called = called,
-    .own = own_key,
-    .reads = GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE),
-    .walks = true,
-    .sums = true,
-    .remote = true,
-};

@@ -1,26 +1,31 @@
 /// What only frames with materials of microfacets have: the stages view and facet, and where their results are kept.
+#include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/tile/tile.h"
 
-bool glint_tile_view_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
+#include <stdlib.h>
+
+static glint_tile_facets *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_VIEW]; }
+
+static bool view_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     glint_cached_tile *cached = tile->cached;
     const bool known = cached && glint_key_equal(cached->view, frame->plan->keys[GLINT_STAGE_VIEW]);
-    tile->at.facing = tile->facets->facing;
+    tile->at.facing = own_of(tile)->facing;
     if (known || (cached && frame->reuse->keep_view &&
                   (k ? cached->facing != NULL : glint_reuse_hold_view(frame->reuse, cached))))
         tile->at.facing = cached->facing + (size_t)k * GLINT_TILE_SAMPLES;
     return known;
 }
 
-bool glint_tile_facet_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot)
+static bool facet_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot)
 {
     glint_reuse *reuse = frame->reuse;
     glint_cached_light *cached = tile->cached && light < reuse->light_count ? &tile->cached->lights[light] : NULL;
     const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
     const bool known = cached && glint_key_equal(cached->facet, frame->plan->lights[light].key);
-    tile->at.light[slot].sine2 = tile->facets->sine2[slot];
-    tile->at.light[slot].schlick = tile->facets->schlick[slot];
+    tile->at.light[slot].sine2 = own_of(tile)->sine2[slot];
+    tile->at.light[slot].schlick = own_of(tile)->schlick[slot];
     if (known ||
         (cached && reuse->keep_light[light] && (k ? cached->sine2 != NULL : glint_reuse_hold_facet(reuse, cached)))) {
         tile->at.light[slot].sine2 = cached->sine2 + first;
@@ -31,10 +36,10 @@ bool glint_tile_facet_memory(glint_tile *tile, const glint_tile_frame *frame, ui
 
 void glint_tile_lend_facets(glint_tile *to, const glint_tile *from)
 {
-    to->at.facing = from->facets->facing;
+    to->at.facing = own_of(from)->facing;
     for (int i = 0; i < GLINT_LIGHT_CHUNK; i++) {
-        to->at.light[i].sine2 = from->facets->sine2[i];
-        to->at.light[i].schlick = from->facets->schlick[i];
+        to->at.light[i].sine2 = own_of(from)->sine2[i];
+        to->at.light[i].schlick = own_of(from)->schlick[i];
     }
 }
 
@@ -95,11 +100,48 @@ void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
 
 static bool called(const glint_plan *plan) { return glint_plan_is_lit(plan) && plan->facets; }
 
+/// The angles that microfacets are seen at.
+static void find_view(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    if (view_memory(tile, frame, walk->sample)) {
+        glint_tile_count_stage(tile, frame, GLINT_STAGE_VIEW, true);
+        return;
+    }
+    glint_tile_need_points(tile, frame, walk);
+    glint_tile_view(tile, frame);
+}
+
+/// What else the rows of a light do to microfacets.
+static void find_facets(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    uint32_t unknown[GLINT_LIGHT_CHUNK], left = 0;
+    for (uint32_t i = walk->slot; i < walk->slot + walk->count; i++) {
+        if (facet_memory(tile, frame, walk->sample, walk->from + i, i))
+            glint_tile_count_stage(tile, frame, GLINT_STAGE_FACET, true);
+        else
+            unknown[left++] = i;
+    }
+    if (!left)
+        return;
+    glint_tile_need_points(tile, frame, walk);
+    glint_tile_facet(tile, frame, walk->from, unknown, left);
+}
+
+static void *create(const glint_plan *plan)
+{
+    (void)plan;
+    return glint_alloc(1, sizeof(glint_tile_facets));
+}
+
 const glint_stage glint_stage_view = {
     .name = "view",
     .doc = "cosine of the angle each point is seen at, for microfacets",
     .called = called,
     .reads = GLINT_READS(BUMPS),
+    .step[GLINT_AT_LIT] = find_view,
+    .create = create,
+    .destroy = free,
+    .shared = true,
 };
 
 const glint_stage glint_stage_facet = {
@@ -108,4 +150,5 @@ const glint_stage glint_stage_facet = {
     .called = called,
     .per_light = true,
     .remote = true,
+    .step[GLINT_AT_LIGHT] = find_facets,
 };

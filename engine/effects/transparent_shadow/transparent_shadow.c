@@ -47,12 +47,13 @@ struct glint_transparent_shadow {
     float *planes; ///< of what programs give; NULL: the plan has none for transmission
 };
 
-struct glint_transparent_shadow *glint_transparent_shadow_create(void)
+static void *create(const glint_plan *plan)
 {
+    (void)plan;
     return glint_alloc(1, sizeof(struct glint_transparent_shadow));
 }
 
-void glint_transparent_shadow_destroy(struct glint_transparent_shadow *transparent_shadow) { free(transparent_shadow); }
+static struct glint_transparent_shadow *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_TINT]; }
 
 /// What is around a sample's point, on the side of the viewer, to which the light comes as well.
 static glint_media media_at(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
@@ -84,23 +85,23 @@ bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame)
 {
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        tile->transparent_shadow->dim[g] = 0;
+        own_of(tile)->dim[g] = 0;
         for (unsigned left = lanes_within(tile, frame->plan, g); left; left &= left - 1) {
             const glint_media media = media_at(tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
-            tile->transparent_shadow->dim[g] |= (uint16_t)(absorbs(frame->plan, &media) ? left & -left : 0);
+            own_of(tile)->dim[g] |= (uint16_t)(absorbs(frame->plan, &media) ? left & -left : 0);
         }
-        any |= tile->transparent_shadow->dim[g];
+        any |= own_of(tile)->dim[g];
     }
     return any;
 }
 
-uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g) { return tile->transparent_shadow->dim[g]; }
+uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g) { return own_of(tile)->dim[g]; }
 
 /// Whether the light in `slot` is kept from any point, or dimmed on its way to one.
 static bool is_kept_off(const glint_tile *tile, const glint_plan *plan, uint32_t slot)
 {
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        const unsigned whole = tile->at.light[slot].open[g] & ~(plan->dims ? tile->transparent_shadow->dim[g] : 0u);
+        const unsigned whole = tile->at.light[slot].open[g] & ~(plan->dims ? own_of(tile)->dim[g] : 0u);
         if (tile->at.light[slot].lit[g] & ~whole)
             return true;
     }
@@ -169,7 +170,7 @@ static bool find_tinted(const glint_tile *tile, const glint_tile_frame *frame, c
 
 bool glint_tile_may_be_tinted(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light)
 {
-    return find_tinted(tile, frame, light, tile->at.hits, tile->transparent_shadow->tinted);
+    return find_tinted(tile, frame, light, tile->at.hits, own_of(tile)->tinted);
 }
 
 /// Whether a material shows nothing of the light that falls on it.
@@ -190,19 +191,19 @@ static bool choose_points(glint_tile *tile, const glint_tile_frame *frame, uint3
         for (unsigned left = lanes[g]; left; left &= left - 1)
             if (is_black(frame->plan, tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)]))
                 lanes[g] &= (uint16_t)~(left & -left);
-    return find_tinted(tile, frame, &frame->plan->lights[index], lanes, tile->transparent_shadow->tinted);
+    return find_tinted(tile, frame, &frame->plan->lights[index], lanes, own_of(tile)->tinted);
 }
 
 /// Of a row of the light: rays that are followed, and those that arrive at once, from points inside what absorbs.
 static unsigned followed(const glint_tile *tile, uint32_t slot, uint32_t g)
 {
     const unsigned lit = tile->at.light[slot].lit[g];
-    return lit & ~(unsigned)tile->at.light[slot].open[g] & tile->transparent_shadow->tinted[g];
+    return lit & ~(unsigned)tile->at.light[slot].open[g] & own_of(tile)->tinted[g];
 }
 
 static unsigned dimmed(const glint_tile *tile, const glint_plan *plan, uint32_t slot, uint32_t g)
 {
-    return plan->dims ? tile->at.light[slot].open[g] & tile->transparent_shadow->dim[g] : 0;
+    return plan->dims ? tile->at.light[slot].open[g] & own_of(tile)->dim[g] : 0;
 }
 
 // ---- Rays ----
@@ -507,7 +508,7 @@ static void add_row(struct glint_transparent_shadow *transparent_shadow, glint_t
 static bool follow(glint_tile *tile, const glint_tile_frame *frame, uint32_t index, uint32_t slot, uint32_t count,
                    uint32_t from, uint32_t end)
 {
-    struct glint_transparent_shadow *transparent_shadow = tile->transparent_shadow;
+    struct glint_transparent_shadow *transparent_shadow = own_of(tile);
     const glint_plan_light *lights = &frame->plan->lights[index];
     begin(transparent_shadow, tile, frame, index, slot, count, from, end);
     if (frame->plan->derivatives)
@@ -539,7 +540,7 @@ static void add_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     uint32_t from = 0, rays = 0;
     if (!choose_points(tile, frame, index, slot, count) && !plan->dims)
         return;
-    tile->transparent_shadow->planes = plan->patterns && plan->patterns->plane[GLINT_FIELD_TRANSMISSION] >= 0
+    own_of(tile)->planes = plan->patterns && plan->patterns->plane[GLINT_FIELD_TRANSMISSION] >= 0
                                            ? glint_pattern_planes(tile->pattern, GLINT_WALK_SHADOW)
                                            : NULL;
     for (uint32_t g = 0; g < tile->group_count; g++) {
@@ -569,3 +570,24 @@ void glint_tile_transparent_shadows(glint_tile *tile, const glint_tile_frame *fr
             add_light(tile, frame, first + slot, slot, next - slot);
     }
 }
+
+static bool called(const glint_plan *plan) { return plan->tints; }
+
+/// What a chunk of lights gives through transparent objects.
+static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    if (tile->direct || !glint_tile_is_shadowed(tile, frame->plan, walk->from, walk->count))
+        return;
+    glint_tile_need_points(tile, frame, walk);
+    glint_tile_transparent_shadows(tile, frame, walk->from, walk->count);
+}
+
+/// A part of occlude and shade.
+const glint_stage glint_stage_tint = {
+    .called = called,
+    .normals = true,
+    .step[GLINT_AT_SHADED] = add,
+    .create = create,
+    .destroy = free,
+    .shared = true,
+};

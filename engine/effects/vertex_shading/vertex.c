@@ -23,28 +23,30 @@ struct glint_vertex {
     uint16_t wanted[GLINT_TILE_GROUPS];
 };
 
-struct glint_vertex *glint_vertex_create(void)
+static void *create(const glint_plan *plan)
 {
+    (void)plan;
     struct glint_vertex *vertex = glint_alloc(1, sizeof *vertex);
     for (int i = 0; vertex && i < GLINT_SHADING_POINT_BLOCK; i++)
         vertex->no_owner[i] = GLINT_MISS;
     return vertex;
 }
 
-void glint_vertex_destroy(struct glint_vertex *vertex)
+static void destroy(void *memory)
 {
+    struct glint_vertex *vertex = memory;
     if (vertex)
-        glint_derivative_destroy(vertex->batch.tile.derivative);
+        glint_tile_free_stage(&vertex->batch.tile, GLINT_STAGE_DERIVATIVE);
     free(vertex);
 }
 
-bool glint_vertex_derives(struct glint_vertex *vertex, const glint_plan *plan)
+static bool fit(void *memory, const glint_plan *plan)
 {
-    glint_tile *tile = &vertex->batch.tile;
-    if (!tile->derivative)
-        tile->derivative = glint_derivative_create();
-    return tile->derivative && glint_derivative_fits(tile->derivative, plan);
+    struct glint_vertex *vertex = memory;
+    return !plan->derivatives || glint_tile_fit_stage(&vertex->batch.tile, plan, GLINT_STAGE_DERIVATIVE);
 }
+
+static struct glint_vertex *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_VERTEX]; }
 
 // ---- Where a site is ----
 
@@ -259,7 +261,7 @@ static void keep_block(const struct glint_vertex *vertex, const glint_tile_frame
 
 static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t block)
 {
-    struct glint_vertex *vertex = to->vertex;
+    struct glint_vertex *vertex = own_of(to);
     glint_tile *tile = &vertex->batch.tile;
     glint_batch_begin(&vertex->batch, to, frame, GLINT_WALK_SITES);
     tile->sample = 0;
@@ -311,7 +313,7 @@ static inline bool each_block(glint_tile *tile, const glint_tile_frame *frame,
     for (uint32_t g = 0; g < tile->group_count; g++) {
         if (glint_all_are(tile->at.prim + (size_t)g * GLINT_GROUP, last) && tile->hit.back[g] == (last_side ? 0xffff : 0))
             continue;
-        for (unsigned left = tile->vertex->wanted[g]; left; left &= left - 1) {
+        for (unsigned left = own_of(tile)->wanted[g]; left; left &= left - 1) {
             const uint32_t lane = (uint32_t)__builtin_ctz(left), prim = tile->at.prim[g * GLINT_GROUP + lane];
             const uint32_t side = tile->hit.back[g] >> lane & 1;
             if (prim == last && side == last_side)
@@ -367,7 +369,7 @@ static void spread(glint_tile *tile, const glint_tile_frame *frame, double (*con
     const glint_plan *plan = frame->plan;
     const glint_shading_points_cached *shading_points = frame->shading_points;
     glint_vertex_args args = { .group_count = tile->group_count,
-                               .wanted = tile->vertex->wanted,
+                               .wanted = own_of(tile)->wanted,
                                .back = tile->hit.back,
                                .prim = tile->at.prim,
                                .prims = frame->geometry.prims,
@@ -390,12 +392,12 @@ static void spread(glint_tile *tile, const glint_tile_frame *frame, double (*con
 void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES])
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
-        tile->vertex->wanted[g] = (uint16_t)(tile->at.hits[g] & ~(tile->own_light[g] | tile->hit.dark[g]));
+        own_of(tile)->wanted[g] = (uint16_t)(tile->at.hits[g] & ~(tile->own_light[g] | tile->hit.dark[g]));
     if (!each_block(tile, frame, ask_for))
         each_block(tile, frame, wait_for);
     spread(tile, frame, sum);
     if (frame->plan->derivatives)
-        glint_derive_vertex(tile, frame, tile->vertex->wanted);
+        glint_derive_vertex(tile, frame, own_of(tile)->wanted);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_VERTEX, false);
     tile->counts.runs[GLINT_STAGE_VERTEX]--; // blocks are counted, not calls
 }
@@ -411,10 +413,29 @@ static bool called(const glint_plan *plan)
     return glint_plan_is_lit(plan) && plan->geometry->table.shading_point_count > 0;
 }
 
+static void choose(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    walk->shines = walk->any && glint_tile_choose_sampled(tile, frame);
+}
+
+/// The light of faces and vertices.
+static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    if (!walk->any || !glint_tile_has_shading_points(tile))
+        return;
+    glint_tile_need_points(tile, frame, walk);
+    glint_tile_vertex(tile, frame);
+}
+
 const glint_stage glint_stage_vertex = {
     .name = "vertex",
     .doc = "light worked out once for a face or a vertex",
     .called = called,
     .reads = GLINT_READS(LIGHT_COLORS) | GLINT_READS(MATERIALS),
     .sums = true,
+    .step = { [GLINT_AT_SIGHT] = choose, [GLINT_AT_REST] = add },
+    .create = create,
+    .destroy = destroy,
+    .fit = fit,
+    .shared = true,
 };

@@ -89,33 +89,3 @@ glint_status glint_plan_visible_lights(glint_plan *plan, const glint_scene *scen
     }
     return GLINT_OK;
 }
-
-static glint_key place_key(const glint_plan_visible_light *visible_light, glint_key key)
-{
-    const double kind[] = { visible_light->ball, visible_light->one_sided, visible_light->radius,
-                            (double)visible_light->edge_count };
-    GLINT_KEY_ADD(key, kind);
-    GLINT_KEY_ADD(key, visible_light->center);
-    GLINT_KEY_ADD(key, visible_light->normal);
-    return glint_key_add(key, visible_light->edges, visible_light->edge_count * sizeof *visible_light->edges);
-}
-
-/// Where lights are seen; what they look like belongs to the background.
-static glint_key places_key(const glint_plan *plan, glint_key key)
-{
-    for (uint32_t i = 0; i < plan->visible_light_count; i++)
-        key = place_key(&plan->visible_lights[i], key);
-    return key;
-}
-
-static bool called(const glint_plan *plan) { return plan->visible_light_count > 0; }
-
-const glint_stage glint_stage_visible_light = {
-    .name = "visible_lights",
-    .doc = "which rays see a light before any object",
-    .called = called,
-    .own = places_key,
-    .reads = GLINT_READS_OWN(VISIBLE_LIGHT),
-    .sums = true,
-    .remote = true,
-};

@@ -19,25 +19,31 @@ struct glint_visible_light {
     uint32_t which[GLINT_TILE_SAMPLES]; ///< that light
 };
 
-struct glint_visible_light *glint_visible_light_create(void)
+static void *create(const glint_plan *plan)
 {
+    (void)plan;
     return glint_alloc(1, sizeof(struct glint_visible_light));
 }
 
-void glint_visible_light_destroy(struct glint_visible_light *visible_light)
+static void destroy(void *memory)
 {
+    struct glint_visible_light *visible_light = memory;
     if (visible_light)
         free(visible_light->near);
     free(visible_light);
 }
 
-bool glint_visible_light_fits(struct glint_visible_light *visible_light, const glint_plan *plan)
+/// Makes space for the plan's lights.
+static bool fit(void *memory, const glint_plan *plan)
 {
-    uint32_t *near = visible_light ? realloc(visible_light->near, plan->visible_light_count * sizeof *near) : NULL;
+    struct glint_visible_light *visible_light = memory;
+    uint32_t *near = realloc(visible_light->near, plan->visible_light_count * sizeof *near);
     if (near)
         visible_light->near = near;
     return near;
 }
+
+static struct glint_visible_light *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_VISIBLE_LIGHT]; }
 
 // ---- One ray and one light ----
 
@@ -170,7 +176,7 @@ static void find_near(struct glint_visible_light *visible_light, const glint_til
 
 bool glint_tile_visible_light_in_sight(glint_tile *tile, const glint_tile_frame *frame)
 {
-    struct glint_visible_light *visible_light = tile->visible_light;
+    struct glint_visible_light *visible_light = own_of(tile);
     memset(visible_light->seen, 0, sizeof visible_light->seen);
     if (!glint_tile_rays_of(tile)) {
         visible_light->near_count = frame->plan->visible_light_count;
@@ -209,11 +215,11 @@ static void see_lane(glint_tile *tile, const glint_tile_frame *frame, uint32_t i
         ray.direction[c] = glint_tile_direction(tile, precision, c, i);
     }
     double t = *hits & bit ? glint_real_at(tile->at.t, precision, i) : HUGE_VAL;
-    const uint32_t which = see(tile->visible_light, frame->plan, &ray, &t);
+    const uint32_t which = see(own_of(tile), frame->plan, &ray, &t);
     if (which == GLINT_MISS)
         return;
-    tile->visible_light->seen[i / GLINT_GROUP] |= bit;
-    tile->visible_light->which[i] = which;
+    own_of(tile)->seen[i / GLINT_GROUP] |= bit;
+    own_of(tile)->which[i] = which;
     tile->counts.work.lights_seen += frame->count_work;
     *hits = (uint16_t)(*hits & ~bit);
     tile->at.prim[i] = GLINT_MISS;
@@ -232,14 +238,14 @@ void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, cons
 
 bool glint_tile_sees_light(const glint_tile *tile, uint32_t i)
 {
-    return tile->visible_light && tile->visible_light->seen[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+    return own_of(tile) && own_of(tile)->seen[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
 }
 
 void glint_tile_visible_light_normal(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                                      double normal[3])
 {
     const glint_precision precision = frame->plan->desc.precision;
-    const glint_plan_visible_light *light = &frame->plan->visible_lights[tile->visible_light->which[i]];
+    const glint_plan_visible_light *light = &frame->plan->visible_lights[own_of(tile)->which[i]];
     double d[3];
     for (int c = 0; c < 3; c++) {
         const double from =
@@ -256,18 +262,62 @@ void glint_tile_visible_light_normal(const glint_tile *tile, const glint_tile_fr
 const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS])
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
-        lanes[g] = (uint16_t)(tile->active[g] & ~tile->visible_light->seen[g]);
+        lanes[g] = (uint16_t)(tile->active[g] & ~own_of(tile)->seen[g]);
     return lanes;
 }
 
 void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *frame)
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = tile->visible_light->seen[g]; left; left &= left - 1) {
+        for (unsigned left = own_of(tile)->seen[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const glint_plan_visible_light *light = &frame->plan->visible_lights[tile->visible_light->which[i]];
+            const glint_plan_visible_light *light = &frame->plan->visible_lights[own_of(tile)->which[i]];
             for (int c = 0; c < 3; c++)
                 tile->film.sum[GLINT_TERM_BACKGROUND][c][i] += light->shown[c];
             glint_groups_add(tile, light->group, i, light->shown);
         }
 }
+
+static glint_key place_key(const glint_plan_visible_light *visible_light, glint_key key)
+{
+    const double kind[] = { visible_light->ball, visible_light->one_sided, visible_light->radius,
+                            (double)visible_light->edge_count };
+    GLINT_KEY_ADD(key, kind);
+    GLINT_KEY_ADD(key, visible_light->center);
+    GLINT_KEY_ADD(key, visible_light->normal);
+    return glint_key_add(key, visible_light->edges, visible_light->edge_count * sizeof *visible_light->edges);
+}
+
+/// Where lights are seen; what they look like belongs to the background.
+static glint_key places_key(const glint_plan *plan, glint_key key)
+{
+    for (uint32_t i = 0; i < plan->visible_light_count; i++)
+        key = place_key(&plan->visible_lights[i], key);
+    return key;
+}
+
+static bool called(const glint_plan *plan) { return plan->visible_light_count > 0; }
+
+static void look(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    if (glint_tile_visible_light_in_sight(tile, frame)) {
+        glint_tile_need_rays(tile, frame, walk);
+        glint_tile_see_lights(tile, frame, tile->active);
+    }
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_VISIBLE_LIGHT, false);
+}
+
+const glint_stage glint_stage_visible_light = {
+    .name = "visible_lights",
+    .doc = "which rays see a light before any object",
+    .called = called,
+    .own = places_key,
+    .reads = GLINT_READS_OWN(VISIBLE_LIGHT),
+    .sums = true,
+    .remote = true,
+    .step[GLINT_AT_HITS] = look,
+    .create = create,
+    .destroy = destroy,
+    .fit = fit,
+    .shared = true,
+};
