@@ -1,5 +1,6 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/scene/mesh_ears.h"
 #include "engine/scene/mesh_file.h"
 #include "engine/scene/objects.h"
 
@@ -37,42 +38,21 @@ glint_status glint_check_shading(glint_shading shading, glint_error *error)
 
 // ---- Faces to triangles ----
 
-/// One face while it is cut up.
-typedef struct polygon {
-    size_t number; ///< from 1
-    const uint32_t *corners; ///< vertices
-    uint32_t size;
-    double normal[3]; ///< by Newell's sum, in units of the largest extent
-    uint32_t *left; ///< places in `corners` that are not cut off yet
-    uint32_t room; ///< of `left`
-} polygon;
-
 typedef struct builder {
     const glint_mesh_desc *desc;
     glint_mesh *mesh;
     size_t room; ///< triangles
-    polygon face;
+    glint_polygon face;
+    size_t number; ///< of the face, from 1
+    glint_ears ears;
     uint32_t *index; ///< of each triangle, a material; NULL: they have one
-    size_t *flat; ///< counts faces without an area, which are left out; NULL: they are an error
+    glint_mesh_faults *faults; ///< NULL: they are errors
     glint_error *error;
 } builder;
 
 static const double *vertex(const builder *b, uint32_t place)
 {
     return b->desc->vertices + 3 * (size_t)b->face.corners[place];
-}
-
-/// Cross product of two sides of the triangle at places i, j, k, brought near 1 by a power of two: 0 means no area.
-static void triangle_normal(const builder *b, uint32_t i, uint32_t j, uint32_t k, double out[3])
-{
-    double f[3], g[3];
-    vec_sub(f, vertex(b, j), vertex(b, i));
-    vec_sub(g, vertex(b, k), vertex(b, i));
-    const double largest = fmax(vec_max_abs(f), vec_max_abs(g));
-    const double scale = largest > 0 ? power_of_two_scale(largest) : 1;
-    vec_scale(f, f, scale);
-    vec_scale(g, g, scale);
-    vec_cross(out, f, g);
 }
 
 static bool is_zero(const double v[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
@@ -116,7 +96,7 @@ static uint32_t number_or(uint32_t number, uint32_t none, size_t count)
 /// The number of the material of the face at hand.
 static uint32_t material_of(const builder *b)
 {
-    return b->desc->material_index ? b->desc->material_index[b->face.number - 1] : 0;
+    return b->desc->material_index ? b->desc->material_index[b->number - 1] : 0;
 }
 
 static glint_status keep_triangle(builder *b, size_t first_corner, uint32_t i, uint32_t j, uint32_t k)
@@ -127,15 +107,15 @@ static glint_status keep_triangle(builder *b, size_t first_corner, uint32_t i, u
     if (mesh->triangle_count == b->room && !grow(b))
         return glint_fail_nomem(b->error);
     if (mesh->faces)
-        mesh->faces[mesh->triangle_count] = (uint32_t)(b->face.number - 1);
+        mesh->faces[mesh->triangle_count] = (uint32_t)(b->number - 1);
     if (b->index)
         b->index[mesh->triangle_count] = material_of(b);
     const uint32_t place[3] = { i, j, k };
     for (int c = 0; c < 3; c++) {
         mesh->triangles[mesh->triangle_count][c] = b->face.corners[place[c]];
         if (mesh->triangle_normals)
-            mesh->triangle_normals[mesh->triangle_count][c] = number_or(
-                b->desc->normal_corners[first_corner + place[c]], GLINT_NO_NORMAL, b->desc->normal_count);
+            mesh->triangle_normals[mesh->triangle_count][c] =
+                number_or(b->desc->normal_corners[first_corner + place[c]], GLINT_NO_NORMAL, b->desc->normal_count);
         if (mesh->triangle_uv)
             mesh->triangle_uv[mesh->triangle_count][c] =
                 number_or(b->desc->uv_corners[first_corner + place[c]], GLINT_NO_UV, b->desc->uv_count);
@@ -146,7 +126,7 @@ static glint_status keep_triangle(builder *b, size_t first_corner, uint32_t i, u
 
 static void polygon_normal(builder *b)
 {
-    polygon *face = &b->face;
+    glint_polygon *face = &b->face;
     double largest = 0, f[3], g[3], cross[3];
     for (uint32_t i = 1; i < face->size; i++) {
         vec_sub(f, vertex(b, i), vertex(b, 0));
@@ -170,7 +150,7 @@ static bool fan_fits(const builder *b)
 {
     double cross[3];
     for (uint32_t i = 1; i + 1 < b->face.size; i++) {
-        triangle_normal(b, 0, i, i + 1, cross);
+        glint_polygon_cross(&b->face, 0, i, i + 1, cross);
         if (vec_dot(cross, b->face.normal) < 0)
             return false;
     }
@@ -182,89 +162,43 @@ static glint_status cut_fan(builder *b, size_t first_corner)
     glint_status status = GLINT_OK;
     double cross[3];
     for (uint32_t i = 1; i + 1 < b->face.size && !status; i++) {
-        triangle_normal(b, 0, i, i + 1, cross);
+        glint_polygon_cross(&b->face, 0, i, i + 1, cross);
         if (!is_zero(cross))
             status = keep_triangle(b, first_corner, 0, i, i + 1);
     }
     return status;
 }
 
-/// Whether vertex p is in triangle i, j, k as seen along the polygon's normal, its sides included.
-static bool covers(const builder *b, uint32_t i, uint32_t j, uint32_t k, uint32_t p)
-{
-    double cross[3];
-    const uint32_t at[4] = { i, j, k, i };
-    for (int side = 0; side < 3; side++) {
-        triangle_normal(b, at[side], at[side + 1], p, cross);
-        if (vec_dot(cross, b->face.normal) < 0)
-            return false;
-    }
-    return true;
-}
-
-/// Whether the n-th corner that is left can be cut off.
-static bool is_ear(const builder *b, uint32_t n, uint32_t count)
-{
-    const uint32_t *left = b->face.left;
-    const uint32_t i = left[(n + count - 1) % count], j = left[n], k = left[(n + 1) % count];
-    double cross[3];
-    triangle_normal(b, i, j, k, cross);
-    if (vec_dot(cross, b->face.normal) < 0)
-        return false;
-    if (is_zero(cross))
-        return true; // nothing is lost with it
-    for (uint32_t m = 0; m < count; m++) {
-        const uint32_t p = left[m], *c = b->face.corners;
-        if (c[p] != c[i] && c[p] != c[j] && c[p] != c[k] && covers(b, i, j, k, p))
-            return false;
-    }
-    return true;
-}
-
+/// Cuts a polygon ear by ear. One that crosses itself is an error, or a fan.
 static glint_status cut_ears(builder *b, size_t first_corner)
 {
-    polygon *face = &b->face;
-    if (face->room < face->size) {
-        uint32_t *left = realloc(face->left, face->size * sizeof *left);
-        if (!left)
-            return glint_fail_nomem(b->error);
-        face->left = left;
-        face->room = face->size;
+    bool whole;
+    glint_status status = glint_ears_cut(&b->ears, &b->face, &whole, b->error);
+    if (!status && !whole && !b->faults)
+        return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: a polygon that does not cross itself expected",
+                          b->number);
+    if (!status && !whole) {
+        b->faults->crossed++;
+        return cut_fan(b, first_corner);
     }
-    uint32_t count = face->size;
-    for (uint32_t i = 0; i < count; i++)
-        face->left[i] = i;
-    while (count > 2) {
-        uint32_t n = 0;
-        while (n < count && !is_ear(b, n, count))
-            n++;
-        if (n == count)
-            return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: a polygon that does not cross itself expected",
-                              face->number);
-        const uint32_t i = face->left[(n + count - 1) % count], j = face->left[n], k = face->left[(n + 1) % count];
-        double cross[3];
-        triangle_normal(b, i, j, k, cross);
-        glint_status status = is_zero(cross) ? GLINT_OK : keep_triangle(b, first_corner, i, j, k);
-        if (status)
-            return status;
-        count--;
-        for (uint32_t m = n; m < count; m++)
-            face->left[m] = face->left[m + 1];
+    for (size_t i = 0; i < b->ears.triangle_count && !status; i++) {
+        const uint32_t *places = b->ears.triangles[i];
+        status = keep_triangle(b, first_corner, places[0], places[1], places[2]);
     }
-    return GLINT_OK;
+    return status;
 }
 
 static glint_status cut_face(builder *b, size_t first_corner)
 {
     polygon_normal(b);
-    if (is_zero(b->face.normal) && b->flat) {
-        ++*b->flat;
+    if (is_zero(b->face.normal) && b->faults) {
+        b->faults->flat++;
         return GLINT_OK;
     }
     if (is_zero(b->face.normal))
         return glint_fail(b->error, GLINT_ERR_INVALID,
                           "faces[%zu]: a face with an area expected: its vertices %u, %u, %u%s are on one line",
-                          b->face.number, b->face.corners[0] + 1, b->face.corners[1] + 1, b->face.corners[2] + 1,
+                          b->number, b->face.corners[0] + 1, b->face.corners[1] + 1, b->face.corners[2] + 1,
                           b->face.size > 3 ? ", ..." : "");
     return b->face.size == 3 || fan_fits(b) ? cut_fan(b, first_corner) : cut_ears(b, first_corner);
 }
@@ -325,25 +259,25 @@ static glint_status check_face(const builder *b, size_t first_corner)
 {
     const glint_mesh_desc *desc = b->desc;
     if (b->face.size < 3)
-        return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: 3 vertices or more expected, got %u",
-                          b->face.number, b->face.size);
+        return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: 3 vertices or more expected, got %u", b->number,
+                          b->face.size);
     if (desc->material_count && material_of(b) >= desc->material_count)
-        return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: material 1 .. %zu expected, got %llu",
-                          b->face.number, desc->material_count, (unsigned long long)material_of(b) + 1);
+        return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: material 1 .. %zu expected, got %llu", b->number,
+                          desc->material_count, (unsigned long long)material_of(b) + 1);
     for (uint32_t i = 0; i < b->face.size; i++) {
         if (b->face.corners[i] >= desc->vertex_count)
-            return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: vertex 1 .. %zu expected, got %llu",
-                              b->face.number, desc->vertex_count, (unsigned long long)b->face.corners[i] + 1);
+            return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: vertex 1 .. %zu expected, got %llu", b->number,
+                              desc->vertex_count, (unsigned long long)b->face.corners[i] + 1);
         const uint32_t normal = desc->normals && desc->normal_corners ? desc->normal_corners[first_corner + i] : 0;
         if (normal != GLINT_NO_NORMAL && desc->normals && normal >= desc->normal_count)
-            return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: normal 1 .. %zu expected, got %llu",
-                              b->face.number, desc->normal_count, (unsigned long long)normal + 1);
+            return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: normal 1 .. %zu expected, got %llu", b->number,
+                              desc->normal_count, (unsigned long long)normal + 1);
         const uint32_t uv = desc->uv && desc->uv_corners ? desc->uv_corners[first_corner + i] : 0;
         if (uv == GLINT_NO_UV && desc->uv && !b->mesh->uv_missing[material_of(b)])
-            b->mesh->uv_missing[material_of(b)] = b->face.number;
+            b->mesh->uv_missing[material_of(b)] = b->number;
         if (uv != GLINT_NO_UV && desc->uv && uv >= desc->uv_count)
-            return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: uv 1 .. %zu expected, got %llu",
-                              b->face.number, desc->uv_count, (unsigned long long)uv + 1);
+            return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: uv 1 .. %zu expected, got %llu", b->number,
+                              desc->uv_count, (unsigned long long)uv + 1);
     }
     return GLINT_OK;
 }
@@ -376,8 +310,7 @@ static void sign_uv(glint_mesh *mesh, size_t uv_count)
 {
     mesh->uv_key = glint_key_add((glint_key) { 0 }, mesh->uv, uv_count * sizeof *mesh->uv);
     if (mesh->triangle_uv)
-        mesh->uv_key =
-            glint_key_add(mesh->uv_key, mesh->triangle_uv, mesh->triangle_count * sizeof *mesh->triangle_uv);
+        mesh->uv_key = glint_key_add(mesh->uv_key, mesh->triangle_uv, mesh->triangle_count * sizeof *mesh->triangle_uv);
 }
 
 static bool has_polygons(const glint_mesh_desc *desc)
@@ -417,7 +350,8 @@ static glint_status fill(builder *b)
     mesh->face_count = desc->face_count;
     size_t first = 0;
     for (size_t i = 0; i < desc->face_count && !status; i++) {
-        b->face.number = i + 1;
+        b->number = i + 1;
+        b->face.vertices = desc->vertices;
         b->face.corners = desc->corners + first;
         b->face.size = desc->face_sizes[i];
         status = check_face(b, first);
@@ -425,7 +359,7 @@ static glint_status fill(builder *b)
             status = cut_face(b, first);
         first += b->face.size;
     }
-    free(b->face.left);
+    glint_ears_free(&b->ears);
     if (!status && mesh->triangle_count == 0)
         status = glint_fail(b->error, GLINT_ERR_INVALID, "faces: one with an area expected, got %zu without",
                             desc->face_count);
@@ -449,12 +383,13 @@ static glint_status take_materials(const glint_mesh_desc *desc, glint_shape *sha
     return GLINT_OK;
 }
 
-static glint_status make_shape(const glint_mesh_desc *desc, size_t *flat, glint_shape *shape, glint_error *error)
+static glint_status make_shape(const glint_mesh_desc *desc, glint_mesh_faults *faults, glint_shape *shape,
+                               glint_error *error)
 {
     shape->mesh = calloc(1, sizeof *shape->mesh);
     if (!shape->mesh)
         return glint_fail_nomem(error);
-    builder b = { .desc = desc, .mesh = shape->mesh, .room = desc->face_count, .flat = flat, .error = error };
+    builder b = { .desc = desc, .mesh = shape->mesh, .room = desc->face_count, .faults = faults, .error = error };
     glint_status status = take_materials(desc, shape, error);
     if (!status)
         status = fill(&b);
@@ -467,7 +402,8 @@ static glint_status make_shape(const glint_mesh_desc *desc, size_t *flat, glint_
     return status;
 }
 
-glint_status glint_mesh_make(const glint_mesh_desc *desc, size_t *flat, glint_shape **out, glint_error *error)
+glint_status glint_mesh_make(const glint_mesh_desc *desc, glint_mesh_faults *faults, glint_shape **out,
+                             glint_error *error)
 {
     glint_status status = check_counts(desc, error);
     if (!status)
@@ -482,7 +418,7 @@ glint_status glint_mesh_make(const glint_mesh_desc *desc, size_t *flat, glint_sh
     glint_shape *shape = glint_shape_alloc(&base, desc->material_count ? desc->material_count : 1);
     if (!shape)
         return glint_fail_nomem(error);
-    status = make_shape(desc, flat, shape, error);
+    status = make_shape(desc, faults, shape, error);
     if (status) {
         glint_shape_release(shape);
         return status;

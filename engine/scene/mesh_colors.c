@@ -1,5 +1,6 @@
-/// Colours of .ply files: each face has a material of one, its own or the mean of its corners'.
-#include "engine/scene/mesh_file.h"
+/// Colours and pictures of vertices and faces: each face has a material of one colour, its own or the mean of its corners'.
+#include "engine/base/status.h"
+#include "engine/scene/mesh_mtl.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -56,5 +57,49 @@ glint_status glint_mesh_color_faces(glint_mesh_reader *r)
     }
     free(shades.items);
     free(set.slots);
+    return status;
+}
+
+/// A material whose diffuse colour is a picture.
+static glint_status make_painted(const glint_texture *texture, const char *name, glint_material **out,
+                                 glint_error *error)
+{
+    static const glint_mesh_map whole = { .scale = { 1, 1 } };
+    static const double one[3] = { 1, 1, 1 };
+    glint_material_desc desc = glint_material_desc_default();
+    glint_program *paint = NULL;
+    glint_status status = glint_mesh_paint(texture, &whole, one, 3, &paint, error);
+    desc.program.diffuse = paint;
+    snprintf(desc.name, sizeof desc.name, "%.60s", name);
+    if (!status)
+        status = glint_material_create(&desc, out, error);
+    glint_program_release(paint);
+    return status;
+}
+
+glint_status glint_mesh_picture_faces(glint_mesh_reader *r, const char *name)
+{
+    glint_texture_desc desc = glint_texture_desc_default();
+    glint_texture *texture = NULL;
+    glint_material *material = NULL;
+    glint_error inner;
+    char *path = glint_mesh_beside(r->text.path, name);
+    if (!path)
+        return glint_fail_nomem(r->error);
+    desc.path = path;
+    if (r->desc->reads)
+        r->desc->reads(r->desc->context, path);
+    glint_status status = glint_texture_create(&desc, &texture, &inner);
+    free(path);
+    if (status == GLINT_ERR_NOMEM)
+        return glint_fail_nomem(r->error);
+    if (status) {
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE, "its picture is passed over: %.120s", inner.message);
+        return GLINT_OK;
+    }
+    status = make_painted(texture, name, &material, r->error);
+    glint_texture_release(texture);
+    if (!status && (status = glint_mesh_append(&r->materials, &material, r->error)))
+        glint_material_release(material);
     return status;
 }

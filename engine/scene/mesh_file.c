@@ -1,195 +1,16 @@
-/// glint_mesh_load: by the ending of a file's name, its reader; then the mesh of what was read.
+/// glint_mesh_load: the reader of a file's format; then the mesh of what was read.
 #include "engine/scene/mesh_file.h"
 
-#include "engine/base/open.h"
 #include "engine/base/status.h"
+#include "engine/base/vec.h"
 #include "engine/scene/mesh_mtl.h"
 #include "engine/scene/objects.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
-
-#define LINE_MAX_BYTES ((size_t)1 << 20)
-
-// ---- Arrays ----
-
-glint_status glint_mesh_append(glint_mesh_array *array, const void *item, glint_error *error)
-{
-    if (array->count == array->room) {
-        const size_t room = array->room ? 2 * array->room : 1024;
-        void *items = room > SIZE_MAX / array->size ? NULL : realloc(array->items, room * array->size);
-        if (!items)
-            return glint_fail_nomem(error);
-        array->items = items;
-        array->room = room;
-    }
-    memcpy((char *)array->items + array->count * array->size, item, array->size);
-    array->count++;
-    return GLINT_OK;
-}
-
-static const char *item_at(const glint_mesh_array *array, size_t i)
-{
-    return (const char *)array->items + i * array->size;
-}
-
-static size_t slot_of(const glint_mesh_set *set, const void *item, size_t key_size)
-{
-    return (size_t)glint_key_add((glint_key) { 0 }, item, key_size).low & (set->room - 1);
-}
-
-/// Room for twice as many items, at most half of the slots taken.
-static glint_status grow_set(glint_mesh_set *set, const glint_mesh_array *array, size_t key_size, glint_error *error)
-{
-    glint_mesh_set grown = { .room = set->room ? 2 * set->room : 1024 };
-    grown.slots = calloc(grown.room, sizeof *grown.slots);
-    if (!grown.slots)
-        return glint_fail_nomem(error);
-    for (size_t i = 0; i < array->count; i++) {
-        size_t slot = slot_of(&grown, item_at(array, i), key_size);
-        while (grown.slots[slot])
-            slot = (slot + 1) & (grown.room - 1);
-        grown.slots[slot] = (uint32_t)i + 1;
-    }
-    free(set->slots);
-    *set = grown;
-    return GLINT_OK;
-}
-
-glint_status glint_mesh_find(glint_mesh_set *set, glint_mesh_array *array, const void *item, size_t key_size,
-                             uint32_t *number, glint_error *error)
-{
-    glint_status status = GLINT_OK;
-    if (2 * array->count >= set->room)
-        status = grow_set(set, array, key_size, error);
-    if (status)
-        return status;
-    size_t slot = slot_of(set, item, key_size);
-    while (set->slots[slot] && memcmp(item_at(array, set->slots[slot] - 1), item, key_size) != 0)
-        slot = (slot + 1) & (set->room - 1);
-    if (!set->slots[slot]) {
-        status = glint_mesh_append(array, item, error);
-        set->slots[slot] = (uint32_t)array->count;
-    }
-    *number = set->slots[slot] - 1;
-    return status;
-}
-
-// ---- Lines ----
-
-glint_status glint_mesh_text_open(glint_mesh_text *text, const char *path, glint_error *error)
-{
-    int file;
-    *text = (glint_mesh_text) { .path = path, .room = 4096, .error = error };
-    glint_status status = glint_open_file(path, &file, &text->size, error);
-    if (status)
-        return status;
-    text->file = fdopen(file, "rb");
-    if (!text->file)
-        close(file);
-    text->line = malloc(text->room);
-    text->c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    return text->file && text->line && text->c_locale ? GLINT_OK : glint_fail_nomem(error);
-}
-
-void glint_mesh_text_close(glint_mesh_text *text)
-{
-    if (text->file)
-        fclose(text->file);
-    if (text->c_locale)
-        freelocale(text->c_locale);
-    free(text->line);
-}
-
-glint_status glint_mesh_refuse(const glint_mesh_text *text, const char *expected, const char *got)
-{
-    char shown[48];
-    snprintf(shown, sizeof shown, "%.40s", got);
-    for (char *c = shown; *c; c++)
-        *c = (unsigned char)*c < ' ' || *c == 127 ? ' ' : *c;
-    return glint_fail(text->error, GLINT_ERR_FORMAT, "%s: line %zu: %s expected, got '%s'", text->path, text->number,
-                      expected, shown);
-}
-
-static glint_status grow_line(glint_mesh_text *text, size_t used)
-{
-    if (used + 2 < text->room)
-        return GLINT_OK;
-    if (text->room >= LINE_MAX_BYTES)
-        return glint_fail(text->error, GLINT_ERR_FORMAT, "%s: line %zu: at most %zu bytes expected", text->path,
-                          text->number, LINE_MAX_BYTES);
-    char *line = realloc(text->line, text->room * 2);
-    if (!line)
-        return glint_fail_nomem(text->error);
-    text->line = line;
-    text->room *= 2;
-    return GLINT_OK;
-}
-
-glint_status glint_mesh_next_line(glint_mesh_text *text, bool joined, bool *more)
-{
-    size_t used = 0;
-    int c = 0;
-    text->number++;
-    *more = false;
-    while ((c = getc_unlocked(text->file)) != EOF) {
-        *more = true;
-        if (c == '\n' && joined && used > 0 && text->line[used - 1] == '\\') {
-            text->line[used - 1] = ' ';
-            continue;
-        }
-        if (c == '\n')
-            break;
-        if (c == '\r')
-            continue;
-        glint_status status = grow_line(text, used);
-        if (status)
-            return status;
-        text->line[used++] = c ? (char)c : '?';
-    }
-    text->line[used] = 0;
-    if (ferror(text->file))
-        return glint_fail(text->error, GLINT_ERR_IO, "%s: %s", text->path, strerror(errno));
-    return GLINT_OK;
-}
-
-glint_status glint_mesh_number(const glint_mesh_text *text, const char **at, double *out)
-{
-    char *end;
-    *at = glint_skip_blanks(*at);
-    *out = glint_read_double(*at, &end, text->c_locale);
-    if (end == *at || !glint_ends_word(*end))
-        return glint_mesh_refuse(text, "a number", *at);
-    if (!isfinite(*out))
-        return glint_mesh_refuse(text, "a finite number", *at);
-    *at = end;
-    return GLINT_OK;
-}
-
-bool glint_mesh_is_word(const char *line, const char *word)
-{
-    const size_t length = strlen(word);
-    return strncmp(line, word, length) == 0 && glint_ends_word(line[length]);
-}
-
-char *glint_mesh_beside(const char *path, const char *name)
-{
-    const char *slash = strrchr(path, '/');
-    const size_t folder = *name == '/' || !slash ? 0 : (size_t)(slash - path) + 1, length = strlen(name);
-    char *out = malloc(folder + length + 1);
-    if (!out)
-        return NULL;
-    memcpy(out, path, folder);
-    memcpy(out + folder, name, length + 1);
-    for (char *c = out + folder; *c; c++)
-        *c = *c == '\\' ? '/' : *c;
-    return out;
-}
 
 void glint_mesh_warn(const glint_mesh_desc *desc, const char *path, const char *format, ...)
 {
@@ -204,13 +25,116 @@ void glint_mesh_warn(const glint_mesh_desc *desc, const char *path, const char *
     desc->warns(desc->context, message);
 }
 
+void glint_mesh_note_that(glint_mesh_reader *reader, glint_mesh_note_kind kind, const char *format, ...)
+{
+    glint_mesh_note *note = &reader->notes[kind];
+    va_list args;
+    if (note->count++)
+        return;
+    va_start(args, format);
+    vsnprintf(note->first, sizeof note->first, format, args);
+    va_end(args);
+}
+
+static void tell_notes(const glint_mesh_reader *r)
+{
+    for (int kind = 0; kind < GLINT_MESH_NOTE_COUNT; kind++) {
+        const glint_mesh_note *note = &r->notes[kind];
+        if (note->count > 1)
+            glint_mesh_warn(r->desc, r->text.path, "%s, and %zu more", note->first, note->count - 1);
+        else if (note->count)
+            glint_mesh_warn(r->desc, r->text.path, "%s", note->first);
+    }
+}
+
+// ---- What a mesh cannot have ----
+
+static bool is_finite(const double v[3]) { return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]); }
+
+glint_status glint_mesh_drop_normals(glint_mesh_reader *r)
+{
+    const double up[3] = { 0, 0, 1 };
+    const uint32_t *corners = r->corners.items;
+    double *normals = r->normals.items;
+    glint_status status = GLINT_OK;
+    for (size_t i = r->corner_normals.count; i < r->corners.count && !status; i++)
+        status = glint_mesh_append(&r->corner_normals, &corners[i], r->error);
+    uint32_t *numbers = r->corner_normals.items;
+    for (size_t i = 0; i < r->corner_normals.count && !status; i++)
+        if (numbers[i] != GLINT_NO_NORMAL && vec_max_abs(normals + 3 * (size_t)numbers[i]) == 0)
+            numbers[i] = GLINT_NO_NORMAL;
+    for (size_t i = 0; i < r->normals.count; i++)
+        if (vec_max_abs(normals + 3 * i) == 0)
+            vec_copy(normals + 3 * i, up);
+    return status;
+}
+
+/// Moves the items from `from` on to `to`, in an array that has one for each corner or face; those that have none stay so.
+static void move_items(glint_mesh_array *array, size_t to, size_t from, size_t count)
+{
+    if (from + count <= array->count)
+        memmove((char *)array->items + to * array->size, (const char *)array->items + from * array->size,
+                count * array->size);
+}
+
+static void cut_array(glint_mesh_array *array, size_t count)
+{
+    array->count = array->count < count ? array->count : count;
+}
+
+/// Leaves out the faces of vertices that are not finite, and puts such vertices where another one is.
+static void drop_vertices(glint_mesh_reader *r)
+{
+    double *vertices = r->vertices.items;
+    const uint32_t *sizes = r->sizes.items, *corners = r->corners.items;
+    size_t kept = 0, kept_corners = 0, first = 0, good = 0;
+    for (size_t i = 0; i < r->sizes.count; i++) {
+        const size_t size = sizes[i];
+        bool whole = true;
+        for (size_t k = 0; k < size; k++)
+            whole = whole && is_finite(vertices + 3 * (size_t)corners[first + k]);
+        if (whole) {
+            move_items(&r->corners, kept_corners, first, size);
+            move_items(&r->corner_normals, kept_corners, first, size);
+            move_items(&r->corner_uv, kept_corners, first, size);
+            move_items(&r->sizes, kept, i, 1);
+            move_items(&r->material_index, kept, i, 1);
+            kept_corners += size;
+            kept++;
+        } else {
+            glint_mesh_note_that(r, GLINT_MESH_NOTE_VERTEX, "face %zu is left out: a vertex of it is not finite",
+                                 i + 1);
+        }
+        first += size;
+    }
+    cut_array(&r->corners, kept_corners);
+    cut_array(&r->corner_normals, kept_corners);
+    cut_array(&r->corner_uv, kept_corners);
+    cut_array(&r->sizes, kept);
+    cut_array(&r->material_index, kept);
+    while (good < r->vertices.count && !is_finite(vertices + 3 * good))
+        good++;
+    for (size_t i = 0; i < r->vertices.count && good < r->vertices.count; i++)
+        if (!is_finite(vertices + 3 * i))
+            vec_copy(vertices + 3 * i, vertices + 3 * good);
+}
+
+static bool has_bad_vertices(const glint_mesh_reader *r)
+{
+    const double *vertices = r->vertices.items;
+    for (size_t i = 0; i < r->vertices.count; i++)
+        if (!is_finite(vertices + 3 * i))
+            return true;
+    return false;
+}
+
 // ---- The file ----
 
-static glint_status make_mesh(glint_mesh_reader *r, bool leave_flat, glint_shape **out)
+static glint_status make_mesh(glint_mesh_reader *r, glint_shape **out)
 {
     glint_mesh_desc mesh = *r->desc;
     glint_error inner;
-    size_t flat = 0;
+    glint_mesh_faults faults = { 0 };
     mesh.vertices = r->vertices.items;
     mesh.vertex_count = r->vertices.count;
     mesh.corners = r->corners.items;
@@ -229,20 +153,23 @@ static glint_status make_mesh(glint_mesh_reader *r, bool leave_flat, glint_shape
         mesh.material_count = r->materials.count;
         mesh.material_index = r->material_index.items;
     }
-    glint_status status = glint_mesh_make(&mesh, leave_flat ? &flat : NULL, out, &inner);
+    glint_status status = glint_mesh_make(&mesh, &faults, out, &inner);
     if (status)
         return glint_fail(r->error, status, "%.300s: %.200s", r->text.path, inner.message);
-    if (flat)
-        glint_mesh_warn(r->desc, r->text.path, "%zu of %zu faces are left out: they have no area", flat,
+    if (faults.flat)
+        glint_mesh_warn(r->desc, r->text.path, "%zu of %zu faces are left out: they have no area", faults.flat,
                         r->sizes.count);
+    if (faults.crossed)
+        glint_mesh_warn(r->desc, r->text.path, "%zu of %zu faces cross themselves: they are cut as fans",
+                        faults.crossed, r->sizes.count);
     return GLINT_OK;
 }
 
 static void release(glint_mesh_reader *r)
 {
-    glint_mesh_array *const arrays[] = { &r->vertices,       &r->normals,   &r->uv,    &r->corners,
-                                         &r->corner_normals, &r->corner_uv, &r->sizes, &r->material_index,
-                                         &r->colors,         &r->materials };
+    glint_mesh_array *const arrays[] = { &r->vertices,       &r->normals,   &r->uv,           &r->corners,
+                                         &r->corner_normals, &r->corner_uv, &r->sizes,        &r->material_index,
+                                         &r->colors,         &r->materials, &r->vertex_colors };
     for (size_t i = 0; i < r->materials.count; i++)
         glint_material_release(((glint_material **)r->materials.items)[i]);
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
@@ -252,21 +179,118 @@ static void release(glint_mesh_reader *r)
     glint_mesh_text_close(&r->text);
 }
 
+// ---- Formats ----
+
+static const char READS[] = "glint reads .obj .stl .ply";
+
+/// Formats of other programs by the ending of a file's name.
+static const char *const ENDINGS[][2] = {
+    { "glb", "glTF" },
+    { "gltf", "glTF" },
+    { "off", "OFF" },
+    { "3mf", "3MF" },
+    { "amf", "AMF" },
+    { "fbx", "FBX" },
+    { "dae", "COLLADA" },
+    { "3ds", "3D Studio" },
+    { "blend", "Blender's" },
+    { "wrl", "VRML" },
+    { "vrml", "VRML" },
+    { "x3d", "X3D" },
+    { "usd", "USD" },
+    { "usda", "USD" },
+    { "usdc", "USD" },
+    { "usdz", "USD" },
+    { "abc", "Alembic" },
+    { "step", "STEP" },
+    { "stp", "STEP" },
+    { "iges", "IGES" },
+    { "igs", "IGES" },
+    { "dxf", "DXF" },
+    { "vtk", "VTK" },
+    { "vtp", "VTK" },
+    { "vtu", "VTK" },
+    { "msh", "Gmsh" },
+    { "mesh", "Medit" },
+    { "lwo", "LightWave" },
+    { "max", "3ds Max" },
+    { "c4d", "Cinema 4D" },
+    { "skp", "SketchUp" },
+    { "nff", "NFF (glint.nff reads it)" },
+    { "cif", "CIF" },
+    { "pdb", "PDB (glint.pdb reads it)" },
+    { "xyz", "XYZ (glint.xyz reads it)" },
+    { "gz", "compressed" },
+    { "zip", "compressed" },
+    { "xz", "compressed" },
+    { "bz2", "compressed" },
+    { "zst", "compressed" },
+    { "mtl", "materials of an .obj" },
+};
+
+/// By their first bytes, whatever the name.
+static const char *const BEGINNINGS[][2] = {
+    { "glTF", "glTF" },
+    { "PK\3\4", "a zip archive, as .3mf and .usdz are" },
+    { "Kaydara FBX", "FBX" },
+    { "BLENDER", "Blender's" },
+    { "#VRML", "VRML" },
+    { "\x1f\x8b", "compressed" },
+    { "\xff\xfe", "UTF-16, not UTF-8" },
+    { "\xfe\xff", "UTF-16, not UTF-8" },
+    { "OFF\n", "OFF" },
+    { "OFF\r", "OFF" },
+    { "# vtk DataFile", "VTK" },
+    { "<?xml", "XML" },
+    { "ISO-10303-21", "STEP" },
+    { "PXR-USDC", "USD" },
+    { "#usda", "USD" },
+};
+
+static const char *ending_of(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    return dot ? dot + 1 : "";
+}
+
+static glint_status refuse_foreign(const glint_mesh_reader *r)
+{
+    const char *kind = NULL, *ending = ending_of(r->text.path);
+    for (size_t i = 0; i < sizeof ENDINGS / sizeof *ENDINGS; i++)
+        if (strcasecmp(ending, ENDINGS[i][0]) == 0)
+            kind = ENDINGS[i][1];
+    for (size_t i = 0; i < sizeof BEGINNINGS / sizeof *BEGINNINGS; i++) {
+        const size_t length = strlen(BEGINNINGS[i][0]);
+        if (r->text.begin_bytes >= length && memcmp(r->text.begin, BEGINNINGS[i][0], length) == 0)
+            kind = BEGINNINGS[i][1];
+    }
+    return kind ? glint_fail(r->error, GLINT_ERR_FORMAT, "%s: is %s; %s", r->text.path, kind, READS) : GLINT_OK;
+}
+
 typedef glint_status (*reading)(glint_mesh_reader *reader);
 
-static reading reader_of(const char *path)
+static bool begins(const glint_mesh_text *text, const char *word)
 {
-    const char *dot = strrchr(path, '.');
-    if (dot && strcasecmp(dot, ".stl") == 0)
-        return glint_mesh_read_stl;
-    return dot && strcasecmp(dot, ".ply") == 0 ? glint_mesh_read_ply : glint_mesh_read_obj;
+    const size_t length = strlen(word), from = (size_t)text->start;
+    return text->begin_bytes > from + length && memcmp(text->begin + from, word, length) == 0 &&
+           text->begin[from + length] <= ' ';
+}
+
+/// By the first bytes where these say it, else by the ending of the name.
+static reading reader_of(const glint_mesh_text *text)
+{
+    const char *ending = ending_of(text->path);
+    const bool is_obj = strcasecmp(ending, "obj") == 0;
+    if (begins(text, "ply") || strcasecmp(ending, "ply") == 0)
+        return glint_mesh_read_ply;
+    return strcasecmp(ending, "stl") == 0 || (!is_obj && begins(text, "solid")) ? glint_mesh_read_stl
+                                                                                : glint_mesh_read_obj;
 }
 
 glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glint_shape **out, glint_error *error)
 {
     glint_mesh_reader r = { .desc = desc, .error = error };
-    const reading read = reader_of(path);
-    r.vertices.size = r.normals.size = 3 * sizeof(double);
+    r.vertices.size = r.normals.size = r.vertex_colors.size = 3 * sizeof(double);
     r.uv.size = 2 * sizeof(double);
     r.colors.size = 3;
     r.materials.size = sizeof(glint_material *);
@@ -278,9 +302,15 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
         desc->reads(desc->context, path);
     status = glint_mesh_text_open(&r.text, path, error);
     if (!status)
-        status = read(&r);
+        status = refuse_foreign(&r);
     if (!status)
-        status = make_mesh(&r, read != glint_mesh_read_obj, out);
+        status = reader_of(&r.text)(&r);
+    if (!status && has_bad_vertices(&r))
+        drop_vertices(&r);
+    if (!status)
+        status = make_mesh(&r, out);
+    if (!status)
+        tell_notes(&r);
     release(&r);
     return status;
 }

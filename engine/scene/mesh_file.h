@@ -32,16 +32,24 @@ typedef struct glint_mesh_text {
     const char *path;
     FILE *file;
     uint64_t size; ///< bytes
+    unsigned char begin[16]; ///< the first bytes, of which there are begin_bytes
+    size_t begin_bytes;
+    long start; ///< where the text begins: behind a byte order mark
+    bool lone_returns; ///< lines end in CR without LF
+    size_t skipped; ///< empty lines behind the line at hand that are passed over
     locale_t c_locale; ///< decimal points whatever the script's locale
     char *line;
-    size_t room, number; ///< number: of the line at hand, from 1
+    size_t room, longest; ///< bytes of a line
+    size_t number; ///< of the line at hand, from 1
     glint_error *error;
 } glint_mesh_text;
 
 /// Opens a file; to be closed whatever it returns.
 glint_status glint_mesh_text_open(glint_mesh_text *text, const char *path, glint_error *error);
 void glint_mesh_text_close(glint_mesh_text *text);
-/// The next line, without its end. *more: there was one. joined: a backslash at the end joins the following one.
+/// Goes on from a place of the file, bytes.
+glint_status glint_mesh_text_rewind(glint_mesh_text *text, long start);
+/// The next line, without its end, which is LF, CRLF or CR. *more: there was one. joined: a backslash at the end joins the following one.
 glint_status glint_mesh_next_line(glint_mesh_text *text, bool joined, bool *more);
 /// GLINT_ERR_FORMAT: "PATH: line N: WHAT expected, got 'GOT'".
 glint_status glint_mesh_refuse(const glint_mesh_text *text, const char *expected, const char *got);
@@ -61,26 +69,63 @@ static inline const char *glint_skip_blanks(const char *at)
 /// Whether a line begins with a word.
 bool glint_mesh_is_word(const char *line, const char *word);
 
-/// The file named `name` in the folder of `path`, or `name` where it begins at the root. NULL: out of memory; free() frees it.
+/// The file named `name` in the folder of `path`, or `name` where it begins at the root; where that is not there, the file of
+/// the same last name in the folder of `path`. NULL: out of memory; free() frees it.
 char *glint_mesh_beside(const char *path, const char *name);
 
 typedef struct glint_mesh_library glint_mesh_library; ///< mesh_mtl.h
+
+/// What the numbers of a corner name.
+typedef enum glint_mesh_index_kind {
+    GLINT_MESH_OF_VERTEX,
+    GLINT_MESH_OF_NORMAL,
+    GLINT_MESH_OF_UV,
+    GLINT_MESH_OF_COUNT
+} glint_mesh_index_kind;
+
+/// What is passed over or replaced in a file; each kind is one warning.
+typedef enum glint_mesh_note_kind {
+    GLINT_MESH_NOTE_FACE, ///< a face of fewer than 3 corners
+    GLINT_MESH_NOTE_VERTEX, ///< a face with a vertex that is not finite
+    GLINT_MESH_NOTE_NORMAL, ///< a normal of length 0
+    GLINT_MESH_NOTE_FREE_FORM, ///< curves and surfaces
+    GLINT_MESH_NOTE_UNKNOWN, ///< a statement
+    GLINT_MESH_NOTE_COLOR, ///< colours that are not shown
+    GLINT_MESH_NOTE_PICTURE, ///< a picture that is not shown
+    GLINT_MESH_NOTE_COUNT
+} glint_mesh_note_kind;
+
+typedef struct glint_mesh_note {
+    size_t count;
+    char first[160]; ///< the message about the first one
+} glint_mesh_note;
 
 /// A mesh while its file is read.
 typedef struct glint_mesh_reader {
     glint_mesh_text text;
     const glint_mesh_desc *desc;
     glint_mesh_array vertices, normals, uv, corners, corner_normals, sizes;
-    glint_mesh_array corner_uv; ///< of the corners up to the last that named one
+    glint_mesh_array corner_uv; ///< .obj: of the corners; none: those of the vertices, or none
     glint_mesh_array material_index; ///< of each face, where faces have materials of their own
     glint_mesh_library *library; ///< .obj: the materials; NULL: those of `desc`
-    glint_mesh_array colors; ///< .ply: sRGB codes of red, green and blue, of each vertex or face; none: there are none
+    glint_mesh_array colors; ///< sRGB codes of red, green and blue, of each vertex or face; none: there are none
     bool colors_of_faces; ///< not of vertices
-    glint_mesh_array materials; ///< .ply: glint_material *, owned; none: those of `desc`
+    glint_mesh_array vertex_colors; ///< .obj: three numbers a vertex, up to the last that has a colour
+    struct {
+        size_t index, line;
+    } far[GLINT_MESH_OF_COUNT]; ///< .obj: the largest number that named nothing so far, from 0, and its line; 0: none
+    glint_mesh_array materials; ///< of `colors`: glint_material *, owned; none: those of `desc`
     glint_mesh_set places; ///< .stl: of the vertices
     bool has_normals;
+    glint_mesh_note notes[GLINT_MESH_NOTE_COUNT];
     glint_error *error;
 } glint_mesh_reader;
+
+/// Counts something that is passed over; the first message of a kind is that of its warning.
+void glint_mesh_note_that(glint_mesh_reader *reader, glint_mesh_note_kind kind, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/// Corners whose normal is 0 have none: they take that of their face.
+glint_status glint_mesh_drop_normals(glint_mesh_reader *reader);
 
 /// Says that something is passed over; the file's name stands before the message.
 void glint_mesh_warn(const glint_mesh_desc *desc, const char *path, const char *format, ...)
@@ -91,8 +136,17 @@ glint_status glint_mesh_read_stl(glint_mesh_reader *reader);
 glint_status glint_mesh_read_ply(glint_mesh_reader *reader);
 /// Makes the materials, and the index of each face among them, of the colours of a file that is read.
 glint_status glint_mesh_color_faces(glint_mesh_reader *reader);
+/// Makes one material of the picture that a file names; a picture that cannot be read is a warning.
+glint_status glint_mesh_picture_faces(glint_mesh_reader *reader, const char *name);
 
-/// glint_mesh_create; flat: NULL, or faces without an area are no error but left out, and counted here.
-glint_status glint_mesh_make(const glint_mesh_desc *desc, size_t *flat, glint_shape **out, glint_error *error);
+/// Faces of files that cannot be as they are.
+typedef struct glint_mesh_faults {
+    size_t flat; ///< faces without an area, which are left out
+    size_t crossed; ///< polygons that cross themselves, which are cut as fans
+} glint_mesh_faults;
+
+/// glint_mesh_create; faults: NULL, or these are no errors but counted here.
+glint_status glint_mesh_make(const glint_mesh_desc *desc, glint_mesh_faults *faults, glint_shape **out,
+                             glint_error *error);
 
 #endif

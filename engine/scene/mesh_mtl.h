@@ -11,8 +11,8 @@ typedef struct glint_mesh_map {
 } glint_mesh_map;
 
 /// A pattern of the picture's first `channels` (1 or 3) times numbers.
-glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map *map, const double factor[3], size_t channels,
-                              glint_program **out, glint_error *error);
+glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map *map, const double factor[3],
+                              size_t channels, glint_program **out, glint_error *error);
 
 /// Whether a picture's red, green and blue are alike in the mean: heights are grey, directions of normals are bluish.
 glint_status glint_mesh_find_grey(const glint_texture *texture, bool *grey, glint_error *error);
@@ -28,6 +28,8 @@ void glint_mesh_library_use(glint_mesh_library *library, const char *name);
 glint_status glint_mesh_library_face(glint_mesh_library *library, uint32_t *number, glint_error *error);
 /// Makes the materials of a file that is read; what is missing is a warning.
 glint_status glint_mesh_library_make(glint_mesh_library *library, const glint_mesh_reader *reader);
+/// Whether a face has a material that a file describes; after glint_mesh_library_make.
+bool glint_mesh_library_found(const glint_mesh_library *library);
 /// Puts them into a description; the library keeps them until it is freed.
 void glint_mesh_library_give(const glint_mesh_library *library, const glint_mesh_reader *reader, glint_mesh_desc *desc);
 

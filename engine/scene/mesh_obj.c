@@ -1,13 +1,21 @@
 /// Wavefront .obj files, a line at a time: nothing but the vertices, normals, coordinates and faces read so far is kept.
 #include "engine/base/status.h"
+#include "engine/base/vec.h"
 #include "engine/scene/mesh_mtl.h"
 #include "engine/scene/objects.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#define NO_COLOR (-1.0)
+#define GREY_CODE 231 ///< as default materials have it: 0.8 of the light
+
 typedef glint_mesh_reader reader;
+typedef glint_mesh_index_kind index_kind;
+
+static const char *const KINDS[] = { "vertex", "normal", "texture coordinate" };
 
 static glint_status append(reader *r, glint_mesh_array *array, const void *item)
 {
@@ -21,98 +29,143 @@ static glint_status complain(const reader *r, const char *expected, const char *
 
 // ---- What a line says ----
 
-/// Notes that the corner at hand has the coordinates `uv`; GLINT_NO_UV: that all before it have what they have.
-static glint_status append_uv(reader *r, uint32_t uv)
+/// Three numbers, of coordinates two, of which the second may be missing. Those that are not finite go in as they are.
+static glint_status read_numbers(reader *r, const char **at, int count, double v[3])
 {
-    const uint32_t none = GLINT_NO_UV;
-    glint_status status = GLINT_OK;
-    while (r->corner_uv.count < r->corners.count && !status)
-        status = append(r, &r->corner_uv, &none);
-    return status || uv == GLINT_NO_UV ? status : append(r, &r->corner_uv, &uv);
+    for (int i = 0; i < count; i++) {
+        char *end;
+        *at = glint_skip_blanks(*at);
+        if (count == 2 && i == 1 && (!**at || **at == '#'))
+            break;
+        v[i] = glint_read_double(*at, &end, r->text.c_locale);
+        if (end == *at || !glint_ends_word(*end))
+            return complain(r, "a number", *at);
+        *at = end;
+    }
+    return GLINT_OK;
 }
 
-/// Three numbers, of coordinates two, of which the second may be missing; one more, the weight or a colour after them, is
-/// passed over.
-static glint_status read_numbers(reader *r, const char *at, int count, glint_mesh_array *into)
+/// Numbers after a vertex: three are its colour, as many programs write it, also with a fourth, alpha. One is its weight.
+static glint_status read_color(reader *r, const char *at)
+{
+    static const double grey[3] = { NO_COLOR, NO_COLOR, NO_COLOR };
+    double v[3];
+    int count = 0;
+    glint_status status = GLINT_OK;
+    for (char *end; count < 3; count++) {
+        at = glint_skip_blanks(at);
+        v[count] = glint_read_double(at, &end, r->text.c_locale);
+        if (end == at || !glint_ends_word(*end) || !(v[count] >= 0 && v[count] <= 255))
+            break;
+        at = end;
+    }
+    if (count < 3)
+        return GLINT_OK;
+    while (r->vertex_colors.count + 1 < r->vertices.count && !status)
+        status = append(r, &r->vertex_colors, grey);
+    return status ? status : append(r, &r->vertex_colors, v);
+}
+
+static glint_status read_vertex(reader *r, const char *at)
+{
+    double v[3];
+    glint_status status = read_numbers(r, &at, 3, v);
+    if (!status)
+        status = append(r, &r->vertices, v);
+    return status ? status : read_color(r, at);
+}
+
+static glint_status read_normal(reader *r, const char *at)
+{
+    double v[3];
+    glint_status status = read_numbers(r, &at, 3, v);
+    if (status)
+        return status;
+    if (!isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]) || vec_max_abs(v) == 0) {
+        v[0] = v[1] = v[2] = 0;
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_NORMAL, "line %zu: a normal of length 0 is none", r->text.number);
+    }
+    return append(r, &r->normals, v);
+}
+
+static glint_status read_pair(reader *r, const char *at)
 {
     double v[3] = { 0 };
-    for (int i = 0; i < count; i++) {
-        at = glint_skip_blanks(at);
-        if (count == 2 && i == 1 && (!*at || *at == '#'))
-            break;
-        glint_status status = glint_mesh_number(&r->text, &at, &v[i]);
-        if (status)
-            return status;
-    }
-    return append(r, into, v);
+    glint_status status = read_numbers(r, &at, 2, v);
+    for (int i = 0; i < 2; i++)
+        v[i] = isfinite(v[i]) ? v[i] : 0;
+    return status ? status : append(r, &r->uv, v);
 }
 
-/// A number of a vertex, normal or pair of coordinates, from 1, or from the end where negative; 0-based in *out.
-static glint_status read_index(reader *r, const char **at, size_t count, const char *what, uint32_t *out)
+/// A number of a vertex, normal or pair of coordinates, from 1, or from the end where negative; 0-based in *out. One that is
+/// not there yet may follow: the largest is checked at the end.
+static glint_status read_index(reader *r, const char **at, size_t count, index_kind kind, uint32_t *out)
 {
     char *end, expected[96];
     errno = 0;
     const long long value = strtoll(*at, &end, 10);
     const long long index = value < 0 ? (long long)count + value : value - 1;
-    if (end != *at && !errno && value != 0 && index >= 0 && index < (long long)count && index < INT32_MAX) {
+    if (end != *at && !errno && value == 0 && kind != GLINT_MESH_OF_VERTEX) {
         *at = end;
-        *out = (uint32_t)index;
+        *out = GLINT_NO_NORMAL; // and GLINT_NO_UV
         return GLINT_OK;
     }
-    snprintf(expected, sizeof expected, "the number of a %s, 1 .. %zu,", what, count);
-    return complain(r, expected, *at);
+    if (end == *at || errno || value == 0 || index < 0 || index >= INT32_MAX) {
+        snprintf(expected, sizeof expected, "the number of a %s, 1 .. %zu,", KINDS[kind], count);
+        return complain(r, expected, *at);
+    }
+    *at = end;
+    *out = (uint32_t)index;
+    if ((size_t)index >= count && (size_t)index > r->far[kind].index) {
+        r->far[kind].index = (size_t)index;
+        r->far[kind].line = r->text.number;
+    }
+    return GLINT_OK;
 }
 
-/// vt of a corner; where the file has none so far, its form alone is checked.
-static glint_status read_uv_number(reader *r, const char **at, const char *start)
+/// Another number of a corner, behind a slash; none where nothing is.
+static glint_status read_part(reader *r, const char **at, size_t count, index_kind kind, uint32_t *out)
 {
-    uint32_t uv;
-    char *end;
-    strtoll(*at, &end, 10);
-    if (end == *at)
-        return complain(r, "v, v/vt, v//vn or v/vt/vn", start);
-    if (r->uv.count == 0) {
-        *at = end;
-        return GLINT_OK;
-    }
-    glint_status status = read_index(r, at, r->uv.count, "texture coordinate", &uv);
-    return status ? status : append_uv(r, uv);
+    ++*at;
+    const bool is_number = (**at >= '0' && **at <= '9') || **at == '-' || **at == '+';
+    return is_number ? read_index(r, at, count, kind, out) : GLINT_OK;
 }
 
 /// v, v/vt, v//vn or v/vt/vn.
 static glint_status read_corner(reader *r, const char **at)
 {
-    uint32_t vertex, normal = GLINT_NO_NORMAL;
+    uint32_t vertex, normal = GLINT_NO_NORMAL, uv = GLINT_NO_UV;
     const char *start = *at;
-    glint_status status = read_index(r, at, r->vertices.count, "vertex", &vertex);
-    if (!status && **at == '/') {
-        ++*at;
-        if (**at != '/')
-            status = read_uv_number(r, at, start);
-        if (!status && **at == '/') {
-            ++*at;
-            status = read_index(r, at, r->normals.count, "normal", &normal);
-            r->has_normals = true;
-        }
-    }
+    glint_status status = read_index(r, at, r->vertices.count, GLINT_MESH_OF_VERTEX, &vertex);
+    if (!status && **at == '/')
+        status = read_part(r, at, r->uv.count, GLINT_MESH_OF_UV, &uv);
+    if (!status && **at == '/')
+        status = read_part(r, at, r->normals.count, GLINT_MESH_OF_NORMAL, &normal);
     if (!status && !glint_ends_word(**at))
         return complain(r, "v, v/vt, v//vn or v/vt/vn", start);
     if (!status)
         status = append(r, &r->corners, &vertex);
-    return status ? status : append(r, &r->corner_normals, &normal);
+    if (!status)
+        status = append(r, &r->corner_normals, &normal);
+    return status ? status : append(r, &r->corner_uv, &uv);
 }
 
 static glint_status read_face(reader *r, const char *at)
 {
-    const char *start = at;
     uint32_t size = 0, material;
     for (at = glint_skip_blanks(at); *at && *at != '#'; at = glint_skip_blanks(at), size++) {
         glint_status status = read_corner(r, &at);
         if (status)
             return status;
     }
-    if (size < 3)
-        return complain(r, "3 corners or more", start);
+    if (size < 3) {
+        r->corners.count -= size;
+        r->corner_normals.count -= size;
+        r->corner_uv.count -= size;
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_FACE, "line %zu: a face of fewer than 3 corners is left out",
+                             r->text.number);
+        return GLINT_OK;
+    }
     glint_status status = append(r, &r->sizes, &size);
     if (!status && r->library)
         status = glint_mesh_library_face(r->library, &material, r->error);
@@ -145,11 +198,34 @@ static glint_status read_material(reader *r, char *at, bool *known)
     return GLINT_OK;
 }
 
+static bool is_among(const char *line, const char *const *words)
+{
+    while (*words && !glint_mesh_is_word(line, *words))
+        words++;
+    return *words != NULL;
+}
+
+/// A statement that is no part of a mesh.
+static void pass_over(reader *r, const char *at)
+{
+    static const char *const silent[] = { "vp",         "g",         "o",      "s",      "l",        "p",
+                                          "bevel",      "lod",       "mg",     "usemap", "c_interp", "d_interp",
+                                          "shadow_obj", "trace_obj", "maplib", NULL };
+    static const char *const free_form[] = { "cstype", "deg",  "bmat", "step", "curv", "curv2", "surf",  "parm",
+                                             "trim",   "hole", "scrv", "sp",   "end",  "con",   "ctech", "stech",
+                                             "bsp",    "bzp",  "cdc",  "cdp",  "res",  NULL };
+    if (is_among(at, silent))
+        return;
+    const bool is_curve = is_among(at, free_form);
+    const int length = (int)strcspn(at, " \t");
+    glint_mesh_note_that(r, is_curve ? GLINT_MESH_NOTE_FREE_FORM : GLINT_MESH_NOTE_UNKNOWN,
+                         is_curve ? "line %zu: '%.*s' is passed over: free-form curves and surfaces are not read"
+                                  : "line %zu: '%.*s' is passed over: no statement of .obj files",
+                         r->text.number, length < 24 ? length : 24, at);
+}
+
 static glint_status read_statement(reader *r)
 {
-    static const char *const passed_over[] = { "vp",       "g",          "o",         "s",      "l",      "p",
-                                               "bevel",    "lod",        "mg",        "usemap", "maplib", "c_interp",
-                                               "d_interp", "shadow_obj", "trace_obj", NULL };
     bool known;
     char *at = r->text.line;
     while (glint_is_blank(*at))
@@ -157,21 +233,91 @@ static glint_status read_statement(reader *r)
     if (!*at || *at == '#')
         return GLINT_OK;
     if (glint_mesh_is_word(at, "v"))
-        return read_numbers(r, at + 1, 3, &r->vertices);
+        return read_vertex(r, at + 1);
     if (glint_mesh_is_word(at, "vn"))
-        return read_numbers(r, at + 2, 3, &r->normals);
+        return read_normal(r, at + 2);
     if (glint_mesh_is_word(at, "vt"))
-        return read_numbers(r, at + 2, 2, &r->uv);
+        return read_pair(r, at + 2);
     if (glint_mesh_is_word(at, "f") || glint_mesh_is_word(at, "fo"))
         return read_face(r, at + (at[1] == 'o' ? 2 : 1));
-    for (int i = 0; passed_over[i]; i++)
-        if (glint_mesh_is_word(at, passed_over[i]))
-            return GLINT_OK;
     glint_status status = read_material(r, at, &known);
-    return known ? status : complain(r, "v, vn, vt, f, g, o, s, usemtl, mtllib, l, p or #", at);
+    if (!known)
+        pass_over(r, at);
+    return status;
 }
 
 // ---- The file ----
+
+/// Whether all numbers of one kind name something that the file has.
+static glint_status check_far(reader *r, index_kind kind, size_t count)
+{
+    char expected[96], got[32];
+    if (!r->far[kind].line || r->far[kind].index < count)
+        return GLINT_OK;
+    snprintf(expected, sizeof expected, "the number of a %s, 1 .. %zu,", KINDS[kind], count);
+    snprintf(got, sizeof got, "%zu", r->far[kind].index + 1);
+    r->text.number = r->far[kind].line;
+    return complain(r, expected, got);
+}
+
+static bool names_any(const glint_mesh_array *numbers)
+{
+    for (size_t i = 0; i < numbers->count; i++)
+        if (((const uint32_t *)numbers->items)[i] != GLINT_NO_UV)
+            return true;
+    return false;
+}
+
+/// Checks the numbers of corners, now that all is read. Where the file has no normals, or no coordinates, none are named.
+static glint_status check_corners(reader *r)
+{
+    glint_status status = check_far(r, GLINT_MESH_OF_VERTEX, r->vertices.count);
+    if (!status && r->normals.count)
+        status = check_far(r, GLINT_MESH_OF_NORMAL, r->normals.count);
+    if (!status && r->uv.count)
+        status = check_far(r, GLINT_MESH_OF_UV, r->uv.count);
+    r->has_normals = r->normals.count && names_any(&r->corner_normals);
+    if (!r->uv.count || !names_any(&r->corner_uv))
+        r->uv.count = r->corner_uv.count = 0;
+    return !status && r->has_normals && r->notes[GLINT_MESH_NOTE_NORMAL].count ? glint_mesh_drop_normals(r) : status;
+}
+
+/// The colours of vertices as codes: 0 .. 1, or 0 .. 255 where one is above 1. Vertices without one are grey.
+static glint_status take_colors(reader *r)
+{
+    const double *v = r->vertex_colors.items;
+    const size_t count = 3 * r->vertex_colors.count;
+    double most = 0;
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < count; i++)
+        most = fmax(most, v[i]);
+    for (size_t i = 0; i < r->vertices.count && !status; i++) {
+        uint8_t codes[3];
+        for (size_t c = 0; c < 3; c++) {
+            const bool has = i < r->vertex_colors.count && v[3 * i + c] != NO_COLOR;
+            codes[c] = has ? (uint8_t)(v[3 * i + c] * (most > 1 ? 1 : 255) + 0.5) : GREY_CODE;
+        }
+        status = append(r, &r->colors, codes);
+    }
+    return status;
+}
+
+/// Gives faces the colours of their vertices, unless they have materials.
+static glint_status color(reader *r)
+{
+    if (!r->vertex_colors.count || r->desc->material || r->desc->material_count)
+        return GLINT_OK;
+    if (r->library && glint_mesh_library_found(r->library)) {
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR,
+                             "the colours of its vertices are passed over: its faces have materials");
+        return GLINT_OK;
+    }
+    glint_mesh_library_free(r->library);
+    r->library = NULL;
+    r->material_index.count = 0;
+    glint_status status = take_colors(r);
+    return status ? status : glint_mesh_color_faces(r);
+}
 
 glint_status glint_mesh_read_obj(reader *r)
 {
@@ -187,11 +333,11 @@ glint_status glint_mesh_read_obj(reader *r)
             status = read_statement(r);
     }
     if (!status && r->sizes.count == 0)
-        status = glint_fail(r->error, GLINT_ERR_FORMAT, "%s: faces expected, got %zu vertices and none", r->text.path,
-                            r->vertices.count);
-    if (!status && r->corner_uv.count)
-        status = append_uv(r, GLINT_NO_UV);
-    if (!status && !r->corner_uv.count)
-        r->uv.count = 0; // no face names them
-    return !status && r->library ? glint_mesh_library_make(r->library, r) : status;
+        status = glint_fail(r->error, GLINT_ERR_FORMAT, "%s: faces expected, got %zu vertices and none%s", r->text.path,
+                            r->vertices.count, r->vertices.count ? "" : ": is it a Wavefront .obj?");
+    if (!status)
+        status = check_corners(r);
+    if (!status && r->library)
+        status = glint_mesh_library_make(r->library, r);
+    return status ? status : color(r);
 }

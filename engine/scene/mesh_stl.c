@@ -61,25 +61,40 @@ static glint_status read_binary(glint_mesh_reader *r, uint32_t count)
 
 static const char *const WORDS[] = { "facet", "outer", "vertex", "vertex", "vertex", "endloop", "endfacet" };
 
-/// A line of a facet, the `place`-th from 0; after the last comes the first of the next one, or the end of the solid.
-static glint_status read_statement(glint_mesh_reader *r, const char *at, int *place, double corners[3][3])
+/// Where the lines of a text are.
+typedef struct state {
+    int place; ///< 0 .. 6, in a facet; 0 also between facets
+    bool ended; ///< the last solid has ended
+    double corners[3][3];
+} state;
+
+/// A line of a facet, or one between facets. What stands behind a solid is passed over, up to the next one.
+static glint_status read_statement(glint_mesh_reader *r, const char *at, state *s)
 {
     char expected[32];
-    if (*place == 0 && (glint_mesh_is_word(at, "endsolid") || glint_mesh_is_word(at, "solid")))
+    const int place = s->place;
+    const bool ends = glint_mesh_is_word(at, "endsolid");
+    if (place == 0 && (ends || glint_mesh_is_word(at, "solid"))) {
+        s->ended = ends;
         return GLINT_OK;
-    snprintf(expected, sizeof expected, *place ? "%s" : "%s or endsolid", WORDS[*place]);
-    if (!glint_mesh_is_word(at, WORDS[*place]))
+    }
+    if (s->ended && !glint_mesh_is_word(at, WORDS[0])) {
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, "line %zu, behind the solid, is passed over", r->text.number);
+        return GLINT_OK;
+    }
+    snprintf(expected, sizeof expected, place ? "%s" : "%s or endsolid", WORDS[place]);
+    if (!glint_mesh_is_word(at, WORDS[place]))
         return glint_mesh_refuse(&r->text, expected, at);
-    if (*place >= 2 && *place <= 4) {
+    if (place >= 2 && place <= 4) {
         at += sizeof "vertex" - 1;
         for (int c = 0; c < 3; c++) {
-            glint_status status = glint_mesh_number(&r->text, &at, &corners[*place - 2][c]);
+            glint_status status = glint_mesh_number(&r->text, &at, &s->corners[place - 2][c]);
             if (status)
                 return status;
         }
     }
-    *place = (*place + 1) % 7;
-    return *place ? GLINT_OK : add_triangle(r, corners);
+    s->place = (place + 1) % 7;
+    return s->place ? GLINT_OK : add_triangle(r, s->corners);
 }
 
 /// The next line in place, its first word in small letters; *at NULL: there is none.
@@ -103,38 +118,59 @@ static glint_status next_statement(glint_mesh_reader *r, char **at)
 
 static glint_status read_text(glint_mesh_reader *r)
 {
-    int place = 0;
     char *at;
-    double corners[3][3];
+    state s = { 0 };
     glint_status status = next_statement(r, &at);
     while (!status && at) {
-        status = read_statement(r, at, &place, corners);
+        status = read_statement(r, at, &s);
         if (!status)
             status = next_statement(r, &at);
     }
-    return !status && place ? glint_mesh_refuse(&r->text, WORDS[place], "the end of the file") : status;
+    return !status && s.place ? glint_mesh_refuse(&r->text, WORDS[s.place], "the end of the file") : status;
 }
 
 // ---- The file ----
 
-/// A file whose size fits its number of triangles is binary, whatever its head says; "solid" begins some of both kinds.
+/// Whether a file is text: "solid" is its first word, and its first bytes have a facet or an end, or no byte that no text has.
+static bool is_text(const char *bytes, size_t count)
+{
+    size_t at = 0;
+    bool printable = true, facets = false;
+    while (at < count && (glint_is_blank(bytes[at]) || bytes[at] == '\r' || bytes[at] == '\n'))
+        at++;
+    if (count - at < 5 || strncasecmp(bytes + at, "solid", 5) != 0)
+        return false;
+    for (; at < count; at++) {
+        printable = printable && bytes[at] != 0;
+        facets = facets || strncasecmp(bytes + at, "facet", 5) == 0 || strncasecmp(bytes + at, "endsolid", 8) == 0;
+    }
+    return facets || printable;
+}
+
+/// A file whose size fits its number of triangles is binary, whatever its head says: "solid" begins some of both kinds. So
+/// is a longer one that is no text; the bytes behind its triangles are passed over.
 glint_status glint_mesh_read_stl(glint_mesh_reader *r)
 {
-    unsigned char head[HEAD_BYTES] = { 0 };
+    char bytes[1024 + 8] = { 0 }; // zeros behind what is looked at
     uint32_t count;
-    glint_status status;
-    const size_t got = fread(head, 1, sizeof head, r->text.file);
-    memcpy(&count, head + 80, sizeof count);
-    const bool fits = got == sizeof head && r->text.size == HEAD_BYTES + (uint64_t)count * TRIANGLE_BYTES;
-    const bool text = !fits && strncasecmp((const char *)head, "solid", 5) == 0;
-    if (!fits && !text)
-        return glint_fail(r->error, GLINT_ERR_FORMAT,
-                          "%s: \"solid\" or %d bytes and %d for each of its %u triangles expected, got %llu bytes",
-                          r->text.path, HEAD_BYTES, TRIANGLE_BYTES, count, (unsigned long long)r->text.size);
-    if (text)
-        rewind(r->text.file);
-    status = text ? read_text(r) : read_binary(r, count);
+    glint_mesh_text *t = &r->text;
+    glint_status status = glint_mesh_text_rewind(t, 0);
+    const size_t got = status ? 0 : fread(bytes, 1, sizeof bytes - 8, t->file);
+    memcpy(&count, bytes + 80, sizeof count);
+    const uint64_t needed = HEAD_BYTES + (uint64_t)count * TRIANGLE_BYTES;
+    const bool text = t->size != needed && is_text(bytes + t->start, got - (size_t)t->start);
+    if (!status && !text && (got < HEAD_BYTES || t->size < needed))
+        status = glint_fail(r->error, GLINT_ERR_FORMAT,
+                            "%s: \"solid\" or %d bytes and %d for each of its %u triangles expected, got %llu bytes",
+                            t->path, HEAD_BYTES, TRIANGLE_BYTES, count, (unsigned long long)t->size);
+    if (!status)
+        status = glint_mesh_text_rewind(t, text ? t->start : HEAD_BYTES);
+    if (!status)
+        status = text ? read_text(r) : read_binary(r, count);
+    if (!status && !text && t->size > needed)
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, "%llu bytes behind the last triangle are passed over",
+                             (unsigned long long)(t->size - needed));
     if (!status && r->sizes.count == 0)
-        status = glint_fail(r->error, GLINT_ERR_FORMAT, "%s: triangles expected, got none", r->text.path);
+        status = glint_fail(r->error, GLINT_ERR_FORMAT, "%s: triangles expected, got none", t->path);
     return status;
 }

@@ -401,7 +401,8 @@ function tests.refused()
   refuses("line 7: end_header expected, got 'the end of the file'", "a.ply", head .. vertex)
   refuses("line 2: format above end_header expected, got 'end_header'", "a.ply", "ply\nend_header\n")
   refuses("an element vertex with x, y and z expected", "a.ply", head .. face .. "end_header\n3 0 1 2\n")
-  refuses("an element face with a list vertex_indices expected, got 3 vertices and no face", "a.ply",
+  refuses("an element face with a list vertex_indices expected, got 3 vertices and no face; " ..
+    "glint.points reads point clouds", "a.ply",
     head .. vertex .. "end_header\n0 0 0\n1 0 0\n0 1 0\n")
   refuses("element vertex: no more than the file has room for expected, got 1000000000000", "a.ply",
     head .. "element vertex 1000000000000\nproperty int x\nproperty int y\nproperty int z\n" .. face .. "end_header\n")
@@ -411,8 +412,8 @@ function tests.refused()
   refuses("face 1 of 1: the number of a vertex, 0 .. 2, expected, got 3", "a.ply", body .. "3 0 1 3\n")
   refuses("face 1 of 1: the number of a vertex, 0 .. 2, expected, got -1", "a.ply", body .. "3 0 1 -1\n")
   refuses("face 1 of 1: the number of a vertex, 0 .. 2, expected, got 1.5", "a.ply", body .. "3 0 1 1.5\n")
-  refuses("face 1 of 1: 3 corners or more expected, got fewer", "a.ply", body .. "2 0 1\n")
-  refuses("face 1 of 1: a number expected, got ''", "a.ply", body .. "3 0 1\n")
+  refuses("a face of 3 corners or more expected, got none", "a.ply", body .. "2 0 1\n")
+  refuses("face 1 of 1: a line expected, got the end of the file", "a.ply", body .. "3 0 1\n")
   refuses("face 1 of 1: the end of the line expected, got more numbers", "a.ply", body .. "3 0 1 2 2\n")
   refuses("face 1 of 1: a line expected, got the end of the file", "a.ply", body)
   refuses("vertex 3 of 3: a number expected, got 'red 0'", "a.ply", head .. vertex .. face .. "end_header\n0 0 0\n1 0 0\n0 red 0\n3 0 1 2\n")

@@ -1,0 +1,258 @@
+-- Files of meshes as programs write them, beside what the formats' descriptions show: line ends, byte order marks, faces and
+-- normals that are none, colours, strips, statements of other uses, lines of .mtl files that are wrong, other formats.
+local build = os.getenv "BUILD" or "build"
+local tally = dofile "tests/lua/tally.lua"
+local check = tally.check
+local glint = require "glint"
+
+local folder = build .. "/tests/mesh_variants"
+assert(os.execute(("rm -rf '%s' && mkdir -p '%s/sub'"):format(folder, folder)))
+
+local function write(name, ...)
+  local path = folder .. "/" .. name
+  local file = assert(io.open(path, "wb"))
+  assert(file:write(...))
+  assert(file:close())
+  return path
+end
+
+-- Warnings are the command's: it loads the mesh, and what it prints without the path is what a test wants.
+local function warnings_of(path)
+  local script = write("try.lua", ("local glint = require 'glint' glint.mesh { file = %q }"):format(path))
+  local pipe = assert(io.popen(("'%s' '%s' -o none 2>&1"):format(os.getenv "GLINT" or build .. "/glint", script)))
+  local list = {}
+  for line in pipe:lines() do
+    local text = line:match "^glint: warning: (.*)$"
+    if text then list[#list + 1] = (text:gsub("^" .. path:gsub("%p", "%%%0") .. ": ", "")) end
+  end
+  pipe:close()
+  return list
+end
+
+local function warns(want, path)
+  local list = warnings_of(path)
+  check(table.concat(list, "\n") == want, "<%s> expected, got <%s>", want, table.concat(list, "\n"))
+end
+
+local function load(name, ...) return glint.mesh { file = write(name, ...) } end
+
+local function refuses(want, name, ...)
+  local path = write(name, ...)
+  local good, message = pcall(glint.mesh, { file = path })
+  message = tostring(message):gsub("^.-: mesh[.:] ?", "", 1)
+  check(not good and message == path .. ": " .. want, "<%s> expected, got <%s>", want, message)
+end
+
+local function is(v, r, g, b) return v[1] == r and v[2] == g and v[3] == b end
+
+local tests = {}
+
+local BOM <const> = "\xef\xbb\xbf"
+local TRIANGLE <const> = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+local STL <const> = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"
+local HEAD <const> = "ply\nformat ascii 1.0\n"
+local VERTEX <const> = "property float x\nproperty float y\nproperty float z\n"
+local FACE <const> = "element face 1\nproperty list uchar int vertex_indices\n"
+local PLY <const> = HEAD .. "element vertex 3\n" .. VERTEX .. FACE .. "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+
+function tests.line_ends_and_marks()
+  write("m.mtl", BOM .. "newmtl a\rKd 1 0 0\r")
+  for _, ending in ipairs { "\n", "\r\n", "\r", "\r\r\n" } do
+    for _, mark in ipairs { "", BOM } do
+      local text = "mtllib m.mtl\n" .. TRIANGLE .. "# a comment\n\nusemtl a\nf 1 2 \\\n3\n"
+      local mesh = load("a.obj", mark .. text:gsub("\n", ending))
+      check(mesh.count == 1 and is(mesh.materials[1].diffuse, 1, 0, 0), "%q of .obj and .mtl", mark .. ending)
+      check(load("a.stl", mark .. STL:gsub("\n", ending)).count == 1, "%q of .stl", mark .. ending)
+      check(load("a.ply", mark .. PLY:gsub("\n", ending)).count == 1, "%q of .ply", mark .. ending)
+      refuses("line 5: a number expected, got 'zero 0'", "b.obj", mark .. (TRIANGLE .. "\nv 0 zero 0\n"):gsub("\n", ending))
+    end
+  end
+  -- what follows the head may begin with any byte
+  for _, ending in ipairs { "\n", "\r\n", "\r" } do
+    for _, first in ipairs { "\n", "\r", "\xef" } do
+      local head = ("ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar kind\n" .. VERTEX .. FACE .. "end_header\n")
+        :gsub("\n", ending)
+      local mesh = load("b.ply", head, first, ("<fffBfffBfffBi4i4i4"):pack(0, 0, 0, 1, 1, 0, 0, 2, 0, 1, 0, 3, 0, 1, 2))
+      check(mesh.count == 1 and mesh.max.y == 1, "%q before %q", ending, first)
+    end
+  end
+end
+
+function tests.faces_that_are_none()
+  local path = write("f.obj", TRIANGLE .. "f 1 1 2\nf 1 2 3\nf 1 2\nf 3 2\nf 1\n")
+  check(glint.mesh { file = path }.count == 1, "one triangle")
+  warns("1 of 2 faces are left out: they have no area\nline 6: a face of fewer than 3 corners is left out, and 2 more", path)
+  refuses("faces expected, got 3 vertices and none", "f.obj", TRIANGLE .. "f 1 2\n")
+  for _, text in ipairs { "f 1//0 2//0 3//0", "f 1/0 2/0 3/0", "f 1/1/ 2/1/ 3/1/", "f 1// 2// 3//", "f 1/ 2/ 3/", "f 1/0/0 2/0/0 3/0/0",
+    "f 1//5 2//5 3//5", "fo 1 2 3", "f 1/9 2/9 3/9" } do
+    check(load("c.obj", TRIANGLE, text, "\n").count == 1, "%s", text)
+    check(warnings_of(folder .. "/c.obj")[1] == nil, "%s: no warning", text)
+  end
+  check(load("late.obj", "f 1 2 3\n", TRIANGLE).count == 1, "faces before vertices")
+  refuses("line 4: the number of a vertex, 1 .. 3, expected, got '4'", "far.obj", TRIANGLE .. "f 1 2 4\nf 1 2 3\n")
+  refuses("line 5: the number of a normal, 1 .. 1, expected, got '2'", "far.obj", TRIANGLE .. "vn 0 0 1\nf 1//2 2//1 3//1\n")
+  refuses("line 4: the number of a vertex, 1 .. 3, expected, got '0 1 2'", "far.obj", TRIANGLE .. "f 0 1 2\n")
+  path = write("n.obj", TRIANGLE .. "vn 0 0 1\nvn 0 0 0\nvn nan 0 0\nf 1//1 2//2 3//1\n")
+  local mesh = glint.mesh { file = path }
+  check(mesh.count == 1 and mesh.shading == "phong", "a normal of 0 is none")
+  warns("line 5: a normal of length 0 is none, and 1 more", path)
+  path = write("nan.obj", TRIANGLE .. "v nan 0 0\nv inf 0 0\nf 1 2 3\nf 1 2 4\nf 3 2 5\n")
+  mesh = glint.mesh { file = path }
+  check(mesh.count == 1 and mesh.max.x == 1, "faces of vertices that are not finite")
+  warns("face 2 is left out: a vertex of it is not finite, and 1 more", path)
+  path = write("cross.obj", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 2 0\nf 1 2 3 4\nf 1 2 3\n")
+  check(glint.mesh { file = path }.count == 3, "a polygon that crosses itself is a fan")
+  warns("1 of 2 faces cross themselves: they are cut as fans", path)
+end
+
+function tests.statements_of_other_uses()
+  local path = write("s.obj", "cstype bspline\ndeg 3\n" .. TRIANGLE .. "curv 0 1 1 2 3\nend\nvp 0 1\nl 1 2\np 1\nsolid x\nweird\nf 1 2 3\n")
+  check(glint.mesh { file = path }.count == 1, "the mesh is there")
+  warns("line 1: 'cstype' is passed over: free-form curves and surfaces are not read, and 3 more\n" ..
+    "line 11: 'solid' is passed over: no statement of .obj files, and 1 more", path)
+  refuses("faces expected, got 0 vertices and none: is it a Wavefront .obj?", "text.obj", "Dear reader,\nthis is no mesh.\n")
+end
+
+function tests.colours_of_vertices()
+  local function color(text) return load("v.obj", text).materials[1].diffuse end
+  check(is(color "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n", 1, 0, 0), "0 .. 1")
+  check(is(color "v 0 0 0 0 255 0\nv 1 0 0 0 255 0\nv 0 1 0 0 255 0\nf 1 2 3\n", 0, 1, 0), "0 .. 255")
+  check(is(color "v 0 0 0 0 0 1 1\nv 1 0 0 0 0 1 1\nv 0 1 0 0 0 1 1\nf 1 2 3\n", 0, 0, 1), "with alpha")
+  check(is(color "v 0 0 0 1.0\nv 1 0 0 1.0\nv 0 1 0 1.0\nf 1 2 3\n", 0.8, 0.8, 0.8), "a weight is no colour")
+  local mesh = load("v.obj", "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nv 5 0 0 0 0 1\nv 6 0 0 0 0 1\nv 5 1 0 0 0 1\nf 1 2 3\nf 4 5 6\n")
+  check(#mesh.materials == 2 and mesh.materials[1].name == "#ff0000" and mesh.materials[2].name == "#0000ff", "a material a colour")
+  check(#load("v.obj", TRIANGLE, "v 5 0 0 0 0 1\nf 1 2 3\nf 2 3 4\n").materials == 2, "vertices without a colour are grey")
+  write("v.mtl", "newmtl a\nKd 0 1 0\n")
+  local text = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nusemtl a\nf 1 2 3\n"
+  check(is(color("mtllib v.mtl\n" .. text), 0, 1, 0), "materials come first")
+  warns("the colours of its vertices are passed over: its faces have materials", folder .. "/v.obj")
+  check(is(color(text), 1, 0, 0), "a material that no file has does not")
+  check(is(glint.mesh { file = folder .. "/v.obj", material = glint.material { diffuse = 0.5 } }.material.diffuse, 0.5, 0.5, 0.5),
+    "a material of the script comes first")
+end
+
+function tests.materials()
+  local function material(text)
+    write("t.mtl", text)
+    return load("t.obj", "mtllib t.mtl\n", TRIANGLE, "vt 0 0\nusemtl a\nf 1/1 2/1 3/1\n").materials[1]
+  end
+  local path = folder .. "/t.obj"
+  for _, text in ipairs { "d 1.0\nTr 1.0", "Tr 1.0\nd 1.0" } do
+    local m = material("newmtl a\nKd 1 0 0\n" .. text .. "\n")
+    check(is(m.diffuse, 1, 0, 0) and is(m.transmission, 0, 0, 0), "d counts where both stand")
+    warns("", path)
+  end
+  check(is(material("newmtl a\nKd 1 0 0\nTr 1\n").transmission, 1, 1, 1), "Tr 1")
+  warns("material 'a' cannot be seen: d 0, or Tr 1, lets all light through", path)
+  local m = material "newmtl b\nNs -1\nnewmtl a\nKd 0.25 0.5 0.75\nKd 1 red 0\nNs 12\nKs spectral x.rfl\nd 2\nmap_Kd -clamp on\nNs 9\n"
+  check(is(m.diffuse, 0.25, 0.5, 0.75) and m.shininess == 9 and is(m.specular, 0, 0, 0), "a bad line is one line")
+  local mtl = folder .. "/t.mtl: "
+  warns(mtl .. "line 2: a number >= 0 expected, got '-1'; the line is passed over, and 4 more", path)
+  material "newmtl a\nKd 1 1 1 # white\nKe 0 0 0\nKe 2 0 0\nKa 1 1 1\nnorm n.png\nnorm m.png\nmap_Pr r.png\nPs 0\nNi 1.45\nTf 1 1 1\nwhatever\n"
+  warns(mtl .. "Ke, norm, map_Pr, whatever are passed over: no field of a material", path)
+  m = material "newmtl a\nKd 1 0.5 0\nPr 0.25\nPm 1\nKs 0.5 0.5 0.5\nillum 3\n"
+  check(m.model == "cook_torrance" and m.roughness == 0.25 and is(m.f0, 1, 0.5, 0) and is(m.diffuse, 0, 0, 0) and is(m.mirror, 0, 0, 0), "a metal")
+  m = material "newmtl a\nKd 1 0.5 0\nPr 0.75\n"
+  check(m.roughness == 0.75 and math.abs(m.f0[1] - 0.04) < 1e-15 and is(m.diffuse, 1, 0.5, 0) and is(m.specular, 1, 1, 1), "a rough plastic")
+  for illum = 0, 10 do
+    m = material(("newmtl a\nKd 0.5 0.5 0.5\nKs 0.25 0.25 0.25\nNi 1.4\nillum %d\n"):format(illum))
+    local has_mirror, is_fresnel = illum >= 3 and illum <= 7, illum == 5 or illum == 7
+    check(is(m.mirror, table.unpack(has_mirror and { 0.25, 0.25, 0.25 } or { 0, 0, 0 })) and m.fresnel == is_fresnel, "illum %d", illum)
+    check(is(m.specular, table.unpack(illum < 2 and { 0, 0, 0 } or { 0.25, 0.25, 0.25 })), "illum %d: a highlight", illum)
+    m = material(("newmtl a\nKd 0.5 0.5 0.5\nNi 1.4\nd 0.5\nillum %d\n"):format(illum))
+    check(m.ior == ((illum == 6 or illum == 7) and 1.4 or 1) and is(m.transmission, 0.5, 0.5, 0.5), "illum %d: what is bent", illum)
+  end
+  write("my file.mtl", "newmtl a\nKd 0 0 1\n")
+  check(is(load("q.obj", "mtllib \"my file.mtl\"\n", TRIANGLE, "usemtl a\nf 1 2 3\n").materials[1].diffuse, 0, 0, 1), "a name in quotes")
+  write("base.mtl", "newmtl a\nKd 0 1 1\n")
+  check(is(load("q.obj", "mtllib C:\\work\\base.mtl\n", TRIANGLE, "usemtl a\nf 1 2 3\n").materials[1].diffuse, 0, 1, 1),
+    "a path of another machine: the file of that name beside the mesh")
+end
+
+function tests.stl()
+  local one = { ("\0"):rep(80), ("<I4"):pack(1), ("<fff"):pack(0, 0, 1), ("<fff"):pack(0, 0, 0), ("<fff"):pack(1, 0, 0),
+    ("<fff"):pack(0, 1, 0), "\0\0" }
+  local binary = table.concat(one)
+  one[1] = ("solid of CAD"):rep(7):sub(1, 80)
+  for name, text in pairs { blank = " " .. STL, lines = "\n\t\n" .. STL, capitals = STL:upper(), two = STL .. "\n" .. STL, exact = binary } do
+    check(load("a.stl", text).count == (name == "two" and 2 or 1), "%s", name)
+    warns("", folder .. "/a.stl")
+  end
+  for extra = 1, 101, 50 do
+    for _, text in ipairs { binary, table.concat(one) } do
+      local path = write("long.stl", text, ("\0"):rep(extra))
+      check(glint.mesh { file = path }.count == 1, "%d bytes more", extra)
+      warns(("%d bytes behind the last triangle are passed over"):format(extra), path)
+    end
+  end
+  local path = write("end.stl", STL, "\26\nmade by hand\n", STL)
+  check(glint.mesh { file = path }.count == 2, "words between solids")
+  warns("line 10, behind the solid, is passed over, and 1 more", path)
+  refuses("\"solid\" or 84 bytes and 50 for each of its 1 triangles expected, got 133 bytes", "short.stl", binary:sub(1, -2))
+  check(load("stl.txt", STL).count == 1 and load("ply.txt", PLY).count == 1, "by the first bytes, where the name says nothing")
+end
+
+function tests.ply()
+  local vertices = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n"
+  local strips = "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+  local mesh = load("s.ply", HEAD, "element vertex 4\n", VERTEX, strips, vertices, "4 0 1 2 3\n")
+  check(mesh.count == 2, "a strip of two triangles")
+  local scene = glint.scene { mesh }
+  for _, at in ipairs { { 0.2, 0.2 }, { 0.9, 0.9 } } do
+    check(scene:cast({ at[1], at[2], 5 }, { 0, 0, -1 }).normal.z == 1, "both are seen from the front")
+  end
+  mesh = load("s.ply", HEAD, "element vertex 4\n", VERTEX, strips, vertices, "11 0 1\n2 -1 1 3 2 -1\n0 1 -1\n")
+  check(mesh.count == 2, "-1 ends a strip; a list goes over several lines")
+  local binary = HEAD:gsub("ascii", "binary_big_endian")
+  mesh = load("s.ply", binary, "element vertex 4\n", VERTEX, strips, (">fffffffffffff"):sub(1, 13):pack(0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0),
+    (">i4i4i4i4i4"):pack(4, 0, 1, 2, 3))
+  check(mesh.count == 2, "binary")
+  refuses("tristrips 1 of 1: the number of a vertex, 0 .. 3, expected, got -2", "s.ply", HEAD, "element vertex 4\n", VERTEX, strips, vertices,
+    "3 0 1 -2\n")
+  check(load("l.ply", HEAD, "element vertex 3\n", VERTEX, FACE, "end_header\n0\n0 0\n1 0\n0\n\n0 1 0\n3 0\n1 2\n").count == 1,
+    "a vertex over several lines")
+  mesh = load("nan.ply", HEAD, "element vertex 4\n", VERTEX, FACE, "end_header\n0 0 0\n1 0 0\nnan nan nan\n0 1 0\n3 0 1 3\n")
+  check(mesh.count == 1 and mesh.max.x == 1 and mesh.min.x == 0, "an unused vertex that is not finite")
+  local path = write("two.ply", HEAD, "element vertex 3\n", VERTEX, "element face 3\nproperty list uchar int vertex_indices\n",
+    "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n0 0 0\n1 0 0\n0 1 0\n2 0 1 255 0 0\n3 0 1 2 0 0 255\n1 0 0 0 0\n")
+  mesh = glint.mesh { file = path }
+  check(mesh.count == 1 and mesh.materials[1].name == "#0000ff", "faces of two corners, whose colours go with them")
+  warns("face 1 of fewer than 3 corners is left out, and 1 more", path)
+end
+
+function tests.pictures_of_ply()
+  glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1, background = { 0, 1, 0 },
+    glint.plane { point = { 0, 0, 0 }, normal = { 1, 0, 0 }, material = glint.material { diffuse = { 1, 0, 0 } } },
+  }:render { width = 8, height = 8 }:save(folder .. "/sub/green.png")
+  local corners = "end_header\n-1 -1 0%s\n1 -1 0%s\n1 1 0%s\n"
+  local by_vertex = HEAD .. "comment TextureFile sub/green.png\nelement vertex 3\n" .. VERTEX .. "property float s\nproperty float t\n" .. FACE ..
+    corners:format(" 0 0", " 1 0", " 1 1") .. "3 0 1 2\n"
+  local by_corner = HEAD .. "comment TextureFile sub/green.png\nelement vertex 3\n" .. VERTEX .. FACE ..
+    "property list uchar float texcoord\n" .. corners:format("", "", "") .. "3 0 1 2 6 0 0 1 0 1 1\n"
+  for _, text in ipairs { by_vertex, by_corner } do
+    local path = write("p.ply", text)
+    local image = glint.scene { camera = glint.camera { eye = { 0, 0, 4 }, at = { 0, 0, 0 } }, ambient = 1, glint.mesh { file = path } }
+      :render { width = 16, height = 16 }
+    local r, g, b = image:pixel(9, 9)
+    check(r < 1e-6 and math.abs(g - 1) < 1e-6 and b < 1e-6, "the picture shows, got %g %g %g", r, g, b)
+    warns("", path)
+  end
+  local path = write("p.ply", (PLY:gsub("element vertex", "comment TextureFile none.png\n%0", 1)))
+  check(glint.mesh { file = path }.count == 1, "no coordinates")
+  warns("its picture none.png is passed over: there are no coordinates (s, t)", path)
+  path = write("p.ply", (by_corner:gsub("green.png", "none.png")))
+  check(is(glint.mesh { file = path }.materials[1].diffuse, 0.8, 0.8, 0.8), "no picture")
+  warns("its picture is passed over: " .. folder .. "/sub/none.png: No such file or directory", path)
+end
+
+function tests.formats_that_are_not_read()
+  for _, case in ipairs { { "a.glb", "glTF\2\0\0\0", "glTF" }, { "a.gltf", "{}", "glTF" }, { "a.off", "OFF\n3 1 0\n", "OFF" },
+    { "a.3mf", "PK\3\4", "a zip archive, as .3mf and .usdz are" }, { "b.3mf", "x", "3MF" }, { "a.cif", "data_x\n", "CIF" }, { "a.obj", "glTF\2", "glTF" },
+    { "b.obj", "\xff\xfev\0 \0", "UTF-16, not UTF-8" }, { "a.fbx", "Kaydara FBX Binary", "FBX" }, { "a.step", "ISO-10303-21;", "STEP" },
+    { "a.obj.gz", "\x1f\x8b\8", "compressed" }, { "a.dae", "<?xml", "XML" }, { "a.GLB", "", "glTF" } } do
+    refuses("is " .. case[3] .. "; glint reads .obj .stl .ply", case[1], case[2])
+  end
+end
+
+tally.run(tests)
+tally.finish()
