@@ -283,7 +283,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
 SCRIPTED := $(wildcard tests/lua/test_*.lua tests/hard/*.lua tests/lua/check_*.lua \
-              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects faults films gallery golden inputs install kills memory mistakes parts povray python readme untrusted warnings watch)) tests/machines/systems.sh)
+              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects faults films gallery golden inputs install kills memory mistakes parts povray python readme relight untrusted warnings watch)) tests/machines/systems.sh)
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -312,7 +312,7 @@ tsan: ## the tests with threads under ThreadSanitizer, in build-tsan/
 
 # ---- Checks that need more than the build does; each says what is missing ----
 
-.PHONY: check-films check-report check-watch check-rock check-farm
+.PHONY: check-films check-report check-mixer check-watch check-rock check-farm
 check-films: ## films by the real ffmpeg, and what Chromium makes of them; installs both through apt
 	@tests/deps.sh build test films
 	@$(MAKE) --no-print-directory all
@@ -320,6 +320,9 @@ check-films: ## films by the real ffmpeg, and what Chromium makes of them; insta
 
 check-report: all ## the page of glint cost --report in headless Chromium, where that is installed
 	@$(RUNNER) tests/command/report.sh
+
+check-mixer: all ## the page of glint relight in headless Chromium, where that is installed
+	@$(RUNNER) tests/command/mixer.sh
 
 check-watch: all ## the page of glint watch in headless Chromium, where that is installed
 	@$(RUNNER) tests/command/watch_page.sh

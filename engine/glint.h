@@ -970,6 +970,9 @@ typedef struct glint_tone_desc {
 
 /// Clamp, sRGB, nearest, 8 bits, no exposure.
 glint_tone_desc glint_tone_desc_default(void);
+/// Writes the least float of light after exposure that has each code 1 .. 255 of 8 bits, by a valid tone: for programs that show the very
+/// codes of a file.
+void glint_tone_steps(const glint_tone_desc *tone, float least[255]);
 
 /// Lines drawn into a PNG of beauty where the pass `outline` is 1.
 typedef enum glint_outline_color { GLINT_OUTLINE_NONE, GLINT_OUTLINE_BLACK, GLINT_OUTLINE_WHITE } glint_outline_color;
@@ -1373,6 +1376,18 @@ glint_status glint_reference_measure(const glint_reference *reference, const gli
 /// A picture of codes for the eye: `scale` times the difference of the 8-bit codes in each channel, white at most.
 glint_status glint_reference_difference(const glint_reference *reference, const glint_image *image, double scale,
                                         glint_image **out, glint_error *error);
+
+// ---- Other strengths and colours of lights ---------------------------------------------------------------------------
+
+#define GLINT_LIGHT_OTHER "..." ///< the name of the light of a file that is in none of its passes
+
+/// Reads an .exr of scan lines with light passes: channels R, G and B of the picture, light.NAME.R, .G and .B of each pass, and A, if any.
+/// Light of the picture that is in none of them, beyond rounding, is one more pass, GLINT_LIGHT_OTHER. The image has no beauty, which its
+/// passes make up. GLINT_ERR_IO, GLINT_ERR_FORMAT with the file's name; GLINT_ERR_UNSUPPORTED in a build without OpenEXR.
+glint_status glint_lights_read(const char *path, glint_image **out, glint_error *error);
+/// Makes the picture in which light pass number i is `factors[i]` times as strong, in each channel: beauty, with the alpha that there is.
+/// The sum is made in double in the order of the passes, and rounded to float32 once.
+glint_status glint_image_relight(const glint_image *lights, const double (*factors)[3], glint_image **out, glint_error *error);
 
 // ---- Finished files, sheets and films -------------------------------------------------------------------------------
 

@@ -60,6 +60,7 @@ layer bindings/lua bindings/run bindings/value
 layer bindings/command bindings/run bindings/value scripts/lib scripts/lib/gr
 layer bindings/cost bindings/command bindings/run
 layer bindings/watch bindings/command bindings/run
+layer bindings/relight bindings/command bindings/run
 
 scene='glint_(scene|material|light|camera|shape|plan|renderer|image)(_desc)?'
 forbid engine '[<"](lua|lauxlib|lualib)\.h|\blua_State\b' 'the engine has never heard of Lua'

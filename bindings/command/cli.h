@@ -24,7 +24,8 @@ typedef enum cli_command {
     CLI_COMPLETION = 1024,
     CLI_JOIN = 2048,
     CLI_HELP = 4096,
-    CLI_PUBLISH = 8192
+    CLI_PUBLISH = 8192,
+    CLI_RELIGHT = 16384
 } cli_command;
 
 typedef enum cli_words { ///< that follow a command's name
@@ -40,7 +41,7 @@ typedef struct cli_command_name {
     const char *synopsis; ///< what follows it on the command line
     const char *help; ///< a line for people
 } cli_command_name;
-#define CLI_COMMAND_COUNT 14
+#define CLI_COMMAND_COUNT 15
 extern const cli_command_name cli_command_list[CLI_COMMAND_COUNT];
 
 typedef struct cli_sweep { ///< --sweep
@@ -60,6 +61,8 @@ typedef struct cli_options {
     const char *script; ///< NULL: none given
     char **arguments; ///< words of a command that takes files; after `--` those of the script
     int argument_count;
+    const char **lights; ///< owned; of relight: NAME=VALUE each
+    size_t light_count;
     const char *file; ///< of reproduce
     const char *output; ///< -o as it was given; NULL: not given
     const char *label, *title, *colorbar; ///< of sheet, the title of publish, too; NULL: not given
@@ -109,7 +112,7 @@ struct cli_option {
     bool repeats; ///< it may be given several times
     const char *group; ///< heading in --help of this and the options after it
 };
-#define CLI_OPTION_COUNT 67
+#define CLI_OPTION_COUNT 68
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
 /// What stands for the option's text, its words where it takes words; "": it takes no text.
@@ -252,6 +255,8 @@ int cli_cost(cli_options *options, cli_output *output, glintL_run *run);
 int cli_watch(cli_options *options, cli_output *output, glintL_run *run);
 /// glint publish. publish.c of bindings/publish.
 int cli_publish(cli_options *options, cli_output *output, glintL_run *run);
+/// glint relight. relight.c of bindings/relight.
+int cli_relight(cli_options *options, cli_output *output, glintL_run *run);
 int cli_completion(const cli_options *options, cli_output *output); ///< its shell is options->script
 int cli_compare(const cli_options *options, cli_output *output);
 int cli_sheet(const cli_options *options, cli_output *output);

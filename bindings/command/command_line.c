@@ -133,6 +133,8 @@ const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
     { "sheet", CLI_SHEET, CLI_FILES, "FILES -o SHEET", "a contact sheet, .png or .html, of finished frames" },
     { "assemble", CLI_ASSEMBLE, CLI_FILES, "FILES -o FILM", "a film of finished frames" },
     { "join", CLI_JOIN, CLI_FILES, "PARTS -o PICTURE", "one picture of the parts that --region has rendered" },
+    { "relight", CLI_RELIGHT, CLI_FILES, "FILE.exr -o PICTURE [--light NAME=VALUE]",
+      "other strengths and colours of lights, from light passes; NAME.html is a mixer" },
     { "reproduce", CLI_REPRODUCE, CLI_FILE_SCRIPT, "FILE SCRIPT",
       "render a finished frame again: 0 same bytes, 3 same pixels, 4 another picture, 5 file" },
     { "new", CLI_NEW, CLI_FILES, "NAME", "write a scene to begin with" },
@@ -324,6 +326,7 @@ bool cli_read_options(int argc, char **argv, cli_options *options, char message[
 void cli_free_options(cli_options *options)
 {
     glintL_selection_clear(&options->request.selection);
+    free(options->lights);
     free(options->request.sets);
     free(options->request.folder);
     for (size_t i = 0; i < options->sweep_count; i++)

@@ -24,6 +24,8 @@ static int run_command(cli_options *options, cli_output *output, glintL_run *run
         return cli_assemble(options, output, run);
     case CLI_REPRODUCE:
         return cli_reproduce(options, output, run);
+    case CLI_RELIGHT:
+        return cli_relight(options, output, run);
     case CLI_PUBLISH:
         return cli_publish(options, output, run);
     case CLI_COST:
@@ -103,7 +105,7 @@ static int dispatch(cli_options *options, cli_output *output, int *signal_number
         return cli_new(options, output);
     if (options->command == CLI_COMPLETION)
         return cli_completion(options, output);
-    if (!options->script && options->command != CLI_ASSEMBLE) {
+    if (!options->script && options->command != CLI_ASSEMBLE && options->command != CLI_RELIGHT) {
         cli_report_error(output, 0, GLINTL_EXIT_USAGE,
                          options->command == CLI_REPRODUCE ? "reproduce: a finished picture and its script expected"
                                                            : "a script expected; glint --help lists the commands");

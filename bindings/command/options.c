@@ -10,9 +10,16 @@
 
 #define SCRIPTED (CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE | CLI_COST)
 #define SHOWN (SCRIPTED | CLI_WATCH)
-#define FILES (CLI_COMPARE | CLI_SHEET | CLI_ASSEMBLE | CLI_REPRODUCE | CLI_NEW | CLI_JOIN)
+#define FILES (CLI_COMPARE | CLI_SHEET | CLI_ASSEMBLE | CLI_REPRODUCE | CLI_NEW | CLI_JOIN | CLI_RELIGHT)
 #define ALL (SHOWN | FILES | CLI_PUBLISH | CLI_COMPLETION | CLI_HELP)
 #define MESSAGE GLINTL_MESSAGE_SIZE
+
+// Which fields of scene:render{} relight has options of: what becomes of light.
+enum {
+    RELIGHTS_samples, RELIGHTS_seed = 0, RELIGHTS_precision = 0, RELIGHTS_colormap = 0, RELIGHTS_alpha = 0, RELIGHTS_outline = 0,
+    RELIGHTS_visibility = 0, RELIGHTS_bits = CLI_RELIGHT, RELIGHTS_transfer = CLI_RELIGHT, RELIGHTS_rounding = CLI_RELIGHT,
+    RELIGHTS_tone = CLI_RELIGHT, RELIGHTS_encode = CLI_RELIGHT, RELIGHTS_exposure = CLI_RELIGHT
+};
 
 // ---- Readers ----
 
@@ -167,6 +174,25 @@ static bool read_set(cli_options *options, const cli_option *option, char *text,
     return true;
 }
 
+// NAME=VALUE, whose parts bindings/relight looks at.
+static bool read_light(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    const char *equals = strrchr(text, '=');
+    if (!equals || equals == text || !equals[1]) {
+        snprintf(message, MESSAGE, "NAME=STRENGTH or NAME=COLOUR expected, got '%.200s'", text);
+        return false;
+    }
+    const char **grown = realloc(options->lights, (options->light_count + 1) * sizeof *grown);
+    if (!grown) {
+        snprintf(message, MESSAGE, "out of memory");
+        return false;
+    }
+    options->lights = grown;
+    grown[options->light_count++] = text;
+    return true;
+}
+
 static bool read_sweep(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)option;
@@ -232,10 +258,10 @@ static bool read_untrusted(cli_options *options, const cli_option *option, char 
 // The options that are fields of scene:render{} and need no more than that list has.
 #define FIELD(...)
 #define OPTION(field, kind, sort, member, min, max, words, text, say) \
-    { #field, 0, text, SHOWN, read_render, .help = say },
+    { #field, 0, text, SHOWN | RELIGHTS_##field, read_render, .help = say },
 
 const cli_option cli_option_list[CLI_OPTION_COUNT] = {
-    { "frames", 'f', "LIST", CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE, read_frames,
+    { "frames", 'f', "LIST", CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE | CLI_RELIGHT, read_frames,
       .help = "frames to render: 1-3,5,7-20:2,90-; the first is 1", .group = "frames" },
     { "start", 's', "N", CLI_RENDER, read_count, .help = "first frame", AT(start), WITHIN(1, GLINTL_FRAMES_MAX) },
     { "end", 'e', "N", CLI_RENDER, read_count, .help = "last frame", AT(end), WITHIN(1, GLINTL_FRAMES_MAX) },
@@ -246,21 +272,21 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "sweep", 0, "NAME=VALUES", CLI_RENDER, read_sweep,
       .help = "the script for each value of a parameter: A:B:N, A:B:*N or V,V,V",
       .repeats = true },
-    { "output", 'o', "PATTERN", CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE | CLI_JOIN | CLI_PUBLISH, read_text,
+    { "output", 'o', "PATTERN", CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE | CLI_JOIN | CLI_PUBLISH | CLI_RELIGHT, read_text,
       .help = "%04d or #### is the number; .png, .pfm, .npy, .exr, a film or none", AT(output), .suggest = CLI_SUGGEST_FILES,
       .group = "files" },
     { "passes", 0, "LIST", SCRIPTED, read_render, .help = "also write these:", .suggest = CLI_SUGGEST_PASSES },
     { "force", 0, NULL, CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE, read_flag,
       .help = "render frames that are there already", AT(request.force) },
-    { "fps", 0, "N", CLI_RENDER | CLI_ASSEMBLE, read_real,
+    { "fps", 0, "N", CLI_RENDER | CLI_ASSEMBLE | CLI_RELIGHT, read_real,
       .help = "frames a second of a film: .mp4, .webm, .gif, .apng", AT(request.fps), WITHIN(DBL_TRUE_MIN, 1e6),
       .expected = "frames a second > 0" },
-    { "apng", 0, NULL, CLI_RENDER | CLI_ASSEMBLE, read_flag, .help = "a .png is a film", AT(request.apng) },
+    { "apng", 0, NULL, CLI_RENDER | CLI_ASSEMBLE | CLI_RELIGHT, read_flag, .help = "a .png is a film", AT(request.apng) },
     { "columns", 0, "N", CLI_SHEET, read_count, .help = "pictures in a row of the sheet", AT(columns),
       WITHIN(1, GLINT_SIDE_MAX), .group = "sheets" },
     { "label", 0, "TEXT", CLI_SHEET, read_text, .help = "text under each picture, with {name}, {file}, {frame}",
       AT(label) },
-    { "title", 0, "TEXT", CLI_SHEET | CLI_PUBLISH, read_text, .help = "text above the sheet or page", AT(title) },
+    { "title", 0, "TEXT", CLI_SHEET | CLI_PUBLISH | CLI_RELIGHT, read_text, .help = "text above the sheet or page", AT(title) },
     { "difference", 0, "N", CLI_SHEET, read_count, .help = "also the difference from the N-th picture", AT(difference),
       WITHIN(1, 1000000) },
     { "gain", 0, "X", CLI_SHEET, read_real, .help = "the difference times X", AT(gain), WITHIN(1e-3, 1e6),
@@ -275,7 +301,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "region", 0, "RECT", CLI_RENDER | CLI_EXPLAIN, read_render, .help = "X,Y,W,H: this part of the frame" },
     { "size", 0, "WxH", SHOWN | CLI_PUBLISH, read_size, .help = "pixels across and down",
       .suggest = "640x360 1280x720 1920x1080 3840x2160" },
-    { "dpi", 0, "N", SHOWN | CLI_SHEET, read_render, .help = "pixels an inch, for print" },
+    { "dpi", 0, "N", SHOWN | CLI_SHEET | CLI_RELIGHT, read_render, .help = "pixels an inch, for print" },
     GLINTL_RENDER_LIST(FIELD, OPTION) { "adaptive", 0, "X", SHOWN, read_render,
                                         .help = "all samples only where neighbours differ by more",
                                         .suggest = "0.3 0.1 0.03 0.01" },
@@ -296,6 +322,8 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "knobs", 0, "LIST", CLI_COST, read_text, .help = "these only: samples,precision", AT(knobs) },
     { "report", 0, "DIR", CLI_COST, read_text, .help = "a page with the plot and the pictures", AT(report),
       .suggest = CLI_SUGGEST_FILES },
+    { "light", 0, "NAME=VALUE", CLI_RELIGHT, read_light, .help = "a light's strength, 2, or colour, #ffd9a0", .repeats = true,
+      .group = "relight" },
     { "controls", 0, "LIST", CLI_PUBLISH, read_text, .help = "parameters that get a control; default all", AT(controls),
       .group = "publish" },
     { "source", 0, NULL, CLI_PUBLISH, read_flag, .help = "the page shows the script", AT(shows_source) },

@@ -90,6 +90,11 @@ static bool read_hex(const char *text, size_t length, uint32_t *code)
     return true;
 }
 
+bool glintL_find_color(const char *text, size_t length, uint32_t *code)
+{
+    return read_hex(text, length, code) || find_name(text, length, code);
+}
+
 static void refuse_text(lua_State *L, int index, const char *path, const char *text)
 {
     const char *near = NULL;
@@ -111,7 +116,7 @@ void glintL_read_color(lua_State *L, int index, const char *path, double out[3])
         size_t length;
         uint32_t code = 0;
         const char *text = lua_tolstring(L, index, &length);
-        if (!read_hex(text, length, &code) && !find_name(text, length, &code))
+        if (!glintL_find_color(text, length, &code))
             refuse_text(L, index, path, text);
         for (int i = 0; i < 3; i++)
             out[i] = glint_srgb_decode((code >> (16 - 8 * i) & 255) / 255.0);

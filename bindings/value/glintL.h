@@ -74,6 +74,8 @@ void glintL_freeze(lua_State *L, const char *name);
 /// (unless allow_array, when integer keys are left to the caller) and a missing required field.
 void glintL_read_table(lua_State *L, int index, const char *path, const glintL_field *fields, void *desc,
                        bool allow_array);
+/// "#rgb", "#rrggbb" or a CSS name, as 0xRRGGBB. False: it is none.
+bool glintL_find_color(const char *text, size_t length, uint32_t *code);
 /// The nearest of `fields` to a misspelt name, else what it means among them, or NULL.
 const char *glintL_nearest(const char *name, const glintL_field *fields);
 const glintL_field *glintL_find_field(const glintL_field *fields, const char *name);

@@ -133,6 +133,14 @@ static float first_of_code(const glint_tone_desc *desc, int k)
     return float_of(bits);
 }
 
+void glint_tone_steps(const glint_tone_desc *tone, float least[255])
+{
+    glint_tone_desc desc = *tone;
+    desc.bits = 8;
+    for (int k = 1; k <= 255; k++)
+        least[k - 1] = first_of_code(&desc, k);
+}
+
 static bool fill_lut(glint_tone_table *table)
 {
     const uint32_t entries = (bits_of(table->top) >> 16) - GLINT_TONE_FIRST + 1;

@@ -364,7 +364,7 @@ options() {
     exits 2 "a misspelt word" ten.lua --colormap magmo
     says "names the nearest" "^glint: error: --colormap: .* expected, got 'magmo'; did you mean 'magma'\\?$"
     exits 2 "a pass like none" ten.lua --passes diffuse,xyzzy
-    says "names it and all" "'xyzzy' is no pass; list of beauty, .*, albedo, d:NAME, all expected$"
+    says "names it and all" "'xyzzy' is no pass; list of beauty, .*, albedo, d:NAME, light:NAME, all expected$"
     exits 0 "--version --verbose" --version --verbose
     prints "libraries" '^libraries: Lua 5\.4.*libpng [0-9].*xxhash [0-9]'
     prints "kernels" '^kernels: ref generic.*; in use: [a-z0-9]+, [0-9]+ threads$'

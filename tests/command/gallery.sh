@@ -71,6 +71,7 @@ picture labels --frames 13
 picture lamps
 picture lampshade
 picture lantern --frames 1
+picture lights
 picture lobes --size 400x160
 picture mesh_and_sphere --size 400x200
 picture mirror_and_glass --size 320x180 --samples 9

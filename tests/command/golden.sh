@@ -49,6 +49,7 @@ picture soft_shadows_window_0009 scripts/soft_shadows.lua --set lamp=window -f 9
 picture labels_0013 scripts/labels.lua -f 13
 picture lamps scripts/lamps.lua
 picture lampshade scripts/lampshade.lua
+picture lights scripts/lights.lua
 picture combined scripts/combined.lua
 picture rings_0009 scripts/rings.lua -f 9
 picture caps_0006 scripts/caps.lua -f 6

@@ -160,7 +160,8 @@ local function lamp(fields)
 end
 
 function tests.names_and_groups()
-  local image = still({ ambient = 0.5, lamp { name = "a", group = "g" }, lamp { name = "b", group = "g" }, lamp {}, lamp { name = "c" } }, { passes = { "light:*" } })
+  local a, b = lamp { name = "a", group = "g" }, lamp { name = "b", group = "g" }
+  local image = still({ ambient = 0.5, a, b, lamp {}, lamp { name = "c" } }, { passes = { "light:*" } })
   check(table.concat(image.passes, " ") == "beauty light:g light:point_light_3 light:c light:ambient", "got %s", table.concat(image.passes, " "))
   local one, both = image:pixel(4, 4, "light:c"), image:pixel(4, 4, "light:g")
   check(one > 0 and both == 2 * one, "a group holds both of its lights: %g and %g", one, both)

@@ -279,7 +279,7 @@ static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile
                 weight[c] = rays->weight[c][i];
                 sum[c][pixel] += weight[c] * glint_batch_light_of(batch, plan, c, i);
             }
-            if (glint_batch_has_sample(batch, i))
+            if (plan->light_groups && glint_batch_has_sample(batch, i))
                 glint_groups_collect(batch, plan, to, batch->sample[i], pixel, weight);
         }
 }

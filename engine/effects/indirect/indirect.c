@@ -229,9 +229,11 @@ static void collect_group(const glint_batch *batch, const glint_plan *plan, uint
             const double rest = last ? glint_tile_ambient_rest(&batch->tile, plan, at, c) : 0;
             weight[c] = rays->weight[c][i];
             sum[c][rays->pixel[i]] += weight[c] * (found[c][lane] + rest);
-            glint_groups_add_ambient(to, plan, rays->pixel[i], c, weight[c] * rest);
+            if (plan->light_groups)
+                glint_groups_add_ambient(to, plan, rays->pixel[i], c, weight[c] * rest);
         }
-        glint_groups_collect(batch, plan, to, at, rays->pixel[i], weight);
+        if (plan->light_groups)
+            glint_groups_collect(batch, plan, to, at, rays->pixel[i], weight);
     }
 }
 

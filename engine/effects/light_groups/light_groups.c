@@ -91,8 +91,11 @@ static double sum_of(const struct glint_group_sums *sums, uint32_t group, int c,
 
 void glint_groups_begin(glint_tile *tile, const glint_plan *plan)
 {
-    if (plan->light_groups)
-        memset(tile->group_sums->sum, 0, tile->group_sums->count * sizeof *tile->group_sums->sum);
+    const size_t size = tile->group_count * GLINT_GROUP * sizeof(double);
+    for (uint32_t g = 0; plan->light_groups && g < tile->group_sums->count; g++)
+        for (int k = 0; k < SUMS; k++)
+            for (int c = 0; c < 3; c++)
+                memset(tile->group_sums->sum[g][k][c], 0, size);
 }
 
 double (*glint_group_sum(const glint_tile *tile, uint32_t group))[3][GLINT_TILE_SAMPLES]
@@ -174,7 +177,7 @@ void glint_groups_shade(glint_tile *tile, const glint_tile_frame *frame, const g
 void glint_groups_collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to, uint32_t at, uint32_t pixel,
                           const double weight[3])
 {
-    for (uint32_t g = 0; plan->light_groups && g < plan->light_groups->count; g++) {
+    for (uint32_t g = 0; g < plan->light_groups->count; g++) {
         for (int c = 0; c < 3; c++)
             to->group_sums->sum[g][OTHER][c][pixel] += weight[c] * sum_of(batch->tile.group_sums, g, c, at);
     }
@@ -183,7 +186,7 @@ void glint_groups_collect(const glint_batch *batch, const glint_plan *plan, glin
 void glint_groups_add_ambient(const glint_tile *to, const glint_plan *plan, uint32_t pixel, int c, double light)
 {
     const struct glint_light_groups *groups = plan->light_groups;
-    for (uint32_t g = 0; groups && groups->has_ambient && g < groups->count; g++)
+    for (uint32_t g = 0; groups->has_ambient && g < groups->count; g++)
         to->group_sums->sum[g][OTHER][c][pixel] += groups->ambient[g][c] * light;
 }
 

@@ -23,15 +23,15 @@ void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, con
 double (*glint_group_sum(const glint_tile *tile, uint32_t group))[3][GLINT_TILE_SAMPLES];
 /// A light of this group shows `light` to pixel i.
 void glint_groups_add(const glint_tile *tile, uint32_t group, uint32_t i, const double light[3]);
-/// Adds to pixel `pixel` of `to` what sample `at` of a batch has found, times a weight.
+/// In frames with light passes: adds to pixel `pixel` of `to` what sample `at` of a batch has found, times a weight.
 void glint_groups_collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to, uint32_t at, uint32_t pixel,
                           const double weight[3]);
-/// Of ambient light that is added to a pixel, the part that lights bring.
+/// Likewise: of ambient light that is added to a pixel, the part that lights bring.
 void glint_groups_add_ambient(const glint_tile *to, const glint_plan *plan, uint32_t pixel, int c, double light);
-/// Fades the sums of the current sample, in each pixel and channel; see tile/depth_cue.c.
+/// Fades the sums of the current sample, in each pixel and channel; see effects/depth_cue/.
 void glint_groups_fade(const glint_tile *tile, const glint_plan *plan, const double (*left)[GLINT_TILE_SAMPLES]);
 
-/// Keeps the light of a block of faces or vertices, and gives it to the samples that show them; see tile/vertex.c.
+/// Keeps the light of a block of faces or vertices, and gives it to the samples that show them; see effects/vertex_shading/.
 void glint_groups_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
 void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, glint_vertex_args *args);
 

@@ -229,10 +229,14 @@ glint_key glint_light_pass_key(const glint_plan *plan, uint32_t pass, glint_key 
         return key;
     const bool rest = pass == g->rest;
     key = glint_key_add(key, &rest, sizeof rest);
-    for (uint32_t i = 0; i < plan->light_count && !rest; i++)
-        key = glint_key_add(key, &(bool) { plan->lights[i].group == pass }, sizeof(bool));
-    for (uint32_t i = 0; i < plan->visible_light_count && !rest; i++)
-        key = glint_key_add(key, &(bool) { plan->visible_lights[i].group == pass }, sizeof(bool));
+    for (uint32_t i = 0; i < plan->light_count && !rest; i++) {
+        const bool own = plan->lights[i].group == pass;
+        key = glint_key_add(key, &own, sizeof own);
+    }
+    for (uint32_t i = 0; i < plan->visible_light_count && !rest; i++) {
+        const bool own = plan->visible_lights[i].group == pass;
+        key = glint_key_add(key, &own, sizeof own);
+    }
     return rest ? key : glint_key_add(key, g->ambient[pass], sizeof g->ambient[pass]);
 }
 

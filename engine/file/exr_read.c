@@ -1,0 +1,197 @@
+/// Reads back what relighting needs of an .exr: its picture, and the light passes.
+#include "engine/base/status.h"
+#include "engine/film/relight.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef GLINT_HAVE_OPENEXR
+#include <openexr.h>
+
+typedef struct exr_input {
+    exr_context_t context;
+    glint_image *image;
+    bool half; ///< some light is of 16 bits
+} exr_input;
+
+static void drop_message(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    (void)context, (void)code, (void)message;
+}
+
+// ---- Channels -----------------------------------------------------------------------------------------------------
+
+/// Whether a channel is one of a light pass: "light.key.R". Writes the pass's name, and which channel of it.
+static bool is_light(const char *channel, char name[GLINT_NAME_SIZE], int *c)
+{
+    const size_t length = strlen(channel);
+    const char *letter = length > 8 ? strchr("RGB", channel[length - 1]) : NULL;
+    if (!letter || strncmp(channel, "light.", 6) != 0 || channel[length - 2] != '.' || length - 8 >= GLINT_NAME_SIZE)
+        return false;
+    snprintf(name, GLINT_NAME_SIZE, "%.*s", (int)(length - 8), channel + 6);
+    *c = *letter == 'R' ? 0 : *letter == 'G' ? 1 : 2;
+    return true;
+}
+
+static size_t find_light(const glint_image *image, const char *name)
+{
+    size_t i = 0;
+    while (i < image->light_count && strcmp(image->light_name[i], name) != 0)
+        i++;
+    return i;
+}
+
+/// Where a channel's values go; NULL: nobody reads them.
+static float *plane_of(const glint_image *image, const char *channel)
+{
+    char name[GLINT_NAME_SIZE];
+    int c;
+    if (is_light(channel, name, &c))
+        return image->light[find_light(image, name)][c];
+    if (strcmp(channel, "A") == 0)
+        return image->plane[GLINT_PASS_ALPHA][0];
+    return strlen(channel) == 1 && strchr("RGB", *channel) ? image->plane[GLINT_PASS_BEAUTY][*channel == 'R' ? 0 : *channel == 'G' ? 1 : 2]
+                                                           : NULL;
+}
+
+/// Makes the image that the file's channels fill.
+static glint_status make_image(exr_input *file, const exr_attr_chlist_t *channels, int width, int height, glint_error *error)
+{
+    char(*names)[GLINT_NAME_SIZE] = calloc((size_t)channels->num_channels + 1, sizeof *names), name[GLINT_NAME_SIZE];
+    uint32_t passes = 0, colors = 0;
+    size_t count = 0, parts = 0;
+    int c;
+    if (!names)
+        return glint_fail_nomem(error);
+    for (int i = 0; i < channels->num_channels; i++) {
+        const char *channel = channels->entries[i].name.str;
+        file->half = file->half || channels->entries[i].pixel_type == EXR_PIXEL_HALF;
+        if (is_light(channel, name, &c)) {
+            size_t k = 0;
+            while (k < count && strcmp(names[k], name) != 0)
+                k++;
+            if (k == count)
+                memcpy(names[count++], name, sizeof name);
+            parts++;
+        } else if (strcmp(channel, "A") == 0) {
+            passes |= 1u << GLINT_PASS_ALPHA;
+        } else if (strlen(channel) == 1 && strchr("RGB", *channel)) {
+            colors++;
+        }
+    }
+    glint_status status = GLINT_OK;
+    if (count == 0)
+        status = glint_fail(error, GLINT_ERR_FORMAT, "no light passes; --passes 'light:*' writes them into an .exr");
+    else if (colors != 3 || parts != 3 * count)
+        status = glint_fail(error, GLINT_ERR_FORMAT, "channels R, G and B of the picture and of each light pass expected");
+    if (!status)
+        status = glint_image_create(width, height, passes | 1u << GLINT_PASS_BEAUTY, NULL, &file->image, error);
+    if (!status)
+        status = glint_image_add_lights(file->image, count, (const char(*)[GLINT_NAME_SIZE])names, error);
+    free(names);
+    return status;
+}
+
+// ---- Pixels -------------------------------------------------------------------------------------------------------
+
+/// Points the decoder at the rows of a chunk.
+static void aim(const exr_input *file, exr_decode_pipeline_t *pipe, int y)
+{
+    const size_t width = (size_t)file->image->width;
+    for (int i = 0; i < pipe->channel_count; i++) {
+        exr_coding_channel_info_t *info = &pipe->channels[i];
+        float *plane = plane_of(file->image, info->channel_name);
+        info->user_data_type = EXR_PIXEL_FLOAT;
+        info->user_bytes_per_element = sizeof(float);
+        info->user_pixel_stride = sizeof(float);
+        info->user_line_stride = (int32_t)(width * sizeof(float));
+        info->decode_to_ptr = plane ? (uint8_t *)(plane + (size_t)y * width) : NULL;
+    }
+}
+
+static exr_result_t read_rows(exr_input *file, int top)
+{
+    exr_decode_pipeline_t pipe = EXR_DECODE_PIPELINE_INITIALIZER;
+    int32_t lines = 1;
+    exr_result_t result = exr_get_scanlines_per_chunk(file->context, 0, &lines);
+    for (int y = 0; y < file->image->height && !result; y += lines) {
+        exr_chunk_info_t chunk;
+        result = exr_read_scanline_chunk_info(file->context, 0, top + y, &chunk);
+        if (!result)
+            result = y ? exr_decoding_update(file->context, 0, &chunk, &pipe) : exr_decoding_initialize(file->context, 0, &chunk, &pipe);
+        if (result)
+            break;
+        aim(file, &pipe, y);
+        if (y == 0)
+            result = exr_decoding_choose_default_routines(file->context, 0, &pipe);
+        if (!result)
+            result = exr_decoding_run(file->context, 0, &pipe);
+    }
+    exr_decoding_destroy(file->context, &pipe);
+    return result;
+}
+
+/// Whether the picture was made with a transparent background: glint says so beside it.
+static bool has_cover(exr_const_context_t context)
+{
+    const char *options = NULL;
+    int32_t length = 0;
+    if (exr_attr_get_string(context, 0, "glint:options", &length, &options) != EXR_ERR_SUCCESS || !options)
+        return false;
+    return strstr(options, "alpha=true") != NULL;
+}
+
+static glint_status read_part(exr_input *file, glint_error *error)
+{
+    const exr_attr_chlist_t *channels = NULL;
+    exr_attr_box2i_t window;
+    exr_storage_t storage;
+    if (exr_get_storage(file->context, 0, &storage) || exr_get_channels(file->context, 0, &channels) ||
+        exr_get_data_window(file->context, 0, &window))
+        return glint_fail(error, GLINT_ERR_FORMAT, "a whole OpenEXR file expected");
+    if (storage != EXR_STORAGE_SCANLINE)
+        return glint_fail(error, GLINT_ERR_FORMAT, "an OpenEXR file of scan lines expected, got tiles");
+    const int64_t width = (int64_t)window.max.x - window.min.x + 1, height = (int64_t)window.max.y - window.min.y + 1;
+    if (width < 1 || height < 1 || width > GLINT_SIDE_MAX || height > GLINT_SIDE_MAX)
+        return glint_fail(error, GLINT_ERR_FORMAT, "sides of 1 .. %d pixels expected", GLINT_SIDE_MAX);
+    glint_status status = make_image(file, channels, (int)width, (int)height, error);
+    if (status)
+        return status;
+    if (read_rows(file, window.min.y))
+        return glint_fail(error, GLINT_ERR_FORMAT, "a whole OpenEXR file expected");
+    file->image->alpha = file->image->plane[GLINT_PASS_ALPHA][0] && has_cover(file->context);
+    file->image->channels = file->image->alpha ? 4 : 3;
+    return glint_image_split_rest(file->image, file->half, error);
+}
+
+glint_status glint_lights_read(const char *path, glint_image **out, glint_error *error)
+{
+    exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    exr_input file = { .image = NULL };
+    glint_error inner;
+    how.error_handler_fn = drop_message;
+    const exr_result_t opened = exr_start_read(&file.context, path, &how);
+    glint_status status = opened == EXR_ERR_FILE_ACCESS   ? glint_fail(&inner, GLINT_ERR_IO, "it cannot be read")
+                          : opened == EXR_ERR_OUT_OF_MEMORY ? glint_fail_nomem(&inner)
+                          : opened                        ? glint_fail(&inner, GLINT_ERR_FORMAT, "an OpenEXR file expected")
+                                                          : read_part(&file, &inner);
+    if (!opened)
+        exr_finish(&file.context);
+    if (status) {
+        glint_image_release(file.image);
+        return glint_fail(error, status, "%s: %s", path, inner.message);
+    }
+    *out = file.image;
+    return GLINT_OK;
+}
+
+#else
+
+glint_status glint_lights_read(const char *path, glint_image **out, glint_error *error)
+{
+    (void)out;
+    return glint_fail(error, GLINT_ERR_UNSUPPORTED, "%s: this build has no OpenEXR (libopenexr-dev)", path);
+}
+
+#endif
