@@ -611,6 +611,12 @@ web-module:
 WEB ?= $(BUILD)/web
 web-files: $(addprefix $(WEB)/,glint.wasm glint.mjs worker.mjs package.json LICENSE)
 
+.PHONY: check-web
+check-web: web-module ## the module for browsers in node: goldens and gallery with the command's bits, errors, limits, memory
+	@tests/deps.sh build test
+	@$(MAKE) --no-print-directory all
+	@TEST_LIMIT_S=900 $(RUNNER) tests/web/module.sh
+
 # The loader that emscripten writes and the worker around it are one file.
 $(BUILD)/glint.js: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
@@ -707,7 +713,7 @@ deps: ## installs what the build and the tests need, through apt
 	@tests/deps.sh build test
 
 clean: ## removes build/ and the folders of the checks, build-asan/, build-clang/ and so on
-	rm -rf $(BUILD) build-asan build-tsan build-clang build-portable $(ARM64) $(MUSL) $(FUZZ)
+	rm -rf $(BUILD) build-asan build-tsan build-clang build-portable $(ARM64) $(MUSL) $(FUZZ) $(WEB_OBJECTS)
 
 help: ## this list
 	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  %-14s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))

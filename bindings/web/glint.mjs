@@ -247,11 +247,15 @@ class Job {
     this.#set = set
     Object.assign(this, opened) // params, frames, width, height, warnings, printed
   }
-  /** Renders a frame. `set` beats the values the job was opened with; other options are the fields of scene:render{}. */
-  async render({ frame = 1, passes = ["beauty"], set, signal, ...options } = {}) {
+  /**
+   * Renders a frame. `set` beats the values the job was opened with; `passes` have their numbers in image.plane(), which takes
+   * longer than the picture only; other options are the fields of scene:render{}.
+   */
+  async render({ frame = 1, passes = [], set, signal, ...options } = {}) {
     const named = [passes].flat().flatMap(list => String(list).split(",")).filter(name => name !== "")
     const message = { call: "render", frame, set: { ...this.#set, ...spellAll(set) }, passes: named, options: spellAll(options) }
     if (named.length) message.options.passes = named.join(",")
+    message.options.bits = "8" // a page shows no more
     return new Image(await this.#host.ask(message, signal))
   }
   /** What `glint explain --json` prints of a frame. */

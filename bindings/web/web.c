@@ -249,7 +249,6 @@ EMSCRIPTEN_KEEPALIVE bool web_open(const char *path, double seconds)
     job.options = (cli_options) { .command = CLI_WATCH, .json = true, .script = script, .untrusted_s = seconds };
     snprintf(job.run->script, sizeof job.run->script, "%s", cli_base_name(script));
     job.run->is_command = true;
-    job.run->keeps_images = true;
     job.run->request.sets = job.sets;
     job.run->request.force = true;
     job.run->request.reuse_memory = REUSE_MEMORY;
@@ -334,8 +333,10 @@ static bool render(int64_t frame)
     return !job.script.has_jobs || cli_run_jobs(&job.script, run);
 }
 
-EMSCRIPTEN_KEEPALIVE bool web_render(double frame)
+/// keeps: the image has its float32 numbers, not the codes only, which are made tile by tile and reused.
+EMSCRIPTEN_KEEPALIVE bool web_render(double frame, bool keeps)
 {
+    job.run->keeps_images = keeps;
     job.warnings[0] = '\0';
     glint_image_release(job.image);
     job.image = NULL;
@@ -413,7 +414,11 @@ EMSCRIPTEN_KEEPALIVE const char *web_explain(double frame)
         return NULL;
     begin_run();
     job.options.frame = (int64_t)frame;
+    const char **path = &job.run->request.render_text[glintL_render_find("output")]; // the plan of a file, as the command's
+    *path = NULL;
+    job.run->keeps_images = false;
     cli_explain(&job.options, &output, job.run);
+    *path = "none";
     free(job.plan);
     job.plan = glintL_close_text(output.data, &text);
     return job.run->exit_code ? NULL : job.plan;

@@ -110,7 +110,7 @@ function namePasses(passes) {
 function render({ set, frame, options, passes }) {
   run(set)
   choose(options)
-  check(call("web_render", frame))
+  check(call("web_render", frame, passes.length > 0))
   const width = call("web_image_width"), height = call("web_image_height")
   const at = check(call("web_rgba"))
   const rgba = new Uint8ClampedArray(engine.HEAPU8.slice(at, at + 4 * width * height).buffer)

@@ -375,10 +375,13 @@ static glint_status encode_png(const glint_image *image, const glint_write_desc 
 /// Copies a row of 8-bit codes as RGBA.
 static void copy_rgba(const glint_png_source *source, const uint8_t *row, uint8_t *out)
 {
-    const size_t channels = source->alpha ? 4 : 3;
-    for (size_t x = 0; x < (size_t)source->width; x++) {
-        memcpy(out + 4 * x, row + channels * x, channels);
-        out[4 * x + 3] = source->alpha ? row[4 * x + 3] : 0xff;
+    const size_t width = (size_t)source->width;
+    if (source->alpha)
+        memcpy(out, row, 4 * width);
+    for (size_t x = 0; x < width && !source->alpha; x++) {
+        for (size_t c = 0; c < 3; c++)
+            out[4 * x + c] = row[3 * x + c];
+        out[4 * x + 3] = 0xff;
     }
 }
 
