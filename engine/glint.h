@@ -1438,6 +1438,9 @@ const char *glint_picture_text(const glint_picture *picture, const char *keyword
 /// Row `y`, from 0 at the top, as 3 * width sRGB codes of 8 bits, for viewing: grey becomes RGB, 16 bits and linear codes
 /// are rounded, what shows through alpha is a grey of `backdrop`, 0 .. 255. Needs the pixels.
 void glint_picture_row(const glint_picture *picture, int y, int backdrop, uint8_t *rgb);
+/// Row `y` as 3 * width numbers of linear light: sRGB codes are decoded, linear ones are shares of the largest code, grey becomes
+/// RGB, alpha is left out. Needs the pixels.
+void glint_picture_light(const glint_picture *picture, int y, float *rgb);
 
 /// A finished part of a picture.
 typedef struct glint_picture_part {

@@ -137,7 +137,7 @@ const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
       "other strengths and colours of lights, from light passes; NAME.html is a mixer" },
     { "reproduce", CLI_REPRODUCE, CLI_FILE_SCRIPT, "FILE SCRIPT",
       "render a finished frame again: 0 same bytes, 3 same pixels, 4 another picture, 5 file" },
-    { "new", CLI_NEW, CLI_FILES, "NAME", "write a scene to begin with" },
+    { "new", CLI_NEW, CLI_FILES, "NAME", "write a folder with a scene to begin with" },
     { "cost", CLI_COST, CLI_SCRIPT, "SCRIPT [--report DIR]", "what accuracy costs in time" },
     { "watch", CLI_WATCH, CLI_SCRIPT, "SCRIPT [--http [PORT]]", "render at every save, in the terminal and on a page" },
     { "publish", CLI_PUBLISH, CLI_SCRIPT, "SCRIPT -o PAGE.html",

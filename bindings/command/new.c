@@ -1,16 +1,19 @@
-// glint new NAME: a scene to begin with.
+// glint new NAME: a folder with a scene to begin with, and what tells editors of glint's types; or NAME.lua, the scene only.
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "bindings/command/cli.h"
+#include "bindings/run/system.h"
 
 static const char STARTER[] =
     "-- Three spheres on a plane, and a lamp that goes around them.\n"
     "--\n"
     "--     glint %s                      every frame, as pictures\n"
-    "--     glint %s --frames 1           the first one alone\n"
+    "--     glint %s --frames 1           only the first one\n"
     "--     glint %s --set radius=4       another value of a parameter\n"
     "--     glint %s -o film.png --apng   a film; .mp4, .webm and .gif need ffmpeg\n"
     "local glint = require \"glint\"\n"
@@ -62,14 +65,9 @@ static int refuse(cli_output *output, int code, const char *path, const char *wh
     return code;
 }
 
-// Writes the script where nothing is. 0 or an errno.
-static int write_script(const char *path)
+// Ends a file that was begun; one that is not whole goes. 0 or an errno.
+static int finish(FILE *file, const char *path)
 {
-    const char *name = cli_base_name(path);
-    FILE *file = fopen(path, "wx");
-    if (!file)
-        return errno;
-    fprintf(file, STARTER, name, name, name, name);
     int code = ferror(file) ? EIO : 0;
     if (fclose(file) != 0 && !code)
         code = errno;
@@ -78,17 +76,77 @@ static int write_script(const char *path)
     return code;
 }
 
+// Writes the script where nothing is. 0 or an errno.
+static int write_script(const char *path)
+{
+    const char *name = cli_base_name(path);
+    FILE *file = fopen(path, "wx");
+    if (!file)
+        return errno;
+    fprintf(file, STARTER, name, name, name, name);
+    return finish(file, path);
+}
+
+// The folder of the types: PREFIX/share/glint, or that of the checkout that a build is in. False: there is none.
+static bool find_types(const char *program, char out[GLINTL_PATH_SIZE])
+{
+    static const char *const places[] = { "../share/glint", "../bindings/meta" };
+    char folder[GLINTL_PATH_SIZE], path[GLINTL_PATH_SIZE + 64];
+    if (!glintL_program_folder(program, folder, sizeof folder))
+        return false;
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        snprintf(path, sizeof path, "%s%s/glint.lua", folder, places[i]);
+        if (access(path, R_OK) != 0)
+            continue;
+        path[strlen(path) - sizeof "/glint.lua" + 1] = '\0';
+        char *real = realpath(path, NULL);
+        snprintf(out, GLINTL_PATH_SIZE, "%s", real ? real : "");
+        free(real);
+        return *out != '\0';
+    }
+    return false;
+}
+
+// What the language server of Lua reads. A file that is there stays. 0 or an errno.
+static int write_settings(const char *path, const char *program)
+{
+    char types[GLINTL_PATH_SIZE];
+    FILE *file = fopen(path, "wx");
+    if (!file)
+        return errno == EEXIST ? 0 : errno;
+    fputs("{\n  \"runtime.version\": \"Lua 5.4\"", file);
+    if (find_types(program, types)) {
+        fputs(",\n  \"workspace.library\": [", file);
+        glintL_json_string(file, types);
+        fputs("]", file);
+    }
+    fputs("\n}\n", file);
+    return finish(file, path);
+}
+
+static int write_all(const char *path, const char *settings, const char *program)
+{
+    int code = write_script(path);
+    return code || !*settings ? code : write_settings(settings, program);
+}
+
 int cli_new(const cli_options *options, cli_output *output)
 {
-    char path[GLINTL_PATH_SIZE];
+    char path[2 * GLINTL_PATH_SIZE], settings[GLINTL_PATH_SIZE + 16] = "";
     if (options->argument_count != 1)
         return refuse(output, GLINTL_EXIT_USAGE, "", "one name expected");
     const char *name = options->arguments[0];
     size_t length = strlen(name);
-    if (length == 0 || name[length - 1] == '/' || length > sizeof path - 8 || *cli_base_name(name) == '.')
-        return refuse(output, GLINTL_EXIT_USAGE, name, "the name of a script expected");
-    snprintf(path, sizeof path, "%s%s", name, ends_in_lua(name) ? "" : ".lua");
-    int code = write_script(path);
+    if (length == 0 || name[length - 1] == '/' || length > GLINTL_PATH_SIZE - 8 || *cli_base_name(name) == '.')
+        return refuse(output, GLINTL_EXIT_USAGE, name, "the name of a folder, or of a script in .lua, expected");
+    snprintf(path, sizeof path, "%s", name);
+    int code = 0;
+    if (!ends_in_lua(name)) {
+        snprintf(path, sizeof path, "%s/%s.lua", name, cli_base_name(name));
+        snprintf(settings, sizeof settings, "%s/.luarc.json", name);
+        code = mkdir(name, 0777) == 0 || errno == EEXIST ? 0 : errno;
+    }
+    code = code ? code : write_all(path, settings, options->program);
     if (code == EEXIST)
         return refuse(output, GLINTL_EXIT_USAGE, path, "it is there already, and stays as it is");
     if (code == ENOENT)

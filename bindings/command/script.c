@@ -48,15 +48,21 @@ static void add_path(lua_State *L, const char *folder, const char *templates, bo
 }
 
 // The modules that were installed with this command lie beside it: PREFIX/bin and PREFIX/share. Another version's, elsewhere,
-// come after them; what the user's LUA_PATH has, before.
+// come after them; what the user's LUA_PATH has, before. A build that is not installed has those of its checkout.
 static void add_own_modules(lua_State *L, const char *program)
 {
     char folder[GLINTL_PATH_SIZE], probe[GLINTL_PATH_SIZE + 64];
     if (!glintL_program_folder(program, folder, sizeof folder))
         return;
     snprintf(probe, sizeof probe, "%s../share/lua/5.4/glint/particles.lua", folder);
-    if (access(probe, R_OK) == 0)
-        add_path(L, folder, "@../share/lua/5.4/?.lua", !getenv("LUA_PATH_5_4") && !getenv("LUA_PATH"));
+    const bool first = !getenv("LUA_PATH_5_4") && !getenv("LUA_PATH");
+    if (access(probe, R_OK) == 0) {
+        add_path(L, folder, "@../share/lua/5.4/?.lua", first);
+        return;
+    }
+    snprintf(probe, sizeof probe, "%s../scripts/lib/glint/particles.lua", folder);
+    if (access(probe, R_OK) == 0) // build/glint in its checkout
+        add_path(L, folder, "@../scripts/lib/?.lua", first);
 }
 
 // The script's folder and its lib/ come first.

@@ -216,7 +216,35 @@ static int save(lua_State *L)
     return 1;
 }
 
-static const luaL_Reg METHODS[] = { { "pixel", pixel }, { "save", save }, { NULL, NULL } };
+// The pass as float32, little endian, row by row from the top, as string.unpack and NumPy read it.
+static int bytes(lua_State *L)
+{
+    luaL_Buffer out;
+    glintL_check_object(L, 1, GLINTL_IMAGE);
+    const glint_pass pass = check_pass(L, 2, "bytes.pass");
+    lua_settop(L, 1);
+    const glint_image *image = glintL_check_object(L, 1, GLINTL_IMAGE);
+    const int width = glint_image_width(image), height = glint_image_height(image);
+    const size_t channels = (size_t)glint_pass_channels(pass), row = (size_t)width * channels * 4;
+    float first[3];
+    glint_error error;
+    glintL_check_status(L, "bytes", &error, glint_image_pixel(image, pass, 0, 0, first, &error));
+    luaL_buffinitsize(L, &out, row * (size_t)height);
+    for (int y = 0; y < height; y++) {
+        char *to = luaL_prepbuffsize(&out, row);
+        for (int x = 0; x < width; x++) {
+            float values[3];
+            glint_image_pixel(image, pass, x, y, values, &error);
+            for (size_t c = 0; c < channels; c++)
+                to = glintL_put_float(to, values[c]);
+        }
+        luaL_addsize(&out, row);
+    }
+    luaL_pushresult(&out);
+    return 1;
+}
+
+static const luaL_Reg METHODS[] = { { "bytes", bytes }, { "pixel", pixel }, { "save", save }, { NULL, NULL } };
 
 static const glintL_class CLASS = {
     .type = GLINTL_IMAGE,

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bindings/value/glintL.h"
+#include "bindings/run/run.h"
 
 typedef glint_scene_desc desc_type;
 _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
@@ -267,6 +267,35 @@ static int drop(lua_State *L)
     return 0;
 }
 
+// The objects in their order of definition: shapes, lights, then labels and the like.
+static int objects(lua_State *L)
+{
+    const glint_scene *scene = glintL_check_object(L, 1, GLINTL_SCENE);
+    lua_Integer count = 0;
+    lua_settop(L, 1);
+    lua_newtable(L);
+    for (size_t i = 0; (scene = glintL_check_object(L, 1, GLINTL_SCENE)) && i < glint_scene_shape_count(scene); i++) {
+        glintL_push_object(L, GLINTL_SHAPE, glint_scene_shape_at(scene, i));
+        lua_rawseti(L, 2, ++count);
+    }
+    for (size_t i = 0; (scene = glintL_check_object(L, 1, GLINTL_SCENE)) && i < glint_scene_light_count(scene); i++) {
+        glintL_push_object(L, GLINTL_LIGHT, glint_scene_light_at(scene, i));
+        lua_rawseti(L, 2, ++count);
+    }
+    for (size_t i = 0; (scene = glintL_check_object(L, 1, GLINTL_SCENE)) && i < glint_scene_overlay_count(scene); i++) {
+        glintL_push_object(L, GLINTL_OVERLAY, glint_scene_overlay_at(scene, i));
+        lua_rawseti(L, 2, ++count);
+    }
+    return 1;
+}
+
+static int count_objects(lua_State *L)
+{
+    const glint_scene *scene = glintL_check_object(L, 1, GLINTL_SCENE);
+    lua_pushinteger(L, (lua_Integer)(glint_scene_shape_count(scene) + glint_scene_light_count(scene) + glint_scene_overlay_count(scene)));
+    return 1;
+}
+
 // ---- Rays ----
 
 typedef struct ray {
@@ -331,13 +360,14 @@ static int render(lua_State *L)
     glintL_check_object(L, 1, GLINTL_SCENE);
     glintL_refuse_within_trace(L, "scene.render");
     lua_settop(L, 2);
+    glintL_give_camera(L, glintL_get_run(L), 1);
     glintL_box *box = glintL_new_box(L, GLINTL_SCENE);
     box->object = glint_scene_retain(glintL_check_object(L, 1, GLINTL_SCENE));
     return glintL_render_call(L, box->object, 2);
 }
 
 static const luaL_Reg METHODS[] = {
-    { "add", add }, { "remove", drop }, { "cast", cast }, { "render", render }, { NULL, NULL },
+    { "add", add }, { "remove", drop }, { "cast", cast }, { "objects", objects }, { "render", render }, { NULL, NULL },
 };
 
 static const glintL_class CLASS = {
@@ -423,6 +453,10 @@ void glintL_open_scene(lua_State *L)
 {
     glintL_open_class(L, &CLASS);
     glintL_list_object(L, &SCENE, &CLASS);
+    luaL_getmetatable(L, GLINTL_SCENE);
+    lua_pushcfunction(L, count_objects);
+    lua_setfield(L, -2, "__len");
+    lua_pop(L, 1);
     lua_pushcfunction(L, new_scene);
     lua_setfield(L, -2, "scene");
     lua_pushcfunction(L, new_ambient_occlusion);

@@ -715,6 +715,10 @@ function scene:remove(object) end
 ---@return glint.hit? hit  nil when nothing is hit
 function scene:cast(origin, direction) end
 
+--- The shapes, then the lights, then labels and the like, each in the order of definition. `#scene` is their number.
+---@return (glint.shape|glint.light|glint.overlay)[]
+function scene:objects() end
+
 --- Renders one frame. In a plain loop the calls are numbered from 1: a call that --frames or --shard leaves out returns
 --- nil and "skipped". Nothing is written without `output`.
 ---@param options? glint.render
@@ -799,6 +803,12 @@ local image = {}
 ---@return number g
 ---@return number b
 function image:pixel(x, y, pass) end
+
+--- A pass as float32 numbers, little endian, row by row from the top: "<f" of string.unpack, "<f4" of NumPy. Light has three
+--- numbers a pixel, depth, object_id and the like one.
+---@param pass? glint.pass  Default "beauty"
+---@return string
+function image:bytes(pass) end
 
 --- Writes a .png, .pfm, .npy or .exr, whole or not at all. Missing folders are made. Wrong use raises; a file that cannot be
 --- written gives nil and a message.
@@ -1364,5 +1374,28 @@ function glint.exp(x) end
 ---@param x glint.values
 ---@return any
 function glint.log(x) end
+
+-- ---- Pictures that are there ----
+
+--- A finished picture or a photo. Its numbers are linear light, whatever the file holds.
+---@class glint.picture
+---@field width integer  pixels; only read
+---@field height integer  pixels; only read
+local picture = {}
+
+--- Red, green and blue; (0, 0) is the top left.
+---@param x integer
+---@param y integer
+---@return number, number, number
+function picture:pixel(x, y) end
+
+--- All pixels as float32 numbers, little endian, three a pixel, row by row from the top.
+---@return string
+function picture:bytes() end
+
+--- Reads a .png or .pfm.
+---@param path string
+---@return glint.picture
+function glint.read_image(path) end
 
 return glint

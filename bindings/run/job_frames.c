@@ -15,6 +15,7 @@ glintL_walk *glintL_push_walk(lua_State *L, int index, glintL_run *run)
     walk->L = L;
     walk->run = run;
     walk->list = list;
+    glintL_give_cameras(L, list, run);
     return walk;
 }
 

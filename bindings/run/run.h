@@ -342,6 +342,12 @@ void glintL_run_warn(glintL_run *run, const char *format, ...) __attribute__((fo
 void glintL_warn(lua_State *L, const char *message);
 /// That a camera's shutter has no frame function to look at several times.
 void glintL_warn_of_shutter(glintL_run *run);
+/// A ball around the scene's shapes, but planes; false: there are none.
+bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radius);
+/// own_camera.c: a scene without a camera gets one that has its shapes in view, and a warning says so. The scene's userdata is at
+/// `index`; what is no scene, or has nothing to look at, stays as it is.
+void glintL_give_camera(lua_State *L, glintL_run *run, int index);
+void glintL_give_cameras(lua_State *L, int list, glintL_run *run); ///< the same of all jobs of the list at `list`, absolute
 /// Says what a later run goes on from: no mistake, so that it stays no failure under --warnings=error.
 void glintL_run_note(const glintL_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void glintL_forget_warnings(glintL_run *run);

@@ -197,6 +197,52 @@ static void move_ball(const glint_transform *t, ball *b)
     b->is_sphere = b->is_sphere && keeps_angles;
 }
 
+// Makes `all` a ball around both.
+static void join_balls(ball *all, const ball *b)
+{
+    double way[3];
+    for (int i = 0; i < 3; i++)
+        way[i] = b->center[i] - all->center[i];
+    const double length = sqrt(dot(way, way));
+    if (length + b->radius <= all->radius)
+        return;
+    if (length + all->radius <= b->radius) {
+        *all = *b;
+        return;
+    }
+    const double radius = (length + all->radius + b->radius) / 2;
+    for (int i = 0; i < 3; i++)
+        all->center[i] += way[i] * ((radius - all->radius) / length);
+    all->radius = radius;
+}
+
+// Takes what a shape fills into `all`, whose radius is below 0 while it is empty. A plane has no ball.
+static void bound_shape(const glint_shape *shape, const glint_transform *around, ball *all)
+{
+    ball b;
+    const glint_transform placed = glint_transform_product(around, &glint_shape_get(shape)->transform);
+    for (size_t i = 0; i < glint_group_count(shape); i++)
+        bound_shape(glint_group_child(shape, i), &placed, all);
+    if (!find_ball(shape, &b))
+        return;
+    move_ball(&placed, &b);
+    if (all->radius < 0)
+        *all = b;
+    else
+        join_balls(all, &b);
+}
+
+bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radius)
+{
+    const glint_transform here = glint_transform_identity();
+    ball all = { .radius = -1 };
+    for (size_t i = 0; i < glint_scene_shape_count(scene); i++)
+        bound_shape(glint_scene_shape_at(scene, i), &here, &all);
+    memcpy(center, all.center, sizeof all.center);
+    *radius = all.radius;
+    return all.radius > 0 && isfinite(all.radius);
+}
+
 // Whether a mirror or something transparent or with holes is among a shape's materials, or those of a group; counts what it looks at.
 static bool any_shows_through(lua_State *L, const glint_shape *shape, int *count)
 {

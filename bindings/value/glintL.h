@@ -337,6 +337,11 @@ void glintL_open_params(lua_State *L);
 void glintL_open_animation(lua_State *L); ///< animation and sweep
 int luaopen_glint(lua_State *L);
 
+/// picture.c: glint.read_image.
+void glintL_open_picture(lua_State *L);
+/// Writes the four bytes of a float32, the least first; returns what is after them.
+char *glintL_put_float(char *to, float value);
+
 /// The constructor glint.spheres, of spheres.c.
 int glintL_new_spheres(lua_State *L);
 /// The constructors glint.mesh and glint.sphere_mesh, of mesh.c.

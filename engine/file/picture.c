@@ -210,3 +210,19 @@ void glint_picture_row(const glint_picture *picture, int y, int backdrop, uint8_
         }
     }
 }
+
+void glint_picture_light(const glint_picture *picture, int y, float *rgb)
+{
+    const size_t width = (size_t)picture->head.width, channels = (size_t)picture->head.channels;
+    const size_t first = (size_t)y * width * channels;
+    const double most = picture->head.bits == 16 ? 65535 : 255;
+    for (size_t i = 0; i < 3 * width; i++) {
+        const size_t at = first + i / 3 * channels + (channels < 3 ? 0 : i % 3);
+        if (picture->values) {
+            rgb[i] = picture->values[at];
+            continue;
+        }
+        const double share = code_at(picture, at) / most;
+        rgb[i] = (float)(picture->head.transfer == GLINT_TRANSFER_SRGB ? glint_srgb_decode(share) : share);
+    }
+}

@@ -113,7 +113,9 @@ script text_error 'error(setmetatable({}, { __tostring = function() return "my o
 script nil_error 'error()'
 script frame_error 'local g, S = require "glint", require "scene"
 return g.animation { scene = S.scene, frames = 4, width = 40, height = 24, frame = function(t, n) if n == 3 then S.lamp.intensity = -1 end end }'
-script no_camera 'local g = require "glint" return g.scene { g.sphere { center = { 0, 0, 0 }, radius = 1 } }'
+script no_camera 'local g = require "glint" return g.scene { g.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } } }'
+script own_camera 'local g = require "glint" return g.animation { frames = 3,
+  scene = g.scene { ambient = 1, g.sphere { center = { 0, 0, 0 }, radius = 1 } } }'
 script endless 'while true do end'
 script stubborn 'while true do pcall(function() while true do end end) end'
 script slow 'local g, S = require "glint", require "scene"
@@ -585,6 +587,10 @@ errors() {
     files "what was done stays" frame_error_0001.png frame_error_0002.png
     exits 2 "no camera" no_camera.lua
     says "no camera" 'camera'
+    exits 0 "a camera that frames the scene" own_camera.lua --size 8x8
+    says "a camera that frames the scene" 'the scene has no camera; it gets one that has all of it in view: glint\.camera \{ eye'
+    check "it says so once" test "$(grep -c 'has no camera' err)" -eq 1
+    clean
     "$LUA" -e 'io.open("code.lua", "wb"):write(string.dump(function() end))'
     exits 2 "bytecode" code.lua
     GLINT_ISA=foo run ten.lua -o none

@@ -53,7 +53,7 @@ check "the options of --help" diff "$work/helped" "$work/offered"
 cat >"$work/heads.lua" <<'END'
 local page = io.read "a"
 local options = page:match "\n%.SH OPTIONS\n(.-)\n%.SH "
-local said = options:match "\nAlso write these: (.-)%.\n%.TP\n"
+local said = options:match "\nAlso write these: (.-)%.[ \n]"
 io.write("passes ", (said:gsub("%s+", " ")), "\n")
 for line in options:gmatch "%f[^\n\0]%.TP\n%.BR? ([^\n]*)" do
   local head = line:gsub('"([^"]*)"', function(quoted) return (quoted:gsub(" ", "\1")) end):gsub(" ", "")

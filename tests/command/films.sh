@@ -407,7 +407,13 @@ unset TMPDIR
 
 # ---- New ----
 
-exits 0 "a new script" new start
+exits 0 "a new folder" new first
+check "with a script and what editors read" test -s first/first.lua -a -s first/.luarc.json
+check "which names the types" eval 'test -s "$(grep -o "/[^\"]*" first/.luarc.json)/glint.lua"'
+exits 0 "it renders" first/first.lua -f 1 --size 64x36 -q -o none
+exits 2 "a folder's script stays" new first
+says "and it says so" 'first/first.lua: it is there already'
+exits 0 "a new script" new start.lua
 exits 0 "renders" start.lua -f 1 --size 64x36 -q -o start.png
 exits 0 "and shows its parameters" start.lua --help
 prints "with what they mean" 'radius=8 .*orbit'
@@ -416,9 +422,9 @@ exits 2 "is not written over" new start.lua
 says "and it says so" 'start.lua: it is there already'
 [ "$before" = "$(sha256sum <start.lua)" ] && pass || fail "start.lua changed"
 exits 2 "no name" new
-exits 2 "a folder's name" new x/
+exits 2 "a name that ends in a slash" new x/
 exits 1 "a folder that is not there" new none/x/y
-says "and what makes it" 'none/x/y.lua: its folder is not there'
+says "and what makes it" 'none/x/y/y.lua: its folder is not there'
 exits 2 "a script without its ending" start
 says "names the file" 'did you mean start.lua'
 exits 2 "a word that is neither command nor script" stort

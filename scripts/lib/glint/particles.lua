@@ -292,7 +292,7 @@ function set:extent()
   return center, math.sqrt(squares)
 end
 
-local CAMERA = { from = true, margin = true, fov = true, up = true, name = true }
+local CAMERA = { from = true, margin = true, fov = true, up = true, name = true, projection = true }
 
 local function check_camera(fields)
   if type(fields) ~= "table" then
@@ -300,7 +300,7 @@ local function check_camera(fields)
   end
   for name in pairs(fields) do
     if not CAMERA[name] then
-      error(("particles.camera.%s: no such option; from, margin, fov, up, name are"):format(name), 3)
+      error(("particles.camera.%s: no such option; from, margin, fov, projection, up, name are"):format(name), 3)
     end
   end
   local from, square = fields.from, 0
@@ -316,16 +316,20 @@ end
 
 --- A camera that has all spheres in view in a picture at least as wide as high.
 ---@param fields table  from: the direction from the centre to the eye, {x, y, z}; margin: distance in place of the one
---- that fits, as a factor (default 1); and a camera's fov (default 30), up, name
+--- that fits, as a factor (default 1); and a camera's fov (default 30), up, name,
+--- projection ("orthographic": the margin is a factor of its height)
 function set:camera(fields)
   check_camera(fields)
   local center, radius = self:extent()
   local from, fov = fields.from, fields.fov or 30
   local length = math.sqrt(from[1] ^ 2 + from[2] ^ 2 + from[3] ^ 2)
-  local distance = (fields.margin or 1) * radius / glint.sin(math.rad(fov) / 2) / length
+  local is_flat = fields.projection == "orthographic"
+  local margin = fields.margin or 1
+  local distance = (is_flat and math.max(margin, 2) * radius or margin * radius / glint.sin(math.rad(fov) / 2)) / length
   local eye = {}
   for i = 1, 3 do eye[i] = center[i] + distance * from[i] end
-  return glint.camera { eye = eye, at = center, fov = fov, up = fields.up, name = fields.name }
+  return glint.camera { eye = eye, at = center, fov = fov, projection = fields.projection,
+    height = is_flat and 2 * margin * radius or nil, up = fields.up, name = fields.name }
 end
 
 --- A depth cue for a camera that looks at the spheres: full light at the nearest, `lost` (0 .. 1, default 0.7) of it
