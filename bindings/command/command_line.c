@@ -91,6 +91,16 @@ static int argument_of(const cli_option *option)
 static bool is_number(const char *word) { return *word && word[strspn(word, "0123456789")] == '\0'; }
 
 // Reads the options wherever they stand; `used` marks those given. getopt_long moves the other words to the end.
+// Options of which both values would be meant.
+static bool is_given_once(const cli_option *option)
+{
+    static const char *const names[] = { "output", "frames", "shard", "passes", "region" };
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcmp(option->name, names[i]) == 0)
+            return true;
+    return false;
+}
+
 static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI_OPTION_COUNT], char *message)
 {
     struct option list[CLI_OPTION_COUNT + 1] = { 0 };
@@ -112,6 +122,11 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
         if (code == '?' || code == ':')
             return complain(code, argv[optind > at ? optind - 1 : at], optopt, message);
         const cli_option *option = find_option(code);
+        if (used[option - cli_option_list] && is_given_once(option)) {
+            snprintf(message, MESSAGE, "--%s: it is given twice, and the first value would be lost; one value expected",
+                     option->name);
+            return false;
+        }
         used[option - cli_option_list] = true;
         if (cli_option_may_lack(option) && !optarg && optind < argc && is_number(argv[optind]))
             optarg = argv[optind++];

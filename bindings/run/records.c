@@ -51,6 +51,7 @@ void glintL_run_destroy(glintL_run *run)
     glintL_films_destroy(run->films);
     free(run->params_text);
     glintL_forget_warnings(run);
+    glintL_places_forget(run);
     free(run);
 }
 
@@ -62,6 +63,7 @@ void glintL_run_reset(glintL_run *run)
     glintL_work_destroy(run->deferred);
     glintL_films_destroy(run->films);
     glintL_forget_warnings(run);
+    glintL_places_forget(run);
     free(run->params_text);
     run->explain_plan = NULL;
     run->explain_order = NULL;

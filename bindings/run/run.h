@@ -15,6 +15,7 @@
 ///   order.c           in which order a sweep's frames are rendered
 ///   walk.c            one frame of a list of jobs; job_frames.c a list frame by frame
 ///   jobs.c            frames of jobs; job_run.c :run; call.c scene:render
+///   places.c          the files written so far
 ///   kept_image.c      the picture of a file that was kept
 ///
 /// Nothing here raises a Lua error while it holds something: Lua code is called under lua_pcall only.
@@ -243,6 +244,13 @@ typedef struct glintL_moments {
     void *data;
 } glintL_moments;
 
+/// A file that the run has written, in a hash table.
+typedef struct glintL_place {
+    uint64_t path; ///< hash; 0: a free entry
+    uint64_t picture; ///< hash of what is in the file
+    int64_t index; ///< number of the first frame that it was written for
+} glintL_place;
+
 struct glintL_run {
     bool times_stages, counts_work;
     bool keeps_images; ///< every picture has its linear beauty pass
@@ -271,6 +279,8 @@ struct glintL_run {
     int64_t files_pending;
     glintL_work *deferred; ///< the first call, while it is not known whether there is a second
     char *params_text; ///< owned; "name=value" lines
+    glintL_place *places; ///< owned
+    size_t place_count, place_room;
     struct glintL_film *films; ///< owned; made when all their frames are there
 
     int64_t count; ///< frames numbered so far
@@ -388,6 +398,13 @@ glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error 
 bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept);
 /// The whole of a frame: kept or rendered `repeat` times, and finished. False: the run has failed.
 bool glintL_work_run(glintL_run *run, glintL_work *work, bool force);
+
+// ---- places.c ----
+
+/// Notes that frame `index` has this file, and warns when the file had another picture in this run. False: the run has
+/// failed.
+bool glintL_places_add(glintL_run *run, const glintL_file *file, int64_t index);
+void glintL_places_forget(glintL_run *run);
 
 // ---- source.c ----
 

@@ -183,12 +183,41 @@ names() {
 for _, name in ipairs { "x.png", "y.png" } do S.scene:render { width = 40, height = 24, output = name } end'
     exits 0 "named calls" outputs.lua
     files "a call's own name is its name" x.png y.png
+    same_name
     exits 0 "loop without output" loop.lua
     files "a loop writes nothing by itself"
     exits 0 "loop under -o" loop.lua -o l.png
     files "loop under -o" l_0001.png l_0002.png l_0003.png l_0004.png l_0005.png
     exits 0 "single call under -o" single.lua -o s.png
     files "single call under -o" s.png
+}
+
+# Two pictures of one name: a warning. One picture that is written twice loses nothing.
+same_name() {
+    local name
+    for name in same.png same.pfm ././same.png; do
+        script same 'local S = require "scene"
+for i = 1, 3 do S.scene.ambient = i / 3 S.scene:render { width = 8, height = 8, output = i == 2 and "'"$name"'" or "'"${name##*/}"'" } end'
+        exits 0 "one name for three pictures" same.lua
+        says "one name for three pictures" "warning: frame 2: output: '$name' is also the file of frame 1, .*same_%04d"
+        exits 2 "one name is an error" same.lua --warnings=error
+        exits 0 "numbered by -o" same.lua -o same.png
+        check "no warning of numbered names" test -z "$(grep "also the file" err)"
+        clean
+    done
+    script again 'local S = require "scene"
+for i = 1, 3 do S.scene:render { width = 8, height = 8, output = "again.png" } end'
+    exits 0 "one picture thrice" again.lua --warnings=error
+    script passes 'local S = require "scene"
+S.scene:render { width = 8, height = 8, output = "a.png", passes = "depth" }
+S.scene:render { width = 9, height = 8, output = "a.depth.png" }'
+    exits 2 "the name of a pass" passes.lua --warnings=error
+    clean
+    for name in "-o a.png -o b.npy" "-f 1 -f 2" "--shard 1/2 --shard 2/2" "--passes depth --passes normal"; do
+        exits 2 "twice: $name" ten.lua $name
+        says "twice: $name" 'given twice'
+    done
+    files "nothing written" # either name may have been meant
 }
 
 # ---- Which frames ----

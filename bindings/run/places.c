@@ -1,0 +1,90 @@
+// The files that a run has written, so that no picture replaces another one without a word.
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/run/run.h"
+
+static uint64_t hash_step(uint64_t hash, char byte) { return (hash ^ (unsigned char)byte) * 0x100000001b3u; } // FNV-1a
+
+// Hashes a path, in which "./" and doubled slashes mean nothing. Never 0.
+static uint64_t hash_path(const char *path)
+{
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (bool starts = true; *path; path++) {
+        if (starts && path[0] == '.' && path[1] == '/')
+            path++;
+        else if (!starts || *path != '/' || hash == 0xcbf29ce484222325u)
+            hash = hash_step(hash, *path);
+        starts = *path == '/';
+    }
+    return hash ? hash : 1;
+}
+
+// What distinguishes the file's picture from others: its key, or the frame where the file has none.
+static uint64_t hash_picture(const glintL_file *file, int64_t index)
+{
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (const char *at = file->key; *at; at++)
+        hash = hash_step(hash, *at);
+    return file->key[0] ? hash : (uint64_t)index;
+}
+
+// The entry of a path, or the free one where it belongs. The table has free ones.
+static glintL_place *find(glintL_place *table, size_t room, uint64_t path)
+{
+    size_t at = path % room;
+    while (table[at].path && table[at].path != path)
+        at = (at + 1) % room;
+    return &table[at];
+}
+
+// False: out of memory.
+static bool grow(glintL_run *run)
+{
+    size_t room = run->place_room ? 2 * run->place_room : 64;
+    glintL_place *table = calloc(room, sizeof *table);
+    if (!table)
+        return false;
+    for (size_t i = 0; i < run->place_room; i++)
+        if (run->places[i].path)
+            *find(table, room, run->places[i].path) = run->places[i];
+    free(run->places);
+    run->places = table;
+    run->place_room = room;
+    return true;
+}
+
+static void warn(glintL_run *run, const char *path, int64_t first, int64_t index)
+{
+    const char *dot = strrchr(path, '.');
+    int stem = (int)(dot ? dot - path : (ptrdiff_t)strlen(path));
+    glintL_run_warn(run,
+                    "frame %" PRId64 ": output: '%.300s' is also the file of frame %" PRId64 ", whose picture is lost; put the "
+                    "frame's number into the name: %.*s_%%04d%s",
+                    index, path, first, stem < 300 ? stem : 300, path, dot ? dot : "");
+}
+
+bool glintL_places_add(glintL_run *run, const glintL_file *file, int64_t index)
+{
+    if (glintL_name_is_special(file->path))
+        return true;
+    if (2 * run->place_count >= run->place_room && !grow(run))
+        return glintL_run_fail(run, GLINTL_EXIT_FAILED, index, "out of memory");
+    uint64_t path = hash_path(file->path), picture = hash_picture(file, index);
+    glintL_place *place = find(run->places, run->place_room, path);
+    if (!place->path) {
+        *place = (glintL_place) { path, picture, index };
+        run->place_count++;
+    } else if (place->picture != picture) {
+        warn(run, file->path, place->index, index);
+    }
+    return run->exit_code == 0;
+}
+
+void glintL_places_forget(glintL_run *run)
+{
+    free(run->places);
+    run->places = NULL;
+    run->place_count = run->place_room = 0;
+}
