@@ -280,5 +280,67 @@ function tests.empty_frames()
   check(center[1] == 0 and radius == 1, "without a box")
 end
 
+-- ---- Clouds of points ----
+
+-- The points of a file as spheres: place, radius and the name of their material, "1 2 3 0.5 #ff0000; ...".
+local function colored(name, text, options)
+  local set = particles.new(options or { radius = 0.25 })
+  set:add_frame(points.frame(write(name, text)))
+  local x, y, z, place = set:places_of_all()
+  local list = {}
+  for i = 1, #x do list[i] = ("%.9g %.9g %.9g %s"):format(x[i], y[i], z[i], set.materials[place[i]].name) end
+  return table.concat(list, "; ")
+end
+
+local RED_GREEN <const> = "0 0 0 #ff0000; 1 0 0 #00ff00"
+
+function tests.columns_of_colours()
+  for name, text in pairs { ["a.xyz"] = "0 0 0 255 0 0\n1 0 0 0 255 0\n", ["b.xyz"] = "0 0 0 1.0 0.0 0.0\n1 0 0 0.0 1.0 0.0\n",
+    ["c.xyzrgb"] = "0 0 0 1 0 0\n1 0 0 0 1 0\n", ["d.pts"] = "2\n0 0 0 -1200 255 0 0\n1 0 0 -900 0 255 0\n", ["e.pts"] = "0 0 0 255 0 0\n1 0 0 0 255 0\n",
+    ["f.csv"] = "//X,Y,Z,R,G,B\n0,0,0,255,0,0\n1,0,0,0,255,0\n", ["g.csv"] = "red,green,blue,x,y,z,mass\n1,0,0,0,0,0,7\n0,1,0,1,0,0,7\n",
+    ["h.txt"] = "0 0 0 255 0 0 0.6 0.8 0\n1 0 0 0 255 0 0 0 -1\n", ["i.txt"] = "0 0 0 255 0 0 255\n1 0 0 0 255 0 255\n" } do
+    is(colored(name, text), RED_GREEN, name)
+  end
+  is(colored("half.xyz", "0 0 0 0.5 0.25 1\n1 0 0 0.9 0.25 1\n"), "0 0 0 #8040ff; 1 0 0 #e640ff", "red is no radius")
+  for name, text in pairs { ["n.xyz"] = "0 0 0 0.6 0.8 0\n1 0 0 0 0 -1\n", ["n.xyzn"] = "0 0 0 1 0 0\n1 0 0 0 1 0\n" } do
+    local frame = points.frame(write(name, text))
+    check(table.concat(frame.columns, " ") == "x y z nx ny nz" and not frame.color, "normals: %s", table.concat(frame.columns, " "))
+    is(spell(frame), "point 0 0 0; point 1 0 0", name)
+  end
+  is(spell(points.frame(write("r.txt", "0 0 0 2\n1 0 0 3\n"))), "point 0 0 0 2; point 1 0 0 3", "four are a radius")
+  is(spell(points.frame(write("r.pts", "0 0 0 200\n1 0 0 3\n"))), "point 0 0 0; point 1 0 0", "of .pts an intensity")
+  is(spell(points.frame(write("o.txt", "0 0 0 2 300 7\n"))), "point 0 0 0 2", "neither a colour nor a normal")
+  is(colored("own.csv", "x,y,z,r,g,b\n0,0,0,255,0,0\n", { kinds = { point = { color = "blue", radius = 1 } } }), "0 0 0 point",
+    "a colour of the script comes first")
+  raises('bad.csv:3: red, green and blue, 0 .. 255, expected, got "-1"', colored, "bad.csv", "x,y,z,r,g,b\n0,0,0,255,0,0\n0,0,0,-1,0,0\n")
+  local many = {}
+  for i = 0, 9999 do many[#many + 1] = ("%d 0 0 %d %d 7"):format(i, i // 100, i % 100 + 150) end
+  local set = particles.new { radius = 1 }
+  set:add_frame(points.frame(write("many.xyz", table.concat(many, "\n"))))
+  check(#set.materials > 4096 and #set.materials < 4500, "colours after the first 4096 are rounded, got %d materials", #set.materials)
+end
+
+function tests.clouds()
+  local head = "ply\nformat %s 1.0\ncomment by hand\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n" ..
+    "property uchar red\nproperty uchar green\nproperty uchar blue\n%send_header\n"
+  is(colored("a.ply", head:format("ascii", "") .. "0 0 0 255 0 0\n1 0 0 0 255 0\n"), RED_GREEN, "text")
+  local faces = "element face 0\nproperty list uchar int vertex_indices\n"
+  for name, order in pairs { binary_little_endian = "<", binary_big_endian = ">" } do
+    local row = order .. "fffBBB"
+    is(colored("b.ply", head:format(name, faces) .. row:pack(0, 0, 0, 255, 0, 0) .. row:pack(1, 0, 0, 0, 255, 0)), RED_GREEN, name)
+    raises("b.ply: point 2 of 2 expected, got the end of the file", colored, "b.ply", head:format(name, "") .. row:pack(0, 0, 0, 13, 10, 0))
+  end
+  is(colored("n.ply", head:format("ascii", "") .. "nan nan nan 1 1 1\n1 0 0 0 255 0\n"), "1 0 0 #00ff00", "gaps")
+  is(colored("f.ply", (head:gsub("uchar", "float"):format("ascii", "")) .. "0 0 0 1 0 0\n1 0 0 0 1 0\n"), RED_GREEN, "colours 0 .. 1")
+  raises("c.ply:13: point 2 of 2, with 6 numbers, expected, got the end of the file", colored, "c.ply", head:format("ascii", "") .. "0 0 0 1 0 0\n")
+  local pcd = "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F %s\nCOUNT 1 1 1 1\n" ..
+    "WIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA %s\n"
+  is(colored("a.pcd", pcd:format("U", "ascii") .. "0 0 0 16711680\n1 0 0 65280\n"), RED_GREEN, ".pcd")
+  is(colored("f.pcd", pcd:format("F", "ascii") .. "0 0 0 2.34180515e-38\n1 0 0 9.14767637e-41\n"), RED_GREEN, "colours as the bits of a float")
+  is(colored("b.pcd", pcd:format("F", "binary") .. ("<fffI4fffI4"):pack(0, 0, 0, 0xff0000, 1, 0, 0, 0x00ff00)), RED_GREEN, "binary")
+  is(colored("v.pcd", (pcd:gsub("^.-\n", ""):format("U", "ascii")) .. "0 0 0 16711680\n1 0 0 65280\n"), RED_GREEN, "without a first comment")
+  raises('c.pcd:11: DATA ascii or binary expected, got "binary_compressed"', colored, "c.pcd", pcd:format("F", "binary_compressed"))
+end
+
 tally.run(tests)
 tally.finish()

@@ -128,8 +128,9 @@ function bonds.new(set, options)
   local x, y, z, place = set:places_of_all()
   local by_kind, reach = {}, {}
   for name, kind in pairs(set.kinds) do
-    by_kind[kind.place] = by_kind[kind.place] or (name == kind.name and reach_of(name, options)) or nil
+    if kind.place and name == kind.name then by_kind[kind.place] = reach_of(name, options) end
   end
+  for n, kind in pairs(set.kind_of_place) do by_kind[n] = reach_of(kind.name, options) end
   for i = 1, #x do reach[i] = by_kind[place[i]] end
   local parts, count = {}, 0
   local function half(i, mx, my, mz)

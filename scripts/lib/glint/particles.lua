@@ -21,6 +21,7 @@ local PALETTE = { "#4e79a7", "#f28e2b", "#59a14f", "#e15759", "#b07aa1", "#edc94
 local POINT, GHOST = { color = "#b8b8b8", radius = 0.5 }, { color = "#ff1493", radius = 0.5 }
 
 local OPTIONS = { kinds = true, scale = true, radius = true, material = true, format = true, color_by = true }
+local EXACT = 4096 -- colours of points, each a material; further ones are rounded to 5 bits of red, green and blue
 local STEPS = 256 -- of colours by a column, each a material
 
 local warned = {} -- files with labels that are nothing known
@@ -69,6 +70,7 @@ function particles.new(options)
   return setmetatable({
     color_by = options.color_by and check_colors(options.color_by), values = {}, pending_values = {},
     lowest = math.huge, highest = -math.huge,
+    colors = { count = 0 }, kind_of_place = {},
     count = 0, format = format, options = options, kinds = {}, materials = {}, counts = {},
     low = { math.huge, math.huge, math.huge }, high = { -math.huge, -math.huge, -math.huge },
     data = {}, index = {}, numbers = {}, places = {}, pending = 0,
@@ -108,15 +110,42 @@ local function kind_of(self, label, frame)
   if not kind then
     local fields = { name = name, diffuse = found.color }
     for field, value in pairs(options.material or {}) do fields[field] = value end
-    local material = found.material or glint.material(fields)
-    self.materials[#self.materials + 1] = material
-    local radius = options.radius or (options.scale or 1) * (found.radius or POINT.radius)
-    kind = { name = name, place = #self.materials, radius = radius }
+    local is_own = options.kinds and found == options.kinds[label] and (found.material or found.color)
+    kind = { name = name, fields = fields, material = found.material, is_own = is_own,
+      radius = options.radius or (options.scale or 1) * (found.radius or POINT.radius) }
     self.kinds[name] = kind
     self.counts[name] = 0
   end
   self.kinds[label] = kind
   return kind
+end
+
+-- The place of a kind's material, which is made when it is needed.
+local function place_of(self, kind)
+  if not kind.place then
+    self.materials[#self.materials + 1] = kind.material or glint.material(kind.fields)
+    kind.place = #self.materials
+  end
+  return kind.place
+end
+
+-- The place of the material of a colour, 0xrrggbb.
+local function place_of_color(self, kind, code)
+  local colors = self.colors
+  if colors.count >= EXACT and not colors[code] then
+    local rounded = 0
+    for shift = 16, 0, -8 do rounded = rounded << 8 | ((code >> shift & 255) * 31 + 127) // 255 * 255 // 31 end
+    code = rounded
+  end
+  if not colors[code] then
+    local name = ("#%06x"):format(code)
+    local fields = { name = name, diffuse = name }
+    for field, value in pairs(self.options.material or {}) do fields[field] = value end
+    self.materials[#self.materials + 1] = glint.material(fields)
+    colors[code], colors.count = #self.materials, colors.count + 1
+    self.kind_of_place[#self.materials] = kind
+  end
+  return colors[code]
 end
 
 -- Packs what is pending into one string.
@@ -148,7 +177,7 @@ local function put_value(self, value)
 end
 
 -- Adds a sphere. Returns false, what was expected and what was got when it cannot be.
-local function put(self, frame, label, x, y, z, radius, value)
+local function put(self, frame, label, x, y, z, radius, value, code)
   local kind = self.kinds[label] or kind_of(self, label, frame)
   if not kind then
     return false, "an element, its number, or one of the option kinds", label
@@ -162,7 +191,8 @@ local function put(self, frame, label, x, y, z, radius, value)
   numbers[at + 1], numbers[at + 2], numbers[at + 3], numbers[at + 4] = x, y, z, radius
   stretch(self, x, y, z, radius)
   self.pending = self.pending + 1
-  self.places[self.pending] = kind.place
+  local is_colored = code and not kind.is_own
+  self.places[self.pending] = is_colored and place_of_color(self, kind, code) or place_of(self, kind)
   if self.color_by then put_value(self, value) end
   self.count = self.count + 1
   self.counts[kind.name] = self.counts[kind.name] + 1
@@ -191,11 +221,27 @@ local function keep_box(self, box)
   self.box = same and box
 end
 
---- Adds the atoms of a frame that a reader gave. What cannot be added is an error with file and line. A box the frame
---- has is kept, for glint.bonds.
+-- Adds the points of a frame that has colours.
+local function add_colored(self, frame)
+  local scale = 255 / frame.color.most
+  local function code_of(v)
+    if math.type(v) and v >= 0 and v * scale <= 255 then return math.floor(v * scale + 0.5) end
+    frame:fail(("red, green and blue, 0 .. %d,"):format(frame.color.most), tostring(v))
+  end
+  for label, x, y, z, radius, r, g, b in frame:atoms("red", "green", "blue") do
+    local code = code_of(r) << 16 | code_of(g) << 8 | code_of(b)
+    local done, expected, got = put(self, frame, label, x, y, z, radius, nil, code)
+    if not done then frame:fail(expected, got) end
+  end
+  return self
+end
+
+--- Adds the atoms of a frame that a reader gave; points of a cloud with colours have these. What cannot be added is an
+--- error with file and line. A box the frame has is kept, for glint.bonds.
 ---@return table set  the same
 function set:add_frame(frame)
   if frame.box then keep_box(self, frame.box) end
+  if frame.color and not self.color_by then return add_colored(self, frame) end
   for label, x, y, z, radius, value in frame:atoms(self.color_by and self.color_by.column) do
     local done, expected, got = put(self, frame, label, x, y, z, radius, value)
     if not done then frame:fail(expected, got) end

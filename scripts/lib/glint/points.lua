@@ -1,14 +1,16 @@
--- Points from columns of text: CSV, TSV, or numbers with blanks between them.
+-- Points from columns of text, CSV, TSV, or numbers with blanks between them (.xyz, .pts), and clouds .ply and .pcd.
 --     for label, x, y, z, radius in points.frame "stars.csv":atoms() do ... end
 -- The first line may name the columns: x, y, z, and where they are there radius and label, in any order and case;
--- others are there by name: frame:atoms("mass"). Without names the columns are x, y, z, radius; options.columns =
--- { "label", "x", ... } says otherwise. The separator is the first of tab, semicolon and comma in that line, else
--- blanks. A field may stand "in quotes", with "" for a quote. Lines that are empty or begin with # are passed over.
-local frames, lines = require "glint.frames", require "glint.lines"
+-- others are there by name: frame:atoms("mass"). Points with red, green and blue (or r, g, b; 0 .. 1, or 0 .. 255) have
+-- frame.color, and spheres of glint.particles their colour. Without names the columns are x, y, z, radius. Of six, the
+-- last three are a colour, or a normal where all are of length 1; seven are x, y, z, intensity and a colour;
+-- options.columns = { "label", "x", ... } says otherwise. The separator is the first of tab, semicolon and comma in
+-- that line, else blanks. A field may stand "in quotes", with "" for a quote. Lines that are empty or begin with # are
+-- passed over.
+local clouds, frames, lines = require "glint.clouds", require "glint.frames", require "glint.lines"
 
 local points = {}
 
-local DEFAULT_COLUMNS = { "x", "y", "z", "radius" }
 local DEFAULT_LABEL = "point"
 
 -- The field of a line that begins at `from`, and where the next one begins or nil.
@@ -78,22 +80,125 @@ local function pick(columns, wanted)
   end
 end
 
+-- ---- Columns without names ----
+
+local PROBED = 50 -- lines that say what columns without names are
+
+-- The first lines of a file, as lists of numbers; those that are none are left out.
+local function probe(source, line, separator)
+  local list, other = {}, source.path ~= "-" and lines.open(source.path)
+  local text = other and other:next_full() or line
+  while text and #list < PROBED do
+    local row, found = split(source, text, separator), {}
+    for i, word in ipairs(row) do found[i] = lines.number(word) end
+    if #row > 2 then list[#list + 1] = found end
+    text = other and other:next_full()
+  end
+  if other then other:close() end
+  return list
+end
+
+-- What three columns from `first` on are: "normal", or the largest number of a colour, 1 or 255. Nil: neither.
+local function kind_of(rows, first)
+  local most, is_color, is_unit, is_turned = 0, true, true, false
+  for _, row in ipairs(rows) do
+    local square = 0
+    for i = first, first + 2 do
+      local v = row[i] or -1
+      most, square = math.max(most, v), square + v * v
+      is_color = is_color and v >= 0 and v <= 255
+      is_turned = is_turned or v < 0 or v > 0 and v < 1
+    end
+    is_unit = is_unit and (square == 0 or math.abs(square - 1) < 0.01)
+  end
+  if is_unit and is_turned then return "normal" end
+  return is_color and (most > 1 and 255 or 1) or nil
+end
+
+local function is_constant(rows, column)
+  for _, row in ipairs(rows) do
+    if row[column] ~= rows[1][column] then return false end
+  end
+  return true
+end
+
+-- The names of columns that have none, and the largest number of a colour where they have one. Files .xyzn have
+-- normals, and .xyzrgb colours; of others the numbers tell.
+local function guess_columns(source, line, separator, count)
+  local ending = (source.path:match "%.(%w+)$" or ""):lower()
+  local names, rows, most = { "x", "y", "z" }, probe(source, line, separator), nil
+  local function add(...) table.move({ ... }, 1, select("#", ...), #names + 1, names) end
+  local function add_three(first)
+    local kind = ending == "xyzn" and "normal" or kind_of(rows, first)
+    if ending == "xyzrgb" and kind == "normal" then kind = 1 end
+    if kind == "normal" then add("nx", "ny", "nz") elseif kind and not most then
+      add("red", "green", "blue")
+      most = kind
+    end
+    return kind
+  end
+  if (count == 6 or count == 9) and kind_of(rows, 4) then
+    add_three(4)
+    if count == 9 then add_three(7) end
+  elseif count == 7 and ending ~= "pts" and tonumber(kind_of(rows, 4)) and is_constant(rows, 7) then
+    add_three(4)
+    add "alpha"
+  elseif count == 7 and tonumber(kind_of(rows, 5)) then
+    add "intensity"
+    add_three(5)
+  elseif count > 3 then
+    add(ending == "pts" and "intensity" or "radius")
+  end
+  return table.move(names, 1, math.min(#names, count), 1, {}), most
+end
+
+-- The largest number of a colour whose columns have names.
+local function most_of(source, line, separator, place)
+  local rows, most = probe(source, line, separator), 0
+  for _, row in ipairs(rows) do
+    for _, name in ipairs { "red", "green", "blue" } do most = math.max(most, row[place[name]] or 0) end
+  end
+  return most > 1 and 255 or 1
+end
+
+local LONG = { r = "red", g = "green", b = "blue" }
+
+-- The names of a first line, as CloudCompare writes it, too: //X Y Z R G B.
+local function clean_names(first)
+  local names = {}
+  for i, name in ipairs(first) do
+    name = i == 1 and name:gsub("^//%s*", "") or name
+    names[i] = LONG[name:lower()] or name
+  end
+  return names
+end
+
 local function start(source, number, options)
   if number > 1 then return nil end
-  local line = source:next_full()
+  local line = source:next()
+  local fields, next_atom = clouds.start(source, line or "")
+  if fields then return fields, next_atom end
+  if line then source:back(line) end
+  line = source:next_full()
+  if line and line:find "^%s*%d+%s*$" then line = source:next_full() end -- how many there are, as of .pts
   if not line then source:fail("a line of points", nil) end
   local separator = options.separator or line:match "[\t;,]" or " "
   local first = split(source, line, separator)
-  local is_header = not options.columns and not tonumber(first[1])
+  local is_header = not options.columns and not lines.number(first[1])
   if is_header then
-    for _, name in ipairs(first) do is_header = is_header and not tonumber(name) end
+    for _, name in ipairs(first) do is_header = is_header and not lines.number(name) end
     if not is_header then source:fail("numbers, or the names of the columns", line) end
   end
-  local names = is_header and first or options.columns or { table.unpack(DEFAULT_COLUMNS, 1, math.min(#first, 4)) }
+  local names, most = is_header and clean_names(first) or options.columns, nil
+  if not names then names, most = guess_columns(source, line, separator, #first) end
   local place, count = places(source, names, line), #first
   if not is_header then source:back(line) end
-  local fields = {}
+  fields = {}
   frames.name_columns(fields, names, function(wanted) return pick(fields.places, wanted) end)
+  if place.red and place.green and place.blue then
+    fields.color = { most = most or most_of(source, line, separator, place) }
+    for _, name in ipairs { "red", "green", "blue" } do fields.places[name] = place[name] end
+  end
   return fields, function()
     local text = source:next_full()
     if text then return read_point(source, fields, text, place, separator, count) end

@@ -1,0 +1,200 @@
+-- Clouds of points with a head: .ply without faces (text or binary), .pcd (ascii or binary). glint.points calls this.
+-- Columns have the names of the file; red, green and blue are the colour of a point. Points that are not finite, as in
+-- the gaps of a scan, are passed over.
+local frames = require "glint.frames"
+
+local clouds = {}
+
+local BLOCK = 1 << 16 -- bytes that are read at once
+local PLY_TYPES = { char = "b", int8 = "b", uchar = "B", uint8 = "B", short = "h", int16 = "h", ushort = "H",
+  uint16 = "H", int = "i4", int32 = "i4", uint = "I4", uint32 = "I4", float = "f", float32 = "f",
+  double = "d", float64 = "d" }
+local PCD_TYPES = { F4 = "f", F8 = "d", I1 = "b", I2 = "h", I4 = "i4", I8 = "i8", U1 = "B", U2 = "H", U4 = "I4",
+  U8 = "I8" }
+-- Names that other programs give to the same thing.
+local SAME = { diffuse_red = "red", diffuse_green = "green", diffuse_blue = "blue", r = "red", g = "green", b = "blue",
+  scalar_radius = "radius" }
+
+local function words(line)
+  local list = {}
+  for word in (line or ""):gmatch "%S+" do list[#list + 1] = word end
+  return list
+end
+
+-- What one colour is: 255, or 1 where numbers have fractions, 65535 of 16 bits.
+local function most_of(code)
+  return ({ f = 1, d = 1, H = 65535 })[code] or 255
+end
+
+-- ---- Rows ----
+
+-- Calls of the function give the rows of a text as lists of numbers; nil after the last.
+local function text_rows(source, layout)
+  local done, width = 0, #layout.codes
+  return function()
+    if done == layout.count then return nil end
+    done = done + 1
+    local line = source:next_full()
+    local list = words(line)
+    if #list ~= width then
+      source:fail(("point %d of %d, with %d numbers,"):format(done, layout.count, width), line)
+    end
+    for i, word in ipairs(list) do
+      list[i] = tonumber(word) or word:lower():find "nan" and 0 / 0 or source:number_of(word, layout.names[i])
+    end
+    return list
+  end
+end
+
+-- Likewise of bytes.
+local function binary_rows(source, layout)
+  if source.path == "-" then error("standard input: a cloud of points as text expected, got a binary one", 0) end
+  local file = assert(io.open(source.path, "rb"))
+  file:seek("set", (source:tell()) + (layout.skipped or 0))
+  local format = layout.order .. table.concat(layout.codes)
+  local size, done, block, at = format:packsize(), 0, "", 1
+  return function()
+    if done == layout.count then
+      file:close()
+      return nil
+    end
+    if at + size > #block + 1 then
+      block, at = file:read(math.max(BLOCK // size, 1) * size) or "", 1
+    end
+    done = done + 1
+    if #block - at + 1 < size then
+      error(("%s: point %d of %d expected, got the end of the file"):format(source.path, done, layout.count), 0)
+    end
+    local list = { format:unpack(block, at) }
+    at = list[#list]
+    list[#list] = nil
+    return list
+  end
+end
+
+-- ---- Heads ----
+
+-- The head of a .ply file, whose first line has been read.
+local function read_ply(source)
+  local layout, element, elements = { names = {}, codes = {} }, nil, 0
+  while true do
+    local line = source:next()
+    local list = words(line)
+    if not line then source:fail("end_header", nil) end
+    if list[1] == "format" then
+      layout.order = ({ ascii = "", binary_little_endian = "<", binary_big_endian = ">" })[list[2]]
+      if not layout.order then source:fail("format ascii, binary_little_endian or binary_big_endian", line) end
+    elseif list[1] == "element" then
+      element, elements = list[2], elements + 1
+      if element == "vertex" then
+        layout.count = source:whole(list[3], "the number of points", 0)
+        if elements > 1 then source:fail("element vertex before others", line) end
+      end
+    elseif list[1] == "property" and element == "vertex" then
+      local code = PLY_TYPES[list[2]]
+      if not code or not list[3] then source:fail("property TYPE NAME", line) end
+      layout.names[#layout.names + 1] = list[3]
+      layout.codes[#layout.codes + 1] = code
+    elseif list[1] == "end_header" then
+      if not layout.order or not layout.count then source:fail("format and element vertex above end_header", line) end
+      return layout
+    end
+  end
+end
+
+-- The head of a .pcd file, whose first line has been taken back.
+local function read_pcd(source)
+  local layout, head = { names = {}, codes = {} }, {}
+  repeat
+    local line = source:next_full()
+    local list = words(line)
+    if not line then source:fail("DATA", nil) end
+    head[list[1]:upper()] = list
+  until head.DATA
+  local kind = head.DATA[2]
+  for _, name in ipairs { "FIELDS", "SIZE", "TYPE" } do
+    local list = head[name]
+    if not list or #list ~= #head.FIELDS then source:fail(name .. ", one for each field,", "DATA") end
+  end
+  for i = 2, #head.FIELDS do
+    local code = PCD_TYPES[head.TYPE[i]:upper() .. head.SIZE[i]]
+    local count = source:whole(head.COUNT and head.COUNT[i] or "1", "COUNT of a field", 0)
+    if not code then source:fail("TYPE F, I or U and SIZE 1, 2, 4 or 8 of a field", head.TYPE[i] .. head.SIZE[i]) end
+    for k = 1, count do
+      layout.names[#layout.names + 1] = count == 1 and head.FIELDS[i] or head.FIELDS[i] .. "_" .. k
+      layout.codes[#layout.codes + 1] = code
+    end
+  end
+  if kind ~= "ascii" and kind ~= "binary" then source:fail("DATA ascii or binary", kind) end
+  layout.order = kind == "ascii" and "" or "<"
+  local function whole(name, default) return source:whole(head[name] and head[name][2] or default, name, 0) end
+  layout.count = head.POINTS and whole "POINTS" or whole "WIDTH" * whole("HEIGHT", "1")
+  return layout
+end
+
+-- ---- Frames ----
+
+-- Adds red, green and blue of a field that packs the three, as the bits of a float or as a whole number.
+local function unpack_color(layout, place)
+  local rgb, n = place.rgb or place.rgba, #layout.names
+  if not rgb then return nil end
+  for i, name in ipairs { "red", "green", "blue" } do layout.names[n + i] = name end
+  local is_float = layout.codes[rgb] == "f"
+  return function(list)
+    local code = list[rgb]
+    code = is_float and ("<I4"):unpack(("<f"):pack(code)) or math.tointeger(code) or 0
+    list[n + 1], list[n + 2], list[n + 3] = code >> 16 & 255, code >> 8 & 255, code & 255
+  end
+end
+
+local function pick(wanted, place)
+  return function(list)
+    local found = {}
+    for i, name in ipairs(wanted) do found[i] = list[place[name]] end
+    return table.unpack(found, 1, #wanted)
+  end
+end
+
+--- Begins the frame of a file whose first line has been read: fields and a function that gives a point, as readers of
+--- glint.frames have them; nil where the line begins no such file.
+---@param source table
+---@param line string
+function clouds.start(source, line)
+  local layout
+  if line:find "^ply%s*$" then
+    layout = read_ply(source)
+  elseif line:find "^#%s*%.PCD" or line:find "^VERSION%s" then
+    if line:find "^VERSION" then source:back(line) end
+    layout = read_pcd(source)
+  else
+    return nil
+  end
+  local place = {}
+  for i, name in ipairs(layout.names) do
+    layout.names[i] = SAME[name:lower()] or name
+    place[layout.names[i]] = i
+  end
+  for _, name in ipairs { "x", "y", "z" } do
+    if not place[name] then source:fail(("a property or field %s of points"):format(name), line) end
+  end
+  local rows = (layout.order == "" and text_rows or binary_rows)(source, layout)
+  local color = unpack_color(layout, place)
+  local fields = { count = layout.count }
+  frames.name_columns(fields, layout.names, function(wanted) return pick(wanted, fields.places) end)
+  place = fields.places
+  if place.red and place.green and place.blue then
+    fields.color = { most = color and 255 or most_of(layout.codes[place.red]) }
+  end
+  return fields, function()
+    for list in rows do
+      if color then color(list) end
+      fields.line = list
+      local x, y, z = list[place.x], list[place.y], list[place.z]
+      if x - x == 0 and y - y == 0 and z - z == 0 then
+        return "point", x, y, z, place.radius and list[place.radius] or nil
+      end
+    end
+  end
+end
+
+return clouds
