@@ -920,13 +920,13 @@ typedef enum glint_pass {
     GLINT_PASS_INDIRECT, ///< diffuse light from other surfaces
     GLINT_PASS_MIRROR, ///< mirror times what mirrored rays bring
     GLINT_PASS_TRANSMISSION, ///< transmission times what refracted rays bring
-    GLINT_PASS_DEPTH, ///< one channel: distance from the eye, +inf where nothing is hit; of the first sample
-    GLINT_PASS_NORMAL, ///< shading normal turned to the eye, 0 where nothing is hit; of the first sample
-    GLINT_PASS_OBJECT_ID, ///< one channel: 1.. in order of definition, 0 where nothing is hit; of the first sample
+    GLINT_PASS_DEPTH, ///< one channel: distance from the eye, +inf where nothing is hit; at the pixel's centre
+    GLINT_PASS_NORMAL, ///< shading normal turned to the eye, 0 where nothing is hit; at the pixel's centre
+    GLINT_PASS_OBJECT_ID, ///< one channel: 1.. in order of definition, 0 where nothing is hit; at the pixel's centre
     GLINT_PASS_ALPHA, ///< one channel: the share of the samples that hit something, 0 .. 1
-    GLINT_PASS_OUTLINE, ///< one channel: 1 where objects end, hide each other or have an edge, else 0; of the first sample
+    GLINT_PASS_OUTLINE, ///< one channel: 1 where objects end, hide each other or have an edge, else 0; at the pixel's centre
     GLINT_PASS_REFINED, ///< one channel: 1 where `adaptive` took all samples, else 0; 1 everywhere without it
-    GLINT_PASS_ALBEDO, ///< diffuse reflectance, 0 where nothing is hit; of the first sample
+    GLINT_PASS_ALBEDO, ///< diffuse reflectance, 0 where nothing is hit; at the pixel's centre
     GLINT_PASS_COUNT, ///< how many there are
     /// The first of the frame's derivatives, see glint_render_desc; the others follow it. Three channels
     GLINT_PASS_DERIVATIVE = GLINT_PASS_COUNT,
@@ -1018,7 +1018,7 @@ typedef struct glint_render_desc {
     /// 0 (default): every pixel gets all samples. Above, up to 3: first each gets one, in its middle. All are taken only
     /// where a pixel and one of its eight neighbours show two objects or normals 26 degrees apart, or codes that differ by
     /// more than this, red, green and blue together, in shares of white; that pixel is then as without `adaptive`, every
-    /// other as with one sample. Depth, normal and object_id are of the first sample. With one sample it does nothing
+    /// other as with one sample. With one sample it does nothing
     double adaptive;
     glint_precision precision; ///< what decides hits and shadows; default GLINT_DOUBLE
     glint_visibility visibility; ///< default GLINT_VISIBILITY_AUTO
@@ -1086,9 +1086,9 @@ glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc
                                glint_error *error);
 /// What each time of a frame with an open shutter is planned by: the passes that have a mean, and no codes.
 glint_render_desc glint_shutter_desc(const glint_render_desc *frame);
-/// Plans a frame that is seen while a shutter is open: light, alpha and albedo are the mean of `times`, `count` plans of the scene
+/// Plans a frame that is seen while a shutter is open: light and alpha are the mean of `times`, `count` plans of the scene
 /// as it was then, by glint_shutter_desc(desc); 1 .. GLINT_SHUTTER_TIMES_MAX. All else is of `scene` as it is now: what the
-/// plan says, and depth, normal, object_id, outline and refined. Where lights alone differ, each that does becomes one light for each
+/// plan says, and depth, normal, object_id, albedo, outline and refined. Where lights alone differ, each that does becomes one light for each
 /// time, with its share of the strength. A derivative of the frame is the mean of those by its name that the times' own descriptions
 /// have; of a time without it, on which nothing depends then, 0.
 /// Takes over the plans and the list, which is from malloc, also when it fails.

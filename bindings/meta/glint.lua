@@ -752,7 +752,7 @@ function glint.scene(fields) end
 ---| "albedo"  # diffuse reflectance, as patterns give it; 0 where nothing is hit
 ---| string  # "d:NAME": how fast beauty changes with the variable or parameter NAME; three numbers. "light:NAME": the light of the lamps
 --- of that group or name; "light:ambient": the light that no lamp sends; "light:*": all of these
----| "outline"  # 1 where objects end, hide each other or have an edge, else 0; one number, of the first sample
+---| "outline"  # 1 where objects end, hide each other or have an edge, else 0; one number, at the pixel's centre
 
 --- What a frame and its file are to be. What the command line says beats it.
 ---@class glint.render

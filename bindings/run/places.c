@@ -65,19 +65,33 @@ static void warn(glintL_run *run, const char *path, int64_t first, int64_t index
                     index, path, first, stem < 300 ? stem : 300, path, dot ? dot : "");
 }
 
-bool glintL_places_add(glintL_run *run, const glintL_file *file, int64_t index)
+// Whether the file had another picture: *first is the frame that it was written for. False for want of memory, too, when the run
+// has failed.
+static bool replaces(glintL_run *run, const glintL_file *file, int64_t index, int64_t *first)
 {
     if (glintL_name_is_special(file->path))
-        return true;
+        return false;
     if (2 * run->place_count >= run->place_room && !grow(run))
         return glintL_run_fail(run, GLINTL_EXIT_FAILED, index, "out of memory");
     uint64_t path = hash_path(file->path), picture = hash_picture(file, index);
     glintL_place *place = find(run->places, run->place_room, path);
-    if (!place->path) {
-        *place = (glintL_place) { path, picture, index };
-        run->place_count++;
-    } else if (place->picture != picture) {
-        warn(run, file->path, place->index, index);
+    *first = place->index;
+    if (place->path)
+        return place->picture != picture;
+    *place = (glintL_place) { path, picture, index };
+    run->place_count++;
+    return false;
+}
+
+bool glintL_places_add(glintL_run *run, const glintL_work *work)
+{
+    bool warned = false;
+    for (int i = 0; i < work->file_count && !run->exit_code; i++) {
+        int64_t first = 0;
+        if (!replaces(run, &work->files[i], work->index, &first) || warned)
+            continue;
+        warn(run, work->files[i].path, first, work->index);
+        warned = true;
     }
     return run->exit_code == 0;
 }

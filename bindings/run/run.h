@@ -401,9 +401,8 @@ bool glintL_work_run(glintL_run *run, glintL_work *work, bool force);
 
 // ---- places.c ----
 
-/// Notes that frame `index` has this file, and warns when the file had another picture in this run. False: the run has
-/// failed.
-bool glintL_places_add(glintL_run *run, const glintL_file *file, int64_t index);
+/// Notes the files of a frame, and warns when one of them had another picture in this run. False: the run has failed.
+bool glintL_places_add(glintL_run *run, const glintL_work *work);
 void glintL_places_forget(glintL_run *run);
 
 // ---- source.c ----

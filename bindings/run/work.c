@@ -249,9 +249,8 @@ bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept)
     glint_error error;
     if (kept)
         memset(&work->stats, 0, sizeof work->stats);
-    for (int i = 0; i < work->file_count; i++)
-        if (!glintL_places_add(run, &work->files[i], work->index))
-            return false;
+    if (!glintL_places_add(run, work))
+        return false;
     glintL_record *record = glintL_run_add(run, work);
     if (!record)
         return false;

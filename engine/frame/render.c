@@ -143,7 +143,7 @@ static void finish(glint_renderer *renderer, const glint_plan *plan, const glint
     if (!plan->runs[GLINT_STAGE_OUTLINE] || atomic_load(renderer->stop))
         return;
     const uint64_t start = glint_tile_now_ns();
-    glint_outline(plan->base ? plan->base : plan, extent, renderer->pool, image);
+    glint_outline(plan, extent, renderer->pool, image);
     counts->ns[GLINT_STAGE_OUTLINE] += glint_tile_now_ns() - start;
     counts->runs[GLINT_STAGE_OUTLINE]++;
 }

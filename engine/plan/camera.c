@@ -46,6 +46,19 @@ void glint_plan_sample_offset(const glint_plan *plan, uint32_t k, double out[2])
         out[i] = fmin(fmax(out[i] + (plan->camera.pixel_offset - 0.5), 0), 1);
 }
 
+void glint_plan_centre_offset(const glint_plan *plan, double out[2])
+{
+    out[0] = out[1] = plan->camera.pixel_offset;
+}
+
+bool glint_plan_casts_centres(const glint_plan *plan)
+{
+    double sample[2], centre[2];
+    glint_plan_sample_offset(plan->base ? plan->base : plan, 0, sample);
+    glint_plan_centre_offset(plan, centre);
+    return !plan->is_base && (plan->lens || sample[0] != centre[0] || sample[1] != centre[1]);
+}
+
 bool glint_plan_compares_codes(const glint_render_desc *desc)
 {
     return desc->alpha || desc->tone.curve != GLINT_TONE_CLAMP;

@@ -389,6 +389,9 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
         key = glint_key_add(key, &plan->desc.outline, sizeof plan->desc.outline);
     if (desc->pass == GLINT_PASS_BEAUTY && plan->overlays)
         key = glint_overlays_key(plan->overlays, key);
+    const bool outlined = desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline;
+    if ((outlined || (pass < GLINT_PASS_COUNT && GLINT_CENTRE_PASSES >> pass & 1)) && glint_plan_casts_centres(plan))
+        key = glint_key_add_string(key, "centres"); // earlier versions had them of the first sample
     const size_t derivative = (size_t)desc->pass - GLINT_PASS_DERIVATIVE;
     if (desc->pass >= GLINT_PASS_DERIVATIVE && plan->derivatives && derivative < plan->derivatives->count)
         key = glint_derivative_key(plan, derivative, key);

@@ -209,8 +209,10 @@ glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_e
 /// The passes that `outline` is made of.
 #define GLINT_OUTLINE_READS (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID)
 
-#define GLINT_LIGHT_PASSES \
-    (((1u << (GLINT_PASS_TRANSMISSION + 1)) - 1) | 1u << GLINT_PASS_ALPHA | 1u << GLINT_PASS_ALBEDO) ///< those that have a mean
+/// The passes of the ray through the pixel's centre.
+#define GLINT_CENTRE_PASSES (GLINT_OUTLINE_READS | 1u << GLINT_PASS_ALBEDO | 1u << GLINT_PASS_OUTLINE)
+/// The passes that are means of the samples.
+#define GLINT_LIGHT_PASSES (((1u << (GLINT_PASS_TRANSMISSION + 1)) - 1) | 1u << GLINT_PASS_ALPHA)
 
 /// Whether a frame's plan and those of its times differ in lights alone, and light adds up in the frame.
 bool glint_plan_adds_up(const glint_plan *plan, glint_plan *const *times, size_t count);
@@ -236,6 +238,11 @@ glint_extent glint_plan_extent(const glint_render_desc *desc);
 
 /// Where sample `k` of a pixel lies in it: 0 .. 1 across and down.
 void glint_plan_sample_offset(const glint_plan *plan, uint32_t k, double out[2]);
+/// Where the centre of a pixel lies in it, likewise.
+void glint_plan_centre_offset(const glint_plan *plan, double out[2]);
+/// Whether the passes of the pixels' centres (GLINT_CENTRE_PASSES) need rays of their own: no sample goes there first, or only
+/// through a lens.
+bool glint_plan_casts_centres(const glint_plan *plan);
 
 void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render);
 /// Fills the lens, after the camera.

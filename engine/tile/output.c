@@ -57,9 +57,7 @@ double glint_tile_direction(const glint_tile *tile, glint_precision precision, i
 
 bool glint_tile_wants_geometry(const glint_plan *plan)
 {
-    return plan->is_base ||
-           plan->desc.passes &
-               (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID | 1u << GLINT_PASS_ALBEDO);
+    return plan->is_base || plan->desc.passes & GLINT_CENTRE_PASSES;
 }
 
 /// Where normals and numbers of objects go before they are stored: of a base to where they are compared, the arrays of which follow one

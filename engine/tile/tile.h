@@ -214,6 +214,7 @@ typedef struct glint_sample_walk {
     bool rays, points; ///< made already
     bool patterns; ///< known, or nothing in sight has any
     bool lit; ///< points and the only light's work are made, maybe without normals
+    bool centres; ///< of the rays through the pixels' centres, which are no samples
     bool shows; ///< its geometry is the picture's, and is stored when normals are known
     bool any; ///< something is hit
     bool shines; ///< of that, some point takes light for itself

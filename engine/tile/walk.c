@@ -64,13 +64,12 @@ static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, glint
     glint_tile_keep_pattern(tile, frame, w->sample);
 }
 
-/// Whether the picture's geometry is that of this walk: of sample 0; where the camera has a lens, of the ray through its middle.
-static bool shows_geometry(const glint_tile *tile, const glint_tile_frame *frame, const glint_sample_walk *w)
+/// Whether this walk stores the picture's geometry: the walk through the pixels' centres, or sample 0 where that is the same ray.
+static bool shows_geometry(const glint_tile_frame *frame, const glint_sample_walk *w)
 {
-    const glint_plan *plan = frame->plan;
-    if (w->sample > 0 || !glint_tile_wants_geometry(plan))
+    if (w->sample > 0 || !glint_tile_wants_geometry(frame->plan))
         return false;
-    return plan->lens && !plan->is_base ? !tile->camera.lens : !frame->base;
+    return glint_plan_casts_centres(frame->plan) ? w->centres : !frame->base;
 }
 
 /// Whether the points and what the light does there can be found in one: of one plain lamp, where bumps do not turn
@@ -122,7 +121,7 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, glint_sam
     tile->at.only = tile->cached && tile->cached->only != GLINT_MISS ? &tile->cached->only : NULL;
     if (glint_tile_wants_coverage(plan))
         glint_tile_count_hits(tile, plan, w->sample);
-    w->shows = shows_geometry(tile, frame, w);
+    w->shows = shows_geometry(frame, w);
     if (w->shows && !(any && is_plain(frame, w)))
         store_geometry(tile, frame, w, any);
     return any;
@@ -303,15 +302,14 @@ static bool take_samples(glint_tile *tile, const glint_tile_frame *frame)
     return true;
 }
 
-/// The geometry that a pinhole in the middle of the lens sees; of it nothing is kept.
+/// Stores the geometry that a pinhole in the middle of the lens sees through the pixels' centres. Nothing is cached.
 static void find_geometry(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_cached_tile *cached = tile->cached;
-    glint_sample_walk w = { .sample = 0 };
+    glint_sample_walk w = { .sample = 0, .centres = true };
     tile->cached = NULL;
     glint_tile_aim(tile, frame, 0);
-    if (frame->base)
-        glint_plan_sample_offset(frame->plan->base, 0, tile->camera.offset);
+    glint_plan_centre_offset(frame->plan, tile->camera.offset);
     tile->camera.lens = NULL;
     glint_pattern_point(tile->pattern, tile, GLINT_WALK_EYE);
     store_geometry(tile, frame, &w, find_hits(tile, frame, &w));
@@ -365,7 +363,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
                                        .nonfinite = tile->counts.nonfinite,
                                        .lights = tile->counts.runs[GLINT_STAGE_LIGHT] };
     tile->anew = tile->direct = false;
-    if (plan->lens && !plan->is_base && glint_tile_wants_geometry(plan))
+    if (glint_tile_wants_geometry(plan) && glint_plan_casts_centres(plan))
         find_geometry(tile, frame);
     const bool refined = !frame->base || glint_tile_choose_refined(tile, frame);
     if (refined)

@@ -141,7 +141,7 @@ glint_status glint_renderer_run_adaptive(glint_renderer *renderer, const glint_p
         !renderer->reuse.on || !renderer->base || !glint_key_equal(renderer->setting, plan->setting_key);
     renderer->setting = plan->setting_key;
     refine->whole = !glint_plan_compares_codes(&plan->desc) && !plan->derivatives &&
-                    !(plan->lens && glint_tile_wants_geometry(plan));
+                    !(glint_plan_casts_centres(plan) && glint_tile_wants_geometry(plan));
     refine->in_place = refine->whole && alone;
     refine->in_codes = refine->in_place && plan->desc.codes && plan->desc.tone.bits == 8 &&
                        !(plan->desc.passes & GLINT_LIGHT_PASSES) && !plan->light_groups;

@@ -103,7 +103,7 @@ static void copy_whole(const glint_tile *tile, const glint_tile_frame *frame)
 {
     static const glint_pass whole[] = { GLINT_PASS_DEPTH, GLINT_PASS_NORMAL, GLINT_PASS_OBJECT_ID, GLINT_PASS_ALBEDO };
     const uint32_t passes = frame->plan->desc.passes;
-    const bool has_whole = !frame->plan->lens && !frame->refine->in_place; // a lens's geometry is not the base's
+    const bool has_whole = !glint_plan_casts_centres(frame->plan) && !frame->refine->in_place;
     const size_t count = has_whole ? sizeof whole / sizeof *whole : 0;
     for (uint32_t y = 0; y < tile->height; y++) {
         const size_t row = (size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0;

@@ -5,7 +5,7 @@ typedef struct outliner {
     const glint_plan *plan;
     glint_extent extent;
     glint_image *image;
-    double offset[2]; ///< of the sample that the planes hold
+    double offset[2]; ///< of the pixels' centres, which the planes hold
 } outliner;
 
 /// What a pixel shows.
@@ -78,7 +78,7 @@ static void draw_row(void *context, size_t index, int worker)
 void glint_outline(const glint_plan *plan, const glint_extent *extent, glint_pool *pool, glint_image *image)
 {
     outliner o = { .plan = plan, .extent = *extent, .image = image };
-    glint_plan_sample_offset(plan, 0, o.offset);
+    glint_plan_centre_offset(plan, o.offset);
     glint_pool_run(pool, (size_t)extent->height, draw_row, &o);
 }
 

@@ -285,8 +285,8 @@ static picture make_screen(const glint_plan *plan, double scale)
     out.per_up = 1 / vec_dot(camera->up, camera->up);
     out.unit[0] = sqrt(out.per_right);
     out.unit[1] = sqrt(out.per_up);
-    const bool one = plan->desc.samples == 1;
-    double only[2]; // another place for another seed
+    const bool one = plan->desc.samples == 1 && !glint_plan_casts_centres(plan);
+    double only[2];
     glint_plan_sample_offset(plan, 0, only);
     for (int c = 0; c < 2; c++) {
         out.low[c] = one ? only[c] : 0;
