@@ -396,7 +396,7 @@ MUSL_LIBRARIES := $(CURDIR)/$(MUSL)/libraries
 check-musl: ## goldens and a job's pixels by a static command on musl, with no optional library; its libraries are built from Debian's sources
 	@tests/deps.sh build test musl
 	@mkdir -p $(MUSL)
-	@tests/machines/musl_libraries.sh $(MUSL_LIBRARIES)
+	@tests/machines/libraries.sh $(MUSL_LIBRARIES) musl-gcc ar
 	@$(MAKE) --no-print-directory all
 	@PKG_CONFIG_LIBDIR=$(MUSL_LIBRARIES)/lib/pkgconfig $(MAKE) --no-print-directory BUILD=$(MUSL) CC=musl-gcc LDFLAGS=-static \
 	    KERNELS="generic avx2" $(MUSL)/glint

@@ -15,7 +15,7 @@ export class GlintError extends Error {
   constructor(message) {
     super(message)
     this.name = "GlintError"
-    const where = /(?:^|: )([^\s:][^:\n]*):(\d+): /.exec(message)
+    const where = /(?:^|: )([^\s:][^:\n]*):(\d+): /.exec(message) ?? /\n {2}called from ([^\n]*):(\d+)/.exec(message)
     this.file = where ? where[1] : undefined
     this.line = where ? Number(where[2]) : undefined
   }
@@ -147,6 +147,8 @@ class Image {
 
 // ---- A worker, and what is asked of it ----
 
+const CLOSED = "the job is closed"
+
 class Host {
   #engine
   #opening
@@ -154,6 +156,9 @@ class Host {
   #queue = [] // the first one is at work
   #worker
   #timer
+  #isOpen = false // the worker has run the script
+  #isReopening = false
+  #isClosed = false
   constructor(engine, opening) {
     this.#engine = engine
     this.#opening = opening
@@ -163,6 +168,7 @@ class Host {
   // Sends a message after those before it, and returns a promise of its answer.
   ask(message, signal) {
     if (signal?.aborted) return Promise.reject(aborted(signal))
+    if (this.#isClosed) return Promise.reject(new GlintError(CLOSED))
     return new Promise((resolve, reject) => {
       const asked = { message, resolve, reject, signal }
       asked.abort = () => this.#abort(asked)
@@ -172,9 +178,10 @@ class Host {
     })
   }
 
-  close(error = new GlintError("the job is closed")) {
+  close() {
+    this.#isClosed = true
     this.#stop()
-    for (const asked of this.#queue.splice(0)) this.#settle(asked, "reject", error)
+    for (const asked of this.#queue.splice(0)) this.#settle(asked, "reject", new GlintError(CLOSED))
   }
 
   #settle(asked, how, value) {
@@ -187,7 +194,9 @@ class Host {
     const asked = this.#queue[0]
     if (!asked) return this.#worker?.unref?.()
     if (!this.#worker) {
-      this.#worker = this.#engine.start(data => this.#take(data), error => this.#fail(error))
+      const worker = this.#engine.start( // one that was stopped has nothing more to say
+        data => worker === this.#worker && this.#take(data), error => worker === this.#worker && this.#fail(error))
+      this.#worker = worker
       this.#isOpen = false
     }
     this.#worker.ref?.()
@@ -196,9 +205,6 @@ class Host {
     this.#watch()
     this.#worker.postMessage({ ...first, ...(first.call === "open" ? { module: this.#engine.module } : {}) })
   }
-  #isOpen = false
-  #isReopening = false
-
   #watch() {
     clearTimeout(this.#timer)
     this.#timer = setTimeout(() => this.#fail(new GlintError(`the script took longer than ${this.#seconds} s`)), 1e3 * (this.#seconds + GRACE_S))

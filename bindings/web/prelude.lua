@@ -1,11 +1,12 @@
--- What a script has in a browser beyond the Lua of --untrusted: the files in memory, glint's own modules and those it was given.
+-- What a script has in a browser beyond the Lua of --untrusted: files in memory, glint's modules and those given to it.
 local carried, collect, io, os = ...
 local _G, loaded, glint = _G, {}, require "glint"
 local load, error, type, rawget = load, error, type, rawget
 local open = io.open
 
 _G.io = {
-  open = open, lines = io.lines, type = io.type, write = io.write, stdout = io.stdout, stderr = io.stderr, stdin = io.stdin,
+  open = open, lines = io.lines, type = io.type, write = io.write,
+  stdin = io.stdin, stdout = io.stdout, stderr = io.stderr,
 }
 _G.collectgarbage = collect -- at once, whatever is asked for
 _G.os.remove, _G.os.rename, _G.os.tmpname = os.remove, os.rename, os.tmpname
@@ -29,7 +30,9 @@ local function text_of(name)
 end
 
 function _G.require(name)
-  if type(name) ~= "string" then error("bad argument #1 to 'require' (string expected, got " .. type(name) .. ")", 2) end
+  if type(name) ~= "string" then
+    error("bad argument #1 to 'require' (string expected, got " .. type(name) .. ")", 2)
+  end
   if name == "glint" then return glint end
   if rawget(loaded, name) == nil then
     local text, chunk = text_of(name)

@@ -222,7 +222,7 @@ await test("wrong scripts: the words of the command", async () => {
   }
   await refused(glint.open("\n\nlocal x = = 2", { name: "a.lua" }), "a.lua", 3, /unexpected symbol/)
   await refused(glint.open(ball, { name: "folder/a.lua", set: { radios: 3 } }), undefined, undefined, /radios.*radius/)
-  await refused(glint.open(ball, { set: { radius: 30 } }), undefined, undefined, /^--set radius: number 1/)
+  await refused(glint.open(ball, { set: { radius: 30 } }), "scene.lua", 2, /^--set radius: number 1/)
 })
 
 await test("the Lua of --untrusted", async () => {
@@ -232,13 +232,19 @@ await test("the Lua of --untrusted", async () => {
   await refused(glint.open("require 'socket'"), "scene.lua", 1, /module 'socket' not found/)
 })
 
+await test("recursion without an end is an error", async () => {
+  await assert.rejects(glint.open("local function f() return 1 + f() end\nf()"), { name: "GlintError", message: /stack overflow|not enough memory/ })
+  await refused(glint.open("local function f(s) return (s:gsub('.', f)) end\nf 'a'"), "scene.lua", 1, /C stack overflow/)
+  await refused(glint.open("local t = {}\nwhile true do t[#t + 1] = ('a'):rep(1e6) .. #t end"), undefined, undefined, /not enough memory/)
+})
+
 await test("an error leaves the job as it was", async () => {
   const job = await glint.open(ball), before = await job.render({ ...planes, frame: 2 })
   await refused(job.render({ frame: 13 }), undefined, undefined, /1 \.\. 12, expected, got '13'/)
   await refused(job.render({ samples: 0 }), undefined, undefined, /samples/)
   await refused(job.render({ sample: 1 }), undefined, undefined, /sample/)
   await refused(job.render({ passes: ["colour"] }), undefined, undefined, /passes/)
-  await refused(job.render({ set: { radius: 0 } }), undefined, undefined, /^--set radius: number 1/)
+  await refused(job.render({ set: { radius: 0 } }), "scene.lua", 2, /^--set radius: number 1/)
   assert.throws(() => before.plane("depth"), GlintError)
   assert(sameImages(await job.render({ ...planes, frame: 2 }), before))
   job.close()
@@ -268,6 +274,7 @@ await test("a render is cancelled, and the job goes on", async () => {
   await assert.rejects(next, { name: "AbortError" })
   job.close()
   await assert.rejects(slow, GlintError)
+  await assert.rejects(job.render(), /the job is closed/)
   const other = await glint.open(ball)
   assert(sameImages(await other.render({ ...planes, frame: 2 }), before))
   other.close()
