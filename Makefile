@@ -142,8 +142,13 @@ ifeq ($(KERNELS),native)
   override KERNELS := generic $(if $(PORTABLE),,$(if $(and $(findstring __AVX512BW__,$(NATIVE)),$(findstring __AVX512DQ__,$(NATIVE)),$(findstring \
                         __AVX512VL__,$(NATIVE))),avx512,$(if $(and $(findstring __AVX2__,$(NATIVE)),$(findstring __FMA__,$(NATIVE))),avx2)))
 endif
-ENGINE_SRC   := $(filter-out engine/stages/simd/isa_%,$(ENGINE_SRC)) $(KERNELS:%=engine/stages/simd/isa_%.c)
-ENGINE_OBJ   := $(ENGINE_SRC:%.c=$(BUILD)/%.o)
+# The stages are compiled for each instruction set; those of geometry and light also for each precision.
+STAGE_SRC    := $(filter-out engine/stages/ref/% engine/stages/simd/select.c,$(filter engine/stages/%,$(ENGINE_SRC)))
+STAGES_ONCE  := $(filter engine/stages/simd/% engine/stages/film/% engine/stages/program/% engine/stages/derivative/% %/shade/samples.c,$(STAGE_SRC))
+STAGES_TWICE := $(filter-out $(STAGES_ONCE),$(STAGE_SRC))
+STAGE_OBJ    := $(foreach isa,$(KERNELS),$(STAGES_ONCE:%.c=$(BUILD)/%.$(isa).o) $(foreach real,f64 f32,$(STAGES_TWICE:%.c=$(BUILD)/%.$(isa).$(real).o)))
+ENGINE_SRC   := $(filter-out $(STAGE_SRC),$(ENGINE_SRC))
+ENGINE_OBJ   := $(STAGE_OBJ) $(ENGINE_SRC:%.c=$(BUILD)/%.o)
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
 COMMAND_OBJ  := $(BUILD)/bindings/command/main.o $(BUILD)/bindings/command/untrusted.o $(BUILD)/bindings/command/walls.o # the command has them, the module has not
 MODULE_OBJ   := $(filter-out $(COMMAND_OBJ),$(BINDINGS_OBJ))
@@ -151,7 +156,7 @@ TEST_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/engine/test_*.
 TEST_TOOLS   := $(BUILD)/tests/compare16 $(BUILD)/tests/gr/codes $(if $(COMMAND_LIBS),$(BUILD)/tests/command/walls)
 HARD_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/hard/hard_*.c)))
 HARD_OBJ     := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/hard/oracle/*.c)))
-KERNEL_OBJ   := $(filter $(BUILD)/engine/stages/ref/ref.o $(BUILD)/engine/stages/simd/isa_%.o,$(ENGINE_OBJ))
+KERNEL_OBJ   := $(BUILD)/engine/stages/ref/ref.o $(STAGE_OBJ)
 
 # ---- Build ----
 
@@ -166,12 +171,20 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
 
-# Only isa_*.c is compiled for an instruction set, each for its own; ref.c for none. Unrolling pays in these files alone.
+# Only stages are compiled for an instruction set; ref.c for none. Unrolling pays in these files alone.
 # Processors with AVX2 have instructions for masks too; select.c asks.
 X86_BITS := -mbmi -mbmi2 -mpopcnt
-$(BUILD)/engine/stages/simd/isa_generic.o: ISA := $(KERNEL_CFLAGS)
-$(BUILD)/engine/stages/simd/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) $(X86_BITS) -mavx2 -mfma
-$(BUILD)/engine/stages/simd/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw $(X86_BITS) -mavx2 -mfma
+FLAGS_avx2   := $(X86_BITS) -mavx2 -mfma
+FLAGS_avx512 := -mavx512f -mavx512dq -mavx512vl -mavx512bw $(FLAGS_avx2)
+# stage_rule SUFFIX, INSTRUCTION SET, FLAGS
+define stage_rule
+$$(BUILD)/engine/stages/%.$(1).o: engine/stages/%.c $$(BUILD)/flags | need
+	@mkdir -p $$(@D)
+	$$(call say,CC)
+	$$(Q)$$(CC) $$(COMPILE) $$(PLAIN) $$(KERNEL_CFLAGS) $$(FLAGS_$(2)) -DGLINT_ISA=$(2) $(3) -MMD -MP -c $$< -o $$@
+endef
+$(foreach isa,$(KERNELS),$(foreach real,64 32,$(eval $(call stage_rule,$(isa).f$(real),$(isa),-DGLINT_REAL=$(real)))) \
+    $(eval $(call stage_rule,$(isa),$(isa))))
 # An engine's object has the flags of its own in the archive and in the shared library.
 objects_of = $(foreach source,$(1),$(source:%.c=$(BUILD)/%.o) $(source:%.c=$(BUILD)/shared/%.o))
 UNROLLED := $(addprefix engine/,compare/flip.c frame/stats.c tile/batch.c $(addprefix effects/,adaptive/choose.c bounce/bounce.c \

@@ -24,7 +24,7 @@
 #include "engine/stages/contract/program.h"
 #include "engine/stages/contract/tables.h"
 
-/// One instruction set's stages. The object file defines this table and nothing else that can be seen.
+/// One instruction set's stages.
 typedef struct glint_stages {
     const char *name;
     struct glint_geometry_stages {

@@ -1,14 +1,19 @@
 // meet: a ray and a surface. A float test over a group rejects; the decision is real. Contract: stages.h, cast.
 
 /// |f|^2 - (r2 + r2_low) without cancellation.
-INNER vr R(exact_power)(const vr f[3], vr r2, vr r2_low)
+INNER vd d_exact_power(const vd f[3], vd r2, vd r2_low)
 {
-#if GLINT_REAL == 64
     vd e0, e1, e2;
     vd p0 = d_two_prod(f[0], f[0], &e0), p1 = d_two_prod(f[1], f[1], &e1), p2 = d_two_prod(f[2], f[2], &e2);
     vd xe, ye, ze;
     vd x = d_two_sum(p0, p1, &xe), y = d_two_sum(x, p2, &ye), z = d_two_sum(y, -r2, &ze);
     return z + (((xe + ye) + ze) + (((e0 + e1) + e2) - r2_low));
+}
+
+INNER vr R(exact_power)(const vr f[3], vr r2, vr r2_low)
+{
+#if GLINT_REAL == 64
+    return d_exact_power(f, r2, r2_low);
 #else
     (void)r2_low;
     return DOT(f, f) - r2;

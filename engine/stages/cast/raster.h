@@ -1,7 +1,6 @@
 // scan: the nearest triangle of each ray of a tile, from a list of those that its pixels may show: three edges, linear over
 // the picture, reject; the decision is that of cast. Contract: stages.h.
 
-#if GLINT_REAL == 64
 static const _Alignas(64) float raster_s[GLINT_GROUP] = { 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6 };
 static const _Alignas(64) float raster_t[GLINT_GROUP] = { 0, 0, 0, 0, -2, -2, -2, -2, -4, -4, -4, -4, -6, -6, -6, -6 };
 
@@ -13,7 +12,6 @@ static inline unsigned raster_box(const glint_raster_entry *entry, int x, int y)
     const unsigned rows = 0xffffu << (top > 0 ? 4 * top : 0) & 0xffffu >> (bottom < 3 ? 4 * (3 - bottom) : 0);
     return columns * 0x1111u & rows;
 }
-#endif
 
 /// What the triangles of a tile have in common.
 typedef struct R(raster_tile) {

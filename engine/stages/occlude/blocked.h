@@ -64,7 +64,7 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
             return -1;
         const vd v[3] = { d_set(f[0]), d_set(f[1]), d_set(f[2]) };
         _Alignas(64) double c[VD];
-        d_store(c, exact_c_f64(v, prim));
+        d_store(c, d_exact_power(v, d_set(glint_sphere_r2(prim)), d_set(glint_sphere_r2_low(prim))));
         height = c[0];
     }
     return (height > 0) - (height < 0);

@@ -1,36 +1,7 @@
-// The words of the vocabulary for `real`: double where GLINT_REAL is 64, float where it is 32. Included before each
-// of the two inclusions of a geometry stage, hence no guard. R(name) names a kernel or helper of this precision.
-#undef real
-#undef vr
-#undef rm
-#undef VR
-#undef R
-#undef r_set
-#undef r_load
-#undef r_store
-#undef r_sqrt
-#undef r_min
-#undef r_max
-#undef r_lt
-#undef r_le
-#undef r_eq
-#undef r_select
-#undef rm_and
-#undef rm_or
-#undef rm_andnot
-#undef rm_bits
-#undef rm_from_bits
-#undef r_store_f
-#undef r_exponent
-#undef r_mantissa
-#undef r_put_index
-#undef r_pick
-#undef r_pack
-#undef GLINT_PARALLEL
-#undef GLINT_POINT_SLACK
-#undef GLINT_ON_FACE
-#undef GLINT_ROUNDER
-#undef GLINT_SPHERE_CLOSE
+/// The words of the vocabulary for `real`: double where the Makefile defines GLINT_REAL as 64, float where it is 32. R(name) names a
+/// kernel or helper of this precision.
+#ifndef GLINT_REAL_H
+#define GLINT_REAL_H
 
 #if GLINT_REAL == 64
 #define real double
@@ -143,3 +114,5 @@ static inline void R(narrow)(const real from[GLINT_GROUP], float to[GLINT_GROUP]
     for (int i = 0; i < GLINT_GROUP; i += VF)
         f_store(to + i, R(load_narrow)(from + i));
 }
+
+#endif

@@ -1,0 +1,6 @@
+// What the eye sees of triangles, by scan conversion.
+#include "engine/stages/simd/isa.h"
+
+#if GLINT_WITH_RASTER
+KERNEL(raster, glint_raster_args)
+#endif

@@ -1,0 +1,9 @@
+// How fast hits, light and colours change.
+#include "engine/stages/simd/isa.h"
+
+#if GLINT_WITH_DERIVATIVE
+KERNEL(eyes, glint_eyes_args)
+KERNEL(bend, glint_bend_args)
+KERNEL(slope, glint_slope_args)
+KERNEL(arrival, glint_arrival_args)
+#endif

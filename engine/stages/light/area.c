@@ -1,0 +1,9 @@
+// The light of an area light, with its shadows.
+#include "engine/stages/simd/isa.h"
+
+#if GLINT_WITH_AREA && GLINT_WITH_SHADOW
+bool GLINT_ENTRY(R(soft_light))(const glint_soft_args *args)
+{
+    return R(soft_light)(args);
+}
+#endif

@@ -1,0 +1,8 @@
+// Patterns and shaders.
+#include "engine/stages/simd/isa.h"
+
+#if GLINT_WITH_PROGRAM
+KERNEL(program, glint_program_args)
+KERNEL(unit, glint_unit_args)
+KERNEL(choose, glint_choose_args)
+#endif

@@ -1,0 +1,13 @@
+// Microfacets, and the directions in which rays go on.
+#include "engine/stages/simd/isa.h"
+
+#if GLINT_WITH_FACET
+KERNEL(view, glint_view_args)
+KERNEL(facet, glint_facet_args)
+#endif
+#if GLINT_WITH_BOUNCE
+KERNEL(bounce, glint_bounce_args)
+#endif
+#if GLINT_WITH_INDIRECT
+KERNEL(scatter, glint_scatter_args)
+#endif

@@ -1,0 +1,15 @@
+// The colours of samples, and their sums.
+#include "engine/stages/simd/isa.h"
+
+KERNEL(shade, glint_shade_args)
+#if GLINT_WITH_INDIRECT
+KERNEL(sky, glint_sky_args)
+#endif
+#if GLINT_WITH_SAMPLES
+KERNEL(resolve, glint_resolve_args)
+
+void GLINT_ENTRY(resolve_samples)(const glint_shade_args *sample, uint32_t count)
+{
+    resolve_samples(sample, count);
+}
+#endif
