@@ -580,7 +580,7 @@ demo-run: all
 LUA_LIBRARY := $(patsubst scripts/lib/%,%,$(sort $(wildcard scripts/lib/*.lua scripts/lib/*/*.lua)))
 
 # The pages by topic, and the examples with what they read. Links from page to page follow the names they have there; those to
-# pages of the sources alone are words.
+# pages of the sources alone are words. Commands name the examples where they are installed.
 docdir   := $(datadir)/doc/glint
 examples := $(datadir)/glint/examples
 PAGES    := README.md:README.md lua-and-command.md:bindings/README.md engine.md:engine/README.md examples.md:scripts/README.md \
@@ -598,7 +598,7 @@ pages: $(BUILD)/doc/data.md ## the installed manual by topic, in build/doc/
 	    sed -e 's|](\(\.\./\)*bindings/README\.md|](lua-and-command.md|g' -e 's|](engine/README\.md|](engine.md|g' \
 	        -e 's|](scripts/README\.md|](examples.md|g' -e 's|](farm/README\.md|](farms.md|g' \
 	        -e 's|](\.github/CHANGELOG\.md|](CHANGELOG.md|g' -e 's,](\([a-z_]*\.lua\)),](../../glint/examples/\1),g' \
-	        -e 's,](\([a-z_]*\.c\)),](../../glint/examples/\1),g' \
+	        -e 's,](\([a-z_]*\.c\)),](../../glint/examples/\1),g' -e 's,\([ "]\)scripts/\([a-z_]*\.lua\|data/\),\1$(examples)/\2,g' \
 	        -e 's|!\[[^]]*\]([^)]*)||g' -e 's|\[\([^]]*\)\]([a-z./]*/[A-Z]*\.md)|\1|g' "$${page#*:}" > "$(BUILD)/doc/$${page%%:*}" || exit 1; done
 
 # ---- The module for browsers and Node ----

@@ -16,12 +16,16 @@
 --     001.png 002.png ...       16 bits, linear; filenames.txt has their names, a line each
 --     light_directions.txt      x y z, a light a line, in the axes above
 --     light_intensities.txt     its red, green and blue
---     Normal_gt.npy, .png       the truth, 0 where nothing is; depth_gt.npy. Normal_gt.mat is to be made of the first
+--     Normal_gt.mat, .npy, .png the truth, 0 where nothing is; depth_gt.npy
 --     mask.png                  255 where the object is, 0 elsewhere; one channel
+-- and objects.txt beside them, with the folders' names.
 --     glint scripts/photometric.lua --set layout=diligent --set objects=balls,solids --set materials=matt,gold
+-- --size makes pictures of any shape. -o 'set/%03d.png' names the pictures, and the other files are put beside them;
+-- the picture after that of the last light is the scene in white ambient light.
 -- A run that was interrupted goes on from there, and --shard cuts the job for several machines.
 -- For a scene of your own put its shapes among `OBJECTS`; a camera along -z keeps the axes.
 local glint = require "glint"
+local mat = require "glint.mat"
 local png = require "glint.png"
 
 local P = glint.params {
@@ -35,8 +39,22 @@ local P = glint.params {
   objects = { "balls", doc = "of diligent: balls, sphere, solids, dents, by commas" },
   materials = { "matt", doc = "of diligent: matt, glossy, rough, gold, by commas" },
   vary = { 0, min = 0, max = 0.9, doc = "of diligent: how much weaker lights may be, by channel" },
-  size = { 512, min = 8, max = 4096, doc = "pixels a side" },
+  size = { 512, min = 8, max = 4096, doc = "pixels a side, where --size does not say" },
 }
+
+local given = glint._output() -- of the command line
+if given and P.layout == "diligent" then
+  error("-o: layout=diligent has names of its own; --set folder=... says where they go", 0)
+end
+local folder = given and (given:match "^(.*)/[^/]*$" or ".") or P.folder
+
+-- The file of the k-th picture, where -o names it.
+local function given_name(k)
+  local name = given:match "[^/]*$"
+  if name:find "%%0?%d*d" then return (name:gsub("%%0?%d*d", function(place) return place:format(k) end, 1)) end
+  if name:find "#+" then return (name:gsub("#+", function(place) return ("%0" .. #place .. "d"):format(k) end, 1)) end
+  return (name:gsub("%.?[^.]*$", function(ending) return ("_%04d"):format(k) .. ending end, 1))
+end
 
 -- A material by its name, of the colour that the object gives; ambient = 1 shows where objects are, see below.
 local MATERIALS = {
@@ -128,13 +146,13 @@ end
 
 local function write_glint()
   local rows = { "file,x,y,z,intensity\n" }
-  local function path(name) return P.folder .. "/" .. name end
+  local function path(name) return folder .. "/" .. name end
   local truth = render(OBJECTS.balls(painter(MATERIALS.matt)), function(k, x, y, z, lamp)
-    local file = ("light_%03d.%s"):format(k, P.exact and "pfm" or "png")
+    local file = given and given_name(k) or ("light_%03d.%s"):format(k, P.exact and "pfm" or "png")
     rows[#rows + 1] = ("%s,%.17g,%.17g,%.17g,%.17g\n"):format(file, x, y, z, lamp.intensity)
     return path(file)
   end)
-  if not truth then return end
+  if not truth or given == "none" then return end
   assert(truth:save(path "mask.png", { bits = 16, transfer = "linear" }))
   for _, pass in ipairs { "normal", "depth" } do
     assert(truth:save(path(pass .. ".png"), { bits = 16, pass = pass }))
@@ -144,7 +162,8 @@ local function write_glint()
 end
 
 local function write_diligent(object, material)
-  local folder = ("%s/%s_%s/"):format(P.folder, object.name, material.name)
+  local name = object.name .. "_" .. material.name
+  local place = ("%s/%s/"):format(folder, name)
   local names, directions, intensities = {}, {}, {}
   local truth = render(object.make(painter(material.make)), function(k, x, y, z, lamp)
     local color = {}
@@ -153,29 +172,39 @@ local function write_diligent(object, material)
     names[k] = ("%03d.png\n"):format(k)
     directions[k] = ("%.17g %.17g %.17g\n"):format(x, y, z)
     intensities[k] = ("%.17g %.17g %.17g\n"):format(color[1], color[2], color[3])
-    return folder .. ("%03d.png"):format(k)
+    return place .. ("%03d.png"):format(k)
   end)
-  if not truth then return end
-  local mask = png.grey(P.size, P.size)
-  for y = 0, P.size - 1 do
-    for x = 0, P.size - 1 do
+  if not truth then return name, false end
+  local width, height = truth.width, truth.height
+  local mask, normals = png.grey(width, height), {}
+  for y = 0, height - 1 do
+    for x = 0, width - 1 do
+      normals[y * width + x] = { truth:pixel(x, y, "normal") }
       if truth:pixel(x, y, "depth") < math.huge then mask:set(x, y, 1) end
     end
   end
-  assert(truth:save(folder .. "Normal_gt.npy", { pass = "normal" }))
-  assert(truth:save(folder .. "Normal_gt.png", { bits = 16, pass = "normal" }))
-  assert(truth:save(folder .. "depth_gt.npy", { pass = "depth" }))
-  mask:save(folder .. "mask.png")
-  write(folder .. "filenames.txt", names)
-  write(folder .. "light_directions.txt", directions)
-  write(folder .. "light_intensities.txt", intensities)
+  assert(truth:save(place .. "Normal_gt.npy", { pass = "normal" })) -- which makes the folder
+  mat.write(place .. "Normal_gt.mat", "Normal_gt", { height, width, 3 }, function(row, column, c)
+    return normals[(row - 1) * width + column - 1][c]
+  end)
+  assert(truth:save(place .. "Normal_gt.png", { bits = 16, pass = "normal" }))
+  assert(truth:save(place .. "depth_gt.npy", { pass = "depth" }))
+  mask:save(place .. "mask.png")
+  write(place .. "filenames.txt", names)
+  write(place .. "light_directions.txt", directions)
+  write(place .. "light_intensities.txt", intensities)
+  return name, true
 end
 
 if P.layout == "glint" then
   write_glint()
 else
-  local materials = pick(P.materials, MATERIALS, "materials")
+  local materials, names, any = pick(P.materials, MATERIALS, "materials"), {}, false
   for _, object in ipairs(pick(P.objects, OBJECTS, "objects")) do
-    for _, material in ipairs(materials) do write_diligent(object, material) end
+    for _, material in ipairs(materials) do
+      local name, is_whole = write_diligent(object, material)
+      names[#names + 1], any = name .. "\n", any or is_whole
+    end
   end
+  if any then write(folder .. "/objects.txt", names) end
 end

@@ -80,6 +80,13 @@ static int warn(lua_State *L)
     return 0;
 }
 
+// _output(): what -o says, or nil. For scripts/ only.
+static int output(lua_State *L)
+{
+    lua_pushstring(L, glintL_get_run(L)->request.render_text[glintL_render_find("output")]);
+    return 1;
+}
+
 __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
 {
     static void (*const parts[])(lua_State *) = {
@@ -99,6 +106,8 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     lua_setfield(L, -2, "_other_kind");
     lua_pushcfunction(L, warn);
     lua_setfield(L, -2, "_warn");
+    lua_pushcfunction(L, output);
+    lua_setfield(L, -2, "_output");
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         parts[i](L);
     lua_createtable(L, 0, 2);

@@ -1038,11 +1038,14 @@ function glint.texture(fields) end
 --- A function that gives the colour of a number: viridis, magma and cividis run evenly from dark to light, turbo through the
 --- rainbow, coolwarm from blue over grey to red, for numbers on both sides of a middle. Numbers beyond the range have the
 --- colours of its ends. Inside a pattern it takes symbols, too, and gives the same bits.
----@param name "viridis"|"magma"|"cividis"|"turbo"|"coolwarm"
+--- A map of one's own is a list of colours, evenly from low to high, or a function that gives the colour of a share 0 .. 1; it has 256
+--- steps.
+---@param map "viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|glint.color[]|fun(share: number): glint.color
 ---@param low? number  what the first colour stands for. Default 0
 ---@param high? number  what the last one stands for, another number than low. Default 1
----@return fun(x: number): glint.triple
-function glint.colormap(name, low, high) end
+---@param scale? "linear"|"log"  "log": equal factors have equal steps of colour; low and high are above 0. Default "linear"
+---@return fun(x: number): glint.vector
+function glint.colormap(map, low, high, scale) end
 
 -- ---- Operations ----
 

@@ -2,6 +2,7 @@
 #include "bindings/pattern/pattern.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #define COLORMAP "glint.colormap" // the type of the userdata that hold the tables as textures
 #define ENTRIES 256
@@ -11,14 +12,10 @@ _Static_assert(sizeof glintL_colormaps / sizeof *glintL_colormaps == GLINT_COLOR
 
 static const char TEXTURES; // its address is the registry's key of those that were made, by number
 
-// A table as a picture of one row, between whose texels light is mixed.
-static glint_status make_texture(glint_colormap which, glint_texture **out, glint_error *error)
+// A table of sRGB codes as a picture of one row, between whose texels light is mixed.
+static glint_status make_texture(uint8_t rgb[ENTRIES][3], glint_texture **out, glint_error *error)
 {
-    uint8_t rgb[ENTRIES][3];
     glint_texture_desc desc = glint_texture_desc_default();
-    for (int i = 0; i < ENTRIES; i++)
-        for (int c = 0; c < 3; c++)
-            rgb[i][c] = (uint8_t)(glint_colormap_table(which)[i] >> (16 - 8 * c));
     desc.rgb = rgb[0];
     desc.width = ENTRIES;
     desc.height = 1;
@@ -26,21 +23,95 @@ static glint_status make_texture(glint_colormap which, glint_texture **out, glin
     return glint_texture_create(&desc, out, error);
 }
 
-static void push_texture(lua_State *L, glint_colormap which)
+static void push_new_texture(lua_State *L, uint8_t rgb[ENTRIES][3])
 {
     glint_error error;
+    glint_texture **texture = lua_newuserdatauv(L, sizeof(glint_texture *), 0);
+    *texture = NULL;
+    luaL_setmetatable(L, COLORMAP);
+    glintL_check_status(L, "colormap", &error, make_texture(rgb, texture, &error));
+}
+
+static void push_texture(lua_State *L, glint_colormap which)
+{
+    uint8_t rgb[ENTRIES][3];
     glintL_push_table(L, &TEXTURES);
     if (lua_rawgeti(L, -1, (lua_Integer)which) == LUA_TNIL) {
         lua_pop(L, 1);
-        glint_texture **texture = lua_newuserdatauv(L, sizeof(glint_texture *), 0);
-        *texture = NULL;
-        luaL_setmetatable(L, COLORMAP);
-        glintL_check_status(L, "colormap", &error, make_texture(which, texture, &error));
+        for (int i = 0; i < ENTRIES; i++)
+            for (int c = 0; c < 3; c++)
+                rgb[i][c] = (uint8_t)(glint_colormap_table(which)[i] >> (16 - 8 * c));
+        push_new_texture(L, rgb);
         lua_pushvalue(L, -1);
         lua_rawseti(L, -3, (lua_Integer)which);
     }
     lua_remove(L, -2);
 }
+
+// ---- Maps of a script's own ----
+
+// The colour on top as sRGB, 0 .. 1 each; pops it.
+static void take_color(lua_State *L, const char *path, double out[3])
+{
+    glintL_read_color(L, -1, path, out);
+    for (int c = 0; c < 3; c++)
+        out[c] = glint_srgb_encode(out[c]);
+    lua_pop(L, 1);
+}
+
+static void put_color(const double color[3], uint8_t out[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = (uint8_t)(255 * color[c] + 0.5);
+}
+
+// The colours of the list at 1, evenly from low to high; between them codes are mixed, as in other programs' maps.
+static void read_list(lua_State *L, uint8_t rgb[ENTRIES][3])
+{
+    char path[48];
+    const size_t count = glintL_check_list(L, 1, "colormap", false);
+    if (count < 2)
+        glintL_error(L, "colormap: a list of at least two colours expected, got %d", (int)count);
+    for (int i = 0; i < ENTRIES; i++) {
+        const double at = (double)i * (double)(count - 1) / (ENTRIES - 1);
+        const size_t first = at < (double)(count - 1) ? (size_t)at : count - 2;
+        double a[3], b[3];
+        snprintf(path, sizeof path, "colormap[%zu]", first + 1);
+        lua_rawgeti(L, 1, (lua_Integer)first + 1);
+        take_color(L, path, a);
+        snprintf(path, sizeof path, "colormap[%zu]", first + 2);
+        lua_rawgeti(L, 1, (lua_Integer)first + 2);
+        take_color(L, path, b);
+        for (int c = 0; c < 3; c++)
+            a[c] += (b[c] - a[c]) * (at - (double)first);
+        put_color(a, rgb[i]);
+    }
+}
+
+// What the function at 1 gives for 0 .. 1.
+static void read_function(lua_State *L, uint8_t rgb[ENTRIES][3])
+{
+    for (int i = 0; i < ENTRIES; i++) {
+        double color[3];
+        lua_pushvalue(L, 1);
+        lua_pushnumber(L, i / (ENTRIES - 1.0));
+        lua_call(L, 1, 1);
+        take_color(L, "colormap: the function's result", color);
+        put_color(color, rgb[i]);
+    }
+}
+
+static void push_own_texture(lua_State *L)
+{
+    uint8_t rgb[ENTRIES][3];
+    if (lua_isfunction(L, 1))
+        read_function(L, rgb);
+    else
+        read_list(L, rgb);
+    push_new_texture(L, rgb);
+}
+
+// ---- The function ----
 
 static int close_texture(lua_State *L)
 {
@@ -60,6 +131,8 @@ static int color_of(lua_State *L)
     if (lua_gettop(L) != 1)
         return glintL_error(L, "colormap: one number or symbol expected, got %d values", lua_gettop(L));
     glintL_term share = glintL_read_term(L, 1, "colormap");
+    if (lua_toboolean(L, lua_upvalueindex(4))) // of the logarithms: low and high are those, too
+        share = glintL_apply1(L, GLINT_OP_LOG2, share);
     if (low != 0)
         share = glintL_apply2(L, GLINT_OP_SUB, share, glintL_number_term(low));
     if (low != 0 || high != 1)
@@ -79,19 +152,42 @@ static double read_end(lua_State *L, int index, const char *path, double otherwi
     return end;
 }
 
+static bool read_scale(lua_State *L, double *low, double *high)
+{
+    static const char *const scales[] = { "linear", "log", NULL };
+    static const glintL_field field = { .name = "scale", .kind = GLINTL_ENUM, .names = scales };
+    unsigned scale = 0;
+    if (!lua_isnoneornil(L, 4))
+        glintL_read_field(L, 4, "colormap", &field, &scale);
+    if (scale == 1 && !(*low > 0 && *high > 0))
+        glintL_error(L, "colormap: low and high above 0 expected of a logarithmic scale, got %f and %f", *low, *high);
+    if (scale == 1) {
+        *low = glintL_apply1(L, GLINT_OP_LOG2, glintL_number_term(*low)).number;
+        *high = glintL_apply1(L, GLINT_OP_LOG2, glintL_number_term(*high)).number;
+    }
+    return scale == 1;
+}
+
 static int new_colormap(lua_State *L)
 {
     static const glintL_field field = { .name = "name", .kind = GLINTL_ENUM, .names = glintL_colormaps };
     unsigned which = 0;
-    lua_settop(L, 3);
-    glintL_read_field(L, 1, "colormap", &field, &which);
-    const double low = read_end(L, 2, "colormap.low", 0), high = read_end(L, 3, "colormap.high", 1);
+    lua_settop(L, 4);
+    const bool is_own = lua_istable(L, 1) || lua_isfunction(L, 1);
+    if (!is_own)
+        glintL_read_field(L, 1, "colormap", &field, &which);
+    double low = read_end(L, 2, "colormap.low", 0), high = read_end(L, 3, "colormap.high", 1);
     if (!(low != high && isfinite(high - low)))
         return glintL_error(L, "colormap.high: another number than low (%f) expected, got %f", low, high);
-    push_texture(L, (glint_colormap)which);
+    const bool is_log = read_scale(L, &low, &high);
+    if (is_own)
+        push_own_texture(L);
+    else
+        push_texture(L, (glint_colormap)which);
     lua_pushnumber(L, low);
     lua_pushnumber(L, high);
-    lua_pushcclosure(L, color_of, 3);
+    lua_pushboolean(L, is_log);
+    lua_pushcclosure(L, color_of, 4);
     return 1;
 }
 

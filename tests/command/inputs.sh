@@ -107,9 +107,10 @@ for bad in pipe folder /dev/zero huge.xyz; do
 done
 refused "a picture for a script" "good.png: a script expected, got a PNG .glint reproduce good.png renders it again" good.png
 refused "reproduce with a pipe for a script" "pipe: a script expected, got a pipe" reproduce good.png pipe
-for bad in device.pfm folder huge.pfm good.pfm; do
-    refused "fit.lua to $bad" "$bad: a colour .pfm of 160 x 120 expected" "$root/scripts/fit.lua" -D file="$bad" -o none
-done
+refused "fit.lua to a folder" "name ending in .png or .pfm expected, got .folder" "$root/scripts/fit.lua" -D file=folder -o none
+refused "fit.lua to another size" "fit: the target is [0-9]+ x [0-9]+, the picture 160 x 120" "$root/scripts/fit.lua" -D file=good.pfm -o none
+refused "fit.lua to a device" "read_image: device.pfm" "$root/scripts/fit.lua" -D file=device.pfm -o none
+refused "fit.lua to a huge file" "read_image: huge.pfm" "$root/scripts/fit.lua" -D file=huge.pfm -o none
 limited timeout $seconds "$glint" - --size 8x8 -o piped.png -q <scene.lua >out 2>err && "$glint" compare piped.png good.png >out
 result $? "a script from standard input"
 refused "which is there once" "standard input is for render and explain" - --sweep a=1:2:2 -o none

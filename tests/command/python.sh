@@ -40,7 +40,8 @@ check "a name that is none is answered" eval '! "$glint" "${job[@]}" --set mater
     grep -q "materials: .silver. is none of glossy, gold, matt, rough" err'
 check "every object in every material" "$glint" "$root/scripts/photometric.lua" --set layout=diligent --set size=24 --set lights=2 \
     --set objects=balls,sphere,solids,dents --set materials=matt,glossy,rough,gold --set folder=all -q
-check "has its folder" eval 'test "$(ls all | wc -l)" -eq 16 && test "$(ls all/dents_gold | wc -l)" -eq 9'
+check "has its folder" eval 'test "$(ls -d all/*/ | wc -l)" -eq 16 && test "$(ls all/dents_gold | wc -l)" -eq 10 &&
+    test "$(wc -l <all/objects.txt)" -eq 16'
 cat >solve.py <<'END'
 import struct, sys, zlib
 import numpy as np

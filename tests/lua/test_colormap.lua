@@ -185,5 +185,39 @@ function tests.passes_in_colours()
   check(not good and message:find(want, 1, true), "<%s> expected, got %s", want, message)
 end
 
+-- A list of colours has the first at low, the last at high and the others evenly between them; between two of them codes are mixed.
+function tests.maps_of_ones_own()
+  local own = glint.colormap({ "#000000", "#ff0000", { 1, 1, 1 } }, 10, 20)
+  check(own(10) == glint.vector(0, 0, 0) and own(20) == glint.vector(1, 1, 1) and own(5) == own(10) and own(99) == own(20))
+  check(math.abs(own(15).r - 1) < 0.01 and own(15).g < 0.01)
+  local grey = glint.colormap({ "black", "white" })
+  local function encoded(x) return x <= 0.0031308 and 12.92 * x or 1.055 * x ^ (1 / 2.4) - 0.055 end
+  for i = 0, 20 do check(math.abs(encoded(grey(i / 20).x) - i / 20) < 0.004, "grey %d", i) end
+  local calls = 0
+  local made = glint.colormap(function(share)
+    calls = calls + 1
+    return { share, 0, 1 - share }
+  end)
+  check(calls == 256 and made(0) == glint.vector(0, 0, 1) and made(1) == glint.vector(1, 0, 0))
+  check(math.abs(made(0.5).r - 0.5) < 0.01)
+  check(glint.pattern(function(p) return own(p.x) end):evaluate { p = { 15, 0, 0 } } == own(15))
+  for want, map in pairs { ["a list of at least two colours expected, got 1"] = { "red" }, ["colormap[2]: colour name"] = { "red", "rde" },
+    ["colormap: the function's result: {r, g, b}, a number or a colour name expected, got nil"] = function() end } do
+    local good, message = pcall(glint.colormap, map)
+    check(not good and tostring(message):find(want, 1, true), "%s expected, got %s", want, message)
+  end
+end
+
+function tests.logarithmic_scales()
+  local linear, log = glint.colormap "viridis", glint.colormap("viridis", 0.01, 100, "log")
+  for i = -2, 2 do
+    local a, b = log(10.0 ^ i), linear((i + 2) / 4)
+    check((a - b):length() < 1e-6, "10 ^ %d: %s, not %s", i, a, b)
+  end
+  check(log(1e-9) == linear(0) and log(1e9) == linear(1) and log(0) == linear(0))
+  check(not pcall(glint.colormap, "viridis", 0, 1, "log") and not pcall(glint.colormap, "viridis", 1, 2, "cubic"))
+  check((glint.pattern(function(p) return log(p.x) end):evaluate { p = { 3, 0, 0 } } - log(3)):length() == 0)
+end
+
 tally.run(tests)
 tally.finish()

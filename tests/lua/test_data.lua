@@ -763,5 +763,33 @@ function tests.photometric()
   end
 end
 
+-- --size and -o are obeyed, and Normal_gt.mat has the numbers of Normal_gt.npy, column by column.
+function tests.photometric_obeys_the_command_line()
+  local script = root .. "/scripts/photometric.lua -q --set lights=2 --size 24x16 "
+  local ok, text = run(script .. "--set layout=diligent --set objects=sphere --set folder=wide")
+  check(ok, "photometric: %s", text)
+  check(slurp(folder .. "/wide/objects.txt") == "sphere_matt\n", "objects.txt")
+  local matrix = slurp(folder .. "/wide/sphere_matt/Normal_gt.mat")
+  local arrays = slurp(folder .. "/wide/sphere_matt/Normal_gt.npy")
+  check(matrix:sub(1, 6) == "MATLAB" and matrix:sub(125, 128) == "\0\1IM" and ("<I4I4"):unpack(matrix, 129) == 14, "its head")
+  local rows, columns, layers = ("<i4i4i4"):unpack(matrix, 161)
+  check(rows == 16 and columns == 24 and layers == 3, "%d x %d x %d", rows, columns, layers)
+  local numbers, truth = #matrix - 8 * 16 * 24 * 3 + 1, #arrays - 4 * 16 * 24 * 3 + 1
+  for y = 0, 15 do
+    for x = 0, 23 do
+      for c = 0, 2 do
+        local a = ("<d"):unpack(matrix, numbers + 8 * (c * 16 * 24 + x * 16 + y))
+        local b = ("<f"):unpack(arrays, truth + 4 * ((y * 24 + x) * 3 + c))
+        check(a == b, "%d, %d, %d: %g, not %g", y, x, c, a, b)
+      end
+    end
+  end
+  ok, text = run(script .. "-o 'own/shot_%02d.png'")
+  check(ok, "photometric -o: %s", text)
+  check(slurp(folder .. "/own/lights.csv"):match "\n(shot_01.png),[^\n]*\n(shot_02.png)," and slurp(folder .. "/own/shot_02.png") ~= "",
+    "the names of -o")
+  check(slurp(folder .. "/own/mask.png"):sub(17, 24) == "\0\0\0\24\0\0\0\16", "the truth is beside them")
+end
+
 tally.run(tests)
 tally.finish()

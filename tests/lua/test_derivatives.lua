@@ -772,7 +772,7 @@ function tests.fit()
     local pipe = io.popen(("%s/glint scripts/fit.lua --quiet %s 2>/dev/null"):format(BUILD, options:format(folder)))
     local found = 0
     for line in pipe:lines() do
-      local name, value = line:match "^(%S+) (%S+)$"
+      local name, value = line:match "^(%S+) (%S+) %+%- %S+$"
       local want = hidden[name]
       if want then near(tonumber(value), want, 2e-5 * want, name .. " by " .. options) end
       found = found + (want and 1 or 0)

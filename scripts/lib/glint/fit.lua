@@ -1,0 +1,194 @@
+-- Finds the numbers of a scene from a picture of it, by Gauss-Newton: the passes d:NAME say how fast every pixel
+-- changes with each number, and the next step goes where the picture would then be nearest to the target. Damping by
+-- Levenberg and Marquardt shortens steps that lead astray.
+--     local fit = require "glint.fit"
+--     local found = fit.run {
+--       target = "photo.png",                              -- or a .pfm, a picture of glint.read_image, an image
+--       start = { { "lamp_x", -1 }, { "power", 1, least = 0.01 } },
+--       render = function(v, passes)                       -- numbers by their names
+--         lamp.x, lamp.intensity = v.lamp_x, v.power
+--         return scene:render { width = 160, height = 120, passes = passes }
+--       end,
+--     }
+--     print(found.values.lamp_x, found.uncertainty.lamp_x, found.converged)
+-- The uncertainty of a number is its standard deviation, as far as the differences that are left are independent noise:
+-- how well the picture tells the number. Of a .png the values at full white, which are clipped, are left out.
+local glint = require "glint"
+local fit = {}
+
+local FIELDS = { target = true, start = true, render = true, steps = true, tolerance = true, report = true }
+local DAMPING_MAX = 1e12 -- no step leads further
+local BATCH = 60 -- numbers unpacked at once
+
+local function fail(...) error("fit: " .. string.format(...), 0) end
+
+local function numbers_of(picture, pass)
+  local text, list, at = picture:bytes(pass), {}, 1
+  local format = "<" .. ("f"):rep(BATCH)
+  for n = 0, #text // 4 - BATCH, BATCH do
+    table.move({ format:unpack(text, at) }, 1, BATCH, n + 1, list)
+    at = at + 4 * BATCH
+  end
+  for n = #list + 1, #text // 4 do list[n], at = ("<f"):unpack(text, at) end
+  return list
+end
+
+-- The target's numbers, and which of them count: those that are not clipped.
+local function read_target(target)
+  local is_png = type(target) == "string" and target:lower():match "%.png$"
+  local picture = type(target) == "string" and glint.read_image(target) or target
+  local list, counts = numbers_of(picture), {}
+  for i, x in ipairs(list) do counts[i] = not (is_png and x >= 1) end
+  return { list = list, counts = counts, width = picture.width, height = picture.height }
+end
+
+-- The inverse of a symmetric matrix; nil where it has none.
+local function inverse(a)
+  local n, m, out = #a, {}, {}
+  for i = 1, n do
+    m[i] = { table.unpack(a[i]) }
+    for j = 1, n do m[i][n + j] = i == j and 1 or 0 end
+  end
+  for i = 1, n do
+    local best = i
+    for k = i + 1, n do best = math.abs(m[k][i]) > math.abs(m[best][i]) and k or best end
+    m[i], m[best] = m[best], m[i]
+    local pivot = m[i][i]
+    if pivot == 0 or pivot ~= pivot then return nil end
+    for j = 1, 2 * n do m[i][j] = m[i][j] / pivot end
+    for k = 1, n do
+      local f = m[k][i]
+      for j = 1, k ~= i and 2 * n or 0 do m[k][j] = m[k][j] - f * m[i][j] end
+    end
+  end
+  for i = 1, n do out[i] = { table.unpack(m[i], n + 1, 2 * n) } end
+  return out
+end
+
+-- The differences between a picture and the target, squared and summed, and the normal equations of its slopes.
+local function equations(image, target, names)
+  if image.width ~= target.width or image.height ~= target.height then
+    fail("the target is %d x %d, the picture %d x %d", target.width, target.height, image.width, image.height)
+  end
+  local got, slopes, n, sum, used = numbers_of(image), {}, #names, 0, 0
+  for i, name in ipairs(names) do slopes[i] = numbers_of(image, "d:" .. name) end
+  local a, b = {}, {}
+  for i = 1, n do
+    a[i], b[i] = {}, 0
+    for j = 1, n do a[i][j] = 0 end
+  end
+  for k, want in ipairs(target.list) do
+    if target.counts[k] then
+      local rest = want - got[k]
+      sum, used = sum + rest * rest, used + 1
+      for i = 1, n do
+        local s = slopes[i][k]
+        b[i] = b[i] + s * rest
+        for j = i, n do a[i][j] = a[i][j] + s * slopes[j][k] end
+      end
+    end
+  end
+  for i = 1, n do
+    for j = 1, i - 1 do a[i][j] = a[j][i] end
+  end
+  return { a = a, b = b, sum = sum, used = used, error = math.sqrt(sum / math.max(used, 1)) }
+end
+
+-- The next numbers by a damped step: within their limits, and no positive number falls to less than a quarter at once.
+local function step(v, e, damping, entries)
+  local a, next = {}, {}
+  for i = 1, #v do
+    a[i] = { table.unpack(e.a[i]) }
+    a[i][i] = a[i][i] * (1 + damping)
+    if a[i][i] == 0 then fail("the picture does not change with %s", entries[i][1]) end
+  end
+  local inverted = inverse(a)
+  if not inverted then return nil end
+  for i = 1, #v do
+    local by = 0
+    for j = 1, #v do by = by + inverted[i][j] * e.b[j] end
+    local least, most = entries[i].least or -math.huge, entries[i].most or math.huge
+    next[i] = math.min(math.max(v[i] + by, least, v[i] > 0 and v[i] / 4 or -math.huge), most)
+  end
+  return next
+end
+
+local function check(options)
+  if type(options) ~= "table" then fail("a table { target, start, render } expected, got %s", type(options)) end
+  for name in pairs(options) do
+    if not FIELDS[name] then fail("%s: no such option; target, start, render, steps, tolerance, report are", name) end
+  end
+  if options.target == nil then fail("target: a file name, a picture or an image expected, got nil") end
+  if type(options.render) ~= "function" then
+    fail("render: function(values, passes) expected, got %s", type(options.render))
+  end
+  if type(options.start) ~= "table" or #options.start == 0 then fail("start: a list of { name, number } expected") end
+  for i, entry in ipairs(options.start) do
+    if type(entry) ~= "table" or type(entry[1]) ~= "string" or type(entry[2]) ~= "number" then
+      fail("start[%d]: { name, number } expected", i)
+    end
+  end
+end
+
+local function by_name(names, v)
+  local out = {}
+  for i, name in ipairs(names) do out[name] = v[i] end
+  return out
+end
+
+-- Standard deviations: the variance of what is left, through the inverse of the normal equations.
+local function uncertainties(e, count)
+  local inverted, out = inverse(e.a), {}
+  local variance = e.sum / math.max(e.used - count, 1)
+  for i = 1, count do out[i] = inverted and math.sqrt(math.max(variance * inverted[i][i], 0)) or math.huge end
+  return out
+end
+
+local function is_small(v, tried, tolerance)
+  for i = 1, #v do
+    if math.abs(tried[i] - v[i]) > tolerance * math.max(math.abs(v[i]), tolerance) then return false end
+  end
+  return true
+end
+
+--- Fits numbers to a picture.
+---@param options table  target; start, a list of { name, number, least = x, most = y }; render(values, passes), which
+--- sets the scene and returns its image with these passes; steps (20); tolerance (1e-6), the share of a number below
+--- which a step has converged; report(k, values, error, damping), called at each step
+---@return table found  values and uncertainty by names; error, the root of the mean square difference; steps; converged
+function fit.run(options)
+  check(options)
+  local entries, names, v = options.start, {}, {}
+  for i, entry in ipairs(entries) do names[i], v[i] = entry[1], entry[2] end
+  local target, tolerance = read_target(options.target), options.tolerance or 1e-6
+  local passes = "d:" .. table.concat(names, ",d:")
+  local function look(numbers)
+    local variables = {}
+    for i, name in ipairs(names) do variables[name] = glint.variable(name, numbers[i]) end
+    local image = options.render(variables, passes)
+    if not image then fail("render: an image expected, got nil; every frame is needed, no --frames or --shard") end
+    return equations(image, target, names)
+  end
+  local damping, e, steps, converged = 1e-2, look(v), 0, false
+  local function report()
+    if options.report then options.report(steps, by_name(names, v), e.error, damping) end
+  end
+  report()
+  while steps < (options.steps or 20) and not converged and e.error > 1e-7 do
+    steps = steps + 1
+    local tried = step(v, e, damping, entries)
+    local there = tried and look(tried)
+    converged = there and is_small(v, tried, tolerance) and there.error <= e.error * (1 + tolerance)
+    if there and there.error < e.error then
+      v, e, damping = tried, there, damping / 10
+    else
+      damping = damping * 10
+    end
+    report()
+    if damping > DAMPING_MAX then break end
+  end
+  return { values = by_name(names, v), uncertainty = by_name(names, uncertainties(e, #v)), error = e.error,
+    steps = steps, converged = converged or e.error <= 1e-7 }
+end
+
+return fit
