@@ -340,12 +340,15 @@ static glint_status apply_indirect_samples(cost_draft *draft, cost_value value, 
     return cost_scene_set(draft->scene, &desc, error);
 }
 
-// With 0 the ambient light stands for all of it.
+// With 0 the ambient light stands for all of it. The truth is the deepest: what the others lack is light.
 static void list_indirect_bounces(const cost_subject *subject, cost_values *out)
 {
     static const double counts[] = { 0, 1, 2, 4, 8 };
-    if (has_stage(subject->plan, "indirect") && subject->scene->desc.has_indirect)
-        cost_list_numbers(counts, COUNT(counts), subject->scene->desc.indirect_bounces, out);
+    if (!has_stage(subject->plan, "indirect") || !subject->scene->desc.has_indirect)
+        return;
+    cost_list_numbers(counts, COUNT(counts), subject->scene->desc.indirect_bounces, out);
+    out->has_truth = true;
+    out->truth = out->count - 1;
 }
 
 static glint_status apply_indirect_bounces(cost_draft *draft, cost_value value, glint_error *error)

@@ -19,7 +19,7 @@ static glintL_term choose(lua_State *L, glintL_term width, glintL_term mean, gli
 
 // The mean over x - w/2 .. x + w/2 of the wave that is 1 for the first `share` of each unit and 0 for the rest: the
 // difference of its integral, floor(x) share + min(fract(x), share). The unit that x is in is taken off first, so that no
-// digits are lost far from the origin.
+// digits are lost far from the origin. Rounding leaves 0 .. 1 by a little, which the clamp takes back.
 static glintL_term mean_of_wave(lua_State *L, glintL_term x, glintL_term share, glintL_term width)
 {
     const glintL_term place = glintL_apply1(L, GLINT_OP_FRACT, x), half = mul(L, number(0.5), width);
@@ -29,7 +29,8 @@ static glintL_term mean_of_wave(lua_State *L, glintL_term x, glintL_term share, 
         const glintL_term part = glintL_apply2(L, GLINT_OP_MIN, glintL_apply1(L, GLINT_OP_FRACT, at), share);
         integral[end] = add(L, mul(L, glintL_apply1(L, GLINT_OP_FLOOR, at), share), part);
     }
-    return div(L, sub(L, integral[1], integral[0]), width);
+    const glintL_term mean = div(L, sub(L, integral[1], integral[0]), width);
+    return glintL_apply3(L, GLINT_OP_CLAMP, mean, number(0), number(1));
 }
 
 // Of the wave that is 1 in every even unit and -1 in every odd one.

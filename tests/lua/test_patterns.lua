@@ -365,6 +365,20 @@ function tests.powers_are_let_pass()
   end
 end
 
+-- Rounding took means below 0 and above 1 by 1e-15.
+function tests.means_of_tilings_stay_in_range()
+  local least, most = math.huge, -math.huge
+  math.randomseed(5)
+  for _ = 1, 3000 do
+    local p = V(math.random() * 20 - 10, math.random() * 20 - 10, math.random() * 20 - 10)
+    local w = 10 ^ (3 * math.random() - 2.5)
+    for _, value in ipairs { glint.checker(p, w), glint.stripe(p.x, w), glint.brick(p, 0.1, w), glint.brick(p, 0, w), glint.brick(p, 1, w) } do
+      least, most = math.min(least, value), math.max(most, value)
+    end
+  end
+  check(least >= 0 and most <= 1, "0 .. 1 expected, got %g .. 1 + %g", least, most - 1)
+end
+
 tests.run = nil
 tally.run(tests)
 tally.finish()
