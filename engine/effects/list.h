@@ -25,6 +25,9 @@
     STAGE(TONE, tone) \
     STAGE(OUTLINE, outline) \
     STAGE(DERIVATIVE, derivative) \
-    STAGE(TINT, tint)
+    STAGE(TINT, tint) \
+    STAGE(CUT_OUT, cut_out) \
+    STAGE(BUMP, bump) \
+    STAGE(LIGHT_GROUPS, light_groups)
 
 #endif

@@ -42,13 +42,17 @@ typedef enum glint_scene_part {
 struct glint_tile;
 struct glint_tile_frame;
 struct glint_sample_walk;
+struct glint_plan_light;
+struct glint_light_args;
 
-/// A part of the walk of a tile. walk: the state of the current sample; NULL after the last sample.
+/// A part of the walk of a tile. walk: the state of the current sample; NULL where there is none.
 typedef void glint_stage_step(struct glint_tile *tile, const struct glint_tile_frame *frame, struct glint_sample_walk *walk);
 
 /// When the walk of a tile calls the steps of its stages. Stages that take the same time are called in the order of the list.
 typedef enum glint_stage_time {
-    GLINT_AT_HITS, ///< of a sample: the nearest objects are known
+    GLINT_AT_CAST, ///< the nearest objects are known, of the tile's rays or of those that left a surface
+    GLINT_AT_SURFACE, ///< points and normals are known, likewise
+    GLINT_AT_HITS, ///< of a sample of the eye: the nearest objects are known
     GLINT_AT_SIGHT, ///< lights are seen, too; what is visible does not change any more
     GLINT_AT_LIT, ///< before the lights, where some point takes light for itself
     GLINT_AT_LIGHT, ///< after each light, or the samples of one
@@ -56,7 +60,9 @@ typedef enum glint_stage_time {
     GLINT_AT_REST, ///< after all lights
     GLINT_AT_SUMMED, ///< the sums of the sample are complete
     GLINT_AT_DONE, ///< after the last sample, before the mean is taken
+    GLINT_AT_SIGN, ///< keys are written to the cached results
     GLINT_AT_STORE, ///< the pixels go to the picture
+    GLINT_AT_STORE_LIGHT, ///< the light of the pixels goes to the picture
     GLINT_TIME_COUNT
 } glint_stage_time;
 
@@ -75,6 +81,13 @@ typedef struct glint_stage {
     bool remote; ///< it is light, or slopes of light, that one call of `shade` for a sample does not give
 
     glint_stage_step *step[GLINT_TIME_COUNT]; ///< NULL: nothing is to do then
+    /// After the stage light: takes lanes from those above the light's horizon. NULL: none.
+    void (*limit)(struct glint_tile *tile, const struct glint_plan *plan, const struct glint_light_args *args);
+    /// After the stage occlude, which read `lit`: adds lanes to `open`. middle: of the whole light, by its middle. NULL: none.
+    void (*admit)(struct glint_tile *tile, const struct glint_tile_frame *frame, const struct glint_plan_light *light, bool middle,
+                  const uint16_t *lit, uint16_t *open);
+    /// The normal at what ray i sees, where nothing is hit. NULL: the stage shows no surface.
+    void (*normal)(const struct glint_tile *tile, const struct glint_tile_frame *frame, uint32_t i, double normal[3]);
     void *(*create)(const struct glint_plan *plan); ///< the memory of a worker for it; NULL: out of memory. No function: it needs none
     void (*destroy)(void *memory); ///< of NULL: nothing
     bool (*fit)(void *memory, const struct glint_plan *plan); ///< grows it for a plan; false: out of memory. No function: its size is fixed

@@ -7,34 +7,9 @@
 #include "engine/scene/objects.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-
-void glint_mesh_warn(const glint_mesh_desc *desc, const char *path, const char *format, ...)
-{
-    char message[512];
-    if (!desc->warns)
-        return;
-    const int used = snprintf(message, sizeof message / 2, "%.240s: ", path);
-    va_list args;
-    va_start(args, format);
-    vsnprintf(message + used, sizeof message - (size_t)used, format, args);
-    va_end(args);
-    desc->warns(desc->context, message);
-}
-
-void glint_mesh_note_that(glint_mesh_reader *reader, glint_mesh_note_kind kind, const char *format, ...)
-{
-    glint_mesh_note *note = &reader->notes[kind];
-    va_list args;
-    if (note->count++)
-        return;
-    va_start(args, format);
-    vsnprintf(note->first, sizeof note->first, format, args);
-    va_end(args);
-}
 
 static void tell_notes(const glint_mesh_reader *r)
 {
@@ -50,24 +25,6 @@ static void tell_notes(const glint_mesh_reader *r)
 // ---- What a mesh cannot have ----
 
 static bool is_finite(const double v[3]) { return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]); }
-
-glint_status glint_mesh_drop_normals(glint_mesh_reader *r)
-{
-    const double up[3] = { 0, 0, 1 };
-    const uint32_t *corners = r->corners.items;
-    double *normals = r->normals.items;
-    glint_status status = GLINT_OK;
-    for (size_t i = r->corner_normals.count; i < r->corners.count && !status; i++)
-        status = glint_mesh_append(&r->corner_normals, &corners[i], r->error);
-    uint32_t *numbers = r->corner_normals.items;
-    for (size_t i = 0; i < r->corner_normals.count && !status; i++)
-        if (numbers[i] != GLINT_NO_NORMAL && vec_max_abs(normals + 3 * (size_t)numbers[i]) == 0)
-            numbers[i] = GLINT_NO_NORMAL;
-    for (size_t i = 0; i < r->normals.count; i++)
-        if (vec_max_abs(normals + 3 * i) == 0)
-            vec_copy(normals + 3 * i, up);
-    return status;
-}
 
 /// Moves the items from `from` on to `to`, in an array that has one for each corner or face; those that have none stay so.
 static void move_items(glint_mesh_array *array, size_t to, size_t from, size_t count)

@@ -97,8 +97,7 @@ static void take_all(glint_batch *batch, const glint_tile_frame *frame)
     }
     for (uint32_t i = 0; i < rays->group_count * GLINT_GROUP; i++)
         batch->sample[i] = batch->ray_of[i] = (uint16_t)i;
-    if (glint_plan_cuts(frame->plan))
-        glint_tile_see_through(tile, frame);
+    glint_tile_step(tile, frame, GLINT_AT_CAST, NULL);
     if (frame->plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && glint_tile_visible_light_in_sight(tile, frame))
         glint_tile_see_lights(tile, frame, tile->active);
 }
@@ -297,12 +296,13 @@ static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
 
 void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, bool any)
 {
-    const bool shading_points = any && frame->plan->runs[GLINT_STAGE_VERTEX];
-    if (shading_points)
-        any = glint_tile_choose_sampled(&batch->tile, frame);
-    glint_batch_shine(batch, frame, any);
-    if (shading_points && glint_tile_has_shading_points(&batch->tile))
-        glint_tile_vertex(&batch->tile, frame);
+    const glint_stage *vertex = frame->plan->runs[GLINT_STAGE_VERTEX] ? glint_stage_table[GLINT_STAGE_VERTEX] : NULL;
+    glint_sample_walk walk = { .rays = true, .points = true, .any = any, .shines = any };
+    if (vertex)
+        vertex->step[GLINT_AT_SIGHT](&batch->tile, frame, &walk);
+    glint_batch_shine(batch, frame, walk.shines);
+    if (vertex)
+        vertex->step[GLINT_AT_REST](&batch->tile, frame, &walk);
 }
 
 void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool any)

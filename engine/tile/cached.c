@@ -1,6 +1,6 @@
 /// What a tile leaves for later frames: where its results are kept, what it shows, and the keys of both.
 #include "engine/base/alloc.h"
-#include "engine/effects/pattern/pattern.h"
+#include "engine/tile/tile.h"
 
 #include <math.h>
 
@@ -33,6 +33,27 @@ static bool is_settled(const glint_reuse *reuse, const glint_plan *plan)
     for (uint32_t i = 0; i < reuse->light_count; i++)
         settled = settled && reuse->keep_light[i];
     return settled;
+}
+
+bool glint_tile_may_gather(const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    if (!frame->base || !plan->local || plan->runs[GLINT_STAGE_PATTERN] || plan->camera.orthographic || plan->lens ||
+        plan->desc.passes & GLINT_LIGHT_PASSES || glint_tile_wants_coverage(plan) || frame->raster)
+        return false;
+    for (uint32_t i = 0; i < plan->light_count; i++)
+        if (plan->lights[i].light_samples) // one a lane
+            return false;
+    return true;
+}
+
+bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const uint32_t *chosen = frame->refine->tiles[tile->index].chosen;
+    uint32_t any = 0;
+    for (uint32_t y = 0; y < tile->height; y++)
+        any |= chosen[y];
+    return any;
 }
 
 void glint_tile_fit_cached(glint_tile *tile, const glint_tile_frame *frame)
@@ -244,12 +265,7 @@ void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame)
         if (reuse->keep_light[i] && plan->lights[i].shadows && has_occlude(&cached->lights[i], &plan->lights[i]))
             cached->lights[i].occlude = plan->lights[i].key;
     }
-    if (plan->runs[GLINT_STAGE_PATTERN]) {
-        glint_tile_sign_pattern(tile, frame);
-        glint_tile_sign_values(tile, frame);
-    }
-    if (plan->runs[GLINT_STAGE_FACET])
-        glint_tile_sign_facets(tile, frame);
+    glint_tile_step(tile, frame, GLINT_AT_SIGN, NULL);
 }
 
 // ---- What the tile shows ----

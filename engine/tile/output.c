@@ -1,7 +1,6 @@
 #include "engine/effects/pattern/pattern.h"
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/effects/light_groups/light_groups.h"
 
 #include <string.h>
 
@@ -95,7 +94,7 @@ static void rest_normals(const glint_tile *tile, const glint_tile_frame *frame, 
         const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
         double n[3] = { 0 };
         if (sees_light(tile, frame->plan, i))
-            glint_tile_visible_light_normal(tile, frame, i, n);
+            glint_stage_table[GLINT_STAGE_VISIBLE_LIGHT]->normal(tile, frame, i, n);
         for (int c = 0; c < 3; c++)
             normal[c][i] = (float)n[c];
     }
@@ -251,7 +250,7 @@ void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_store_pass(tile, frame, GLINT_PASS_BEAUTY, tile->film.beauty[0]);
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         glint_tile_store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film.terms[k][0]);
-    glint_groups_store(tile, frame);
+    glint_tile_step(tile, frame, GLINT_AT_STORE_LIGHT, NULL);
 }
 
 static void tone_alpha(glint_tile *tile, const glint_tile_frame *frame)

@@ -77,6 +77,24 @@ static void run_shaders(glint_tile *tile, const glint_tile_frame *frame, uint32_
     glint_tile_shader(tile, frame, seen, count);
 }
 
+bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_bounce_material *materials = frame->plan->bouncing;
+    uint32_t last = GLINT_MISS; // most lanes show what the lane before shows
+    if (tile->at.only) {
+        const glint_bounce_material *only = &materials[frame->geometry.prims[*tile->at.only].material];
+        return only->mirrors || only->transmits;
+    }
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+            const uint32_t material = tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)];
+            if (material != last && (materials[material].mirrors || materials[material].transmits))
+                return true;
+            last = material;
+        }
+    return false;
+}
+
 /// Whether all light of the tile's only sample is what one call of shade makes: nothing in sight sends rays on, and none is kept from a
 /// light, which might come through something. Hits are known, materials named, shadows found.
 static bool is_direct(const glint_tile *tile, const glint_tile_frame *frame)

@@ -4,7 +4,6 @@
 #include "engine/base/vec.h"
 #include "engine/stages/light/cone_sample.h"
 #include "engine/stages/simd/coefficients.h"
-#include "engine/effects/cut_out/cut_out.h"
 
 #include <math.h>
 #include <string.h>
@@ -126,8 +125,7 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
         stages->cast_rays(&args);
     else
         stages->cast_bundle(&args);
-    if (glint_plan_cuts(frame->plan))
-        glint_tile_see_through(tile, frame);
+    glint_tile_step(tile, frame, GLINT_AT_CAST, NULL);
     tile->counts.primary += count_active(tile);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_CAST, false);
 }
@@ -183,8 +181,7 @@ void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
     frame->stages->geometry[frame->plan->desc.precision].surface(&args);
     take_box(tile, frame, args.box);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_SURFACE, false);
-    if (glint_plan_bumps(frame->plan))
-        glint_tile_bump(tile, frame);
+    glint_tile_step(tile, frame, GLINT_AT_SURFACE, NULL);
 }
 
 void glint_tile_find_points(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *hits)
@@ -288,6 +285,14 @@ static void leave_unlit(const glint_tile *tile, const glint_light_args *args)
         *args->brightest[0] = GLINT_NO_SPECULAR;
 }
 
+/// What stages take from the lanes that a light shines on.
+static void limit(glint_tile *tile, const glint_plan *plan, const glint_light_args *args)
+{
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        if (plan->runs[id] && glint_stage_table[id]->limit)
+            glint_stage_table[id]->limit(tile, plan, args);
+}
+
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                       uint32_t count)
 {
@@ -296,8 +301,7 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         leave_unlit(tile, &args);
     else
         frame->stages->geometry[frame->plan->desc.precision].light(&args);
-    if (glint_plan_bumps(frame->plan))
-        glint_tile_cut_horizon(tile, frame->plan, &args);
+    limit(tile, frame->plan, &args);
     bound_brightest(tile, frame, &args, slot);
     glint_tile_count_light(tile, frame, count);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_LIGHT, false);
@@ -380,6 +384,15 @@ static uint16_t facing_lanes(const glint_tile *tile, const glint_plan *plan, con
     return facing;
 }
 
+/// What stages add to the lanes that a light reaches.
+static void admit(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle, const uint16_t *lit,
+                  uint16_t *open)
+{
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        if (frame->plan->runs[id] && glint_stage_table[id]->admit)
+            glint_stage_table[id]->admit(tile, frame, light, middle, lit, open);
+}
+
 /// One ray to the middle of an area light decides for all samples of the call.
 static void occlude_middle(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
                            const glint_occlude_args *samples)
@@ -396,8 +409,7 @@ static void occlude_middle(glint_tile *tile, const glint_tile_frame *frame, cons
     for (uint32_t g = 0; g < args.group_count; g++)
         lit[g] = facing_lanes(tile, frame->plan, samples->position, g, lit[g]);
     frame->stages->geometry[frame->plan->desc.precision].occlude(&args);
-    if (glint_plan_cuts(frame->plan))
-        glint_tile_open_holes(tile, frame, light, true, lit, open);
+    admit(tile, frame, light, true, lit, open);
     for (uint32_t s = 0; s < samples->sample_count; s++)
         for (uint32_t g = 0; g < args.group_count; g++)
             samples->open[s][g] = samples->lit[s][g] & open[g];
@@ -471,8 +483,8 @@ static void occlude_light(glint_tile *tile, const glint_tile_frame *frame, uint3
         occlude_middle(tile, frame, light, args);
     else
         frame->stages->geometry[plan->desc.precision].occlude(args);
-    for (uint32_t i = 0; i < count && !light->hard && glint_plan_cuts(plan); i++)
-        glint_tile_open_holes(tile, frame, &plan->lights[first + slot[i]], false, args->lit[i], args->open[i]);
+    for (uint32_t i = 0; i < count && !light->hard; i++)
+        admit(tile, frame, &plan->lights[first + slot[i]], false, args->lit[i], args->open[i]);
     if (light->cap)
         weaken(tile, frame, light, slot[0]);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_OCCLUDE, false);

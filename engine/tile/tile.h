@@ -247,7 +247,8 @@ bool glint_tile_fit_stage(glint_tile *tile, const glint_plan *plan, glint_stage_
 void glint_tile_free_stage(glint_tile *tile, glint_stage_id id);
 void glint_tile_destroy(glint_tile *tile); ///< NULL: nothing
 
-/// All pixels of the tile that the image has are active.
+/// tile/place.c: puts the tile at a column and row of tiles. All its pixels that the image has are active.
+void glint_tile_place_at(glint_tile *tile, const glint_plan *plan, uint32_t column, uint32_t row);
 void glint_tile_activate(glint_tile *tile);
 
 /// Renders tile (column, row) into the frame's image, and adds to tile->counts.
@@ -373,9 +374,11 @@ bool glint_tile_visible_light_in_sight(glint_tile *tile, const glint_tile_frame 
 /// Of the rays in `lanes`, which are made and whose hits are known, those that see a light become misses at its distance.
 void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *lanes);
 /// Whether ray i sees one; the normal of its surface there, turned to the eye.
-bool glint_tile_sees_light(const glint_tile *tile, uint32_t i);
-void glint_tile_visible_light_normal(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                                     double normal[3]);
+static inline bool glint_tile_sees_light(const glint_tile *tile, uint32_t i)
+{
+    const uint16_t *seen = tile->own[GLINT_STAGE_VISIBLE_LIGHT]; // which begins with the lanes whose ray sees one
+    return seen && seen[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+}
 /// Fills in the active lanes that see no light.
 const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS]);
 /// Adds what lights look like to the sums, as background.
@@ -391,7 +394,10 @@ void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame)
 struct glint_differ_work *glint_differ_work_create(void);
 void glint_differ_work_destroy(struct glint_differ_work *work); ///< NULL: nothing
 /// Where the numbers of its objects and normals go, in the order of groups.
-float *glint_differ_values(struct glint_differ_work *work, int value);
+static inline float *glint_differ_values(struct glint_differ_work *work, int value)
+{
+    return (float *)work + (size_t)value * GLINT_TILE_SAMPLES;
+}
 void glint_tile_prefetch_borders(const glint_tile *tile, const glint_refine *refine);
 void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
 
@@ -446,7 +452,10 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
 /// are found.
 bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame);
 /// After that: those lanes of group `g` that are open to a light are not lit by it as by others, but by its tint.
-uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g);
+static inline uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g)
+{
+    return ((const uint16_t *)tile->own[GLINT_STAGE_TINT])[g]; // which begins with them
+}
 /// Where sample i sees a light sample. `scale`: see glint_light_args. The point is found, and for GLINT_EMIT_CONE the normal.
 void glint_tile_sample_place(const glint_tile *tile, glint_precision precision, const glint_light_sample *light_sample,
                              double scale, uint32_t i, double out[3]);
@@ -531,8 +540,6 @@ void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
                       uint32_t count);
 /// Lets a tile write view's and facet's results into the own memory of another, which has shaded its sample.
 void glint_tile_lend_facets(glint_tile *to, const glint_tile *from);
-/// Writes down what the kept arrays hold now.
-void glint_tile_sign_facets(glint_tile *tile, const glint_tile_frame *frame);
 
 /// effects/vertex_shading/vertex.c: flat and Gouraud shading.
 /// Points at.sampled to the hits whose light is worked out for themselves. Returns whether there are any.

@@ -11,15 +11,13 @@
 _Static_assert(GLINT_TILE_WIDTH <= GLINT_DIFFER_PAIRS && GLINT_TILE_HEIGHT <= GLINT_DIFFER_PAIRS, "a bit a pixel");
 
 struct glint_differ_work {
-    _Alignas(64) float group[GLINT_DIFFER_VALUES][GLINT_TILE_SAMPLES]; ///< in the order of groups
+    _Alignas(64) float group[GLINT_DIFFER_VALUES][GLINT_TILE_SAMPLES]; ///< in the order of groups; first: see glint_differ_values
     float row[GLINT_DIFFER_VALUES][GLINT_TILE_HEIGHT][GLINT_DIFFER_LENGTH];
 };
 
 struct glint_differ_work *glint_differ_work_create(void) { return glint_alloc(1, sizeof(struct glint_differ_work)); }
 
 void glint_differ_work_destroy(struct glint_differ_work *work) { free(work); }
-
-float *glint_differ_values(struct glint_differ_work *work, int value) { return work->group[value]; }
 
 // ---- Pairs --------------------------------------------------------------------------------------------------------
 

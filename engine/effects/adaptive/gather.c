@@ -26,18 +26,6 @@ struct glint_gathered *glint_gathered_create(void) { return glint_alloc(1, sizeo
 
 void glint_gathered_destroy(struct glint_gathered *gathered) { free(gathered); }
 
-bool glint_tile_may_gather(const glint_tile_frame *frame)
-{
-    const glint_plan *plan = frame->plan;
-    if (!frame->base || !plan->local || plan->runs[GLINT_STAGE_PATTERN] || plan->camera.orthographic || plan->lens ||
-        plan->desc.passes & GLINT_LIGHT_PASSES || glint_tile_wants_coverage(plan) || frame->raster)
-        return false;
-    for (uint32_t i = 0; i < plan->light_count; i++)
-        if (plan->lights[i].light_samples) // one a lane
-            return false;
-    return true;
-}
-
 /// Whether a group is samples of one pixel.
 static bool groups_samples(const glint_tile_frame *frame)
 {

@@ -17,15 +17,6 @@ static group_pixels pixels_of(const glint_tile *tile, const glint_tile_frame *fr
                             .rows = tile->height - y < 4 ? tile->height - y : 4 };
 }
 
-bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame)
-{
-    const uint32_t *chosen = frame->refine->tiles[tile->index].chosen;
-    uint32_t any = 0;
-    for (uint32_t y = 0; y < tile->height; y++)
-        any |= chosen[y];
-    return any;
-}
-
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame)
 {
     const uint32_t *chosen = frame->refine->tiles[tile->index].chosen;

@@ -73,24 +73,6 @@ static bool fit(void *memory, const glint_plan *plan)
     return bounce->slopes && glint_tile_fit_stage(&bounce->batch.tile, plan, GLINT_STAGE_DERIVATIVE);
 }
 
-bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
-{
-    const glint_bounce_material *materials = frame->plan->bouncing;
-    uint32_t last = GLINT_MISS; // most lanes show what the lane before shows
-    if (tile->at.only) {
-        const glint_bounce_material *only = &materials[frame->geometry.prims[*tile->at.only].material];
-        return only->mirrors || only->transmits;
-    }
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
-            const uint32_t material = tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)];
-            if (material != last && (materials[material].mirrors || materials[material].transmits))
-                return true;
-            last = material;
-        }
-    return false;
-}
-
 // ---- From a surface on ----
 
 /// The hits of `tile` whose materials send rays on, and whose chain is not at its end.

@@ -122,7 +122,8 @@ static bool is_above(const glint_tile *tile, const glint_plan *plan, const glint
     return vec_dot(n, l) > 0;
 }
 
-void glint_tile_cut_horizon(const glint_tile *tile, const glint_plan *plan, const glint_light_args *light)
+/// After the stage light: lanes of surfaces with a bump from whose own normal the light is behind are not lit.
+static void cut_horizon(glint_tile *tile, const glint_plan *plan, const glint_light_args *light)
 {
     for (uint32_t s = 0; s < light->sample_count; s++)
         for (uint32_t g = 0; g < tile->group_count; g++)
@@ -188,3 +189,16 @@ bool glint_tile_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t 
         n[c] = glint_real_at(tile->unbumped[c], plan->desc.precision, i);
     return vec_dot(n, direction) > 0;
 }
+
+static void turn_normals(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    (void)walk;
+    glint_tile_bump(tile, frame);
+}
+
+/// A part of surface and light.
+const glint_stage glint_stage_bump = {
+    .called = glint_plan_bumps,
+    .step[GLINT_AT_SURFACE] = turn_normals,
+    .limit = cut_horizon,
+};

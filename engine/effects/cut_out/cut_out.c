@@ -320,8 +320,10 @@ static void see_all_from_origin(struct glint_cut_out *cut, glint_tile *tile, con
     }
 }
 
-void glint_tile_see_through(glint_tile *tile, const glint_tile_frame *frame)
+/// After a cast: rays that met holes go on, and tile->at is what they meet at last.
+static void see_through(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
+    (void)walk;
     struct glint_cut_out *cut = tile->pattern->cut_out;
     if (!begin_seeing(cut, tile, frame))
         return;
@@ -423,8 +425,9 @@ static bool go_on(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_
     return any;
 }
 
-void glint_tile_open_holes(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle,
-                           const uint16_t *lit, uint16_t *open)
+/// After occlude: lit points that only holes are in the way of become open. middle: the light's, for all samples.
+static void open_holes(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle, const uint16_t *lit,
+                       uint16_t *open)
 {
     struct glint_cut_out *cut = tile->pattern->cut_out;
     if (!begin_lighting(cut, tile, frame, light, middle, lit, open))
@@ -433,3 +436,10 @@ void glint_tile_open_holes(glint_tile *tile, const glint_tile_frame *frame, cons
         if (glint_tile_cancelled(frame))
             return;
 }
+
+/// A part of cast and occlude.
+const glint_stage glint_stage_cut_out = {
+    .called = glint_plan_cuts,
+    .step[GLINT_AT_CAST] = see_through,
+    .admit = open_holes,
+};

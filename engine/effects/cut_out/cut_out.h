@@ -7,11 +7,6 @@
 struct glint_cut_out *glint_cut_out_create(void);
 void glint_cut_out_destroy(struct glint_cut_out *cut_out); ///< NULL: nothing
 
-/// After a cast: rays that met holes go on, and tile->at is what they meet at last.
-void glint_tile_see_through(glint_tile *tile, const glint_tile_frame *frame);
-/// After occlude: lit points that only holes are in the way of become open. middle: the light's, for all samples.
-void glint_tile_open_holes(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle,
-                           const uint16_t *lit, uint16_t *open);
 /// Of points on surfaces those that are holes, a bit a lane.
 void glint_tile_find_holes(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
                            uint16_t *holes);

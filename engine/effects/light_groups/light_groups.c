@@ -276,9 +276,18 @@ void glint_groups_take_base(const glint_tile *tile, const glint_tile_frame *fram
             glint_tile_take_plane(tile, frame, frame->base->light[g][c], tile->group_sums->mean[g][c]);
 }
 
-void glint_groups_store(const glint_tile *tile, const glint_tile_frame *frame)
+static void store(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
+    (void)walk;
     for (size_t g = 0; g < frame->image->light_count; g++)
         for (int c = 0; c < 3; c++)
             glint_tile_store_plane(tile, tile->group_sums->mean[g][c], frame->image->light[g][c], frame->image->width);
 }
+
+static bool called(const glint_plan *plan) { return plan->light_groups; }
+
+/// A part of all stages that add light.
+const glint_stage glint_stage_light_groups = {
+    .called = called,
+    .step[GLINT_AT_STORE_LIGHT] = store,
+};

@@ -38,6 +38,5 @@ void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, 
 /// Makes the means of all samples; takes those of the pixels that are not refined from the base; stores them.
 void glint_groups_resolve(const glint_tile *tile, const glint_tile_frame *frame);
 void glint_groups_take_base(const glint_tile *tile, const glint_tile_frame *frame);
-void glint_groups_store(const glint_tile *tile, const glint_tile_frame *frame);
 
 #endif

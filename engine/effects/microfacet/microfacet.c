@@ -43,8 +43,9 @@ void glint_tile_lend_facets(glint_tile *to, const glint_tile *from)
     }
 }
 
-void glint_tile_sign_facets(glint_tile *tile, const glint_tile_frame *frame)
+static void sign(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
+    (void)walk;
     const glint_plan *plan = frame->plan;
     const glint_reuse *reuse = frame->reuse;
     glint_cached_tile *cached = tile->cached;
@@ -150,5 +151,5 @@ const glint_stage glint_stage_facet = {
     .called = called,
     .per_light = true,
     .remote = true,
-    .step[GLINT_AT_LIGHT] = find_facets,
+    .step = { [GLINT_AT_LIGHT] = find_facets, [GLINT_AT_SIGN] = sign },
 };

@@ -273,8 +273,25 @@ void glint_tile_keep_pattern(glint_tile *tile, const glint_tile_frame *frame, ui
     glint_tile_pattern(tile, frame);
 }
 
-void glint_tile_sign_values(glint_tile *tile, const glint_tile_frame *frame)
+static void sign(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
+    (void)walk;
+    if (frame->reuse->keep_pattern && tile->cached->planes)
+        tile->cached->pattern = frame->plan->keys[GLINT_STAGE_PATTERN];
     if (tile->kept > 0 && tile->kept == tile->painted)
         tile->cached->split = frame->reuse->splits.key;
 }
+
+static bool gives_numbers(const glint_plan *plan)
+{
+    return plan->geometry->table.prim_count > 0 && plan->patterns && (plan->patterns->any || plan->patterns->bumps);
+}
+
+const glint_stage glint_stage_pattern = {
+    .name = "pattern",
+    .doc = "programs of materials at each point that shows them",
+    .called = gives_numbers,
+    .reads = GLINT_READS(PATTERNS),
+    .step[GLINT_AT_SIGN] = sign,
+    .aside = true, // stages that read what it gives read the materials, with their programs
+};

@@ -453,12 +453,6 @@ bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, 
     return known;
 }
 
-void glint_tile_sign_pattern(glint_tile *tile, const glint_tile_frame *frame)
-{
-    if (frame->reuse->keep_pattern && tile->cached->planes)
-        tile->cached->pattern = frame->plan->keys[GLINT_STAGE_PATTERN];
-}
-
 void glint_tile_pattern(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_pattern_points points = glint_pattern_points_of(tile);

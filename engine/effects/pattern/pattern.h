@@ -53,10 +53,6 @@ bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, 
 bool glint_tile_recall_pattern(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 /// As glint_tile_pattern, and keeps what later frames can recall.
 void glint_tile_keep_pattern(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
-/// Writes down what is kept so.
-void glint_tile_sign_values(glint_tile *tile, const glint_tile_frame *frame);
-/// Writes down what the kept planes hold now.
-void glint_tile_sign_pattern(glint_tile *tile, const glint_tile_frame *frame);
 
 /// Runs the programs of what glint_tile_find_painted has listed, into the tile's planes, and counts the stage. The points are
 /// found, and where programs read them, the normals.
@@ -69,8 +65,6 @@ bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *fr
 
 /// Turns the normals of surfaces with a bump, which have been found; what they were is kept in tile->unbumped.
 void glint_tile_bump(glint_tile *tile, const glint_tile_frame *frame);
-/// After the stage light: lanes of surfaces with a bump from whose own normal the light is behind are not lit.
-void glint_tile_cut_horizon(const glint_tile *tile, const glint_plan *plan, const glint_light_args *light);
 
 /// Where the plane of a field's channel begins among the tile's; -1: no material has it.
 static inline ptrdiff_t glint_plane_start(const glint_plan_patterns *patterns, int field, int channel)

@@ -415,19 +415,6 @@ bool glint_plan_program(const glint_plan *plan, size_t index, glint_program_use 
     return true;
 }
 
-static bool gives_numbers(const glint_plan *plan)
-{
-    return plan->geometry->table.prim_count > 0 && plan->patterns && (plan->patterns->any || plan->patterns->bumps);
-}
-
-const glint_stage glint_stage_pattern = {
-    .name = "pattern",
-    .doc = "programs of materials at each point that shows them",
-    .called = gives_numbers,
-    .reads = GLINT_READS(PATTERNS),
-    .aside = true, // stages that read what it gives read the materials, with their programs
-};
-
 static bool shades(const glint_plan *plan) { return glint_plan_is_lit(plan) && plan->patterns && plan->patterns->shaders; }
 
 const glint_stage glint_stage_shader = {

@@ -18,6 +18,7 @@
 #define CROSSINGS_MAX 4096 ///< surfaces that one ray crosses; a point behind more is dark
 
 struct glint_transparent_shadow {
+    uint16_t dim[GLINT_TILE_GROUPS]; ///< points inside what absorbs; first: see glint_tile_dim_lanes
     // rays that are on their way, packed into the first places
     _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
@@ -43,7 +44,6 @@ struct glint_transparent_shadow {
     _Alignas(64) float attenuation[3][GLINT_TILE_SAMPLES]; ///< the light's, times the colour, for each channel
     uint16_t reached[GLINT_TILE_GROUPS];
     uint16_t tinted[GLINT_TILE_GROUPS]; ///< points whose rays to the light are followed
-    uint16_t dim[GLINT_TILE_GROUPS]; ///< points inside what absorbs
     float *planes; ///< of what programs give; NULL: the plan has none for transmission
 };
 
@@ -94,8 +94,6 @@ bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame)
     }
     return any;
 }
-
-uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g) { return own_of(tile)->dim[g]; }
 
 /// Whether the light in `slot` is kept from any point, or dimmed on its way to one.
 static bool is_kept_off(const glint_tile *tile, const glint_plan *plan, uint32_t slot)

@@ -13,9 +13,9 @@
 static const double plane_slack[] = { [GLINT_DOUBLE] = 0x1p-46, [GLINT_FLOAT] = 0x1p-18 };
 
 struct glint_visible_light {
+    uint16_t seen[GLINT_TILE_GROUPS]; ///< lanes whose ray sees a light; first: see glint_tile_sees_light
     uint32_t *near; ///< the lights that the rays at hand may see
     uint32_t near_count;
-    uint16_t seen[GLINT_TILE_GROUPS]; ///< lanes whose ray sees a light
     uint32_t which[GLINT_TILE_SAMPLES]; ///< that light
 };
 
@@ -236,13 +236,7 @@ void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, cons
 
 // ---- What they look like ----
 
-bool glint_tile_sees_light(const glint_tile *tile, uint32_t i)
-{
-    return own_of(tile) && own_of(tile)->seen[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
-}
-
-void glint_tile_visible_light_normal(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                                     double normal[3])
+static void normal_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double normal[3])
 {
     const glint_precision precision = frame->plan->desc.precision;
     const glint_plan_visible_light *light = &frame->plan->visible_lights[own_of(tile)->which[i]];
@@ -316,6 +310,7 @@ const glint_stage glint_stage_visible_light = {
     .sums = true,
     .remote = true,
     .step[GLINT_AT_HITS] = look,
+    .normal = normal_of,
     .create = create,
     .destroy = destroy,
     .fit = fit,
