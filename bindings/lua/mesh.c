@@ -438,6 +438,8 @@ static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_
     a->desc.reads = note_read;
     a->desc.warns = note_warning;
     a->desc.context = run;
+    path = glintL_push_file(L, path);
+    lua_replace(L, OTHER);
     return glint_mesh_load(path, &a->desc, shape, error);
 }
 

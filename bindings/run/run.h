@@ -407,6 +407,10 @@ void glintL_places_forget(glintL_run *run);
 
 // ---- source.c ----
 
+/// Pushes and returns the name of a file that a script reads: as it is where that is there, else beside the script (the folder
+/// of arg[0]), where it is there.
+const char *glintL_push_file(lua_State *L, const char *name);
+
 /// Hashes the text of the script and of the modules it has required so far into run->source, once a run.
 void glintL_find_source(lua_State *L, glintL_run *run);
 

@@ -97,3 +97,22 @@ void glintL_find_source(lua_State *L, glintL_run *run)
     lua_settop(L, top);
     snprintf(run->source, sizeof run->source, "%016" PRIx64 "%016" PRIx64, (uint64_t)sum.high64, (uint64_t)sum.low64);
 }
+
+const char *glintL_push_file(lua_State *L, const char *name)
+{
+    luaL_checkstack(L, 4, "file");
+    lua_pushstring(L, name);
+    const int found = lua_gettop(L);
+    if (*name == '/' || access(name, F_OK) == 0)
+        return lua_tostring(L, found);
+    if (lua_getglobal(L, "arg") == LUA_TTABLE && lua_rawgeti(L, -1, 0) == LUA_TSTRING) {
+        const char *script = lua_tostring(L, -1), *slash = strrchr(script, '/');
+        lua_pushlstring(L, script, slash ? (size_t)(slash - script) + 1 : 0);
+        lua_pushvalue(L, found);
+        lua_concat(L, 2);
+        if (access(lua_tostring(L, -1), F_OK) == 0)
+            lua_replace(L, found);
+    }
+    lua_settop(L, found);
+    return lua_tostring(L, found);
+}

@@ -44,7 +44,25 @@ glintL_run *glintL_get_run(lua_State *L)
     return box ? *box : NULL;
 }
 
-// Appends to the message on top the lines of Lua that led to where it says it arose.
+// Whether a chunk is a module of glint's own, which lies in a folder glint: its lines tell users nothing.
+static bool is_own_module(lua_State *L, const char *source)
+{
+    static const char folder[] = "glint/";
+    const size_t before = sizeof folder - 1;
+    const char *slash = strrchr(source, '/'), *dot = slash ? strrchr(slash, '.') : NULL;
+    if (!dot || (size_t)(slash - source) < before || strncmp(slash + 1 - before, folder, before) != 0)
+        return false;
+    luaL_checkstack(L, 3, "message");
+    lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
+    lua_pushliteral(L, "glint.");
+    lua_pushlstring(L, slash + 1, (size_t)(dot - slash - 1));
+    lua_concat(L, 2);
+    const bool is_loaded = lua_rawget(L, -2) != LUA_TNIL;
+    lua_pop(L, 2);
+    return is_loaded;
+}
+
+// Appends to the message on top the lines of the script that led to where it says it arose.
 static int add_callers(lua_State *L)
 {
     lua_Debug where;
@@ -52,7 +70,7 @@ static int add_callers(lua_State *L)
     luaL_checkstack(L, 4, "message");
     for (int level = 0; shown < CALLERS_MAX && level < LEVELS_MAX && lua_getstack(L, level, &where); level++) {
         lua_getinfo(L, "Sl", &where);
-        if (where.currentline <= 0)
+        if (where.currentline <= 0 || is_own_module(L, where.source))
             continue;
         const char *line = lua_pushfstring(L, "%s:%d", where.short_src, where.currentline);
         const char *said = strstr(lua_tostring(L, -2), line);

@@ -359,7 +359,7 @@ glint_status glint_mesh_read_ply(glint_mesh_reader *r)
         return glint_fail_nomem(r->error);
     body b = { .reader = r, .head = h };
     glint_status status = glint_ply_read_head(r, h);
-    r->text.longest = SIZE_MAX / 4; // a strip is one line
+    r->text.longest = (size_t)1 << 26; // strips are one line
     if (!status)
         status = read_elements(&b);
     r->colors_of_faces = h->colored && strcmp(h->colored->name, "face") == 0;

@@ -120,4 +120,20 @@ printf '%s\n' 'local frame = require "glint.xyz".frame "-"' 'local label, x = fr
     'return dofile "scene.lua"' >try.lua
 limited timeout $seconds "$glint" try.lua --size 8x8 -o none -q <atom.xyz >out 2>err
 result $? "atoms from standard input"
+mkdir beside
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >beside/mesh.obj
+printf '2\n\nC 0 0 0\nC 0 x 0\n' >beside/bad.xyz
+cp good.png beside/photo.png
+printf '%s\n' 'local glint = require "glint"' 'local mesh = glint.mesh { file = "mesh.obj" }' 'assert(mesh.count == 1)' \
+    'glint.texture { file = "photo.png" }' 'return dofile "scene.lua"' >beside/own.lua
+limited timeout $seconds "$glint" beside/own.lua --size 8x8 -o none -q >out 2>err
+result $? "a mesh and a picture beside the script"
+printf '%s\n' 'local function load(path) require "glint.particles".new():add_frame(require "glint.xyz".frame(path)) end' \
+    'load "bad.xyz"' >beside/bad.lua
+limited timeout $seconds "$glint" beside/bad.lua -o none -q >out 2>err
+head -n 1 err | grep -q '^glint: error: beside/bad.xyz:4: y (a finite number) expected, got "x"$'
+result $? "a reader's error has the file and the line"
+test "$(sed -n '2,$p' err)" = "  called from beside/bad.lua:1
+  called from beside/bad.lua:2"
+result $? "and the script's own lines"
 totals

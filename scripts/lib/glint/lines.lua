@@ -38,16 +38,32 @@ local function shown(text)
   return #text > LONGEST and ("%q..."):format(text:sub(1, LONGEST)) or ("%q"):format(text)
 end
 
+-- Raises where a path is a device, a pipe or a folder, which may have no end.
+local function check_kind(path)
+  local kind = path ~= "-" and glint._other_kind(path)
+  if kind then error(("%s: a file expected, got a %s"):format(path, kind), 0) end
+end
+
+-- Opens a file; one that is not there is looked for beside the script. Gives the path as well.
+local function open_file(path)
+  local file, message = io.open(path, "rb")
+  local folder = type(arg) == "table" and type(arg[0]) == "string" and arg[0]:match "^.*/"
+  if file or path:find "^/" or not folder then return file, file and path or message end
+  check_kind(folder .. path)
+  local other = io.open(folder .. path, "rb")
+  return other, other and folder .. path or message
+end
+
 --- Opens a file, or standard input where the path is "-". Raises when it cannot be read, at once where it is a
 --- device, a pipe or a folder.
 ---@param path string
 function lines.open(path)
   local foreign = ENDINGS[(path:match "%.(%w+)$" or ""):lower()]
-  local kind = path ~= "-" and glint._other_kind(path)
-  if kind then error(("%s: a file expected, got a %s"):format(path, kind), 0) end
-  local file, message
-  if path == "-" then file = io.stdin else file, message = io.open(path, "rb") end
-  if not file then error(message, 0) end
+  check_kind(path)
+  local file, found = io.stdin, path
+  if path ~= "-" then file, found = open_file(path) end
+  if not file then error(found, 0) end
+  path = found
   if foreign then refuse_foreign(path, foreign) end
   return setmetatable({ path = path, number = 0, file = file, block = "", at = 1, base = 0, line_at = 0 }, source)
 end
