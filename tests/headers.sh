@@ -1,22 +1,31 @@
 #!/bin/bash
-# headers.sh FLAGS...: each header compiles alone. A stage's header is written in the vector vocabulary and is included
-# by the isa_*.c files only; simd/avx2.h and simd/avx512.h need their instruction sets. Then: which machines are refused.
+# headers.sh FLAGS...: each header compiles alone, those of kernels for double and for float. simd/avx2.h and simd/avx512.h need their
+# instruction sets. Then: which machines are refused.
 set -u
 bad=0
-for header in engine/*.h engine/*/*.h engine/stages/*/*.h engine/effects/*/*.h bindings/*/*.h; do
-    flags=()
-    case $header in
-    *simd/avx2.h) flags=(-mavx2 -mfma) ;;
-    *simd/avx512.h) flags=(-mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma) ;;
-    */simd/generic.h | engine/stages/stages.h | engine/stages/contract/*.h | */coefficients.h) ;;
-    engine/stages/*/*.h) continue ;;
-    esac
-    # Twice: the guard holds.
+
+# alone HEADER FLAG...: twice, so that the guard holds.
+alone() {
+    local header=$1
+    shift
     if ! printf '#include "%s"\n#include "%s"\nextern int not_empty;\n' "$header" "$header" |
-        ${CC:-cc} "$@" "${flags[@]}" -Wno-unused-function -Wno-unused-const-variable -Werror -fsyntax-only -x c -; then
+        ${CC:-cc} "$@" -Wno-unused-function -Wno-unused-const-variable -Werror -fsyntax-only -x c -; then
         echo "$header does not compile alone"
         bad=1
     fi
+}
+
+for header in engine/*.h engine/*/*.h engine/stages/*/*.h engine/effects/*/*.h bindings/*/*.h; do
+    case $header in
+    */simd/avx2.h) alone "$header" "$@" -mavx2 -mfma ;;
+    */simd/avx512.h) alone "$header" "$@" -mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma ;;
+    */simd/neon.h | engine/stages/ref/*.h) ;; # parts of generic.h on ARM, and of ref.c, which includes them once for double and once for float
+    engine/stages/contract/*.h) alone "$header" "$@" ;;
+    engine/stages/*/*.h)
+        alone "$header" "$@" -DGLINT_ISA=generic -DGLINT_REAL=64
+        alone "$header" "$@" -DGLINT_ISA=generic -DGLINT_REAL=32 ;;
+    *) alone "$header" "$@" ;;
+    esac
 done
 
 # refused SENTENCE FLAG...    A machine that the engine does not work on is refused with a sentence.

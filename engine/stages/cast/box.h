@@ -2,6 +2,12 @@
 // outside, if it has not gone out through another by then. Which face that is takes products alone, so that one division finds
 // the place, by the same numbers as all six would. What is within rounding of an edge is left to solid.h. Contract: stages.h,
 // cast.
+#ifndef GLINT_CAST_BOX_H
+#define GLINT_CAST_BOX_H
+
+#include "engine/stages/cast/face.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/simd/real.h"
 
 #define BOX_SLACK 0x1p-40 ///< a share of what heights are made of; the rounding of places on rays is far below it
 
@@ -109,3 +115,5 @@ INNER void R(into_eye_box)(const R(eye_slabs) * eye, const vr rise[3], vr *t, vr
     *hit = rm_and(rm_andnot(r_lt(out, less), two), rm_and(r_lt(r_set(0x1p-100), least), r_lt(least, r_set(0x1p100))));
     *missed = r_lt(more, out);
 }
+
+#endif

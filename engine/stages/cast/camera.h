@@ -1,4 +1,8 @@
 // camera: the rays of one sample of each pixel of a tile. Contract: stages.h.
+#ifndef GLINT_CAST_CAMERA_H
+#define GLINT_CAST_CAMERA_H
+
+#include "engine/stages/simd/real.h"
 
 /// 2 (first + step) - size for the lanes of a group, in double, rounded to real. `mirrored`: size - 2 (...).
 static inline void R(pixel_axis)(double first, const double step[GLINT_GROUP], double offset, double size,
@@ -174,3 +178,5 @@ INNER void R(load_direction)(R(group_directions) from, const void *const directi
             out[k] = r_load((const real *)direction[k] + at + i);
     }
 }
+
+#endif

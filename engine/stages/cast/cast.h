@@ -1,5 +1,18 @@
 // cast: the nearest hit of each ray from the eye. The tile walks the index once, nearest boxes first, and tests what it
 // finds group by group. Contract: stages.h.
+#ifndef GLINT_CAST_CAST_H
+#define GLINT_CAST_CAST_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/leaf.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/slot.h"
+#include "engine/stages/index/candidate.h"
+#include "engine/stages/index/cover.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/view.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 /// The only candidate of a group: what it does not hit, nothing does. `sphere` is a constant.
 INNER void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candidate, const bool sphere, int x, int y,
@@ -326,38 +339,4 @@ static void R(cast_many)(const glint_cast_args *args)
         R(finish_group)(args, g);
 }
 
-/// Of pixels wherever they are: pixels.h.
-static void R(cast_pixels)(const glint_cast_args *args);
-
-static void R(cast_bundle)(const glint_cast_args *args)
-{
-    glint_cast_view own;
-    if (args->camera->pixel[0]) {
-        R(cast_pixels)(args);
-        return;
-    }
-    own.made = false;
-    const R(cast_view) *view = R(view_of)(args, &own);
-    if (view->few)
-        R(cast_few)(args, view);
-    else
-        R(cast_many)(args);
-}
-
-static bool R(in_sight)(const glint_cast_args *args)
-{
-    const glint_geometry_table *geometry = args->geometry;
-    glint_cast_view own;
-    own.made = false;
-    const R(cast_view) *few = R(view_of)(args, &own);
-    const R(candidate) * list[GLINT_FIRST_CANDIDATES];
-    screen_view view;
-    node_on_screen seen;
-    if (few->few)
-        return R(candidates_in)(few, args->camera, list, 1) > 0;
-    R(aim_screen)(args->camera, geometry, &view);
-    for (uint32_t i = 0; i < geometry->unbounded_count; i++)
-        if (R(plane_ahead)(args->camera, &view, &geometry->prims[geometry->unbounded[i]]))
-            return true;
-    return geometry->nodes && boxes_on_screen(geometry->nodes, &view, &seen);
-}
+#endif

@@ -2,6 +2,18 @@
 // inside of it; where a stretch ends, and there alone, the whole may begin or end: it does where the program says so of what holds
 // before and of what holds after, of all parts at that one t. Parts whose faces are in one plane have bit-equal ends there, so that
 // they change at once. Contract: stages.h, cast.
+#ifndef GLINT_CAST_COMBINED_H
+#define GLINT_CAST_COMBINED_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/hull.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/simple.h"
+#include "engine/stages/cast/solid.h"
+#include "engine/stages/cast/torus.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 /// Where rays are inside each part, from t[0] to t[1]; t[0] = inf: nowhere.
 typedef struct R(stretches) {
@@ -517,3 +529,5 @@ static __attribute__((noinline)) bool R(cast_combined_pixels)(const glint_cast_a
         return R(cast_simple_pixels)(args, whole, R(PARTS_TWO), parts, x, y, at, near);
     return R(cast_simple_pixels)(args, whole, R(PARTS_ANY), parts, x, y, at, near);
 }
+
+#endif

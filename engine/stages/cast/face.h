@@ -1,5 +1,9 @@
 // face: the planes of flat surfaces. What was described in one plane has one face's numbers, so that all of it is met at the
 // same t and the first defined wins; and what starts on a face is at height 0. Contract: stages.h.
+#ifndef GLINT_CAST_FACE_H
+#define GLINT_CAST_FACE_H
+
+#include "engine/stages/simd/real.h"
 
 /// 0 in place of what rounding may have made of 0.
 static inline vr R(unless_within)(vr x, vr bound) { return r_select(r_le(r_max(x, -x), bound), r_set(0), x); }
@@ -52,3 +56,5 @@ static inline vr R(face_way)(const glint_face *face, const vr o[3], const vr d[3
 {
     return -R(face_height)(face, o) / R(face_rise)(face, d);
 }
+
+#endif

@@ -1,6 +1,13 @@
 // groups: of the groups of a tile, those that something may show in, by its cells and how deep it is; and of their lanes, those that
 // come near it. All groups are tested before the first is decided, and nothing branches on what a test gives: such branches are
 // mispredicted, which costs more than the tests. Contract: stages.h, cast.
+#ifndef GLINT_CAST_GROUPS_H
+#define GLINT_CAST_GROUPS_H
+
+#include "engine/stages/index/candidate.h"
+#include "engine/stages/index/cover.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/simd/real.h"
 
 /// One of these groups. Where pixels lie anywhere, all are in one column.
 typedef struct R(tile_group) {
@@ -60,3 +67,5 @@ INNER void R(note_group)(R(tile_cast) * tile, const bool gathered, R(near_group)
     else
         R(note_depth)(tile, group.x, group.y);
 }
+
+#endif

@@ -2,6 +2,15 @@
 // out through the triangles more often than in. Each ray goes through one of those that share an edge or corner, or through
 // none, so that this holds whatever it passes: it is taken for one beside, on the side to which the two axes across the
 // direction's largest component point, the second of them before the first. Contract: stages.h, cast.
+#ifndef GLINT_CAST_HULL_H
+#define GLINT_CAST_HULL_H
+
+#include "engine/stages/cast/face.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/shared_edge.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 #define HULL_KEPT 16 ///< places of a ray that are held at a time
 
@@ -270,3 +279,5 @@ static unsigned R(hull_stretches)(R(hull_rays) * rays, unsigned lanes, unsigned 
     *known = r_min(*known, r_load(told));
     return (1u << most) - 1;
 }
+
+#endif

@@ -1,5 +1,20 @@
 // cast_leaf: the triangles of a node against the groups of a tile. Float says which rays may pass between which edges; these
 // pairs of triangle and ray are decided a vector at a time, each lane with a triangle of its own. Contract: stages.h, cast.
+#ifndef GLINT_CAST_LEAF_H
+#define GLINT_CAST_LEAF_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/face.h"
+#include "engine/stages/cast/groups.h"
+#include "engine/stages/cast/shared_edge.h"
+#include "engine/stages/cast/solid.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/candidate.h"
+#include "engine/stages/index/cover.h"
+#include "engine/stages/index/leaf.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 #define GLINT_PAIRS (4 * GLINT_GROUP)
 
@@ -374,3 +389,5 @@ static void R(cast_lens_triangles)(R(tile_cast) * tile, R(cast_leaf) * leaf, con
         R(cast_lens_triangle)(tile, leaf, &shown, seen, order[i]);
     R(decide_own_pairs)(tile, leaf);
 }
+
+#endif

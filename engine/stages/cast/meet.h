@@ -1,4 +1,11 @@
 // meet: a ray and a surface. A float test over a group rejects; the decision is real. Contract: stages.h, cast.
+#ifndef GLINT_CAST_MEET_H
+#define GLINT_CAST_MEET_H
+
+#include "engine/stages/cast/face.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 /// |f|^2 - (r2 + r2_low) without cancellation.
 INNER vd d_exact_power(const vd f[3], vd r2, vd r2_low)
@@ -291,3 +298,5 @@ static inline float R(walk_slack)(const glint_geometry_table *geometry)
     return (float)(GLINT_FILTER_SLACK * geometry->extent * geometry->scale);
 #endif
 }
+
+#endif

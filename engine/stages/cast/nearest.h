@@ -1,6 +1,12 @@
 // nearest: rays of their own origins against spheres. Float finds for each ray the sphere that it may enter first, and how far it
 // goes before it may enter another; double decides the first, a lane each, for as many rays as a vector has. Only a ray that
 // misses it, or meets it beyond where another begins, is decided against all. Contract: stages.h, cast.
+#ifndef GLINT_CAST_NEAREST_H
+#define GLINT_CAST_NEAREST_H
+
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 #define GLINT_FEW 32 ///< primitives of a scene that are tested without its index
 #define GLINT_RAY_PAIRS 64
@@ -389,3 +395,5 @@ static inline void R(pair_first)(const glint_cast_args *args, size_t at, unsigne
         R(add_pair)(args, pairs, ray, first->prim[0][lane], two ? next : smaller(second, next));
     }
 }
+
+#endif

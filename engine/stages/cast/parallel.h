@@ -1,5 +1,15 @@
 // cast_parallel: the nearest hit of the rays of a tile of an orthographic camera, or of one with a lens, which walk the index
 // together as those of one eye do (cast.h). Contract: stages.h.
+#ifndef GLINT_CAST_PARALLEL_H
+#define GLINT_CAST_PARALLEL_H
+
+#include "engine/stages/cast/cast.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/rays.h"
+#include "engine/stages/index/candidate.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 /// The tile's rays: the screen lies across them, and its places are theirs wherever they are.
 static void R(aim_parallel_screen)(const glint_camera_args *camera, const glint_geometry_table *geometry,
@@ -90,3 +100,5 @@ static void R(cast_parallel)(const glint_cast_args *args)
     for (uint32_t g = 0; g < args->group_count; g++)
         R(finish_group)(args, g);
 }
+
+#endif

@@ -1,6 +1,17 @@
 // pixels: what rays of a camera meet whose pixels are given one by one, as adaptive sampling gathers them. Where primitives are few,
 // each is tested against every ray; else the rays walk the index together as those of a tile do, over a screen of smaller cells, each
 // of which knows the groups that have a ray in it. Contract: stages.h.
+#ifndef GLINT_CAST_PIXELS_H
+#define GLINT_CAST_PIXELS_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/cast.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/index/candidate.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/view.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 /// Decides a sphere for all lanes of a group of pixels wherever they are.
 INNER void R(decide_ball)(const glint_cast_args *args, const R(candidate) * ball, uint32_t g)
@@ -162,3 +173,5 @@ static void R(cast_pixels)(const glint_cast_args *args)
     else
         R(cast_many_to_pixels)(args, &around);
 }
+
+#endif

@@ -1,5 +1,14 @@
 // scan: the nearest triangle of each ray of a tile, from a list of those that its pixels may show: three edges, linear over
 // the picture, reject; the decision is that of cast. Contract: stages.h.
+#ifndef GLINT_CAST_RASTER_H
+#define GLINT_CAST_RASTER_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/shared_edge.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 static const _Alignas(64) float raster_s[GLINT_GROUP] = { 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6 };
 static const _Alignas(64) float raster_t[GLINT_GROUP] = { 0, 0, 0, 0, -2, -2, -2, -2, -4, -4, -4, -4, -6, -6, -6, -6 };
@@ -194,3 +203,5 @@ static void R(raster)(const glint_raster_args *args)
     for (uint32_t g = 0; g < cast->group_count; g++)
         R(finish_group)(cast, g);
 }
+
+#endif

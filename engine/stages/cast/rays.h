@@ -1,6 +1,19 @@
 // cast_rays: the nearest hit of rays that start anywhere. In small scenes groups meet all primitives, else the rays of a group walk
 // the index together while they go the same way (together.h), and each on its own from there; those of a tile of an orthographic
 // camera, or of one with a lens, walk it as one (parallel.h). Contract: stages.h.
+#ifndef GLINT_CAST_RAYS_H
+#define GLINT_CAST_RAYS_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/combined.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/nearest.h"
+#include "engine/stages/cast/shared_edge.h"
+#include "engine/stages/cast/solid.h"
+#include "engine/stages/cast/torus.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 /// Where rays that go in through a sphere or solid come out of it: surely somewhere, for it is convex; of a form without an
 /// inside, perhaps by the other side.
@@ -170,9 +183,6 @@ static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_gro
     }
 }
 
-static void R(walk_rays)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays, const R(lone_rays) * lone,
-                         unsigned lanes, R(ray_pairs) * pairs);
-static void R(cast_parallel)(const glint_cast_args *args);
 
 #define LENS_BEAM 8 ///< radius over focus, above which the rays of a tile have little in common
 
@@ -273,48 +283,4 @@ static void R(cast_few_rays)(const glint_cast_args *args)
     }
 }
 
-/// Of a scene with many.
-static void R(cast_many_rays)(const glint_cast_args *args)
-{
-    _Alignas(64) float local[3][GLINT_GROUP];
-    R(ray_group) rays;
-    R(lone_rays) lone;
-    R(ray_pairs) pairs = { .count = 0 };
-    for (uint32_t g = 0; g < args->group_count; g++) {
-        if (!R(begin_rays)(args, g, local, &rays))
-            continue;
-        R(load_lone_rays)(&rays, &lone);
-        const unsigned usual = GLINT_REAL == 64 ? lone.usual : 0;
-        if (args->active[g] & usual)
-            R(walk_rays)(args, g, &rays, &lone, args->active[g] & usual, &pairs);
-        for (unsigned lanes = args->active[g] & ~usual; lanes; lanes &= lanes - 1)
-            R(walk_ray)(args, g, &rays, __builtin_ctz(lanes));
-    }
-    R(decide_ray_pairs)(args, &pairs);
-    for (uint32_t g = 0; g < args->group_count; g++) {
-        if (pairs.undecided[g])
-            R(make_ray_group)(args, g, local, &rays);
-        for (unsigned lanes = pairs.undecided[g]; lanes; lanes &= lanes - 1)
-            R(walk_ray)(args, g, &rays, __builtin_ctz(lanes));
-        R(finish_group)(args, g);
-    }
-}
-
-static void R(cast_rays)(const glint_cast_args *args)
-{
-    const glint_geometry_table *geometry = args->geometry;
-    _Alignas(64) float local[3][GLINT_GROUP];
-    R(ray_group) rays;
-    if (geometry->nodes && R(is_beam)(args->camera)) {
-        R(cast_parallel)(args);
-    } else if (geometry->nodes && geometry->prim_count > GLINT_FEW) {
-        R(cast_many_rays)(args);
-    } else if (geometry->nodes) {
-        R(cast_few_rays)(args);
-    } else {
-        for (uint32_t g = 0; g < args->group_count; g++) {
-            R(begin_rays)(args, g, local, &rays);
-            R(finish_group)(args, g);
-        }
-    }
-}
+#endif

@@ -2,6 +2,19 @@
 // that they come upon are decided in double, a vector of pairs of ray and triangle at a time, each lane with its own of both. Lanes
 // that may come under the rules of shared edges are left to decide_rays. So are solids, for all rays at once that come upon one in the
 // same round. Where there are spheres alone, nothing is decided on the way, and rays walk one after the other. Contract: stages.h, cast.
+#ifndef GLINT_CAST_ROUNDS_H
+#define GLINT_CAST_ROUNDS_H
+
+#include "engine/stages/cast/face.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/nearest.h"
+#include "engine/stages/cast/rays.h"
+#include "engine/stages/cast/shared_edge.h"
+#include "engine/stages/cast/solid.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 #define GLINT_ROUND_PAIRS 96 ///< of a round, a multiple of any VR
 #define GLINT_ROUND_SOLIDS 64 ///< of a round
@@ -342,3 +355,5 @@ static void R(walk_lone_ray)(const glint_cast_args *args, int lane, R(rounds) * 
         }
     }
 }
+
+#endif

@@ -1,5 +1,5 @@
 // What the eye sees of triangles, by scan conversion.
-#include "engine/stages/simd/isa.h"
+#include "engine/stages/cast/raster.h"
 
 #if GLINT_WITH_RASTER
 KERNEL(raster, glint_raster_args)

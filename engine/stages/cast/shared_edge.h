@@ -1,5 +1,10 @@
 // beside: rays that leave a triangle by an edge or corner, and the triangles that they share it with. Rounding puts the
 // ray's beginning to either side of those; what they have to do with the ray is decided by how the two lie. Contract: stages.h.
+#ifndef GLINT_CAST_SHARED_EDGE_H
+#define GLINT_CAST_SHARED_EDGE_H
+
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/simd/real.h"
 
 /// A triangle's plane, in the table's units, and what rounding may make of heights over it.
 typedef struct R(flat) {
@@ -225,3 +230,5 @@ static inline rm R(meet_shared_edge)(const glint_cast_args *args, size_t at, uns
     *t = r_select(rm_from_bits(begins), r_set(GLINT_LEAST_WAY), *t);
     return rm_or(rm_andnot(hit, rm_from_bits(anew)), rm_from_bits(through));
 }
+
+#endif

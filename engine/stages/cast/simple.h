@@ -3,6 +3,15 @@
 // neither a root nor a division, and most hits need no other end. What is within rounding of a face is left to combined.h; ends are
 // made as there, to the last bit.
 // Contract: stages.h, cast.
+#ifndef GLINT_CAST_SIMPLE_H
+#define GLINT_CAST_SIMPLE_H
+
+#include "engine/stages/cast/box.h"
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/face.h"
+#include "engine/stages/cast/solid.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/simd/real.h"
 
 #define SIMPLE_SLACK BOX_SLACK ///< of what squares are made of, too
 #define SIMPLE_CHORD 0x1p-30 ///< half the chord through a curved side, over the way to its middle: above it the two ends are in order
@@ -512,3 +521,5 @@ static unsigned R(meet_from_part)(const glint_geometry_table *table, const glint
         R(meet_other_parts)(table, whole, on, o, d, hits);
     return rm_bits(rm_or(hits->missed, hits->hit)) & (cutter ? into : ~into);
 }
+
+#endif

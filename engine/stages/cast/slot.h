@@ -1,4 +1,16 @@
 // slot: a primitive in a slot of a node, no triangle, against the groups of a tile that it may show in. Contract: stages.h, cast.
+#ifndef GLINT_CAST_SLOT_H
+#define GLINT_CAST_SLOT_H
+
+#include "engine/stages/cast/groups.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/rays.h"
+#include "engine/stages/cast/simple.h"
+#include "engine/stages/index/candidate.h"
+#include "engine/stages/index/eye_box.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 /// Finds the groups that come near it. Returns how many. Constants: rods, it may be longer than wide; boxed, a solid before rays from
 /// one eye, with the box that it is in.
@@ -168,3 +180,5 @@ INNER void R(cast_slot)(R(tile_cast) * tile, const bool gathered, const glint_no
     else
         R(cast_other)(tile, gathered, node, seen, slot, false, NULL, NULL);
 }
+
+#endif

@@ -1,6 +1,15 @@
 // solid: what cast, surface and occlude need of affine images of the unit ball, cube, cylinder, cone and disk, and of a
 // cylinder's and a cone's side alone; those of the torus, which is not convex, are in torus.h. The ray is taken to where the
 // shape is the unit one; its t stays. Contract: stages.h.
+#ifndef GLINT_CAST_SOLID_H
+#define GLINT_CAST_SOLID_H
+
+#include "engine/stages/cast/box.h"
+#include "engine/stages/cast/face.h"
+#include "engine/stages/cast/torus.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 /// Where a ray goes into a solid and where it leaves.
 typedef struct R(span) {
@@ -480,3 +489,5 @@ static rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, cons
     const rm second = rm_and(r_lt(zero, span.t[1]), r_lt(span.t[1] * unit, end));
     return rm_and(span.hit, rm_or(first, rm_andnot(second, rm_andnot(own, span.second))));
 }
+
+#endif

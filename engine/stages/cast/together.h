@@ -2,6 +2,16 @@
 // same way, as what a flat mirror or a small part of a lens sends on. A node is first asked what of it any of them may come to, then
 // each of that which of them. Nodes that few of them come to, or of which more children are in question than there are rays, are left to
 // each of those (rounds.h). Contract: stages.h, cast.
+#ifndef GLINT_CAST_TOGETHER_H
+#define GLINT_CAST_TOGETHER_H
+
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/nearest.h"
+#include "engine/stages/cast/rays.h"
+#include "engine/stages/cast/rounds.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 #define GLINT_FEW_LANES 3 ///< rays; so many or fewer walk each on its own
 
@@ -327,3 +337,5 @@ static __attribute__((noinline)) void R(walk_rays)(const glint_cast_args *args, 
         R(walk_lone_ray)(args, __builtin_ctz(alone), rounds);
     R(pair_first)(args, at, lanes, &rounds->first, pairs);
 }
+
+#endif

@@ -3,6 +3,11 @@
 //
 // Lines are followed a few vectors at a time: each step to a turn or a root waits for the one before it, and while one vector
 // waits the next goes on.
+#ifndef GLINT_CAST_TORUS_H
+#define GLINT_CAST_TORUS_H
+
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/simd/real.h"
 
 #define TORUS_LINES (GLINT_GROUP / VR) ///< vectors at a time, at most
 
@@ -386,3 +391,5 @@ static rm R(torus_parts)(const R(torus_line) * l, const vr f[3], const vr e[3], 
     }
     return rm_or(rm_andnot(parted, gone), rm_and(gone, end_inside));
 }
+
+#endif

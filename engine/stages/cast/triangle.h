@@ -1,5 +1,10 @@
 // triangle: what cast, surface and occlude need of one. Which side of a ray an edge passes on is decided from the corners
 // as seen along that ray, the same for all triangles that share them. Contract: stages.h.
+#ifndef GLINT_CAST_TRIANGLE_H
+#define GLINT_CAST_TRIANGLE_H
+
+#include "engine/stages/cast/face.h"
+#include "engine/stages/simd/real.h"
 
 /// What a ray sees of a triangle.
 typedef struct R(seen_edges) {
@@ -295,3 +300,5 @@ static inline rm R(triangle_blocks)(vr corner[3][3], double scale, const vr poin
         return blocks;
     return rm_or(blocks, rm_and(on, R(parts_from_light)(p, d, &edges, plane, slack, scale, ray)));
 }
+
+#endif

@@ -1,6 +1,6 @@
 /// The parts of the kernels that `make bench-effects` leaves out, one a build (-DGLINT_WITH_MESH=0), to see that they
 /// cost nothing where no scene calls for them. Any other build has them all. A part is left out where its kernel goes into
-/// the table (isa.h), where its kind is told apart from others, or where its name below is tested.
+/// the table (simd/table.c), where its kind is told apart from others, or where its name below is tested.
 #ifndef GLINT_WITH_H
 #define GLINT_WITH_H
 

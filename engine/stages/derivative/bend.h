@@ -1,5 +1,11 @@
 // How fast hits on one sphere or plane move, that an eye sees. Contract: contract/derivative.h; one hit of any kind: bend.c of
 // tile/derivative.
+#ifndef GLINT_DERIVATIVE_BEND_H
+#define GLINT_DERIVATIVE_BEND_H
+
+#include "engine/stages/derivative/sloped.h"
+#include "engine/stages/program/exact.h"
+#include "engine/stages/simd/elementary.h"
 
 /// Rays of VD hits: along them, of any length; how fast they start elsewhere and turn; how far along the hits are.
 typedef struct bent_rays {
@@ -104,3 +110,5 @@ static void bend(const glint_bend_args *args)
     else
         bend_group(args, false, false, false);
 }
+
+#endif

@@ -1,5 +1,13 @@
 // How fast what lights leave on points changes: the formulas of stages/ref/light.h, shade.h and microfacets.h on numbers with slopes.
 // Contract: contract/derivative.h.
+#ifndef GLINT_DERIVATIVE_LIGHT_H
+#define GLINT_DERIVATIVE_LIGHT_H
+
+#include "engine/stages/derivative/sloped.h"
+#include "engine/stages/program/call.h"
+#include "engine/stages/program/elementary.h"
+#include "engine/stages/program/exact.h"
+#include "engine/stages/simd/elementary.h"
 
 // What has slopes: each kernel is compiled for some sets of these.
 enum {
@@ -335,3 +343,5 @@ static void eyes(const glint_eyes_args *args)
             d_store(call.eye[c] + i, d[c] * inverse);
     }
 }
+
+#endif

@@ -1,5 +1,11 @@
 // The vector vocabulary of derivatives: numbers with their slopes. `level` must be a constant where the compiler reads it, and then
 // what it says is not needed costs nothing: s_keep makes it one where branches meet.
+#ifndef GLINT_DERIVATIVE_SLOPED_H
+#define GLINT_DERIVATIVE_SLOPED_H
+
+#include "engine/stages/program/elementary.h"
+#include "engine/stages/program/exact.h"
+#include "engine/stages/simd/elementary.h"
 
 /// Both of one type, whatever the compiler makes of sums.
 INNER vd d_either(bool first, vd a, vd b) { return first ? a : b; }
@@ -88,3 +94,5 @@ INNER vs s_pow(vs x, vs s)
     const vd slope = y * d_either(x.level, by_power, d_either(s.level, by_base, by_base + by_power));
     return s_make(value, d_select(there, slope, zero));
 }
+
+#endif

@@ -1,5 +1,6 @@
 // How fast hits, light and colours change.
-#include "engine/stages/simd/isa.h"
+#include "engine/stages/derivative/bend.h"
+#include "engine/stages/derivative/light.h"
 
 #if GLINT_WITH_DERIVATIVE
 KERNEL(eyes, glint_eyes_args)

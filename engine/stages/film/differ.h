@@ -1,4 +1,9 @@
 // estimate, range and differ: which neighbours show different things. Contract: stages.h.
+#ifndef GLINT_FILM_DIFFER_H
+#define GLINT_FILM_DIFFER_H
+
+#include "engine/stages/shade/group.h"
+#include "engine/stages/simd/elementary.h"
 
 static void estimate(const glint_estimate_args *args)
 {
@@ -82,3 +87,5 @@ static void differ(const glint_differ_args *args, glint_differences *out)
     else
         differ_lines(args, args->along, args->q != NULL, out);
 }
+
+#endif

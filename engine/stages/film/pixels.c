@@ -1,5 +1,6 @@
 // Differences between pixels, and their values in files.
-#include "engine/stages/simd/isa.h"
+#include "engine/stages/film/differ.h"
+#include "engine/stages/film/tone.h"
 
 KERNEL(tone, glint_tone_args)
 #if GLINT_WITH_SAMPLES

@@ -1,4 +1,11 @@
 // resolve: the mean of several samples. Contract: stages.h.
+#ifndef GLINT_FILM_RESOLVE_H
+#define GLINT_FILM_RESOLVE_H
+
+#include "engine/stages/program/exact.h"
+#include "engine/stages/shade/group.h"
+#include "engine/stages/shade/shade.h"
+#include "engine/stages/simd/elementary.h"
 
 /// 1 / samples of a power of two, whose product with anything is the quotient; else 0.
 static inline double inverse_of(double samples)
@@ -47,3 +54,5 @@ static void resolve(const glint_resolve_args *args)
                 resolve_further(args, inverse, k, at);
     }
 }
+
+#endif

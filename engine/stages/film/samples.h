@@ -1,4 +1,14 @@
 // resolve_samples: shade and resolve in one, with sums that never leave a group. Contract: stages.h.
+#ifndef GLINT_FILM_SAMPLES_H
+#define GLINT_FILM_SAMPLES_H
+
+#include "engine/stages/film/resolve.h"
+#include "engine/stages/program/exact.h"
+#include "engine/stages/shade/group.h"
+#include "engine/stages/shade/microfacet_lobes.h"
+#include "engine/stages/shade/phong.h"
+#include "engine/stages/shade/shade.h"
+#include "engine/stages/simd/elementary.h"
 
 /// All samples of a frame, and what is the same in every group.
 typedef struct samples_frame {
@@ -150,3 +160,5 @@ static void resolve_samples(const glint_shade_args *sample, uint32_t count)
             resolve_mixed(&frame, g);
     }
 }
+
+#endif

@@ -1,5 +1,10 @@
 // tone: float light to 8-bit codes, exact for every float. Where the instruction set has f_by_exponent, an estimate
 // gives the code and only vectors with a lane in doubt look it up. Contract: stages.h.
+#ifndef GLINT_FILM_TONE_H
+#define GLINT_FILM_TONE_H
+
+#include "engine/stages/shade/group.h"
+#include "engine/stages/simd/elementary.h"
 
 /// One look-up and one comparison; x in 0 .. 1.
 static inline vi tone_look_up(const uint32_t *table, vf x)
@@ -163,3 +168,5 @@ static void tone(const glint_tone_args *args)
     else
         tone_groups(args, false);
 }
+
+#endif

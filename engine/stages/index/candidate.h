@@ -1,5 +1,19 @@
 // candidate: a surface that some rays of a tile may hit, and what it is to all of them: their rays start at one eye, so
 // that filters are linear over the picture. Contract: stages.h, cast.
+#ifndef GLINT_INDEX_CANDIDATE_H
+#define GLINT_INDEX_CANDIDATE_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/combined.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/shared_edge.h"
+#include "engine/stages/cast/simple.h"
+#include "engine/stages/cast/solid.h"
+#include "engine/stages/cast/torus.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 #define GLINT_FIRST_CANDIDATES 24 ///< a node's worth and some planes
 #define GLINT_PIXEL_CELL 2 ///< pixels along a side of a cell, of pixels that are gathered
@@ -494,3 +508,5 @@ static inline unsigned R(lanes_through_lens)(const R(tile_cast) * tile, const sh
     }
     return lanes;
 }
+
+#endif

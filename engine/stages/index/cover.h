@@ -1,6 +1,13 @@
 // cover: which groups of a tile a candidate may show in, which it fills, and where another hides it, by the ray through
 // the middle of each group: the group's others are near to it. Float and conservative, rounding and NaN included: what is
 // not certain here is left to the pixels. Contract: stages.h, cast.
+#ifndef GLINT_INDEX_COVER_H
+#define GLINT_INDEX_COVER_H
+
+#include "engine/stages/index/candidate.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 #define COVER_ACROSS (GLINT_TILE_WIDTH / 4) ///< bit COVER_ACROSS y + x of a set of groups is group (x, y)
 #define COVER_MARGIN 1e-4 ///< of what is certain; far above the rounding of float and real
@@ -225,3 +232,5 @@ static void R(cover_tile)(const R(tile_cast) * tile, const R(candidate) *const *
         }
     }
 }
+
+#endif

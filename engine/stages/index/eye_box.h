@@ -1,6 +1,12 @@
 // eye_box: which rays from one eye may meet what is in a box. Where a ray at t goes through the plane of a face, 1 / t is linear
 // in its place on the screen. It goes in through the last of the planes that the eye is before, and out through the first of the
 // others: least and greatest of these numbers say whether it is ever within. Float and conservative, as all of walk.h is.
+#ifndef GLINT_INDEX_EYE_BOX_H
+#define GLINT_INDEX_EYE_BOX_H
+
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/elementary.h"
 
 /// The planes of a box: coefficients of 1, s and t.
 typedef struct eye_box {
@@ -53,3 +59,5 @@ INNER unsigned lanes_in_box(const eye_box *box, vf s, vf t)
         out = f_max(over_plane(box->out[i], s, t), out);
     return ~fm_bits(f_lt(in + f_set(box->margin), out)) & ((1u << VF) - 1);
 }
+
+#endif

@@ -3,6 +3,12 @@
 //
 // A ray at place (u, v) is (u, v, 1) in the coordinates (a, b, k) of the screen. It meets a triangle whose corners are P_j
 // there where its dot products with P_1 x P_2, P_2 x P_0 and P_0 x P_1 all have the sign of the corners' determinant.
+#ifndef GLINT_INDEX_LEAF_H
+#define GLINT_INDEX_LEAF_H
+
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/elementary.h"
 
 /// Of a corner's numbers: what rounding may have moved it by, on the way to its place; where float decides, twice that.
 #define LEAF_SLACK 0x1p-20f
@@ -210,3 +216,5 @@ INNER unsigned meets_through_lens(const leaf_through_lens *leaf, int slot, vf u,
     const fm over = f_lt(f_set(leaf->doubt[slot]), f_max(f_max(e[0], e[1]), e[2]));
     return ~fm_bits(fm_and(under, over)) & ((1u << VF) - 1);
 }
+
+#endif

@@ -5,6 +5,11 @@
 // The frame: two axes across the way of the bundle, and one, w, along it. What is at (a, b, w) has its place at a / k and b / k,
 // with k = base + inverse w: of a camera's pixels k is w, so that places are s and -t; of segments k is 1 + w / distance, w
 // running away from the light from 0 in the middle of the points; of parallel light k is 1.
+#ifndef GLINT_INDEX_SCREEN_H
+#define GLINT_INDEX_SCREEN_H
+
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/elementary.h"
 
 #define SCREEN_ACROSS 16 ///< most columns
 #define SCREEN_DOWN 20 ///< and rows
@@ -356,3 +361,5 @@ static inline unsigned near_rod(const rod_on_screen *rod, vf u, vf v)
     const vf least = f_max(f_abs(beside) - f_set(rod->margin), f_set(0));
     return ~fm_bits(f_lt(f_set(rod->reach2) * DOT(n, n), least * least)) & ((1u << VF) - 1);
 }
+
+#endif

@@ -1,5 +1,13 @@
 // view: the primitives of a scene that has few, as one camera's eye sees them from wherever on its picture: candidates for all
 // tiles. Of a tile, one question to each says whether it may show there. Contract: stages.h, cast.
+#ifndef GLINT_INDEX_VIEW_H
+#define GLINT_INDEX_VIEW_H
+
+#include "engine/stages/index/candidate.h"
+#include "engine/stages/index/cover.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 /// What glint_cast_view has room for.
 typedef struct R(cast_view) {
@@ -100,3 +108,5 @@ static int R(candidates_in)(const R(cast_view) * view, const glint_camera_args *
             list[found++] = &view->candidates[k];
     return found;
 }
+
+#endif

@@ -1,6 +1,10 @@
 // walk: which boxes of the index a tile, a shaft or a ray may touch, sixteen at a time. Everything here is float and
 // conservative: a box is left out only where that is certain, rounding and NaN included. What is decided on these boxes
 // never shows in a picture.
+#ifndef GLINT_INDEX_WALK_H
+#define GLINT_INDEX_WALK_H
+
+#include "engine/stages/simd/elementary.h"
 
 #define WALK_SLACK 0x1p-21f ///< of the numbers that went into a difference; their rounding is at most 2^-24 each
 #define WALK_STACK (GLINT_BVH_DEPTH * (GLINT_NODE_WIDTH - 1) + 1)
@@ -229,3 +233,5 @@ static inline int sort_slots(unsigned mask, const float depth[GLINT_NODE_WIDTH],
     }
     return count;
 }
+
+#endif

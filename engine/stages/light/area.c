@@ -1,5 +1,5 @@
 // The light of an area light, with its shadows.
-#include "engine/stages/simd/isa.h"
+#include "engine/stages/light/soft_light.h"
 
 #if GLINT_WITH_AREA && GLINT_WITH_SHADOW
 bool GLINT_ENTRY(R(soft_light))(const glint_soft_args *args)

@@ -1,6 +1,16 @@
 // caps: how much of a sphere light each point sees past spheres and planes, in closed form. Contract: stages.h, occlude.
 //
 // Products of shares are taken in the order of the table, whatever order the index finds the spheres in.
+#ifndef GLINT_LIGHT_CAPS_H
+#define GLINT_LIGHT_CAPS_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/occlude/occlude.h"
+#include "engine/stages/simd/real.h"
 
 #define GLINT_CAPS 16 ///< primitives that a group looks up at once
 
@@ -216,3 +226,5 @@ static __attribute__((noinline)) void R(occlude_caps)(const glint_occlude_args *
         args->open[0][g] = (uint16_t)open;
     }
 }
+
+#endif

@@ -1,6 +1,11 @@
 // cone: where the samples of a ball lie that is sampled within the cone in which a point sees it. All of it is double,
 // whatever real is: the cone of a light 1e9 radii away is narrower than a float's roundings. Contract: stages.h, at
 // glint_light_sample.
+#ifndef GLINT_LIGHT_CONE_H
+#define GLINT_LIGHT_CONE_H
+
+#include "engine/stages/light/light_sample.h"
+#include "engine/stages/simd/real.h"
 
 /// What the samples of VD points have in common.
 typedef struct R(cone) {
@@ -101,3 +106,5 @@ static inline bool R(is_cone)(const glint_light_sample *light_sample)
 {
     return light_sample && light_sample->emission == GLINT_EMIT_CONE;
 }
+
+#endif

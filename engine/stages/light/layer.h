@@ -4,6 +4,12 @@
 //
 // The frame: from the middle of the points two axes across the way to the light, and one, h, along it, right-handed. A segment is at
 // base + slope h.
+#ifndef GLINT_LIGHT_LAYER_H
+#define GLINT_LIGHT_LAYER_H
+
+#include "engine/stages/index/walk.h"
+#include "engine/stages/occlude/beam.h"
+#include "engine/stages/simd/elementary.h"
 
 #define LAYER_ACROSS 32 ///< columns and rows of cells
 #define LAYER_RAYS (GLINT_TILE_SAMPLES * GLINT_LIGHT_CHUNK)
@@ -175,3 +181,5 @@ static uint32_t sort_layer(const glint_occlude_args *args, const layer_frame *fr
         }
     return count;
 }
+
+#endif

@@ -1,5 +1,20 @@
 // layer_blocker: one primitive against the segments in its cells of a layer. Float says what it does to most; the rest are pairs of a
 // segment and a primitive that are decided as everywhere. Contract: stages.h, occlude.
+#ifndef GLINT_LIGHT_LAYER_BLOCKER_H
+#define GLINT_LIGHT_LAYER_BLOCKER_H
+
+#include "engine/stages/index/walk.h"
+#include "engine/stages/light/layer.h"
+#include "engine/stages/light/layer_frame.h"
+#include "engine/stages/occlude/beam.h"
+#include "engine/stages/occlude/beam_leaf.h"
+#include "engine/stages/occlude/beam_points.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/occlude/grid.h"
+#include "engine/stages/occlude/occlude.h"
+#include "engine/stages/occlude/through_beam.h"
+#include "engine/stages/simd/real.h"
+
 #if GLINT_REAL == 64
 
 // ---- The decision ----
@@ -287,4 +302,6 @@ static void R(block_layer)(R(layers) * l, int n, float h)
     }
     R(decide_segments)(l, blocker.prim);
 }
+#endif
+
 #endif

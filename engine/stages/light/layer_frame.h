@@ -1,4 +1,13 @@
 // layer_frame: what the layers of a tile share, and its frame (layer.h) made of points and samples. Contract: stages.h, occlude.
+#ifndef GLINT_LIGHT_LAYER_FRAME_H
+#define GLINT_LIGHT_LAYER_FRAME_H
+
+#include "engine/stages/index/walk.h"
+#include "engine/stages/light/layer.h"
+#include "engine/stages/occlude/beam_points.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/simd/real.h"
+
 #if GLINT_REAL == 64
 
 #define LAYER_PRIMS 1024 ///< that are tested at once
@@ -114,4 +123,6 @@ static bool R(aim_layers)(const R(shadow_tile) * tile, const uint16_t *lit, laye
     frame->slack = LAYER_SLACK * size + (float)(16 * GLINT_POINT_SLACK * geometry->extent * geometry->scale);
     return true;
 }
+#endif
+
 #endif

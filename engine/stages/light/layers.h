@@ -1,6 +1,22 @@
 // occlude_by_layers: which samples of an area light reach the points, where too much lies between for a list. The index is walked
 // once for all of them; what it finds is cut into layers (layer.h) and tested there. What float says is certain stays so; the rest is
 // decided from point to sample as everywhere. Contract: stages.h, occlude.
+#ifndef GLINT_LIGHT_LAYERS_H
+#define GLINT_LIGHT_LAYERS_H
+
+#include "engine/stages/cast/leaf.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/light/cone.h"
+#include "engine/stages/light/layer.h"
+#include "engine/stages/light/layer_blocker.h"
+#include "engine/stages/light/layer_frame.h"
+#include "engine/stages/light/soft.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/occlude/grid.h"
+#include "engine/stages/occlude/through_beam.h"
+#include "engine/stages/simd/real.h"
+
 #if GLINT_REAL == 64
 
 // ---- What is between ----
@@ -231,4 +247,6 @@ static bool R(occlude_by_layers)(R(shadow_tile) * tile, const uint16_t *lit)
     (void)lit;
     return false;
 }
+#endif
+
 #endif

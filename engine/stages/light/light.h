@@ -1,6 +1,13 @@
 // light: what one light does at each point, before shadows and colours. The geometry is real; what needs no more than
 // float (square root, division, logarithm) follows in float over the whole group. Here are spots and area lights, and what
 // plain.h and lit_surface.h need; the stage itself is in plain.h. Contract: stages.h.
+#ifndef GLINT_LIGHT_LIGHT_H
+#define GLINT_LIGHT_LIGHT_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/light/cone.h"
+#include "engine/stages/light/light_sample.h"
+#include "engine/stages/simd/real.h"
 
 /// What one light or sample does to a group.
 typedef struct R(lit_group) {
@@ -252,3 +259,5 @@ static void R(light_spot)(const glint_light_args *args)
     R(lit_group) group = { .lit = 0 };
     R(light_groups)(args, LIGHT_SPOT, 1, NULL, &group);
 }
+
+#endif

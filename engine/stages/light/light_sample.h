@@ -1,4 +1,9 @@
 // lamp: what spot and area lights add to a light's arithmetic. Contract: stages.h, at glint_light_args.
+#ifndef GLINT_LIGHT_LIGHT_SAMPLE_H
+#define GLINT_LIGHT_LIGHT_SAMPLE_H
+
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/simd/real.h"
 
 #define LIGHT_PLAIN 0 // kinds of light that the light stage is compiled for
 #define LIGHT_SPOT 1
@@ -85,3 +90,5 @@ static inline rm R(in_front)(const glint_light_sample *light_sample, const R(lig
         *m = r_max(*m, -*m);
     return r_lt(r_set(0), *m);
 }
+
+#endif

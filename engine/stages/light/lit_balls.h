@@ -1,6 +1,15 @@
 // lit_balls: surface and the light of one plain lamp of groups that show nothing but spheres, in some of their lanes or in all:
 // the lanes are worked off together, each with the sphere of its own. The arithmetic is that of surface.h and plain.h.
 // Contract: stages.h.
+#ifndef GLINT_LIGHT_LIT_BALLS_H
+#define GLINT_LIGHT_LIT_BALLS_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/light/light.h"
+#include "engine/stages/light/lit_surface.h"
+#include "engine/stages/light/plain.h"
+#include "engine/stages/simd/real.h"
+#include "engine/stages/surface/surface.h"
 
 /// The spheres of a group, a lane each; of lanes without a hit 0.
 typedef struct R(ball_lanes) {
@@ -141,3 +150,5 @@ static __attribute__((noinline)) bool R(light_balls)(const glint_surface_args *s
     R(plain_light)(light, kind, true, place, point, parts, hits & light->hits[place.g], 0, brightest);
     return true;
 }
+
+#endif

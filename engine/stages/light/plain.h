@@ -1,5 +1,12 @@
 // plain: what lights without a surface or a cone do, one or several that are alike but for where they are. What does not depend
 // on a light is found once for all of them. The arithmetic is that of light.h. Contract: stages.h.
+#ifndef GLINT_LIGHT_PLAIN_H
+#define GLINT_LIGHT_PLAIN_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/light/light.h"
+#include "engine/stages/light/lit_surface.h"
+#include "engine/stages/simd/real.h"
 
 /// VR points as every light finds them.
 typedef struct R(plain_part) {
@@ -141,3 +148,5 @@ static void R(light)(const glint_light_args *args)
     else
         R(light_plain)(args);
 }
+
+#endif

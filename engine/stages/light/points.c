@@ -1,5 +1,71 @@
 // The light that reaches points, shadows aside.
-#include "engine/stages/simd/isa.h"
+#include "engine/stages/light/lit_balls.h"
+#include "engine/stages/light/lit_surface.h"
+#include "engine/stages/light/plain.h"
+
+/// The same, by copies: what groups after each other gather stays in registers.
+INNER bool R(try_balls)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
+                        bool normals, R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest)
+{
+    R(point_box) around = *box;
+    vf most = *brightest;
+    const bool done = R(light_balls)(surface, light, walk, normals, place, &around, point, &most);
+    *box = around;
+    *brightest = most;
+    return done;
+}
+
+/// mixed, normals: constants.
+INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_args *light, const bool mixed,
+                           const bool normals)
+{
+    R(lit_call) call;
+    R(point_box) box;
+    R(lit_point) point = { 0 };
+    R(lit_group) group;
+    R(begin_walk)(surface, &call.walk);
+    R(empty_box)(&box);
+    for (int k = 0; k < 3; k++) {
+        call.position[k] = (real)light->position[k];
+    }
+    call.scale = (real)light->scale;
+    call.scaled = !light->directional && light->scale != 1;
+    group.brightest = f_set(GLINT_NO_SPECULAR);
+    for (R(group_place) place = { 0 }; place.g < surface->group_count; R(next_group)(surface->camera, &place)) {
+        const uint32_t g = place.g;
+        if (!surface->hits[g]) {
+            surface->back[g] = surface->dark[g] = 0;
+            light->lit[0][g] = 0;
+        } else if (R(light_whole)(surface, light, &call, mixed, normals, place, &box, &group.brightest) ||
+                   (!mixed && R(try_balls)(surface, light, &call.walk, normals, place, &box, &point, &group.brightest))) {
+            continue;
+        } else {
+            R(surface_group)(surface, &call.walk, &box, place, mixed ? R(MIXED) : R(BALLS_AND_PLANES));
+            R(light_group)(light, LIGHT_PLAIN, 1, NULL, place, &point, &group);
+            light->lit[0][g] = (uint16_t)group.lit;
+            if (group.lit)
+                R(finish_light)(light, LIGHT_PLAIN, 0, (size_t)g * GLINT_GROUP, &group);
+        }
+    }
+    R(end_walk)(surface, &call.walk, &box);
+    R(say_brightest)(light, 0, group.brightest);
+}
+
+/// Apart, so that it takes no registers from what balls and planes need.
+static __attribute__((noinline)) void R(lit_mixed)(const glint_surface_args *surface, const glint_light_args *light)
+{
+    R(lit_surfaces)(surface, light, true, true);
+}
+
+static void R(lit_surface)(const glint_surface_args *surface, const glint_light_args *light)
+{
+    if (surface->mixed)
+        R(lit_mixed)(surface, light);
+    else if (surface->all_normals)
+        R(lit_surfaces)(surface, light, false, true);
+    else
+        R(lit_surfaces)(surface, light, false, false);
+}
 
 KERNEL(light, glint_light_args)
 

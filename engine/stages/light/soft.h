@@ -2,6 +2,17 @@
 // it, costs no rays: points that an occluder cannot come near, and points that it hides from all of the ball, are settled
 // in float, sixteen at a time. Elsewhere an occluder is offered all samples of a group at once. Every decision is that of
 // occlude.h.
+#ifndef GLINT_LIGHT_SOFT_H
+#define GLINT_LIGHT_SOFT_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/light/cone.h"
+#include "engine/stages/light/light_sample.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/occlude/grid.h"
+#include "engine/stages/simd/real.h"
 
 /// What is left to test of a group.
 typedef struct R(soft_group) {
@@ -298,3 +309,5 @@ static void R(occlude_listed)(const R(shadow_tile) * tile, const uint16_t *lit)
             args->open[s][g] = (uint16_t)light.open[s];
     }
 }
+
+#endif

@@ -1,5 +1,18 @@
 // soft_light: light, occlude and the sums of shade for the samples of an area light, a group at a time: what is hidden from
 // all of the light is left out, and sums stay in registers. The arithmetic is theirs. Contract: stages.h.
+#ifndef GLINT_LIGHT_SOFT_LIGHT_H
+#define GLINT_LIGHT_SOFT_LIGHT_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/light/cone.h"
+#include "engine/stages/light/light.h"
+#include "engine/stages/light/light_sample.h"
+#include "engine/stages/light/lit_surface.h"
+#include "engine/stages/light/soft.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/occlude/occlude.h"
+#include "engine/stages/simd/real.h"
 
 #define SOFT_PARTS (VF / VR) // vectors of real that make one of float
 #define SOFT_PLAIN 0 // kinds of light that the sums are compiled for: neither attenuated nor aimed
@@ -311,3 +324,5 @@ static bool R(soft_light)(const glint_soft_args *args)
     R(sum_groups)(&call, lit);
     return true;
 }
+
+#endif

@@ -1,5 +1,17 @@
 // soft_shadow: occlude of an area light: by a tile's list (soft.h); by layers (layers.h); or, where these have no frame, where each point
 // has samples of its own, and where float decides, sample by sample as of a light without size. Contract: stages.h, occlude.
+#ifndef GLINT_LIGHT_SOFT_SHADOW_H
+#define GLINT_LIGHT_SOFT_SHADOW_H
+
+#include "engine/stages/light/caps.h"
+#include "engine/stages/light/cone.h"
+#include "engine/stages/light/layers.h"
+#include "engine/stages/light/light_sample.h"
+#include "engine/stages/light/soft.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/occlude/occlude.h"
+#include "engine/stages/occlude/through_beam.h"
+#include "engine/stages/simd/real.h"
 
 /// Too many occluders for a list: every group walks for every sample.
 static void R(occlude_walking)(R(shadow_tile) * tile)
@@ -56,3 +68,5 @@ static void R(occlude)(const glint_occlude_args *args)
     else
         R(occlude_point)(args);
 }
+
+#endif

@@ -1,5 +1,11 @@
 // beam: the points of a tile as their light sees them, a screen (screen.h) of their own. Segments from points to one light
 // are a bundle as a camera's rays are.
+#ifndef GLINT_OCCLUDE_BEAM_H
+#define GLINT_OCCLUDE_BEAM_H
+
+#include "engine/stages/index/leaf.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/simd/elementary.h"
 
 #define BEAM_DOWN SCREEN_DOWN ///< rows of cells
 #define BEAM_NEAREST 0.25f ///< least k of a point: nearer to the light a place is not worth much
@@ -59,3 +65,5 @@ typedef struct own_side {
     uint32_t side;
     bool any;
 } own_side;
+
+#endif

@@ -1,5 +1,17 @@
 // beam_leaf: the triangles of a node against the points of a beam. As in cast/leaf.h, float finds pairs, and these are decided
 // a vector at a time, each lane with a triangle of its own. Contract: stages.h, occlude.
+#ifndef GLINT_OCCLUDE_BEAM_LEAF_H
+#define GLINT_OCCLUDE_BEAM_LEAF_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/leaf.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/leaf.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/occlude/beam.h"
+#include "engine/stages/occlude/beam_points.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/simd/real.h"
 
 /// Largest w of a cell's open points.
 static inline float R(farthest_in)(const R(beam) * beam, uint32_t cell)
@@ -212,3 +224,5 @@ static void R(block_triangles)(R(beam) * beam, const glint_node *node, const nod
     R(pair_points)(beam);
     R(decide_beam_pairs)(beam);
 }
+
+#endif

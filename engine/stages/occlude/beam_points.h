@@ -1,5 +1,15 @@
 // beam_points: the points of a tile in the order in which their light sees them (beam.h): in cells, so that what may come
 // between is tested against few of them.
+#ifndef GLINT_OCCLUDE_BEAM_POINTS_H
+#define GLINT_OCCLUDE_BEAM_POINTS_H
+
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/index/leaf.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/occlude/beam.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/simd/real.h"
 
 /// Points on their way to a decision: one surface, up to a group of points that need not be neighbours.
 typedef struct R(beam_batch) {
@@ -196,3 +206,5 @@ static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_places) *
             *far = larger(places->w[from], *far); // a w of NaN is passed over
         }
 }
+
+#endif

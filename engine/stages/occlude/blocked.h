@@ -1,6 +1,18 @@
 // blocked: whether a surface is between a point and a light. Float says what is certain of spheres, and which solids are near. The rest is
 // decided from the point towards the light, of spheres without a root or a division: the segment meets a sphere when one end is inside and the other outside, or when both are outside,
 // the foot of the perpendicular lies between them and the discriminant is not negative. Contract: stages.h, occlude.
+#ifndef GLINT_OCCLUDE_BLOCKED_H
+#define GLINT_OCCLUDE_BLOCKED_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/combined.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/simple.h"
+#include "engine/stages/cast/solid.h"
+#include "engine/stages/cast/torus.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/simd/real.h"
 
 #define GLINT_OCCLUDERS 32 ///< what a tile's list holds; of area lights, of triangles, and where float decides, GLINT_OCCLUDERS_FEW
 #define GLINT_OCCLUDERS_FEW 12
@@ -518,3 +530,5 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
     }
     return blocked;
 }
+
+#endif

@@ -2,6 +2,15 @@
 // a cell are tested together, an entry after the other. Of the others each finds the entries that may block it in its cell, nearest
 // to the light first; what is found is decided a vector at a time, each lane with a sphere of its own, until every point is
 // blocked or has no entry left. Contract: stages.h, occlude.
+#ifndef GLINT_OCCLUDE_GRID_H
+#define GLINT_OCCLUDE_GRID_H
+
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/occlude/occlude.h"
+#include "engine/stages/simd/real.h"
 
 #if GLINT_REAL == 64
 
@@ -422,3 +431,5 @@ static inline bool R(occlude_by_grid)(const R(shadow_tile) * tile, R(shadow_grou
     return false;
 #endif
 }
+
+#endif

@@ -1,6 +1,13 @@
 // near: which occluders of a tile's list may be between the points of a group and the light, a vector of occluders at a time. All segments
 // of the group are within its reach of that of one of its points: they begin so near, and end in one place or run side by side. Float,
 // and conservative: what is left out blocks nothing. Contract: stages.h, occlude.
+#ifndef GLINT_OCCLUDE_NEAR_H
+#define GLINT_OCCLUDE_NEAR_H
+
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/simd/real.h"
 
 #define NEAR_MIDDLE 0x0660u ///< the lanes in the middle of a group
 #define NEAR_LEAST 2 ///< occluders; fewer are as quickly tested
@@ -113,3 +120,5 @@ static void R(find_near)(const R(shadow_tile) * tile, R(shadow_group) * group, u
         near[g] = open[g] ? R(near_occluders)(tile, &list, group, open[g]) : 0;
     }
 }
+
+#endif

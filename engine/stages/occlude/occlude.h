@@ -2,6 +2,15 @@
 //
 // A tile's segments are a bundle seen from the light: the index is walked once for all of them. Where too much lies
 // between, each group walks with its own, thinner shaft.
+#ifndef GLINT_OCCLUDE_OCCLUDE_H
+#define GLINT_OCCLUDE_OCCLUDE_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/simd/real.h"
+#include "engine/stages/surface/surface.h"
 
 /// Whether a plane that touches the sphere keeps the whole shaft on its other side: then it blocks nothing.
 static bool R(sphere_apart)(const glint_prim *prim, const float lower[3], const float upper[3],
@@ -288,3 +297,5 @@ static inline void R(begin_shadows)(const glint_occlude_args *args, const uint16
     const bool on_torus = geometry->tori && box.only != GLINT_MISS && is_torus(geometry, &geometry->prims[box.only]);
     R(find_occluders)(tile, on_torus ? GLINT_MISS : box.only);
 }
+
+#endif

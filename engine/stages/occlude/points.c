@@ -1,5 +1,5 @@
 // The points that a light reaches.
-#include "engine/stages/simd/isa.h"
+#include "engine/stages/light/soft_shadow.h"
 
 #if GLINT_WITH_SHADOW
 KERNEL(occlude, glint_occlude_args)

@@ -1,5 +1,19 @@
 // occlude_beam: where much lies between a tile and its light, the index is walked once with the tile's beam (beam.h), and
 // what may block a segment is tested against the points in its cells alone. Contract: stages.h, occlude.
+#ifndef GLINT_OCCLUDE_THROUGH_BEAM_H
+#define GLINT_OCCLUDE_THROUGH_BEAM_H
+
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/walk.h"
+#include "engine/stages/occlude/beam.h"
+#include "engine/stages/occlude/beam_leaf.h"
+#include "engine/stages/occlude/beam_points.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/occlude/grid.h"
+#include "engine/stages/occlude/near.h"
+#include "engine/stages/occlude/occlude.h"
+#include "engine/stages/simd/real.h"
 
 // ---- The decision ----
 
@@ -242,3 +256,5 @@ static void R(occlude_point)(const glint_occlude_args *args)
         out[g] = (uint16_t)open;
     }
 }
+
+#endif

@@ -1,5 +1,9 @@
 // What the kernels of operations have in common: each reads and writes whole rows, one vector after the other, and of a
 // vector reads all operands before it writes a result, which may be in an operand's place.
+#ifndef GLINT_PROGRAM_CALL_H
+#define GLINT_PROGRAM_CALL_H
+
+#include "engine/stages/simd/elementary.h"
 
 typedef struct op_call {
     const double *in[GLINT_OPERANDS_MAX];
@@ -71,3 +75,5 @@ static __attribute__((noinline)) vd d_each(vd y, unsigned lanes, vd a, vd b, dou
 }
 
 #define D_ALL ((1u << VD) - 1)
+
+#endif

@@ -1,5 +1,13 @@
 // Cells: each unit cube has one point, and what counts are the two nearest. They are in the 125 cubes around: the own
 // one, the 26 next to it, and the 98 beyond, of which most are too far. Contract: contract/program.h.
+#ifndef GLINT_PROGRAM_CELL_H
+#define GLINT_PROGRAM_CELL_H
+
+#include "engine/stages/program/call.h"
+#include "engine/stages/program/coefficients.h"
+#include "engine/stages/program/exact.h"
+#include "engine/stages/program/noise.h"
+#include "engine/stages/simd/elementary.h"
 
 #define CELL_SIDE 5
 
@@ -105,3 +113,5 @@ static void op_cell_slope(const op_call *call)
                 d_store(call->out[3 * n + c] + i, -nearest.to[n][c] / d_sqrt(nearest.length2[n]));
     }
 }
+
+#endif

@@ -5,6 +5,13 @@
 //   pow             1e-12 of the result
 //   atan2, acos     6e-16
 // Contract: contract/program.h.
+#ifndef GLINT_PROGRAM_ELEMENTARY_H
+#define GLINT_PROGRAM_ELEMENTARY_H
+
+#include "engine/stages/program/call.h"
+#include "engine/stages/program/coefficients.h"
+#include "engine/stages/program/exact.h"
+#include "engine/stages/simd/elementary.h"
 
 static double scalar_sine(double x, double turn) { return turn != 0 ? glint_cos(x) : glint_sin(x); }
 
@@ -122,3 +129,5 @@ static void op_highlight(const op_call *call)
             d_store(call->out[0] + i + (size_t)k * VD, out[k]);
     }
 }
+
+#endif

@@ -1,4 +1,9 @@
 // Operations of one or two roundings, and choices. Contract: contract/program.h.
+#ifndef GLINT_PROGRAM_EXACT_H
+#define GLINT_PROGRAM_EXACT_H
+
+#include "engine/stages/program/call.h"
+#include "engine/stages/simd/elementary.h"
 
 static inline vd d_round(vd x)
 {
@@ -146,3 +151,5 @@ static void op_mod(const op_call *call)
     at.step[2] = 0;
     op_mod_power(&at);
 }
+
+#endif

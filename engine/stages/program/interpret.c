@@ -1,5 +1,6 @@
 // Patterns and shaders.
-#include "engine/stages/simd/isa.h"
+#include "engine/stages/program/program.h"
+#include "engine/stages/program/unit.h"
 
 #if GLINT_WITH_PROGRAM
 KERNEL(program, glint_program_args)

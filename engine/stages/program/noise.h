@@ -1,4 +1,12 @@
 // The hash, parity and noise. Contract: contract/program.h.
+#ifndef GLINT_PROGRAM_NOISE_H
+#define GLINT_PROGRAM_NOISE_H
+
+#include "engine/stages/program/call.h"
+#include "engine/stages/program/coefficients.h"
+#include "engine/stages/program/elementary.h"
+#include "engine/stages/program/exact.h"
+#include "engine/stages/simd/elementary.h"
 
 /// The lower 32 bits count.
 static inline vq q_fold(vq x) { return q_xor(x, q_shr(x, 32)); }
@@ -199,3 +207,5 @@ static void op_noise_slope(const op_call *call)
         }
     }
 }
+
+#endif

@@ -1,11 +1,14 @@
 // The stage `program`: one call for each instruction, over all lanes. Contract: contract/program.h.
+#ifndef GLINT_PROGRAM_PROGRAM_H
+#define GLINT_PROGRAM_PROGRAM_H
 
 #include "engine/stages/program/call.h"
-#include "engine/stages/program/exact.h"
-#include "engine/stages/program/elementary.h"
-#include "engine/stages/program/noise.h"
 #include "engine/stages/program/cell.h"
+#include "engine/stages/program/elementary.h"
+#include "engine/stages/program/exact.h"
+#include "engine/stages/program/noise.h"
 #include "engine/stages/program/texel.h"
+#include "engine/stages/simd/elementary.h"
 
 static void (*const op_kernels[GLINT_OP_COUNT])(const op_call *call) = {
     [GLINT_OP_ADD] = op_add,
@@ -389,3 +392,5 @@ static void program(const glint_program_args *args)
         store_output(&out, args->result[k], args->plane[k], args->total[k]);
     }
 }
+
+#endif

@@ -1,5 +1,12 @@
 // Texels: where in which level a lane reads is found for all lanes at once, the texels are read lane by lane.
 // Contract: contract/program.h.
+#ifndef GLINT_PROGRAM_TEXEL_H
+#define GLINT_PROGRAM_TEXEL_H
+
+#include "engine/stages/program/call.h"
+#include "engine/stages/program/elementary.h"
+#include "engine/stages/program/exact.h"
+#include "engine/stages/simd/elementary.h"
 
 /// Of one level: what four texels are read and how they are weighed.
 typedef struct texel_place {
@@ -156,3 +163,5 @@ static void op_texel_slope(const op_call *call)
     for (size_t i = 0; i < call->lanes; i += VD)
         texel_vector(call, i, true);
 }
+
+#endif

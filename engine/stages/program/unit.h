@@ -1,4 +1,10 @@
 // The stage `unit`: ways to lights and to the eye, as shaders read them. Contract: contract/program.h.
+#ifndef GLINT_PROGRAM_UNIT_H
+#define GLINT_PROGRAM_UNIT_H
+
+#include "engine/stages/program/call.h"
+#include "engine/stages/program/exact.h"
+#include "engine/stages/simd/elementary.h"
 
 /// d / by, where `by` is d's length.
 static inline void divide_each(const vd d[3], vd by, vd q[3])
@@ -79,3 +85,5 @@ static void unit(const glint_unit_args *args)
     else
         unit_groups(args, TO_EACH);
 }
+
+#endif

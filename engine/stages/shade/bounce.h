@@ -1,4 +1,10 @@
 // bounce: where rays go on from a surface: mirrored, and refracted by Snell's law. Contract: stages.h.
+#ifndef GLINT_SHADE_BOUNCE_H
+#define GLINT_SHADE_BOUNCE_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/simd/real.h"
 
 /// Returns the lanes in which a ray goes through.
 static inline unsigned R(bounce_lanes)(const glint_bounce_args *args, const vr d[3], size_t at)
@@ -40,3 +46,5 @@ static void R(bounce)(const glint_bounce_args *args)
         args->total[g] = (uint16_t)(args->wanted[g] & ~through);
     }
 }
+
+#endif

@@ -1,5 +1,7 @@
 // Microfacets, and the directions in which rays go on.
-#include "engine/stages/simd/isa.h"
+#include "engine/stages/shade/bounce.h"
+#include "engine/stages/shade/microfacets.h"
+#include "engine/stages/shade/scatter.h"
 
 #if GLINT_WITH_FACET
 KERNEL(view, glint_view_args)

@@ -1,5 +1,11 @@
 // matt: what several lights make of a group that shows one material without highlights, in one pass: no factor is stored. Contract:
 // stages.h, shade.
+#ifndef GLINT_SHADE_MATT_H
+#define GLINT_SHADE_MATT_H
+
+#include "engine/stages/program/exact.h"
+#include "engine/stages/shade/group.h"
+#include "engine/stages/simd/elementary.h"
 
 /// A light's factor of diffuse light, of one vector of a group.
 INNER vf diffuse_factor(const glint_shade_light *light, size_t at, int i)
@@ -73,3 +79,5 @@ static __attribute__((noinline)) void add_matt(const glint_shade_args *args, con
                 d_store(to->sum[GLINT_TERM_DIFFUSE][c] + to->at + i + h * VD, total[c][h]);
     }
 }
+
+#endif

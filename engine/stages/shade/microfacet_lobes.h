@@ -1,5 +1,9 @@
 // microfacet_lobes: pi D G / (4 n.v) of GGX and Beckmann, and normalised powers; what the stage facet has found goes in.
 // Contract: stages.h.
+#ifndef GLINT_SHADE_MICROFACET_LOBES_H
+#define GLINT_SHADE_MICROFACET_LOBES_H
+
+#include "engine/stages/simd/elementary.h"
 
 static inline bool has_facets(const glint_shade_material *material)
 {
@@ -75,3 +79,5 @@ static __attribute__((noinline)) void put_lobe(const glint_shade_args *args, con
         put_share(grazing + i, add, f_select(mask, share * f_load(light->schlick + at + i), zero));
     }
 }
+
+#endif

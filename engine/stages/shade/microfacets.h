@@ -1,5 +1,13 @@
 // view and facet: what materials of microfacets need beside light: at which angle a point is seen, how the half vector
 // of each light lies to the normal, and how much Fresnel's reflection has risen there. Contract: stages.h.
+#ifndef GLINT_SHADE_MICROFACETS_H
+#define GLINT_SHADE_MICROFACETS_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/light/cone.h"
+#include "engine/stages/light/light_sample.h"
+#include "engine/stages/simd/real.h"
 
 static void R(view)(const glint_view_args *args)
 {
@@ -99,3 +107,5 @@ static void R(facet)(const glint_facet_args *args)
         }
     }
 }
+
+#endif

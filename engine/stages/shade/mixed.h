@@ -1,5 +1,11 @@
 // mixed: groups that show several materials, or nothing in some lanes, under one light at most and with no term kept: the lanes are
 // shaded together, each with the numbers of its own material. Contract: stages.h, shade.
+#ifndef GLINT_SHADE_MIXED_H
+#define GLINT_SHADE_MIXED_H
+
+#include "engine/stages/shade/group.h"
+#include "engine/stages/shade/phong.h"
+#include "engine/stages/simd/elementary.h"
 
 #define MIXED_MATERIALS 16 ///< whose numbers are at hand
 
@@ -97,3 +103,5 @@ static __attribute__((noinline)) bool shade_mixed(const glint_shade_args *args, 
     }
     return true;
 }
+
+#endif

@@ -1,6 +1,10 @@
 // phong: the local lighting of one light: diffuse w (n.l), and the highlight w S with S = 2^(shininess log2 x). The stage light
 // has found x: r.v of Phong (B. T. Phong, "Illumination for Computer Generated Pictures", CACM 18(6), 1975), n.h of Blinn-Phong
 // (J. F. Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977). w is attenuation. Contract: stages.h.
+#ifndef GLINT_SHADE_PHONG_H
+#define GLINT_SHADE_PHONG_H
+
+#include "engine/stages/simd/elementary.h"
 
 /// The geometric factors of the lights that reach a group: w (n.l), and w S for one material. Lanes that a light does
 /// not reach have 0.
@@ -45,3 +49,5 @@ INNER bool put_factors(const glint_shade_light *light, const glint_shade_materia
     }
     return any;
 }
+
+#endif

@@ -1,4 +1,13 @@
 // planes: materials whose numbers differ from sample to sample, and are read from planes. Contract: stages.h, shade.
+#ifndef GLINT_SHADE_PLANES_H
+#define GLINT_SHADE_PLANES_H
+
+#include "engine/stages/program/exact.h"
+#include "engine/stages/shade/group.h"
+#include "engine/stages/shade/matt.h"
+#include "engine/stages/shade/microfacet_lobes.h"
+#include "engine/stages/shade/phong.h"
+#include "engine/stages/simd/elementary.h"
 
 /// The product of a plane and a light's colour, as share_color makes it.
 static inline vf plane_color(const float *plane, double light)
@@ -394,3 +403,5 @@ static __attribute__((noinline)) void shade_shaded(const glint_shade_args *args,
                           f_select(reached.part[i / VF], f_load(args->planes->shaded[term][c] + k), f_set(0)));
         }
 }
+
+#endif

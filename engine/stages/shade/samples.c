@@ -1,5 +1,8 @@
 // The colours of samples, and their sums.
-#include "engine/stages/simd/isa.h"
+#include "engine/stages/film/resolve.h"
+#include "engine/stages/film/samples.h"
+#include "engine/stages/shade/shade.h"
+#include "engine/stages/shade/sky.h"
 
 KERNEL(shade, glint_shade_args)
 #if GLINT_WITH_INDIRECT

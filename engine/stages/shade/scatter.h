@@ -1,4 +1,11 @@
 // scatter: directions around normals, as dense as their cosine. Contract: stages.h.
+#ifndef GLINT_SHADE_SCATTER_H
+#define GLINT_SHADE_SCATTER_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/shade/sequence.h"
+#include "engine/stages/simd/real.h"
 
 /// The point of the unit disk that a point of the unit square stands for: the radius is sqrt(u), the angle 2 pi v.
 static inline void R(disk_point)(vr u, vr v, vr *x, vr *y)
@@ -63,3 +70,5 @@ static void R(scatter)(const glint_scatter_args *args)
     if (count)
         R(scatter_groups)(args, groups, count);
 }
+
+#endif

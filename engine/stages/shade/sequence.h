@@ -1,5 +1,9 @@
 // sequence: points of scrambled Sobol sequences: plain loops over arrays, which compilers make vectors of. Each product waits for
 // the one before it: while one vector's does, another's is made. The arithmetic: base/sequence.c, glint_sequence_flipped.
+#ifndef GLINT_SHADE_SEQUENCE_H
+#define GLINT_SHADE_SEQUENCE_H
+
+#include "engine/stages/simd/elementary.h"
 
 #define DRAWN_GROUPS (VF < GLINT_GROUP ? 1 : 2) ///< drawn together, so that there are two vectors
 #define DRAWN (DRAWN_GROUPS * GLINT_GROUP)
@@ -77,3 +81,5 @@ static inline void scrambled_groups(const glint_scatter_args *args, const uint32
     scale_drawn(first, out[0]);
     scale_drawn(second, out[1]);
 }
+
+#endif

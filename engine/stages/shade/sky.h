@@ -1,4 +1,10 @@
 // sky: what rays that meet nothing bring. Contract: stages.h.
+#ifndef GLINT_SHADE_SKY_H
+#define GLINT_SHADE_SKY_H
+
+#include "engine/stages/program/exact.h"
+#include "engine/stages/shade/group.h"
+#include "engine/stages/simd/elementary.h"
 
 static void sky(const glint_sky_args *args)
 {
@@ -13,3 +19,5 @@ static void sky(const glint_sky_args *args)
             }
     }
 }
+
+#endif

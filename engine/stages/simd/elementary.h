@@ -3,7 +3,7 @@
 #define GLINT_ELEMENTARY_H
 
 #include "engine/stages/simd/coefficients.h"
-#include "engine/stages/stages.h"
+#include "engine/stages/simd/vector.h"
 
 /// In the innermost loops: inlined, however large the file has grown.
 #define INNER static __attribute__((always_inline)) inline

@@ -3,6 +3,8 @@
 #ifndef GLINT_REAL_H
 #define GLINT_REAL_H
 
+#include "engine/stages/simd/elementary.h"
+
 #if GLINT_REAL == 64
 #define real double
 #define vr vd

@@ -1,4 +1,12 @@
 // box: where rays from the eye meet a box, face by face: what a face is to all of them is found once. Contract: stages.h, surface.
+#ifndef GLINT_SURFACE_BOX_H
+#define GLINT_SURFACE_BOX_H
+
+#include "engine/stages/cast/box.h"
+#include "engine/stages/cast/face.h"
+#include "engine/stages/cast/solid.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/simd/real.h"
 
 /// A box as all rays of a camera see it.
 typedef struct R(box_view) {
@@ -159,3 +167,5 @@ static bool R(box_surface)(const glint_solid *solid, const glint_prim *prim, con
     return view->level ? R(find_on_box)(solid, prim, f, view, true, d, t, lanes, faces, n, p)
                        : R(find_on_box)(solid, prim, f, view, false, d, t, lanes, faces, n, p);
 }
+
+#endif

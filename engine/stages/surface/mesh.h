@@ -1,5 +1,9 @@
 // surface_mesh: groups that show several triangles: what surface needs of them is computed a vector at a time, each lane with
 // a triangle of its own. The arithmetic is that of triangle.h. Contract: stages.h, surface.
+#ifndef GLINT_SURFACE_MESH_H
+#define GLINT_SURFACE_MESH_H
+
+#include "engine/stages/simd/real.h"
 
 /// The triangles of a group, a lane each.
 typedef struct R(mesh_group) {
@@ -94,3 +98,5 @@ static void R(load_mesh)(const glint_surface_args *args, size_t at, unsigned lan
             d_store(mesh->normal[k] + i, n[k] / length);
     }
 }
+
+#endif

@@ -1,4 +1,9 @@
 // sphere: the point and the normal of hits of a sphere. Contract: stages.h, surface.
+#ifndef GLINT_SURFACE_SPHERE_H
+#define GLINT_SURFACE_SPHERE_H
+
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/simd/real.h"
 
 /// The normal as seen from so far that origin and sphere have no digits in common but the foot of the perpendicular.
 static inline void R(far_normal)(const vr f[3], const vr d[3], vr r2, vr n[3])
@@ -51,3 +56,5 @@ INNER void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_pri
     for (int k = 0; k < 3; k++)
         p[k] = r_set(prim->center[k]) + radius * n[k];
 }
+
+#endif

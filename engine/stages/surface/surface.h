@@ -1,5 +1,16 @@
 // surface: the point, the normal and the material of each hit. A group is worked off object by object: most groups
 // show one, whose numbers are then the same in every lane. Contract: stages.h.
+#ifndef GLINT_SURFACE_SURFACE_H
+#define GLINT_SURFACE_SURFACE_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/solid.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/simd/real.h"
+#include "engine/stages/surface/box.h"
+#include "engine/stages/surface/mesh.h"
+#include "engine/stages/surface/sphere.h"
 
 /// Brings points next to a plane of any normal onto it: what is left of their heights is a rounding of themselves, wherever the
 /// rays came from.
@@ -477,3 +488,5 @@ static void R(surface)(const glint_surface_args *args)
     else
         R(surface_groups)(args, R(BALLS_AND_PLANES));
 }
+
+#endif

@@ -1,4 +1,10 @@
 // vertex: what was worked out at the corners of a triangle, or once for its face, in each sample. Contract: stages.h.
+#ifndef GLINT_SURFACE_VERTEX_H
+#define GLINT_SURFACE_VERTEX_H
+
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/simd/real.h"
 
 /// Adds the light of one lane's sites; w: the weights of the corners.
 static inline void R(add_shading_points)(const glint_vertex_args *args, const glint_shading_points *shading_points,
@@ -57,3 +63,5 @@ static void R(vertex)(const glint_vertex_args *args)
         }
     }
 }
+
+#endif
