@@ -780,7 +780,10 @@ typedef struct glint_overlay_desc {
     bool has_length; ///< false: colour bar 10 times `size`, axes 2.5 times
     double length; ///< colour bar, axes: of the bar, of an axis that lies in the picture; points, 1 .. 10000
     glint_colormap map; ///< colour bar
+    bool has_colors; ///< true: colour bar of `colors` in place of `map`
+    uint32_t colors[256]; ///< from low to high, sRGB codes 0xRRGGBB
     double low, high; ///< colour bar: the numbers at its ends; finite, not the same; default 0, 1
+    bool is_log; ///< colour bar: equal factors are equally long; low and high are above 0
     glint_orientation orientation; ///< colour bar; default vertical
     double ticks[GLINT_OVERLAY_TICKS_MAX]; ///< colour bar: numbers written beside it, from low to high
     size_t tick_count; ///< 0: round numbers, about five

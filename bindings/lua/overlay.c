@@ -194,6 +194,56 @@ static void push_values(lua_State *L, const void *desc) { push_corners(L, ((cons
 
 static const char *const ORIENTATIONS[] = { "vertical", "horizontal", NULL };
 
+#define HEX(color, shift) ("0123456789abcdef"[(color) >> (shift) & 15])
+
+// The name of a map, or a list of colours. A function is not called here: it may close the bar.
+static void read_map(lua_State *L, int index, const char *path, void *desc)
+{
+    static const glintL_field name = { .name = "map", .kind = GLINTL_ENUM, .names = glintL_colormaps };
+    desc_type *d = desc;
+    uint8_t rgb[256][3];
+    unsigned which;
+    d->has_colors = lua_istable(L, index);
+    if (!d->has_colors) {
+        if (lua_isfunction(L, index))
+            glintL_error(L, "%s: the name of a map or a list of colours expected, got function; list the colours that it gives", path);
+        glintL_read_field(L, index, "colorbar", &name, &which);
+        d->map = (glint_colormap)which;
+        return;
+    }
+    glintL_read_colors(L, index, path, rgb);
+    for (int i = 0; i < 256; i++)
+        d->colors[i] = (uint32_t)rgb[i][0] << 16 | (uint32_t)rgb[i][1] << 8 | rgb[i][2];
+}
+
+static void push_map(lua_State *L, const void *desc)
+{
+    const desc_type *d = desc;
+    if (!d->has_colors) {
+        lua_pushstring(L, glintL_colormaps[d->map]);
+        return;
+    }
+    lua_createtable(L, 256, 0);
+    for (int i = 0; i < 256; i++) {
+        lua_pushfstring(L, "#%c%c%c%c%c%c", HEX(d->colors[i], 20), HEX(d->colors[i], 16), HEX(d->colors[i], 12), HEX(d->colors[i], 8),
+                        HEX(d->colors[i], 4), HEX(d->colors[i], 0));
+        lua_rawseti(L, -2, i + 1);
+    }
+}
+
+static const char *const SCALES[] = { "linear", "log", NULL };
+
+static void read_scale(lua_State *L, int index, const char *path, void *desc)
+{
+    static const glintL_field scale = { .name = "scale", .kind = GLINTL_ENUM, .names = SCALES };
+    unsigned which;
+    (void)path;
+    glintL_read_field(L, index, "colorbar", &scale, &which);
+    ((desc_type *)desc)->is_log = which == 1;
+}
+
+static void push_scale(lua_State *L, const void *desc) { lua_pushstring(L, SCALES[((const desc_type *)desc)->is_log]); }
+
 // clang-format off
 #define EVERY_OVERLAY \
     {.name = "at", .kind = GLINTL_CUSTOM, .read = read_at, .push = push_at}, \
@@ -215,11 +265,12 @@ static const glintL_field LABEL_FIELDS[] = {
 };
 
 static const glintL_field COLORBAR_FIELDS[] = {
-    { .name = "map", .kind = GLINTL_ENUM, .offset = AT(map), .names = glintL_colormaps, .required = true },
+    { .name = "map", .kind = GLINTL_CUSTOM, .required = true, .read = read_map, .push = push_map },
     { .name = "low", .kind = GLINTL_NUMBER, .offset = AT(low), .required = true },
     { .name = "high", .kind = GLINTL_NUMBER, .offset = AT(high), .required = true },
     { .name = "title", .kind = GLINTL_CUSTOM, .read = read_text, .push = push_text },
     { .name = "ticks", .kind = GLINTL_CUSTOM, .read = read_ticks, .push = push_ticks },
+    { .name = "scale", .kind = GLINTL_CUSTOM, .read = read_scale, .push = push_scale },
     { .name = "orientation", .kind = GLINTL_ENUM, .offset = AT(orientation), .names = ORIENTATIONS },
     LENGTH,
     EVERY_OVERLAY,

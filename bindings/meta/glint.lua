@@ -622,11 +622,12 @@ function label:close() end
 function glint.label(fields) end
 
 ---@class glint.colorbar_fields: glint.overlay_fields
----@field map "viridis"|"magma"|"cividis"|"turbo"|"coolwarm"  as of glint.colormap
+---@field map "viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|glint.color[]  as of glint.colormap
 ---@field low number  what its first colour stands for
 ---@field high number  and its last; not the same
 ---@field title? string  above it; as the text of a label. Default ""
 ---@field ticks? number[]  1 .. 16 numbers written beside it, from low to high. Default nil: round ones, as many as there is room for
+---@field scale? "linear"|"log"  as of glint.colormap. Default "linear"
 ---@field orientation? "vertical"|"horizontal"  Default "vertical", low at the bottom
 ---@field length? number  of the bar, points. Default nil: 10 times `size`
 

@@ -65,22 +65,24 @@ static void put_color(const double color[3], uint8_t out[3])
         out[c] = (uint8_t)(255 * color[c] + 0.5);
 }
 
-// The colours of the list at 1, evenly from low to high; between them codes are mixed, as in other programs' maps.
-static void read_list(lua_State *L, uint8_t rgb[ENTRIES][3])
+// Between two colours codes are mixed, as in other programs' maps.
+void glintL_read_colors(lua_State *L, int index, const char *what, uint8_t rgb[ENTRIES][3])
 {
-    char path[48];
-    const size_t count = glintL_check_list(L, 1, "colormap", false);
+    char path[96];
+    index = lua_absindex(L, index);
+    luaL_checkstack(L, 4, "colours");
+    const size_t count = glintL_check_list(L, index, what, false);
     if (count < 2)
-        glintL_error(L, "colormap: a list of at least two colours expected, got %d", (int)count);
+        glintL_error(L, "%s: a list of at least two colours expected, got %d", what, (int)count);
     for (int i = 0; i < ENTRIES; i++) {
         const double at = (double)i * (double)(count - 1) / (ENTRIES - 1);
         const size_t first = at < (double)(count - 1) ? (size_t)at : count - 2;
         double a[3], b[3];
-        snprintf(path, sizeof path, "colormap[%zu]", first + 1);
-        lua_rawgeti(L, 1, (lua_Integer)first + 1);
+        snprintf(path, sizeof path, "%.60s[%zu]", what, first + 1);
+        lua_rawgeti(L, index, (lua_Integer)first + 1);
         take_color(L, path, a);
-        snprintf(path, sizeof path, "colormap[%zu]", first + 2);
-        lua_rawgeti(L, 1, (lua_Integer)first + 2);
+        snprintf(path, sizeof path, "%.60s[%zu]", what, first + 2);
+        lua_rawgeti(L, index, (lua_Integer)first + 2);
         take_color(L, path, b);
         for (int c = 0; c < 3; c++)
             a[c] += (b[c] - a[c]) * (at - (double)first);
@@ -107,7 +109,7 @@ static void push_own_texture(lua_State *L)
     if (lua_isfunction(L, 1))
         read_function(L, rgb);
     else
-        read_list(L, rgb);
+        glintL_read_colors(L, 1, "colormap", rgb);
     push_new_texture(L, rgb);
 }
 

@@ -296,7 +296,7 @@ typedef struct glintL_class {
     const luaL_Reg *methods; ///< besides close; NULL: none
 } glintL_class;
 
-#define GLINTL_DESC_SIZE 1024
+#define GLINTL_DESC_SIZE 2048
 
 /// The class of a type, by the metatable glintL_open_class made.
 const glintL_class *glintL_class_of(lua_State *L, const char *type);
@@ -337,6 +337,8 @@ void glintL_open_params(lua_State *L);
 void glintL_open_animation(lua_State *L); ///< animation and sweep
 int luaopen_glint(lua_State *L);
 
+/// pattern/colormap.c: a list of colours, evenly from the first to the last, as 256 sRGB codes. Allocates nothing.
+void glintL_read_colors(lua_State *L, int index, const char *path, uint8_t rgb[256][3]);
 /// picture.c: glint.read_image.
 void glintL_open_picture(lua_State *L);
 /// Writes the four bytes of a float32, the least first; returns what is after them.

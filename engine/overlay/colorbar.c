@@ -24,14 +24,54 @@ static double pitch(const glint_layout *layout, const bar *b)
     return is_horizontal(layout) ? b->marks.widest + layout->em : layout->typeface.height * 1.25;
 }
 
+/// Adds a number where it lies on the bar.
+static void add_mark(const glint_layout *layout, bar *b, double value)
+{
+    const glint_overlay_desc *desc = layout->desc;
+    const int before = b->marks.count;
+    glint_marks_add(&b->marks, &layout->typeface, desc->low, desc->high, value, -1);
+    if (desc->is_log && b->marks.count > before)
+        b->marks.of[before].share = glint_log(value / desc->low) / glint_log(desc->high / desc->low);
+}
+
+/// Powers of ten, of few of them also twice and five times each; of many every second, third and so on. Of none, the ends.
+static void find_powers(const glint_layout *layout, bar *b)
+{
+    static const double factors[] = { 1, 2, 5 };
+    const glint_overlay_desc *desc = layout->desc;
+    const double low = fmin(desc->low, desc->high), high = fmax(desc->low, desc->high), ten = glint_log(10);
+    const int first = (int)ceil(glint_log(low) / ten - 1e-9), last = (int)floor(glint_log(high) / ten + 1e-9);
+    const double decades = glint_log(high / low) / ten;
+    const int factor_count = last - first < 2 ? 3 : 1;
+    int step = (last - first) / (GLINT_OVERLAY_TICKS_MAX - 1) + 1;
+    b->marks.widest = glint_typeface_width(&layout->typeface, "1e+00", 5);
+    while (step < last - first && step / decades * layout->length < pitch(layout, b))
+        step++;
+    b->marks.widest = 0;
+    for (int e = first - 1; e <= last; e += factor_count == 3 || e < first ? 1 : step)
+        for (int i = 0; i < factor_count; i++) {
+            const double value = factors[i] * glint_pow(10, e);
+            if (value >= low * (1 - 1e-9) && value <= high * (1 + 1e-9))
+                add_mark(layout, b, value);
+        }
+    if (b->marks.count)
+        return;
+    add_mark(layout, b, desc->low);
+    add_mark(layout, b, desc->high);
+}
+
 static void find_marks(const glint_layout *layout, bar *b)
 {
     const glint_overlay_desc *desc = layout->desc;
     double steps = WANTED, share = 1;
     for (size_t i = 0; i < desc->tick_count; i++)
-        glint_marks_add(&b->marks, &layout->typeface, desc->low, desc->high, desc->ticks[i], -1);
+        add_mark(layout, b, desc->ticks[i]);
     if (desc->tick_count)
         return;
+    if (desc->is_log) {
+        find_powers(layout, b);
+        return;
+    }
     do {
         share = glint_marks_round(&b->marks, &layout->typeface, desc->low, desc->high, steps);
         steps /= 2;
@@ -76,7 +116,7 @@ void glint_colorbar_measure(glint_layout *layout)
 /// The colours, from x, y on: the first at the left or at the bottom.
 static void draw_colors(const glint_layout *layout, const bar *b, int x, int y)
 {
-    const uint32_t *table = glint_colormap_table(layout->desc->map);
+    const uint32_t *table = layout->desc->has_colors ? layout->desc->colors : glint_colormap_table(layout->desc->map);
     int from = 0;
     for (int i = 0; i < COLORS; i++) {
         const int to = (int)((int64_t)b->length * (i + 1) / COLORS);

@@ -64,6 +64,9 @@ static glint_status check_bar(const glint_overlay_desc *desc, glint_error *error
     if (!isfinite(desc->high - desc->low))
         return glint_fail(error, GLINT_ERR_INVALID, "high: number at a finite distance from low (%.15g) expected, got %.15g",
                           desc->low, desc->high);
+    if (desc->is_log && !(desc->low > 0 && desc->high > 0))
+        return glint_fail(error, GLINT_ERR_INVALID, "low: numbers above 0 at both ends of a logarithmic bar expected, got %.15g and %.15g",
+                          desc->low, desc->high);
     if (desc->tick_count > GLINT_OVERLAY_TICKS_MAX)
         return glint_fail(error, GLINT_ERR_INVALID, "ticks: at most %d numbers expected, got %zu",
                           GLINT_OVERLAY_TICKS_MAX, desc->tick_count);

@@ -90,6 +90,10 @@ glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key)
         key = place_key(d, key);
         if (d->kind == GLINT_OVERLAY_COLORBAR)
             key = glint_key_add(glint_key_add(key, bar, sizeof bar), d->ticks, d->tick_count * sizeof *d->ticks);
+        if (d->kind == GLINT_OVERLAY_COLORBAR && d->is_log)
+            ADD(key, d->is_log);
+        if (d->kind == GLINT_OVERLAY_COLORBAR && d->has_colors)
+            ADD(key, d->colors);
         if (d->kind != GLINT_OVERLAY_AXES)
             continue;
         ADD(key, overlays->view);

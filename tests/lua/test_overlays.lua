@@ -125,6 +125,41 @@ function tests.errors()
 end
 
 -- What is there of a picture: with a label another file, the same light; without it what it was.
+-- A logarithmic bar has powers of ten at equal distances; colours of one's own lie along it.
+function tests.bars_of_ones_own()
+  local function picture(fields)
+    local bar = { map = "viridis", low = 0.01, high = 100, size = 10, length = 100, ticks = { 0.1, 1, 10 }, position = { 5, 5 } }
+    for name, value in pairs(fields) do bar[name] = value end
+    local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }, glint.colorbar(bar) }
+    return scene:render { width = 80, height = 140 }
+  end
+  local function same(a, b)
+    local path, texts = os.tmpname(), {}
+    for i, image in ipairs { a, b } do
+      assert(image:save(path .. ".png"))
+      texts[i] = assert(io.open(path .. ".png", "rb")):read "a"
+    end
+    os.remove(path)
+    os.remove(path .. ".png")
+    return texts[1]:match "IDAT.*" == texts[2]:match "IDAT.*"
+  end
+  check(same(picture { scale = "log" }, picture { scale = "log", ticks = { 10, 0.1, 1 } }) == true, "ticks have places")
+  check(not same(picture { scale = "log" }, picture {}), "logarithmic marks are elsewhere")
+  check(same(picture { scale = "log", ticks = { 1 }, low = 0.01, high = 100 }, picture { ticks = { 1 }, low = -1, high = 3 }),
+    "the middle of four decades is half way")
+  local own = picture { map = { "red", "blue" } }
+  check(not same(own, picture {}), "own colours are others")
+  check(same(own, picture { map = glint.colorbar { map = { "red", "blue" }, low = 0, high = 1 }.map }), "they read as they are")
+  check(glint.colorbar { map = "magma", low = 1, high = 2 }.scale == "linear" and picture { scale = "log", ticks = nil })
+  for want, fields in pairs { ["colorbar.low: numbers above 0 at both ends"] = { low = 0, scale = "log" },
+    ["colorbar.map: a list of at least two colours expected, got 1"] = { map = { "red" } },
+    ["colorbar.scale: \"linear\" or \"log\" expected"] = { scale = "cubic" },
+    ["colorbar.map: the name of a map or a list of colours expected, got function"] = { map = function() end } } do
+    local good, message = pcall(picture, fields)
+    check(not good and tostring(message):find(want, 1, true), "%s expected, got %s", want, message)
+  end
+end
+
 function tests.pictures()
   local l = glint.label { text = "t = 0" }
   local scene = scene_of()
