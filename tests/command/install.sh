@@ -41,8 +41,8 @@ check "and has modules of its own" eval 'env -C "$work" -u LUA_PATH "$work/secon
 check "LUA_PATH comes first" eval '(cd "$work" && mkdir -p mine/glint && echo "return { new = true }" >mine/glint/particles.lua &&
     LUA_PATH="$work/mine/?.lua;;" "$prefix/bin/glint" own.lua 2>&1 | head -n 1 | grep -q mine/glint)'
 check "its page names the examples where they are" eval '! grep -qE "glint( [a-z]+)? scripts/" "$prefix/share/doc/glint/"*.md'
-check "and they run as it says" eval 'cd "$work" && PATH=$prefix/bin:$PATH &&
-    $(grep -oE "glint [^ ]*/workshop\.lua --help" "$prefix/share/doc/glint/examples.md") | grep -q "shininess"'
+check "and they run as it says" eval '(cd "$work" && PATH=$prefix/bin:$PATH &&
+    $(grep -oE "glint [^ ]*/workshop\.lua --help" "$prefix/share/doc/glint/examples.md") | grep -q "shininess")'
 check "an example, with its data" env -C "$work" "$prefix/bin/glint" "$prefix/share/glint/examples/molecule.lua" --size 32x24 -q
 for name in $(sed -nE '/share\/glint\/examples/,/share\/doc/p' bindings/glint.1 | grep -oE '[a-z_]+\.lua'); do
     check "the example $name of the manual page" test -s "$prefix/share/glint/examples/$name"

@@ -128,9 +128,9 @@ end
 -- A logarithmic bar has powers of ten at equal distances; colours of one's own lie along it.
 function tests.bars_of_ones_own()
   local function picture(fields)
-    local bar = { map = "viridis", low = 0.01, high = 100, size = 10, length = 100, ticks = { 0.1, 1, 10 }, position = { 5, 5 } }
-    for name, value in pairs(fields) do bar[name] = value end
-    local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }, glint.colorbar(bar) }
+    local given = { map = "viridis", low = 0.01, high = 100, size = 10, length = 100, ticks = { 0.1, 1, 10 }, position = { 5, 5 } }
+    for name, value in pairs(fields) do given[name] = value end
+    local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }, glint.colorbar(given) }
     return scene:render { width = 80, height = 140 }
   end
   local function same(a, b)
