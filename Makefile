@@ -599,7 +599,8 @@ pages: $(BUILD)/doc/data.md ## the installed manual by topic, in build/doc/
 	    sed -e 's|](\(\.\./\)*bindings/README\.md|](lua-and-command.md|g' -e 's|](engine/README\.md|](engine.md|g' \
 	        -e 's|](scripts/README\.md|](examples.md|g' -e 's|](farm/README\.md|](farms.md|g' \
 	        -e 's|](\.github/CHANGELOG\.md|](CHANGELOG.md|g' -e 's,](\([a-z_]*\.lua\)),](../../glint/examples/\1),g' \
-	        -e 's,](\([a-z_]*\.c\)),](../../glint/examples/\1),g' -e 's,\([ "]\)scripts/\([a-z_]*\.lua\|data/\),\1$(examples)/\2,g' \
+	        -e 's,](\([a-z_]*\.c\)),](../../glint/examples/\1),g' -e 's,\([ "]\)scripts/\([a-z_]*\.lua\),\1$(examples)/\2,g' \
+	        -e 's,\([ "]\)scripts/data/,\1$(examples)/data/,g' \
 	        -e 's|!\[[^]]*\]([^)]*)||g' -e 's|\[\([^]]*\)\]([a-z./]*/[A-Z]*\.md)|\1|g' "$${page#*:}" > "$(BUILD)/doc/$${page%%:*}" || exit 1; done
 
 # ---- The module for browsers and Node ----
