@@ -763,6 +763,14 @@ function tests.photometric()
   end
 end
 
+function tests.one_range_over_all_frames()
+  local head = "1\nProperties=species:S:1:pos:R:3:q:R:1\n"
+  local path = write("film.xyz", head .. "C 0 0 0 3\n" .. head .. "C 0 0 0 -2.5\n" .. head .. "C 0 0 0 7\n")
+  local low, high = particles.range(xyz.frames(path), "q")
+  check(low == -2.5 and high == 7, "range: %s to %s", low, high)
+  check(not pcall(particles.range, xyz.frames(path), "speed") and not pcall(particles.range, function() end, "q"))
+end
+
 -- --size and -o are obeyed, and Normal_gt.mat has the numbers of Normal_gt.npy, column by column.
 function tests.photometric_obeys_the_command_line()
   local script = root .. "/scripts/photometric.lua -q --set lights=2 --size 24x16 "

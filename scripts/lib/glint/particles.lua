@@ -78,6 +78,24 @@ function particles.new(options)
   }, set)
 end
 
+--- The lowest and the highest value of a column in all frames, for one range of colours over a film:
+--- low, high = particles.range(xyz.frames "melt.xyz", "c_pe").
+---@param list function  iterates over frames, as a reader's frames(path) does
+---@param column string
+function particles.range(list, column)
+  local low, high = math.huge, -math.huge
+  for frame in list do
+    for _, _, _, _, _, value in frame:atoms(column) do
+      if math.type(value) == nil or value - value ~= 0 then
+        frame:fail(("a finite number in the column %q"):format(column), tostring(value))
+      end
+      low, high = math.min(low, value), math.max(high, value)
+    end
+  end
+  if low > high then error("particles.range: frames with atoms expected, got none", 2) end
+  return low, high
+end
+
 local function known(label)
   local number = math.tointeger(tonumber(label:match "^type([1-9]%d?%d?)$"))
   if number then return label, { color = PALETTE[(number - 1) % #PALETTE + 1], radius = 0.5 } end
