@@ -189,7 +189,7 @@ $(foreach isa,$(KERNELS),$(foreach real,64 32,$(eval $(call stage_rule,$(isa).f$
 objects_of = $(foreach source,$(1),$(source:%.c=$(BUILD)/%.o) $(source:%.c=$(BUILD)/shared/%.o))
 UNROLLED := $(addprefix engine/,compare/flip.c frame/stats.c tile/batch.c $(addprefix effects/,adaptive/choose.c bounce/bounce.c \
               derivative/bend.c derivative/derivative.c derivative/fade.c derivative/shader.c environment/environment.c \
-              indirect/begin.c indirect/indirect.c pattern/inputs.c pattern/shader.c transparent_shadow/plan.c \
+              indirect/begin.c indirect/indirect.c light_groups/light_groups.c pattern/inputs.c pattern/shader.c transparent_shadow/plan.c \
               transparent_shadow/transparent_shadow.c))
 $(if $(filter-out $(ENGINE_SRC),$(UNROLLED)),$(error no such source: $(filter-out $(ENGINE_SRC),$(UNROLLED))))
 $(call objects_of,$(UNROLLED)): OWN := $(KERNEL_CFLAGS)

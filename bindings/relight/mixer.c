@@ -59,8 +59,8 @@ static void print_title(FILE *out, const char *text)
 }
 
 // What stands for @NAME@ in the page, but the pixels.
-static void print_value(FILE *out, const char *name, const cli_options *options, const relight_mix *mix, const char *file,
-                        const glint_image *image)
+static void print_value(FILE *out, const char *name, const cli_options *options, const relight_mix *mix,
+                        const char *file, const glint_image *image)
 {
     const char *title = options->title ? options->title : cli_base_name(file);
     if (strncmp(name, "VERSION", 7) == 0)
@@ -113,8 +113,8 @@ static glint_status append_pixels(glint_draft *draft, const glint_image *image, 
     return status;
 }
 
-static glint_status append_page(glint_draft *draft, const cli_options *options, const relight_mix *mix, const char *file,
-                                const glint_image *image, glint_error *error)
+static glint_status append_page(glint_draft *draft, const cli_options *options, const relight_mix *mix,
+                                const char *file, const glint_image *image, glint_error *error)
 {
     const char *at = PAGE, *end = PAGE + sizeof PAGE;
     glint_status status = GLINT_OK;
@@ -149,8 +149,10 @@ int relight_write_page(const cli_options *options, const relight_mix *mix, const
     glint_error error;
     const glint_tone_desc plain = glint_tone_desc_default();
     if (mix->tone.bits != plain.bits || mix->tone.transfer != plain.transfer || mix->tone.rounding != plain.rounding) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "-o %.200s: the page shows sRGB codes of 8 bits, rounded to the nearest; without --bits, --transfer "
-                 "and --rounding expected", options->output);
+        snprintf(message, GLINTL_MESSAGE_SIZE,
+                 "-o %.200s: the page shows sRGB codes of 8 bits, rounded to the nearest; without --bits, --transfer "
+                 "and --rounding expected",
+                 options->output);
         return GLINTL_EXIT_USAGE;
     }
     glint_status status = glint_draft_create(options->output, &draft, &error);

@@ -29,16 +29,17 @@ static bool take_value(relight_light *light, const char *value, char *message)
     char *end;
     const double strength = strtod(value, &end);
     if (end > value && *end == '\0') {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "--light %.*s: a finite strength >= 0, once, expected, got '%.80s'", (int)light->length,
-                 light->name, value);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "--light %.*s: a finite strength >= 0, once, expected, got '%.80s'",
+                 (int)light->length, light->name, value);
         const bool good = !light->has_strength && strength >= 0 && strength < HUGE_VAL;
         light->has_strength = true;
         light->strength = strength;
         return good;
     }
-    snprintf(message, GLINTL_MESSAGE_SIZE,
-             "--light %.*s: a strength such as 2 or a colour such as #ffd9a0 or orange, each once, expected, got '%.80s'",
-             (int)light->length, light->name, value);
+    snprintf(
+        message, GLINTL_MESSAGE_SIZE,
+        "--light %.*s: a strength such as 2 or a colour such as #ffd9a0 or orange, each once, expected, got '%.80s'",
+        (int)light->length, light->name, value);
     const bool good = !light->has_color && glintL_find_color(value, strlen(value), &light->color);
     light->has_color = true;
     return good;
@@ -62,7 +63,8 @@ static bool read_lights(relight_mix *mix, const cli_options *options, char *mess
         relight_light *light = find(mix, text, (size_t)(equals - text));
         if (!light) {
             light = &mix->lights[mix->count++];
-            *light = (relight_light) { .name = text, .length = (size_t)(equals - text), .strength = 1, .color = 0xffffff };
+            *light =
+                (relight_light) { .name = text, .length = (size_t)(equals - text), .strength = 1, .color = 0xffffff };
         }
         if (!take_value(light, equals + 1, message))
             return false;
@@ -95,9 +97,11 @@ static bool check_lights(const relight_mix *mix, const glint_image *image, const
         if (found)
             continue;
         if (near && strcmp(near, GLINT_LIGHT_OTHER) != 0)
-            snprintf(message, GLINTL_MESSAGE_SIZE, "--light %s: %.200s has no light pass of that name; did you mean '%s'?", wanted, path, near);
+            snprintf(message, GLINTL_MESSAGE_SIZE,
+                     "--light %s: %.200s has no light pass of that name; did you mean '%s'?", wanted, path, near);
         else
-            snprintf(message, GLINTL_MESSAGE_SIZE, "--light %s: %.200s has no light pass of that name; it has %s", wanted, path, all);
+            snprintf(message, GLINTL_MESSAGE_SIZE, "--light %s: %.200s has no light pass of that name; it has %s",
+                     wanted, path, all);
         return false;
     }
     return true;

@@ -64,7 +64,8 @@ glint_status glintL_check_light_passes(const glint_scene *scene, const glintL_re
             return GLINT_OK;
         error->status = GLINT_ERR_INVALID;
         snprintf(error->message, sizeof error->message,
-                 "passes: light:%s: the scene has no light of that group or name; did you mean 'light:%s'?", name, near);
+                 "passes: light:%s: the scene has no light of that group or name; did you mean 'light:%s'?", name,
+                 near);
         return error->status;
     }
     return GLINT_OK;

@@ -51,12 +51,15 @@ static float *plane_of(const glint_image *image, const char *channel)
         return image->light[find_light(image, name)][c];
     if (strcmp(channel, "A") == 0)
         return image->plane[GLINT_PASS_ALPHA][0];
-    return strlen(channel) == 1 && strchr("RGB", *channel) ? image->plane[GLINT_PASS_BEAUTY][*channel == 'R' ? 0 : *channel == 'G' ? 1 : 2]
+    return strlen(channel) == 1 && strchr("RGB", *channel) ? image->plane[GLINT_PASS_BEAUTY][*channel == 'R'   ? 0
+                                                                                             : *channel == 'G' ? 1
+                                                                                                               : 2]
                                                            : NULL;
 }
 
 /// Makes the image that the file's channels fill.
-static glint_status make_image(exr_input *file, const exr_attr_chlist_t *channels, int width, int height, glint_error *error)
+static glint_status make_image(exr_input *file, const exr_attr_chlist_t *channels, int width, int height,
+                               glint_error *error)
 {
     char(*names)[GLINT_NAME_SIZE] = calloc((size_t)channels->num_channels + 1, sizeof *names), name[GLINT_NAME_SIZE];
     uint32_t passes = 0, colors = 0;
@@ -84,7 +87,8 @@ static glint_status make_image(exr_input *file, const exr_attr_chlist_t *channel
     if (count == 0)
         status = glint_fail(error, GLINT_ERR_FORMAT, "no light passes; --passes 'light:*' writes them into an .exr");
     else if (colors != 3 || parts != 3 * count)
-        status = glint_fail(error, GLINT_ERR_FORMAT, "channels R, G and B of the picture and of each light pass expected");
+        status =
+            glint_fail(error, GLINT_ERR_FORMAT, "channels R, G and B of the picture and of each light pass expected");
     if (!status)
         status = glint_image_create(width, height, passes | 1u << GLINT_PASS_BEAUTY, NULL, &file->image, error);
     if (!status)
@@ -119,7 +123,8 @@ static exr_result_t read_rows(exr_input *file, int top)
         exr_chunk_info_t chunk;
         result = exr_read_scanline_chunk_info(file->context, 0, top + y, &chunk);
         if (!result)
-            result = y ? exr_decoding_update(file->context, 0, &chunk, &pipe) : exr_decoding_initialize(file->context, 0, &chunk, &pipe);
+            result = y ? exr_decoding_update(file->context, 0, &chunk, &pipe)
+                       : exr_decoding_initialize(file->context, 0, &chunk, &pipe);
         if (result)
             break;
         aim(file, &pipe, y);
@@ -172,10 +177,10 @@ glint_status glint_lights_read(const char *path, glint_image **out, glint_error 
     glint_error inner;
     how.error_handler_fn = drop_message;
     const exr_result_t opened = exr_start_read(&file.context, path, &how);
-    glint_status status = opened == EXR_ERR_FILE_ACCESS   ? glint_fail(&inner, GLINT_ERR_IO, "it cannot be read")
+    glint_status status = opened == EXR_ERR_FILE_ACCESS     ? glint_fail(&inner, GLINT_ERR_IO, "it cannot be read")
                           : opened == EXR_ERR_OUT_OF_MEMORY ? glint_fail_nomem(&inner)
-                          : opened                        ? glint_fail(&inner, GLINT_ERR_FORMAT, "an OpenEXR file expected")
-                                                          : read_part(&file, &inner);
+                          : opened ? glint_fail(&inner, GLINT_ERR_FORMAT, "an OpenEXR file expected")
+                                   : read_part(&file, &inner);
     if (!opened)
         exr_finish(&file.context);
     if (status) {

@@ -49,13 +49,15 @@ glint_status glint_image_split_rest(glint_image *image, bool half, glint_error *
     return GLINT_OK;
 }
 
-glint_status glint_image_relight(const glint_image *lights, const double (*factors)[3], glint_image **out, glint_error *error)
+glint_status glint_image_relight(const glint_image *lights, const double (*factors)[3], glint_image **out,
+                                 glint_error *error)
 {
     const size_t pixels = (size_t)lights->width * (size_t)lights->height;
     const bool alpha = lights->plane[GLINT_PASS_ALPHA][0];
     glint_image *image = NULL;
     glint_status status =
-        glint_image_create(lights->width, lights->height, 1u << GLINT_PASS_BEAUTY | (uint32_t)alpha << GLINT_PASS_ALPHA, NULL, &image, error);
+        glint_image_create(lights->width, lights->height, 1u << GLINT_PASS_BEAUTY | (uint32_t)alpha << GLINT_PASS_ALPHA,
+                           NULL, &image, error);
     if (status)
         return status;
     image->alpha = lights->alpha;

@@ -58,9 +58,11 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->gathered = glint_gathered_create()) && good;
     if (has_soft_shadows(plan) && !tile->shadow_room)
         good = (tile->shadow_room = glint_alloc_large(1, GLINT_OCCLUDE_ROOM)) && good;
-    glint_group_sums_destroy(tile->group_sums); // its size is the plan's
-    tile->group_sums = NULL;
-    if (plan->light_groups)
+    if (!glint_group_sums_fit(tile->group_sums, plan)) {
+        glint_group_sums_destroy(tile->group_sums);
+        tile->group_sums = NULL;
+    }
+    if (plan->light_groups && !tile->group_sums)
         good = (tile->group_sums = glint_group_sums_create(plan)) && good;
     return fit_pattern(tile, plan) && good;
 }

@@ -16,11 +16,12 @@ typedef double term_sums[SUMS][3][GLINT_TILE_SAMPLES];
 
 struct glint_group_sums {
     _Alignas(64) double local[GLINT_TERM_LOCAL][3][GLINT_TILE_SAMPLES]; ///< of one call of shade without lights
-    uint32_t count;
+    uint32_t count, pass_count;
     term_sums *sum; ///< of each group
     double (*faded)[3][GLINT_TILE_SAMPLES]; ///< of each group, over the samples that are done; NULL: nothing fades
     float (*mean)[3][GLINT_TILE_SAMPLES]; ///< of each pass
-    struct glint_group_sums *batch, *sites; ///< of rays that left surfaces, and of faces and vertices; owned by the tile's own
+    struct glint_group_sums *batch,
+        *sites; ///< of rays that left surfaces, and of faces and vertices; owned by the tile's own
 };
 
 // ---- Memory ----
@@ -59,6 +60,7 @@ struct glint_group_sums *glint_group_sums_create(const glint_plan *plan)
     struct glint_group_sums *sums = create(groups->count);
     if (!sums)
         return NULL;
+    sums->pass_count = groups->pass_count;
     bool good = (sums->mean = glint_alloc(groups->pass_count, sizeof *sums->mean)) != NULL;
     if (plan->runs[GLINT_STAGE_DEPTH_CUE])
         good = (sums->faded = glint_alloc(groups->count, sizeof *sums->faded)) && good;
@@ -72,6 +74,16 @@ struct glint_group_sums *glint_group_sums_create(const glint_plan *plan)
         return sums;
     glint_group_sums_destroy(sums);
     return NULL;
+}
+
+bool glint_group_sums_fit(const struct glint_group_sums *sums, const glint_plan *plan)
+{
+    const struct glint_light_groups *groups = plan->light_groups;
+    const bool rays = plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT];
+    if (!sums || !groups)
+        return !sums && !groups;
+    return sums->count == groups->count && sums->pass_count == groups->pass_count && !sums->batch == !rays &&
+           !sums->sites == !plan->runs[GLINT_STAGE_VERTEX] && !sums->faded == !plan->runs[GLINT_STAGE_DEPTH_CUE];
 }
 
 struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool sites)
@@ -127,7 +139,8 @@ static void shade_ambient(const glint_tile *tile, const glint_tile_frame *frame,
                 tile->group_sums->sum[g][OTHER][c][i] += groups->ambient[g][c] * local[GLINT_TERM_AMBIENT][c][i];
 }
 
-void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t group)
+void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args,
+                            uint32_t group)
 {
     glint_shade_args own = *args;
     if (!frame->plan->light_groups || group == GLINT_NO_GROUP || args->light_count == 0)
@@ -142,8 +155,9 @@ void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, con
 
 /// Fills in the lights of a call that belong to a group, and the next group that any belongs to. Samples of a light whose sum stands
 /// in the first of them have no place of their own in the call.
-static uint32_t choose_lights(const glint_tile *tile, const glint_plan_light *rows, uint32_t count, const glint_shade_light *lights,
-                              uint32_t group, glint_shade_light *chosen, uint32_t *next)
+static uint32_t choose_lights(const glint_tile *tile, const glint_plan_light *rows, uint32_t count,
+                              const glint_shade_light *lights, uint32_t group, glint_shade_light *chosen,
+                              uint32_t *next)
 {
     uint32_t chosen_count = 0, at = 0;
     *next = GLINT_NO_GROUP;
@@ -159,7 +173,8 @@ static uint32_t choose_lights(const glint_tile *tile, const glint_plan_light *ro
     return chosen_count;
 }
 
-void glint_groups_shade(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from, uint32_t count)
+void glint_groups_shade(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from,
+                        uint32_t count)
 {
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
     glint_shade_args own = *args;
@@ -237,36 +252,61 @@ void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, 
 
 // ---- The picture ----
 
-/// What a group has of a pixel in all samples.
-static double light_of(const struct glint_group_sums *sums, uint32_t group, int c, uint32_t i)
+/// What a group has of `count` pixels in all samples, in a channel.
+static void take_light(const struct glint_group_sums *sums, uint32_t group, int c, uint32_t count,
+                       double *restrict light)
 {
-    return sums->faded ? sums->faded[group][c][i] : sum_of(sums, group, c, i);
+    const double *diffuse = sums->sum[group][DIFFUSE][c], *specular = sums->sum[group][SPECULAR][c],
+                 *other = sums->sum[group][OTHER][c];
+    if (sums->faded) {
+        memcpy(light, sums->faded[group][c], count * sizeof *light);
+        return;
+    }
+    for (uint32_t i = 0; i < count; i++)
+        light[i] = (diffuse[i] + specular[i]) + other[i];
 }
 
-/// The light of a pixel that no lamp sends.
-static double rest_of(const glint_tile *tile, const glint_plan *plan, int c, uint32_t i)
+/// Adds it to the light of all lamps. mean: of a pass; NULL: the group has none.
+static void add_light(const double *restrict light, uint32_t count, double samples, double *restrict lamps,
+                      float *restrict mean)
 {
-    double all = 0, lamps = 0;
-    for (int k = 0; k < GLINT_TERM_COUNT; k++)
-        if (glint_plan_has_term(plan, (glint_term)k))
-            all += tile->film.sum[k][c][i];
-    for (uint32_t g = 0; g < plan->light_groups->count; g++)
-        if (g != plan->light_groups->rest)
-            lamps += light_of(tile->group_sums, g, c, i);
-    const double rest = all - lamps;
-    return fabs(rest) <= (plan->runs[GLINT_STAGE_VERTEX] ? ROUNDING_OF_SITES : ROUNDING) * all ? 0 : rest;
+    for (uint32_t i = 0; i < count; i++)
+        lamps[i] += light[i];
+    for (uint32_t i = 0; mean && i < count; i++)
+        mean[i] = (float)(light[i] / samples);
+}
+
+/// The mean of the light that no lamp sends, in a channel of all pixels. lamps: the sums of all groups.
+static void find_rest(const glint_tile *tile, const glint_plan *plan, int c, const double *lamps, float *mean)
+{
+    const double rounding = plan->runs[GLINT_STAGE_VERTEX] ? ROUNDING_OF_SITES : ROUNDING;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        double all = 0;
+        for (int k = 0; k < GLINT_TERM_COUNT; k++)
+            if (glint_plan_has_term(plan, (glint_term)k))
+                all += tile->film.sum[k][c][i];
+        const double rest = all - lamps[i];
+        mean[i] = (float)((fabs(rest) <= rounding * all ? 0 : rest) / plan->desc.samples);
+    }
 }
 
 void glint_groups_resolve(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const struct glint_light_groups *groups = frame->plan->light_groups;
     const double samples = frame->plan->desc.samples;
-    for (uint32_t g = 0; groups && g < groups->pass_count; g++)
-        for (int c = 0; c < 3; c++)
-            for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-                const double light = g == groups->rest ? rest_of(tile, frame->plan, c, i) : light_of(tile->group_sums, g, c, i);
-                tile->group_sums->mean[g][c][i] = (float)(light / samples);
-            }
+    const uint32_t count = tile->group_count * GLINT_GROUP;
+    for (int c = 0; groups && c < 3; c++) {
+        double lamps[GLINT_TILE_SAMPLES] = { 0 };
+        for (uint32_t g = 0; g < groups->count; g++) {
+            double light[GLINT_TILE_SAMPLES];
+            if (g == groups->rest)
+                continue;
+            take_light(tile->group_sums, g, c, count, light);
+            add_light(light, count, samples, lamps, g < groups->pass_count ? tile->group_sums->mean[g][c] : NULL);
+        }
+        if (groups->rest != GLINT_NO_GROUP)
+            find_rest(tile, frame->plan, c, lamps, tile->group_sums->mean[groups->rest][c]);
+    }
 }
 
 void glint_groups_take_base(const glint_tile *tile, const glint_tile_frame *frame)

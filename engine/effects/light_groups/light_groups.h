@@ -11,14 +11,18 @@
 
 struct glint_group_sums *glint_group_sums_create(const glint_plan *plan);
 void glint_group_sums_destroy(struct glint_group_sums *sums); ///< NULL: nothing
+bool glint_group_sums_fit(const struct glint_group_sums *sums,
+                          const glint_plan *plan); ///< NULL fits frames without light passes
 /// The sums of a batch that is made for a tile; sites: of faces and vertices. NULL: the frame has no light passes.
 struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool sites);
 
 /// Begins a tile's sums; then, for each call of shade, adds what its lights give, and the ambient light that lights bring where it has `first`.
 void glint_groups_begin(glint_tile *tile, const glint_plan *plan);
 /// The lights of the call are `count` rows of the plan from row `from` on, by glint_tile_shade_args; or all of one group.
-void glint_groups_shade(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from, uint32_t count);
-void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t group);
+void glint_groups_shade(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from,
+                        uint32_t count);
+void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args,
+                            uint32_t group);
 /// Where the diffuse and specular light of a group is summed.
 double (*glint_group_sum(const glint_tile *tile, uint32_t group))[3][GLINT_TILE_SAMPLES];
 /// A light of this group shows `light` to pixel i.

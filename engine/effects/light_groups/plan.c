@@ -70,7 +70,8 @@ static glint_status add_pass(groups *g, const char *name, glint_error *error)
         return GLINT_OK;
     if (!is_usable(name))
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "light '%s': a group or name without , / \\ * \" and control characters, and no space or '.' first, expected for its "
+                          "light '%s': a group or name without , / \\ * \" and control characters, and no space or '.' "
+                          "first, expected for its "
                           "light pass",
                           name);
     if (strcmp(name, GLINT_LIGHT_REST) == 0)
@@ -94,7 +95,8 @@ static glint_status add_entry(groups *g, const glint_scene *scene, const char *n
     if (strcmp(name, GLINT_LIGHT_REST) == 0 || is_group(scene, name))
         return add_pass(g, name, error);
     list_groups(scene, all);
-    return glint_fail(error, GLINT_ERR_INVALID, "light_passes: no light of the scene has the group or name '%s'; it has %s", name, all);
+    return glint_fail(error, GLINT_ERR_INVALID,
+                      "light_passes: no light of the scene has the group or name '%s'; it has %s", name, all);
 }
 
 static glint_status read_list(groups *g, const glint_scene *scene, const char *list, glint_error *error)
@@ -182,7 +184,8 @@ glint_status glint_plan_find_light_groups(glint_plan *plan, const glint_scene *s
     for (size_t i = 0; i < scene->lights.count; i++) {
         glint_scene_light_pass(scene, i, own);
         if (strcmp(own, GLINT_LIGHT_REST) == 0)
-            return glint_fail(error, GLINT_ERR_INVALID, "light '%s': another name expected: its light pass is of the light that no lamp sends",
+            return glint_fail(error, GLINT_ERR_INVALID,
+                              "light '%s': another name expected: its light pass is of the light that no lamp sends",
                               own);
     }
     glint_status status = read_list(g, scene, list, error);
@@ -243,7 +246,8 @@ glint_key glint_light_pass_key(const glint_plan *plan, uint32_t pass, glint_key 
 bool glint_light_groups_equal(const glint_plan *a, const glint_plan *b)
 {
     const groups *g = a->light_groups, *h = b->light_groups;
-    return !g == !h && (!g || (strcmp(g->list, h->list) == 0 && g->count == h->count && !g->has_ambient && !h->has_ambient));
+    return !g == !h &&
+           (!g || (strcmp(g->list, h->list) == 0 && g->count == h->count && !g->has_ambient && !h->has_ambient));
 }
 
 const char *glint_plan_light_pass(const glint_plan *plan, size_t index)
