@@ -76,6 +76,11 @@ ifeq ($(call have,freetype2),yes)
   FONT_CFLAGS := -DGLINT_HAVE_FREETYPE $(shell pkg-config --cflags freetype2)
   FONT_LIBS := $(shell pkg-config --libs freetype2)
 endif
+# Likewise: JPEG pictures as textures.
+ifeq ($(call have,libjpeg),yes)
+  JPEG_CFLAGS := -DGLINT_HAVE_JPEG $(shell pkg-config --cflags libjpeg)
+  JPEG_LIBS := $(shell pkg-config --libs libjpeg)
+endif
 # Likewise: what draws in terminals.
 ifeq ($(call have,libsixel),yes)
   SIXEL_CFLAGS := -DGLINT_HAVE_SIXEL $(shell pkg-config --cflags libsixel)
@@ -123,7 +128,7 @@ COMPILE := $(HERE) -I. -I$(BUILD) $(DEFINES) $(shell pkg-config --cflags $(PACKA
            $(filter-out $(UNWANTED),$(CFLAGS)) $(STRICT) $(MOVES) $(SAN_FLAGS) $(PTHREAD)
 LUA_CFLAGS := $(shell pkg-config --cflags $(LUA_PACKAGE) 2>/dev/null)
 LUA_LIBS   := $(shell pkg-config --libs $(LUA_PACKAGE) 2>/dev/null)
-LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(FONT_LIBS) $(SIXEL_LIBS) $(EXR_LIBS) -lm $(PTHREAD)
+LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(FONT_LIBS) $(JPEG_LIBS) $(SIXEL_LIBS) $(EXR_LIBS) -lm $(PTHREAD)
 TEST_LIBS  := $(shell pkg-config --libs cmocka 2>/dev/null) $(if $(call have,mpfr),$(shell pkg-config --libs mpfr))
 LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(if $(WASM),,$(LINK_NEEDED))
 
@@ -196,6 +201,7 @@ $(call objects_of,$(UNROLLED)): OWN := $(KERNEL_CFLAGS)
 $(call objects_of,engine/stages/simd/select.c): OWN := $(KERNELS:%=-DGLINT_KERNEL_%)
 $(call objects_of,engine/stages/simd/select.c): $(BUILD)/kernels
 $(call objects_of,engine/text/letters.c): OWN := $(FONT_CFLAGS)
+$(call objects_of,engine/file/jpeg.c): OWN := $(JPEG_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)
 
@@ -262,7 +268,7 @@ $(BUILD)/$(SHARED): $(SHARED_OBJ) $(BUILD)/libglint.map
 shared: $(BUILD)/$(SHARED) ## the shared library, build/libglint.so.VERSION
 
 # Other flags or libraries than last time: everything is compiled again. Other kernels: only their table is.
-$(BUILD)/flags: SAID = $(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(SIXEL_CFLAGS)
+$(BUILD)/flags: SAID = $(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(JPEG_CFLAGS) $(SIXEL_CFLAGS)
 $(BUILD)/kernels: SAID = $(KERNELS)
 $(BUILD)/flags $(BUILD)/kernels: FORCE
 	@mkdir -p $(@D)
@@ -681,7 +687,7 @@ export INSTALLED
 
 $(BUILD)/glint.pc: engine/glint.pc.in FORCE
 	@sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(libdir)|' -e 's|@includedir@|$(incdir)|' \
-	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES) $(if $(FONT_LIBS),freetype2)|' -e 's|@private@|$(EXR_LIBS)|' $< > $@
+	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES) $(if $(FONT_LIBS),freetype2) $(if $(JPEG_LIBS),libjpeg)|' -e 's|@private@|$(EXR_LIBS)|' $< > $@
 
 $(BUILD)/completion/%: $(BUILD)/glint
 	@mkdir -p $(@D)

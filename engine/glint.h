@@ -272,7 +272,7 @@ typedef enum glint_filter {
 
 /// The fields of a texture.
 typedef struct glint_texture_desc {
-    const char *path; ///< a .png; NULL: `rgb`
+    const char *path; ///< a .png, or .jpg where the build has libjpeg; NULL: `rgb`
     const uint8_t *rgb; ///< red, green and blue of each pixel, codes of 8 bits, top row first; borrowed for the call
     int width, height; ///< of `rgb`, pixels, >= 1
     glint_wrap wrap; ///< default repeat
@@ -692,15 +692,15 @@ glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, g
 /// when it is not as it should be, with the number of the line, or of the vertex or face. By the ending of the name:
 ///
 /// .stl  text or binary; corners at one place are one vertex. Normals are those of the faces, whatever the file says.
-/// .ply  text or binary, of either byte order: vertices (x y z, nx ny nz, u v or s t) and faces. Where `desc`
-///       has no material and vertices or faces have red, green and blue of 8 bits, sRGB codes, each face has a material of its
-///       colour, named by it ("#ff8000"): its own, or the mean of its corners' light, rounded to 8 bits.
-/// else  Wavefront .obj: v, vt, vn and f (any polygon; v, v/vt, v//vn, v/vt/vn; numbers from the end where negative), and where
-///       `desc` has no material usemtl and mtllib: a material by name with the file's Kd, Ks, Ns, d or Tr, and map_Kd,
-///       map_Ks, map_d (where red is below one half there is a hole) and map_Bump (grey, with its -bm as height); .png. What lets light through (d < 1) is not refracted, and leaves d of Kd and Ks. Groups, lines and points
-///       are passed over.
-///
-/// Of .stl and .ply, faces without an area are left out.
+/// .ply  text or binary, of either byte order: vertices (x y z, nx ny nz, u v or s t), faces (texcoord) and tristrips. Where `desc` has no
+///       material: a comment TextureFile names the picture of the diffuse colour; else red, green and blue of 8 bits, sRGB codes, give
+///       each face a material of its colour, named by it ("#ff8000"): its own, or the mean of its corners' light, rounded to 8 bits.
+/// else  Wavefront .obj: v (x y z, and r g b as in .ply), vt, vn and f (any polygon; numbers from the end where negative), and, where `desc`
+///       has no material, usemtl and mtllib: Kd, Ks, Ns, d (or Tr), Pr and Pm (microfacets), illum 3 .. 7 (mirror of Ks; 5, 7 fresnel; 6, 7 Ni),
+///       map_Kd, map_Ks, map_d (holes where red is below one half), map_Bump (grey, -bm is its height). d < 1 is not refracted otherwise, and
+///       leaves d of Kd and Ks. Groups, lines and points are passed over.
+/// Faces without an area, of fewer than 3 corners or of vertices that are not finite are left out, polygons that cross themselves are cut as
+/// fans, normals of length 0 are none, wrong lines of .mtl files and unknown statements are passed over: one call of `warns` a kind.
 glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
 /// A sphere of `segments` (whole number, 3 .. 16384) around the equator and half as many, rounded up, from pole to pole,
 /// with the sphere's own normals at the vertices. `desc` gives shading (default phong), material, sides and name.

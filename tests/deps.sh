@@ -20,6 +20,7 @@ libdeflate-dev  module:libdeflate
 libopenexr-dev  module:OpenEXR
 libfreetype-dev module:freetype2
 fonts-dejavu-core file:/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf
+libjpeg-dev     module:libjpeg
 libsixel-dev    module:libsixel
 libseccomp-dev  module:libseccomp
 '
@@ -156,7 +157,7 @@ for what in "$@"; do
         ;;
     build)
         require "$build_required"
-        prefer "$build_optional" "without libisal and libdeflate PNG files are written with zlib, without libopenexr there is no .exr, without libfreetype and a font text is of a bitmap font, without libseccomp there is no --untrusted"
+        prefer "$build_optional" "without libisal and libdeflate PNG files are written with zlib, without libopenexr there is no .exr, without libfreetype and a font text is of a bitmap font, without libjpeg there are no JPEG textures, without libseccomp there is no --untrusted"
         ;;
     test)
         require "$test_required"

@@ -1,12 +1,14 @@
 #include "engine/file/file.h"
 
 #include "engine/base/status.h"
+#include "engine/file/jpeg.h"
 #include "engine/file/pfm.h"
 #include "engine/file/png.h"
 
 #include <errno.h>
 #include <unistd.h>
 
+#define JPEG_LIMIT ((size_t)1 << 28) ///< bytes
 #define PICTURE_LIMIT ((size_t)1 << (sizeof(size_t) > 4 ? 34 : 31))
 #define HEAD_BYTES ((size_t)65536) // what says how large the picture is fits into it
 #define SLACK_BYTES ((size_t)64 << 20) // of a picture, for what is no pixel
@@ -37,7 +39,7 @@ static size_t picture_bound(const glint_bytes *head)
     if (pfm)
         return (size_t)pfm + SLACK_BYTES;
     if (!png)
-        return 0;
+        return glint_is_jpeg(head->data, head->size) ? JPEG_LIMIT : 0;
     return png < PICTURE_LIMIT / STORED_TIMES ? (size_t)png * STORED_TIMES + SLACK_BYTES : PICTURE_LIMIT;
 }
 

@@ -4,6 +4,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/file/file.h"
+#include "engine/file/jpeg.h"
 #include "engine/file/png.h"
 
 #include <stdlib.h>
@@ -124,6 +125,8 @@ static bool fill(glint_texture *texture, const glint_png *png, bool linear)
 static glint_status decode(const glint_bytes *bytes, glint_png *png, bool *linear, glint_error *error)
 {
     glint_png_head head;
+    if (glint_is_jpeg(bytes->data, bytes->size))
+        return glint_jpeg_decode(bytes->data, bytes->size, TEXELS_MAX, png, error);
     glint_status status = glint_png_scan(bytes->data, bytes->size, &head, NULL, NULL, error);
     if (status)
         return status;

@@ -254,5 +254,41 @@ function tests.formats_that_are_not_read()
   end
 end
 
+-- Pictures of 8 x 8 pixels of one colour, rgb(200, 40, 90), and of grey, 128.
+local JPEG <const> = "ffd8ffdb0043000201010101010201010102020202020403020202020504040304060506060605060606070908060709070606080b08090a0a0a0a0a" ..
+  "06080b0c0b0a0c090a0a0affdb004301020202020202050303050a0706070a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a" ..
+  "0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0affc00011080008000803012200021101031101ffc400150001010000000000000000000000000000" ..
+  "0008ffc40014100100000000000000000000000000000000ffc4001501010100000000000000000000000000000409ffc40014110100000000000000" ..
+  "000000000000000000ffda000c03010002110311003f009dc01d4c1fffd9"
+local GREY <const> = "ffd8ffdb0043000201010101010201010102020202020403020202020504040304060506060605060606070908060709070606080b08090a0a0a0a0a" ..
+  "06080b0c0b0a0c090a0a0affc0000b080008000801011100ffc40014000100000000000000000000000000000000ffc4001410010000000000000000" ..
+  "0000000000000000ffda0008010100003f003fffd9"
+
+local function bytes_of(hex)
+  return (hex:gsub("%x%x", function(digits) return string.char(tonumber(digits, 16)) end))
+end
+
+function tests.jpeg()
+  local path = write("c.jpg", bytes_of(JPEG))
+  local good, texture = pcall(glint.texture, { file = path })
+  if not good and tostring(texture):find("which this build of glint cannot read (libjpeg): save it as .png", 1, true) then return end
+  check(good, "%s", texture)
+  local color = texture:evaluate { uv = { 0.5, 0.5 } }
+  for axis, code in pairs { x = 200, y = 40, z = 90 } do
+    check(math.abs(color[axis] - ((code / 255 + 0.055) / 1.055) ^ 2.4) < 0.01, "%s: %g", axis, color[axis])
+  end
+  local grey = glint.texture { file = write("g.jpg", bytes_of(GREY)), transfer = "linear" }:evaluate { uv = { 0.5, 0.5 } }
+  check(math.abs(grey.x - 128 / 255) < 1e-6 and grey.x == grey.z, "grey, got %g", grey.x)
+  write("j.mtl", "newmtl a\nmap_Kd c.jpg\n")
+  local mesh = load("j.obj", "mtllib j.mtl\n", TRIANGLE, "vt 0 0\nusemtl a\nf 1/1 2/1 3/1\n")
+  warns("", folder .. "/j.obj")
+  check(mesh.count == 1, "a picture of a material")
+  local text = bytes_of(JPEG)
+  for _, bad in ipairs { text:sub(1, 200), text:sub(1, -20), text:sub(1, 4), text:sub(1, 100) .. ("\255"):rep(100) } do
+    local done, message = pcall(glint.texture, { file = write("bad.jpg", bad) })
+    check(not done and message:find("bad.jpg: not a whole JPEG: ", 1, true), "a cut JPEG: %s", message)
+  end
+end
+
 tally.run(tests)
 tally.finish()
