@@ -110,6 +110,21 @@ static bool shades_together(const glint_plan *plan)
            plan->desc.samples * plan->light_count <= GLINT_LIGHT_CHUNK;
 }
 
+_Static_assert(GLINT_STAGE_COUNT <= 32, "a bit a stage");
+
+/// Lists what the stages of this frame do in the walk of a tile, which asks for it in each sample.
+static void list_steps(glint_plan *plan)
+{
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
+        const glint_stage *stage = glint_stage_table[id];
+        for (int time = 0; time < GLINT_TIME_COUNT; time++)
+            plan->steps[time] |= (uint32_t)(plan->runs[id] && stage->step[time]) << id;
+        plan->limits |= (uint32_t)(plan->runs[id] && stage->limit) << id;
+        plan->admits |= (uint32_t)(plan->runs[id] && stage->admit) << id;
+        plan->reads_normals = plan->reads_normals || (plan->runs[id] && stage->normals);
+    }
+}
+
 /// Lists the stages this frame needs.
 static void choose_stages(glint_plan *plan)
 {
@@ -123,6 +138,7 @@ static void choose_stages(glint_plan *plan)
     }
     plan->local = is_local(plan);
     plan->together = shades_together(plan);
+    list_steps(plan);
 }
 
 /// times: of `shutter_times`, whose lights the frame has; NULL: it has its own. `desc`: with its derivatives.

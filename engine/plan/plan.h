@@ -159,6 +159,9 @@ struct glint_plan {
     glint_overlays *overlays; ///< drawn over the finished picture; NULL: none
 
     bool runs[GLINT_STAGE_COUNT];
+    uint32_t steps[GLINT_TIME_COUNT]; ///< of these, the stages that take a step at a time, a bit each
+    uint32_t limits, admits; ///< and those with these functions
+    bool reads_normals; ///< some of them is likely to
     glint_key where; ///< the geometry's, of its places
     glint_key keys[GLINT_STAGE_COUNT];
     glint_key *material_keys, *matte_keys; ///< of each row of materials; of what it reads where it has no highlight

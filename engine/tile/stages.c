@@ -288,9 +288,8 @@ static void leave_unlit(const glint_tile *tile, const glint_light_args *args)
 /// What stages take from the lanes that a light shines on.
 static void limit(glint_tile *tile, const glint_plan *plan, const glint_light_args *args)
 {
-    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
-        if (plan->runs[id] && glint_stage_table[id]->limit)
-            glint_stage_table[id]->limit(tile, plan, args);
+    for (uint32_t left = plan->limits; left; left &= left - 1)
+        glint_stage_table[__builtin_ctz(left)]->limit(tile, plan, args);
 }
 
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
@@ -388,9 +387,8 @@ static uint16_t facing_lanes(const glint_tile *tile, const glint_plan *plan, con
 static void admit(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle, const uint16_t *lit,
                   uint16_t *open)
 {
-    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
-        if (frame->plan->runs[id] && glint_stage_table[id]->admit)
-            glint_stage_table[id]->admit(tile, frame, light, middle, lit, open);
+    for (uint32_t left = frame->plan->admits; left; left &= left - 1)
+        glint_stage_table[__builtin_ctz(left)]->admit(tile, frame, light, middle, lit, open);
 }
 
 /// One ray to the middle of an area light decides for all samples of the call.

@@ -230,9 +230,8 @@ void glint_tile_need_points(glint_tile *tile, const glint_tile_frame *frame, gli
 /// Calls the steps that the stages of the frame take at a time.
 static inline void glint_tile_step(glint_tile *tile, const glint_tile_frame *frame, glint_stage_time time, glint_sample_walk *walk)
 {
-    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
-        if (frame->plan->runs[id] && glint_stage_table[id]->step[time])
-            glint_stage_table[id]->step[time](tile, frame, walk);
+    for (uint32_t left = frame->plan->steps[time]; left; left &= left - 1)
+        glint_stage_table[__builtin_ctz(left)]->step[time](tile, frame, walk);
 }
 
 static inline bool glint_tile_cancelled(const glint_tile_frame *frame)

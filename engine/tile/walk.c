@@ -105,10 +105,8 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, glint_sam
 static bool wants_normals(const glint_tile_frame *frame, const glint_sample_walk *w)
 {
     const glint_plan *plan = frame->plan;
-    bool wanted = w->shows || glint_pattern_needs_normals(plan) || frame->geometry.triangles || frame->geometry.solids;
-    for (int id = 0; id < GLINT_STAGE_COUNT && !wanted; id++)
-        wanted = plan->runs[id] && glint_stage_table[id]->normals;
-    return wanted;
+    return w->shows || plan->reads_normals || glint_pattern_needs_normals(plan) || frame->geometry.triangles ||
+           frame->geometry.solids;
 }
 
 /// Which lights a light's samples, or several that are alike, leave to be found: `shine` and `occlude` get their slots.
