@@ -92,6 +92,15 @@ static const channel *find_channel(const exr_file *file, const char *name)
     return found;
 }
 
+/// Whether a name is longer than files without a flag for it may have.
+static bool has_long_name(const exr_file *file)
+{
+    for (int i = 0; i < file->count; i++)
+        if (strlen(file->list[i].name) > 31)
+            return true;
+    return false;
+}
+
 // ---- The file, in memory --------------------------------------------------------------------------------------------
 
 static int64_t put_bytes(exr_const_context_t context, void *user, const void *bytes, uint64_t size, uint64_t offset,
@@ -120,7 +129,9 @@ static void drop_message(exr_const_context_t context, exr_result_t code, const c
 static exr_result_t write_head(exr_file *file, const glint_text *text, size_t text_count)
 {
     int part = 0;
-    exr_result_t result = exr_add_part(file->context, "glint", EXR_STORAGE_SCANLINE, &part);
+    exr_result_t result = has_long_name(file) ? exr_set_longname_support(file->context, 1) : EXR_ERR_SUCCESS;
+    if (!result)
+        result = exr_add_part(file->context, "glint", EXR_STORAGE_SCANLINE, &part);
     if (!result)
         result =
             exr_initialize_required_attr_simple(file->context, part, file->width, file->height, EXR_COMPRESSION_ZIP);

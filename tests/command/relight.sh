@@ -112,6 +112,10 @@ exits 0 "half of the lamps" scene.lua -q --passes light:key -o some.exr
 exits 0 "one is turned off" relight some.exr -q --light key=0 -o off.pfm
 exits 0 "in the script" scene.lua -q --set strength=0 -o want.pfm
 check "the other light stays" "$GLINT" compare want.pfm off.pfm --fail 4e-6 --warn 4e-6
+sed -e "s/\"key\"/(\"k\"):rep(60)/" scene.lua >long.lua
+exits 0 "a long name" long.lua -q --passes 'light:*' -o long.exr
+exits 0 "is read again" relight long.exr -q --light "$(printf 'k%.0s' {1..60})=1" -o long.png
+check "its picture" "$GLINT" compare plain.png long.png --fail 0 --warn 0
 exits 0 "16 bits" scene.lua -q --bits 16 --passes 'light:*' -o half.exr
 exits 0 "relit of 16 bits" relight half.exr -q -o half.png
 check "is nearly the picture" "$GLINT" compare plain.png half.png --fail 0.02 --warn 0.02
