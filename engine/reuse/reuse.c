@@ -21,6 +21,7 @@ void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget, glint_hits_cho
 
 void glint_reuse_clear(glint_reuse *reuse)
 {
+    glint_earlier_clear(reuse);
     while (reuse->chunk) {
         void *before = *(void **)reuse->chunk;
         free(reuse->chunk);
@@ -81,18 +82,14 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
         glint_reuse_clear(reuse);
         make_slots(reuse, plan, tile_count, lights);
     }
-    reuse->keep_cast = glint_key_equal(reuse->cast, plan->keys[GLINT_STAGE_CAST]);
+    reuse->keep_cast = glint_earlier_tiles_found(reuse, plan->keys[GLINT_STAGE_CAST]);
     reuse->cast = plan->keys[GLINT_STAGE_CAST];
     reuse->keep_pattern = plan->patterns && glint_key_equal(reuse->pattern, plan->keys[GLINT_STAGE_PATTERN]);
     reuse->pattern = plan->keys[GLINT_STAGE_PATTERN];
     glint_splits_begin(&reuse->splits, plan);
-    reuse->keep_view = glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_VIEW]);
+    reuse->keep_view = reuse->cast_recurs || glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_VIEW]);
     reuse->view = plan->keys[GLINT_STAGE_VIEW];
-    for (uint32_t i = 0; i < lights; i++) {
-        const glint_plan_light *light = &plan->lights[i];
-        reuse->keep_light[i] = glint_key_equal(reuse->light[i], light->key);
-        reuse->light[i] = light->key;
-    }
+    glint_earlier_lights(reuse, plan);
 }
 
 bool glint_reuse_shows_more(const glint_cached_tile *tile, const glint_plan *plan)

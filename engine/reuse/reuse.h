@@ -1,8 +1,8 @@
-/// What is kept of a frame, so that the next one runs only the stages whose inputs changed. Internal.
+/// What is kept of a frame, so that later ones run only the stages whose inputs changed. Internal.
 ///
 /// Every stage has a key of exactly what it reads (plan/keys.c). A result is kept per tile from the second frame on that
-/// has its key: a stage that differs in every frame is not worth the memory it would write. A kept result is used
-/// where its key equals the plan's, so the reused frame has the fresh frame's bits.
+/// has its key, the last frame's or one of some frames before: a stage that differs in every frame is not worth the memory it
+/// would write. A kept result is used where its key equals the plan's, so the reused frame has the fresh frame's bits.
 ///
 /// A tile as a whole has a key too, of what its pixels were made from: the materials it shows and the lights that reach
 /// it, and no others; of a material that no highlight shows on, its highlight neither. Where that is the last frame's, its
@@ -78,6 +78,38 @@ typedef struct glint_cached_place {
     uint32_t at; ///< in the geometry's table; GLINT_MISS: it was like another
 } glint_cached_place;
 
+#define GLINT_EARLIER_MAX 64 ///< results of each light that may be set aside
+#define GLINT_EARLIER_TILES 8 ///< the same of whole tiles
+
+/// The keys of the last frames that had others than the frame before.
+typedef struct glint_recent {
+    glint_key keys[GLINT_EARLIER_MAX];
+    size_t next;
+} glint_recent;
+
+/// Lights of all tiles as they were in an earlier frame.
+typedef struct glint_earlier_set {
+    glint_cached_light *lights; ///< owned: tile after tile; NULL: not made yet
+    glint_key held[GLINT_CACHED_LIGHTS]; ///< keys of what is in each; all zero: nothing of use
+    uint64_t used[GLINT_CACHED_LIGHTS]; ///< when it was set aside
+} glint_earlier_set;
+
+/// All tiles as they were in an earlier frame.
+typedef struct glint_earlier_tiles {
+    glint_cached_tile *tiles; ///< owned; NULL: not made yet
+    glint_key cast, light[GLINT_CACHED_LIGHTS]; ///< as of the reuse
+    bool light_recurs[GLINT_CACHED_LIGHTS];
+    uint64_t used; ///< when they were set aside
+} glint_earlier_tiles;
+
+/// What is set aside of frames before the last, see reuse/earlier.c.
+typedef struct glint_earlier {
+    uint64_t frame; ///< exchanges so far
+    glint_recent casts, lights[GLINT_CACHED_LIGHTS];
+    glint_earlier_set sets[GLINT_EARLIER_MAX];
+    glint_earlier_tiles tiles[GLINT_EARLIER_TILES];
+} glint_earlier;
+
 typedef struct glint_reuse {
     bool on;
     glint_hits_choice hits;
@@ -95,6 +127,8 @@ typedef struct glint_reuse {
     size_t tile_count;
     uint32_t light_count; ///< slots in each tile
     glint_key cast, pattern, view, light[GLINT_CACHED_LIGHTS]; ///< of the last frame
+    bool cast_recurs, light_recurs[GLINT_CACHED_LIGHTS]; ///< it had them some frames before
+    glint_earlier *earlier; ///< owned; NULL: nothing
     glint_splits splits;
     glint_key where; ///< of the places of the last frame's surfaces, and
     glint_cached_place *places; ///< these, by id; owned; NULL: there were too many
@@ -120,6 +154,13 @@ void glint_reuse_unreserve(glint_reuse *reuse, size_t bytes);
 /// to what that cannot have changed, in the tiles and in the `film` of pictures of their size (NULL among them are passed
 /// over). The geometry is arranged.
 void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *const *images, uint32_t image_count);
+
+/// reuse/earlier.c, of glint_reuse_begin: finds the tiles of the frame's hits among earlier frames, and with them its lights' keys.
+/// Returns whether hits are kept.
+bool glint_earlier_tiles_found(glint_reuse *reuse, glint_key key);
+/// The same of each light, whose key and whether it is kept it fills.
+void glint_earlier_lights(glint_reuse *reuse, const glint_plan *plan);
+void glint_earlier_clear(glint_reuse *reuse);
 
 /// Whether the tile's pixels may show what it does not hit itself: by mirrors, through what is transparent, by its
 /// light, or as light that was worked out at points beside it.

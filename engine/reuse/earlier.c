@@ -1,0 +1,204 @@
+/// Results of frames before the last. The keys of the last frames are remembered; a key that comes back is a sign that others will,
+/// so its results are kept from then on, and when it goes again they are set aside and not overwritten. Whole tiles are set
+/// aside where the hits' key changes (cameras in turn), else single lights (a lamp that goes around).
+///
+/// All results of one kind take the same time to find and the same memory, so that the one that was used least recently goes.
+#include "engine/reuse/reuse.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define EARLIER_PRIMS 128 ///< in a scene of fewer, a light is found as fast as what was set aside is read
+
+static const glint_key none = { 0 };
+
+/// Half of what whole pictures leave of the budget is for what is set aside.
+static size_t room_for(const glint_reuse *reuse, size_t bytes, size_t most)
+{
+    const size_t fits = (reuse->budget - reuse->pictures) / 2 / bytes;
+    return fits < most ? fits : most;
+}
+
+/// Whether the key is among the last `size`, which it joins.
+static bool recurs(glint_recent *recent, size_t size, glint_key key)
+{
+    bool found = false;
+    for (size_t i = 0; i < size && i < GLINT_EARLIER_MAX; i++)
+        found = found || glint_key_equal(recent->keys[i], key);
+    if (!found && size > 0)
+        recent->keys[recent->next++ % size] = key;
+    return found;
+}
+
+// ---- Lights ----
+
+static size_t light_bytes(const glint_reuse *reuse)
+{
+    const size_t samples = (size_t)reuse->samples * GLINT_TILE_SAMPLES;
+    return reuse->tile_count * (sizeof(glint_cached_light) + 3 * samples * sizeof(float) + samples / 4);
+}
+
+/// The set whose row has the key, or with the key of nothing one to overwrite; `sets` of them are in use. -1: none.
+static int find_set(const glint_earlier *e, int sets, uint32_t row, glint_key key)
+{
+    int oldest = -1;
+    for (int s = 0; s < sets; s++) {
+        if (glint_key_equal(e->sets[s].held[row], key))
+            return s;
+        if (oldest < 0 || e->sets[s].used[row] < e->sets[oldest].used[row])
+            oldest = s;
+    }
+    return glint_key_equal(key, none) ? oldest : -1;
+}
+
+static bool make_set(glint_reuse *reuse, glint_earlier_set *set)
+{
+    const size_t bytes = reuse->tile_count * reuse->light_count * sizeof *set->lights;
+    if (!set->lights && bytes <= reuse->budget - reuse->pictures - reuse->used) {
+        set->lights = calloc(reuse->tile_count * reuse->light_count, sizeof *set->lights);
+        reuse->used += set->lights ? bytes : 0;
+    }
+    return set->lights != NULL;
+}
+
+/// Exchanges one light of all tiles with a set's. False: no memory.
+static bool exchange_light(glint_reuse *reuse, int s, uint32_t row)
+{
+    glint_earlier_set *set = &reuse->earlier->sets[s];
+    if (!make_set(reuse, set))
+        return false;
+    for (size_t i = 0; i < reuse->tile_count; i++) {
+        glint_cached_light *front = &reuse->tiles[i].lights[row], *other = &set->lights[i * reuse->light_count + row];
+        const glint_cached_light light = *front;
+        *front = *other;
+        *other = light;
+    }
+    set->held[row] = reuse->light_recurs[row] ? reuse->light[row] : none;
+    set->used[row] = ++reuse->earlier->frame;
+    return true;
+}
+
+/// Whether the light's results are kept in this frame, whose key for it is new.
+static bool find_light(glint_reuse *reuse, uint32_t row, glint_key key)
+{
+    glint_earlier *e = reuse->earlier;
+    const int sets = (int)room_for(reuse, reuse->light_count * light_bytes(reuse), GLINT_EARLIER_MAX);
+    const bool again = recurs(&e->lights[row], (size_t)sets, key);
+    int s = again ? find_set(e, sets, row, key) : -1;
+    if (s < 0 && reuse->light_recurs[row])
+        s = find_set(e, sets, row, none);
+    if (s >= 0)
+        exchange_light(reuse, s, row);
+    reuse->light_recurs[row] = again;
+    return again;
+}
+
+/// Results of other pixels than all, which adaptive sampling chooses, are not told apart by their keys.
+static void forget_lights(glint_reuse *reuse)
+{
+    for (int s = 0; s < GLINT_EARLIER_MAX; s++) {
+        glint_earlier_set *set = &reuse->earlier->sets[s];
+        memset(set->held, 0, sizeof set->held);
+        for (size_t i = 0; set->lights && i < reuse->tile_count * reuse->light_count; i++)
+            set->lights[i].light = set->lights[i].facet = set->lights[i].occlude = set->lights[i].place = none;
+    }
+    memset(reuse->earlier->lights, 0, sizeof reuse->earlier->lights);
+    memset(reuse->light_recurs, 0, sizeof reuse->light_recurs);
+}
+
+void glint_earlier_lights(glint_reuse *reuse, const glint_plan *plan)
+{
+    const bool looks = reuse->earlier && !plan->base && plan->geometry->table.prim_count >= EARLIER_PRIMS;
+    if (plan->base && reuse->earlier)
+        forget_lights(reuse);
+    for (uint32_t i = 0; i < reuse->light_count; i++) {
+        const glint_key key = plan->lights[i].key;
+        reuse->keep_light[i] = glint_key_equal(reuse->light[i], key);
+        if (!reuse->keep_light[i] && looks)
+            reuse->keep_light[i] = find_light(reuse, i, key);
+        reuse->light[i] = key;
+    }
+}
+
+// ---- Whole tiles ----
+
+static size_t tiles_bytes(const glint_reuse *reuse)
+{
+    const size_t samples = (size_t)reuse->samples * GLINT_TILE_SAMPLES;
+    return reuse->tile_count * (sizeof *reuse->tiles + samples * (reuse->real_size + sizeof(uint32_t)) + samples / 8) +
+           reuse->light_count * light_bytes(reuse);
+}
+
+static void free_tiles(glint_cached_tile *tiles, size_t count)
+{
+    for (size_t i = 0; tiles && i < count; i++)
+        free(tiles[i].lights);
+    free(tiles);
+}
+
+static bool make_tiles(glint_reuse *reuse, glint_earlier_tiles *slot)
+{
+    const size_t bytes = reuse->tile_count * (sizeof *reuse->tiles + reuse->light_count * sizeof *reuse->tiles->lights);
+    if (slot->tiles || bytes > reuse->budget - reuse->pictures - reuse->used)
+        return slot->tiles != NULL;
+    bool good = (slot->tiles = calloc(reuse->tile_count, sizeof *slot->tiles)) != NULL;
+    for (size_t i = 0; i < reuse->tile_count && good; i++)
+        good = (slot->tiles[i].lights = calloc(reuse->light_count + 1, sizeof *slot->tiles->lights)) != NULL;
+    if (!good) {
+        free_tiles(slot->tiles, reuse->tile_count);
+        slot->tiles = NULL;
+    }
+    reuse->used += good ? bytes : 0;
+    return good;
+}
+
+static void exchange_tiles(glint_reuse *reuse, glint_earlier_tiles *slot)
+{
+    if (!make_tiles(reuse, slot))
+        return;
+    const glint_earlier_tiles other = *slot;
+    slot->tiles = reuse->tiles;
+    slot->cast = reuse->cast_recurs ? reuse->cast : none;
+    slot->used = reuse->earlier->frame;
+    memcpy(slot->light, reuse->light, sizeof slot->light);
+    memcpy(slot->light_recurs, reuse->light_recurs, sizeof slot->light_recurs);
+    reuse->tiles = other.tiles;
+    memcpy(reuse->light, other.light, sizeof reuse->light);
+    memcpy(reuse->light_recurs, other.light_recurs, sizeof reuse->light_recurs);
+}
+
+bool glint_earlier_tiles_found(glint_reuse *reuse, glint_key key)
+{
+    if (!reuse->earlier && reuse->tile_count && sizeof *reuse->earlier <= (reuse->budget - reuse->pictures - reuse->used) / 16) {
+        reuse->earlier = calloc(1, sizeof *reuse->earlier);
+        reuse->used += reuse->earlier ? sizeof *reuse->earlier : 0;
+    }
+    glint_earlier *e = reuse->earlier;
+    if (!e || glint_key_equal(reuse->cast, key))
+        return glint_key_equal(reuse->cast, key);
+    e->frame++;
+    const int slots = (int)room_for(reuse, tiles_bytes(reuse), GLINT_EARLIER_TILES);
+    const bool again = recurs(&e->casts, (size_t)slots, key);
+    glint_earlier_tiles *slot = NULL, *oldest = NULL;
+    for (int i = 0; i < slots; i++) {
+        slot = again && glint_key_equal(e->tiles[i].cast, key) ? &e->tiles[i] : slot;
+        oldest = !oldest || e->tiles[i].used < oldest->used ? &e->tiles[i] : oldest;
+    }
+    if (slot || (oldest && reuse->cast_recurs))
+        exchange_tiles(reuse, slot ? slot : oldest);
+    reuse->cast_recurs = again;
+    return again;
+}
+
+void glint_earlier_clear(glint_reuse *reuse)
+{
+    glint_earlier *e = reuse->earlier;
+    for (int s = 0; e && s < GLINT_EARLIER_MAX; s++)
+        free(e->sets[s].lights);
+    for (int i = 0; e && i < GLINT_EARLIER_TILES; i++)
+        free_tiles(e->tiles[i].tiles, reuse->tile_count);
+    free(e);
+    reuse->earlier = NULL;
+    reuse->cast_recurs = false;
+    memset(reuse->light_recurs, 0, sizeof reuse->light_recurs);
+}

@@ -1,0 +1,270 @@
+/// Results of frames before the last: a lamp that goes around and cameras in turn run no stage again that they have run before, and
+/// whatever comes back, in any order, with little memory or much, each frame equals the same frame rendered afresh.
+#include "engine/glint.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { LIGHTS = 2, CROWD = 150 }; // CROWD: spheres behind the eye, so that lights are worth setting aside
+
+typedef struct stand {
+    glint_scene *scene;
+    glint_camera *camera;
+    glint_material *paint;
+    glint_shape *ball, *floor, *crowd[CROWD];
+    glint_light *lights[LIGHTS];
+    glint_renderer *renderers[2]; ///< one that reuses and one that does not
+    glint_render_desc render;
+    glint_frame_stats stats; ///< of the last frame
+} stand;
+
+static uint64_t state;
+
+/// 0 .. n-1
+static uint32_t draw(uint32_t n)
+{
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return (uint32_t)(state >> 33) % n;
+}
+
+static void make_stand(stand *s, size_t memory)
+{
+    *s = (stand) { .render = glint_render_desc_default() };
+    glint_camera_desc view = glint_camera_desc_default();
+    glint_material_desc look = glint_material_desc_default();
+    glint_renderer_desc desc = glint_renderer_desc_default();
+    view.eye[2] = 6;
+    s->render.width = 100;
+    s->render.height = 80;
+    s->render.passes = 1u << GLINT_PASS_BEAUTY;
+    for (int c = 0; c < 3; c++)
+        look.specular[c] = 0.5;
+    assert_int_equal(glint_scene_create(&s->scene, NULL), GLINT_OK);
+    assert_int_equal(glint_camera_create(&view, &s->camera, NULL), GLINT_OK);
+    assert_int_equal(glint_material_create(&look, &s->paint, NULL), GLINT_OK);
+    glint_shape_desc ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE), floor = glint_shape_desc_default(GLINT_SHAPE_PLANE);
+    ball.material = floor.material = s->paint;
+    floor.point[1] = -1;
+    assert_int_equal(glint_shape_create(&ball, &s->ball, NULL), GLINT_OK);
+    assert_int_equal(glint_shape_create(&floor, &s->floor, NULL), GLINT_OK);
+    glint_scene_desc whole = *glint_scene_get(s->scene);
+    whole.camera = s->camera;
+    assert_int_equal(glint_scene_set(s->scene, &whole, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_shape(s->scene, s->ball, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_shape(s->scene, s->floor, NULL), GLINT_OK);
+    for (int i = 0; i < CROWD; i++) {
+        ball.center[0] = i - 0.5 * CROWD;
+        ball.center[2] = 20;
+        assert_int_equal(glint_shape_create(&ball, &s->crowd[i], NULL), GLINT_OK);
+        assert_int_equal(glint_scene_add_shape(s->scene, s->crowd[i], NULL), GLINT_OK);
+    }
+    for (int i = 0; i < LIGHTS; i++) {
+        glint_light_desc light = glint_light_desc_default(i ? GLINT_LIGHT_POINT : GLINT_LIGHT_SPHERE);
+        light.position[1] = 6;
+        light.position[2] = 3;
+        light.radius = 0.5;
+        light.samples = 3;
+        assert_int_equal(glint_light_create(&light, &s->lights[i], NULL), GLINT_OK);
+        assert_int_equal(glint_scene_add_light(s->scene, s->lights[i], NULL), GLINT_OK);
+    }
+    desc.threads = 2;
+    desc.hits = GLINT_HITS_KEPT;
+    desc.reuse_memory = memory;
+    for (int i = 0; i < 2; i++) {
+        desc.no_reuse = i;
+        assert_int_equal(glint_renderer_create(&desc, &s->renderers[i], NULL), GLINT_OK);
+    }
+}
+
+static void free_stand(stand *s)
+{
+    for (int i = 0; i < 2; i++)
+        glint_renderer_destroy(s->renderers[i]);
+    for (int i = 0; i < LIGHTS; i++)
+        glint_light_release(s->lights[i]);
+    glint_material_release(s->paint);
+    glint_shape_release(s->ball);
+    glint_shape_release(s->floor);
+    for (int i = 0; i < CROWD; i++)
+        glint_shape_release(s->crowd[i]);
+    glint_camera_release(s->camera);
+    glint_scene_release(s->scene);
+}
+
+static void set_lamp(const stand *s, int lamp, double x)
+{
+    glint_light_desc light = *glint_light_get(s->lights[lamp]);
+    light.position[0] = x;
+    assert_int_equal(glint_light_set(s->lights[lamp], &light, NULL), GLINT_OK);
+}
+
+static void set_eye(const stand *s, double x)
+{
+    glint_camera_desc view = *glint_camera_get(s->camera);
+    view.eye[0] = x;
+    assert_int_equal(glint_camera_set(s->camera, &view, NULL), GLINT_OK);
+}
+
+static void set_color(const stand *s, double red)
+{
+    glint_material_desc look = *glint_material_get(s->paint);
+    look.diffuse[0] = red;
+    assert_int_equal(glint_material_set(s->paint, &look, NULL), GLINT_OK);
+}
+
+static void set_ball(const stand *s, double x)
+{
+    glint_shape_desc place = *glint_shape_get(s->ball);
+    place.center[0] = x;
+    assert_int_equal(glint_shape_set(s->ball, &place, NULL), GLINT_OK);
+}
+
+/// Renders the scene as it is now on both, and compares every pixel.
+static void check(stand *s, int frame)
+{
+    glint_plan *plan;
+    glint_image *image[2];
+    assert_int_equal(glint_plan_create(s->scene, &s->render, &plan, NULL), GLINT_OK);
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(glint_render(s->renderers[i], plan, &image[i], i ? NULL : &s->stats, NULL), GLINT_OK);
+    for (int y = 0; y < s->render.height; y++)
+        for (int x = 0; x < s->render.width; x++) {
+            float p[3], q[3];
+            glint_image_pixel(image[0], GLINT_PASS_BEAUTY, x, y, p, NULL);
+            glint_image_pixel(image[1], GLINT_PASS_BEAUTY, x, y, q, NULL);
+            if (memcmp(p, q, sizeof p) != 0)
+                fail_msg("frame %d: pixel %d, %d differs from the fresh one", frame, x, y);
+        }
+    for (int i = 0; i < 2; i++)
+        glint_image_release(image[i]);
+    glint_plan_destroy(plan);
+}
+
+/// Which share of the tiles had a stage's results from an earlier frame.
+static double reused(const stand *s, const char *stage)
+{
+    for (int i = 0; i < s->stats.stage_count; i++)
+        if (strcmp(s->stats.stage_name[i], stage) == 0)
+            return s->stats.stage_reused[i];
+    fail_msg("no stage %s", stage);
+    return 0;
+}
+
+static void a_lamp_that_goes_around(void **unused)
+{
+    (void)unused;
+    stand s;
+    make_stand(&s, 0);
+    for (int frame = 0; frame < 28; frame++) {
+        set_lamp(&s, 0, frame % 7 - 3);
+        set_color(&s, 0.01 * frame);
+        check(&s, frame);
+        if (frame >= 14) { // the first time they are seen, and the second they are kept
+            assert_true(reused(&s, "light") == 1);
+            assert_true(reused(&s, "occlude") == 1);
+        }
+    }
+    free_stand(&s);
+}
+
+static void two_lamps_each_in_its_turn(void **unused)
+{
+    (void)unused;
+    stand s;
+    make_stand(&s, 0);
+    for (int frame = 0; frame < 60; frame++) {
+        set_lamp(&s, 0, frame % 3);
+        set_lamp(&s, 1, frame % 5);
+        set_color(&s, 0.01 * frame);
+        check(&s, frame);
+        assert_true(frame < 10 || reused(&s, "light") == 1);
+    }
+    free_stand(&s);
+}
+
+static void cameras_in_turn(void **unused)
+{
+    (void)unused;
+    stand s;
+    make_stand(&s, 0);
+    for (int frame = 0; frame < 20; frame++) {
+        set_eye(&s, frame % 2);
+        set_color(&s, 0.01 * frame);
+        check(&s, frame);
+        if (frame >= 4) {
+            assert_true(reused(&s, "cast") == 1);
+            assert_true(reused(&s, "light") == 1);
+        }
+    }
+    free_stand(&s);
+}
+
+/// Gives one thing one of a few values.
+static void change(stand *s)
+{
+    const uint32_t what = draw(16);
+    if (what < 5)
+        set_lamp(s, 0, draw(3));
+    else if (what < 7)
+        set_lamp(s, 1, draw(3));
+    else if (what < 9)
+        set_eye(s, 0.5 * draw(3));
+    else if (what < 11)
+        set_color(s, 0.3 * draw(3));
+    else if (what < 12)
+        set_ball(s, 0.5 * draw(2));
+    else if (what < 15)
+        s->render.adaptive = draw(2) ? 0 : 0.1;
+    else
+        s->render.samples = draw(8) ? 4 : 1;
+    if (s->render.adaptive > 0 && s->render.samples == 1)
+        s->render.samples = 4;
+}
+
+/// What comes back must be of the same pixels, surfaces and samples, also where it was set aside between other frames.
+static void come_back(size_t memory, int frames)
+{
+    stand s;
+    make_stand(&s, memory);
+    for (int frame = 0; frame < frames; frame++) {
+        for (uint32_t left = 1 + draw(3); left > 0; left--)
+            change(&s);
+        check(&s, frame);
+    }
+    free_stand(&s);
+}
+
+static void frames_in_any_order(void **unused)
+{
+    (void)unused;
+    for (uint64_t round = 0; round < 8; round++) {
+        state = 900 + round;
+        come_back(0, 150);
+    }
+}
+
+static void frames_in_any_order_with_little_memory(void **unused)
+{
+    (void)unused;
+    for (size_t memory = 300000; memory < 40000000; memory *= 2) {
+        state = 1000 + memory;
+        come_back(memory, 60);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_lamp_that_goes_around),
+        cmocka_unit_test(two_lamps_each_in_its_turn),
+        cmocka_unit_test(cameras_in_turn),
+        cmocka_unit_test(frames_in_any_order),
+        cmocka_unit_test(frames_in_any_order_with_little_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
