@@ -87,11 +87,11 @@ void glint_renderer_destroy(glint_renderer *renderer)
     if (!renderer->shares)
         free(renderer->tiles);
     drop_spares(renderer);
+    glint_pictures_clear(renderer);
     glint_shading_points_clear(&renderer->shading_points, &renderer->reuse);
     glint_raster_clear(&renderer->raster);
     glint_grids_clear(&renderer->own_grids);
     glint_reuse_destroy(&renderer->reuse);
-    glint_image_release(renderer->last);
     if (!renderer->shares) {
         glint_pool_destroy(renderer->pool);
         glint_tone_store_close();
@@ -213,7 +213,7 @@ static bool has_format(const glint_image *image, const glint_render_desc *desc)
 static frame frame_of(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,
                       const glint_tone_table *table)
 {
-    const glint_image *last = renderer->last;
+    const glint_image *last = renderer->pictures[0].image;
     return (frame) { .renderer = renderer,
                      .shared = { .plan = plan,
                                  .stages = renderer->stages,
@@ -286,49 +286,6 @@ glint_status glint_renderer_run(glint_renderer *renderer, const glint_plan *plan
 
 glint_pool *glint_renderer_pool(const glint_renderer *renderer) { return renderer->pool; }
 
-/// The key of the whole picture.
-static glint_key picture_key(const glint_plan *plan)
-{
-    const glint_stage_id last = plan->desc.codes ? GLINT_STAGE_TONE : GLINT_STAGE_RESOLVE;
-    return plan->keys[plan->derivatives ? GLINT_STAGE_DERIVATIVE : last];
-}
-
-/// Gives the last picture again when this frame's would be the same.
-static bool unchanged(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats)
-{
-    const glint_image *last = renderer->last;
-    if (!last || !last->codes != !plan->desc.codes || !glint_key_equal(renderer->last_key, picture_key(plan)) ||
-        memcmp(renderer->last_region, plan->desc.region, sizeof renderer->last_region) != 0)
-        return false;
-    *out = glint_image_retain(renderer->last);
-    if (stats) {
-        *stats = (glint_frame_stats) { .stage_count = renderer->last_stats.stage_count };
-        stats->clipped = renderer->last_stats.clipped;
-        stats->pixels = renderer->last_stats.pixels;
-        stats->nonfinite = renderer->last_stats.nonfinite;
-        stats->refined = renderer->last_stats.refined;
-        stats->shifted = renderer->last_stats.shifted;
-        for (int i = 0; i < stats->stage_count; i++) {
-            stats->stage_name[i] = renderer->last_stats.stage_name[i];
-            stats->stage_reused[i] = 1;
-        }
-    }
-    return true;
-}
-
-static void remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
-                     const glint_frame_stats *stats)
-{
-    bool within_budget = false;
-    for (int i = 0; i < GLINT_SPARE_IMAGES; i++)
-        within_budget = within_budget || renderer->spare[i] == image;
-    glint_image_release(renderer->last);
-    renderer->last = within_budget && renderer->reuse.on ? glint_image_retain(image) : NULL;
-    renderer->last_key = picture_key(plan);
-    memcpy(renderer->last_region, plan->desc.region, sizeof renderer->last_region);
-    renderer->last_stats = *stats;
-}
-
 glint_status glint_renderer_take_image(glint_renderer *renderer, const glint_render_desc *desc, glint_image **out,
                                        glint_error *error)
 {
@@ -362,7 +319,7 @@ glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *pl
     glint_frame_stats counted;
     if (atomic_load(renderer->stop))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
-    if (unchanged(renderer, plan, out, stats))
+    if (glint_picture_give(renderer, plan, out, stats))
         return GLINT_OK;
     glint_status status = glint_renderer_take_image(renderer, desc, &image, error);
     if (!status && desc->codes)
@@ -381,7 +338,7 @@ glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *pl
         glint_image_release(image);
         return status;
     }
-    remember(renderer, plan, image, &counted);
+    glint_picture_remember(renderer, plan, image, &counted);
     if (stats)
         *stats = counted;
     *out = image;

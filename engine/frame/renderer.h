@@ -17,6 +17,16 @@
 /// that is rendered. A fifth would be new memory and a whole picture to copy or make each time.
 #define GLINT_SPARE_IMAGES 4
 
+#define GLINT_PICTURES_MAX 33 ///< that may be given again
+
+/// A picture that is given again when a frame reads what it did.
+typedef struct glint_picture {
+    glint_image *image; ///< a reference; NULL: none
+    glint_key key;
+    glint_frame_stats stats;
+    uint64_t used; ///< when it was given last
+} glint_picture;
+
 struct glint_renderer {
     glint_pool *pool;
     const glint_stages *stages;
@@ -31,12 +41,11 @@ struct glint_renderer {
     glint_raster raster;
     glint_tints tints; ///< of frames where what transmits tints shadows
     glint_grids own_grids, *grids; ///< a renderer of bases has those of its frames
-    glint_image *last; ///< the last frame, given again when nothing it reads changed
+    glint_picture pictures[GLINT_PICTURES_MAX]; ///< the last frame's; those set aside
+    uint64_t pictures_given; ///< and set aside
+    glint_recent recent; ///< keys of the last pictures
     /// Pictures given before, whose memory is used again once no other reference holds them.
     glint_image *spare[GLINT_SPARE_IMAGES];
-    glint_key last_key;
-    double last_region[4];
-    glint_frame_stats last_stats;
     glint_refine own_refine, *refine; ///< a renderer of bases has that of its frames
     double refined_by[3]; ///< threshold, curve and exposure that the last base was compared by
     glint_key setting; ///< the plan's setting_key of the last frame that had a base
@@ -60,6 +69,12 @@ glint_status glint_renderer_take_image(glint_renderer *renderer, const glint_ren
 /// adaptive.c: glint_renderer_run of a plan with a base: the base, then all samples of the pixels that are worth them.
 glint_status glint_renderer_run_adaptive(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
                                          const glint_tone_table *table, glint_frame_stats *stats, glint_error *error);
+
+/// pictures.c: gives an earlier picture again when this frame's would be the same. False: there is none.
+bool glint_picture_give(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats);
+/// Makes the picture the last one, when it is among the spares.
+void glint_picture_remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_frame_stats *stats);
+void glint_pictures_clear(glint_renderer *renderer);
 
 /// stats.c: what the tiles of a frame counted. wall_ms: from the first tile to the last.
 void glint_renderer_collect(const glint_renderer *renderer, const glint_plan *plan, const glint_extent *extent, double wall_ms,

@@ -19,8 +19,7 @@ static size_t room_for(const glint_reuse *reuse, size_t bytes, size_t most)
     return fits < most ? fits : most;
 }
 
-/// Whether the key is among the last `size`, which it joins.
-static bool recurs(glint_recent *recent, size_t size, glint_key key)
+bool glint_recent_has(glint_recent *recent, size_t size, glint_key key)
 {
     bool found = false;
     for (size_t i = 0; i < size && i < GLINT_EARLIER_MAX; i++)
@@ -83,7 +82,7 @@ static bool find_light(glint_reuse *reuse, uint32_t row, glint_key key)
 {
     glint_earlier *e = reuse->earlier;
     const int sets = (int)room_for(reuse, reuse->light_count * light_bytes(reuse), GLINT_EARLIER_MAX);
-    const bool again = recurs(&e->lights[row], (size_t)sets, key);
+    const bool again = glint_recent_has(&e->lights[row], (size_t)sets, key);
     int s = again ? find_set(e, sets, row, key) : -1;
     if (s < 0 && reuse->light_recurs[row])
         s = find_set(e, sets, row, none);
@@ -178,7 +177,7 @@ bool glint_earlier_tiles_found(glint_reuse *reuse, glint_key key)
         return glint_key_equal(reuse->cast, key);
     e->frame++;
     const int slots = (int)room_for(reuse, tiles_bytes(reuse), GLINT_EARLIER_TILES);
-    const bool again = recurs(&e->casts, (size_t)slots, key);
+    const bool again = glint_recent_has(&e->casts, (size_t)slots, key);
     glint_earlier_tiles *slot = NULL, *oldest = NULL;
     for (int i = 0; i < slots; i++) {
         slot = again && glint_key_equal(e->tiles[i].cast, key) ? &e->tiles[i] : slot;

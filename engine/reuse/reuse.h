@@ -155,6 +155,9 @@ void glint_reuse_unreserve(glint_reuse *reuse, size_t bytes);
 /// over). The geometry is arranged.
 void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *const *images, uint32_t image_count);
 
+/// Whether a key is among the last `size`, at most GLINT_EARLIER_MAX, which it joins.
+bool glint_recent_has(glint_recent *recent, size_t size, glint_key key);
+
 /// reuse/earlier.c, of glint_reuse_begin: finds the tiles of the frame's hits among earlier frames, and with them its lights' keys.
 /// Returns whether hits are kept.
 bool glint_earlier_tiles_found(glint_reuse *reuse, glint_key key);

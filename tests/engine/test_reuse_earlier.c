@@ -204,6 +204,20 @@ static void cameras_in_turn(void **unused)
     free_stand(&s);
 }
 
+static void pictures_that_come_back(void **unused)
+{
+    (void)unused;
+    stand s;
+    make_stand(&s, 0);
+    for (int frame = 0; frame < 40; frame++) {
+        set_lamp(&s, 0, frame % 5);
+        set_color(&s, 0.1 * (frame % 10));
+        check(&s, frame);
+        assert_true(frame < 20 || reused(&s, "shade") == 1);
+    }
+    free_stand(&s);
+}
+
 /// Gives one thing one of a few values.
 static void change(stand *s)
 {
@@ -263,6 +277,7 @@ int main(void)
         cmocka_unit_test(a_lamp_that_goes_around),
         cmocka_unit_test(two_lamps_each_in_its_turn),
         cmocka_unit_test(cameras_in_turn),
+        cmocka_unit_test(pictures_that_come_back),
         cmocka_unit_test(frames_in_any_order),
         cmocka_unit_test(frames_in_any_order_with_little_memory),
     };

@@ -9,12 +9,6 @@
 
 // ---- The base ----
 
-static void forget(glint_renderer *renderer)
-{
-    glint_image_release(renderer->last);
-    renderer->last = NULL;
-}
-
 /// A renderer that keeps its own, half of what may be kept, and shares the rest.
 static glint_status open_base(glint_renderer *renderer, glint_error *error)
 {
@@ -46,11 +40,11 @@ static glint_status render_base(glint_renderer *renderer, const glint_plan *plan
     const double by[] = { desc->adaptive, desc->tone.curve, desc->tone.exposure };
     glint_renderer *base = renderer->base;
     if (memcmp(renderer->refined_by, by, sizeof by) != 0)
-        forget(base);
+        glint_pictures_clear(base);
     memcpy(renderer->refined_by, by, sizeof by);
     const glint_status status = glint_render_instant(base, plan->base, out, stats, error);
     if (status)
-        forget(base);
+        glint_pictures_clear(base);
     return status;
 }
 
@@ -62,7 +56,7 @@ static glint_status render_in_place(glint_renderer *renderer, const glint_plan *
 {
     glint_render_desc desc = plan->base->desc;
     glint_status status = GLINT_OK;
-    forget(renderer->base);
+    glint_pictures_clear(renderer->base);
     glint_reuse_clear(&renderer->base->reuse);
     *base = *image;
     base->film = NULL;

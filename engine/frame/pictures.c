@@ -1,0 +1,94 @@
+/// Pictures of frames before the last, given again when a frame reads what one of them did. A picture whose key comes back once is
+/// set aside from then on; the one that was given least recently goes where there is no place for another.
+#include "engine/frame/renderer.h"
+
+/// The key of the whole picture, or of its region.
+static glint_key picture_key(const glint_plan *plan)
+{
+    const glint_stage_id last = plan->desc.codes ? GLINT_STAGE_TONE : GLINT_STAGE_RESOLVE;
+    const glint_key key = plan->keys[plan->derivatives ? GLINT_STAGE_DERIVATIVE : last];
+    return glint_key_add(key, plan->desc.region, sizeof plan->desc.region);
+}
+
+/// Stats of a frame for which no stage ran.
+static void tell_given(const glint_frame_stats *of, glint_frame_stats *stats)
+{
+    *stats = (glint_frame_stats) { .stage_count = of->stage_count };
+    stats->clipped = of->clipped;
+    stats->pixels = of->pixels;
+    stats->nonfinite = of->nonfinite;
+    stats->refined = of->refined;
+    stats->shifted = of->shifted;
+    for (int i = 0; i < stats->stage_count; i++) {
+        stats->stage_name[i] = of->stage_name[i];
+        stats->stage_reused[i] = 1;
+    }
+}
+
+bool glint_picture_give(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats)
+{
+    const glint_key key = picture_key(plan);
+    for (int i = 0; i < GLINT_PICTURES_MAX; i++) {
+        glint_picture *picture = &renderer->pictures[i];
+        if (!picture->image || !picture->image->codes != !plan->desc.codes || !glint_key_equal(picture->key, key))
+            continue;
+        picture->used = ++renderer->pictures_given;
+        *out = glint_image_retain(picture->image);
+        if (stats)
+            tell_given(&picture->stats, stats);
+        return true;
+    }
+    return false;
+}
+
+static void drop(glint_renderer *renderer, glint_picture *picture)
+{
+    if (picture->image && picture != &renderer->pictures[0])
+        glint_reuse_unreserve(&renderer->reuse, glint_image_bytes(picture->image));
+    glint_image_release(picture->image);
+    picture->image = NULL;
+}
+
+/// Takes the last picture out of those whose memory is used again, where there is room for the next.
+static void set_aside(glint_renderer *renderer, const glint_picture *last, int spare)
+{
+    const size_t bytes = glint_image_bytes(last->image);
+    glint_picture *place = &renderer->pictures[1];
+    for (int i = 1; i < GLINT_PICTURES_MAX; i++) {
+        glint_picture *other = &renderer->pictures[i];
+        if (place->image && (!other->image || other->used < place->used))
+            place = other;
+    }
+    drop(renderer, place);
+    if (!glint_reuse_reserve(&renderer->reuse, bytes))
+        return;
+    *place = *last;
+    place->used = ++renderer->pictures_given;
+    glint_image_retain(place->image);
+    glint_reuse_unreserve(&renderer->reuse, bytes); // it keeps what it had as a spare
+    glint_image_release(renderer->spare[spare]);
+    renderer->spare[spare] = NULL;
+}
+
+void glint_picture_remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_frame_stats *stats)
+{
+    glint_picture *last = &renderer->pictures[0];
+    int spare = -1;
+    for (int i = 0; i < GLINT_SPARE_IMAGES; i++)
+        spare = renderer->spare[i] == image ? i : spare;
+    glint_image_release(last->image);
+    last->image = NULL;
+    if (!renderer->reuse.on || spare < 0)
+        return;
+    *last = (glint_picture) { .image = glint_image_retain(image), .key = picture_key(plan), .stats = *stats };
+    if (renderer->shares) // what adaptive sampling has found in the pixels of a base is of the last one
+        return;
+    if (glint_recent_has(&renderer->recent, GLINT_PICTURES_MAX - 1, last->key))
+        set_aside(renderer, last, spare);
+}
+
+void glint_pictures_clear(glint_renderer *renderer)
+{
+    for (int i = 0; i < GLINT_PICTURES_MAX; i++)
+        drop(renderer, &renderer->pictures[i]);
+}
