@@ -333,7 +333,7 @@ static void R(meet_torus)(int count, const glint_solid *solid, const vr (*f)[3],
 /// first root to the last; an end of -inf: there is no such stretch, or the ray begins in it.
 static void R(torus_ends)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr ends[4])
 {
-    R(torus_line) l;
+    R(torus_line) l = { .near = rm_from_bits(0) }; // without a line near the tube all else is left as it is here
     R(along_torus)(1, solid, (const vr(*)[3])f, (const vr(*)[3])e, &start, &l);
     const vr zero = r_set(0), none = r_set(-HUGE_VAL);
     for (int stretch = 0; stretch < 4; stretch++) {
