@@ -621,8 +621,9 @@ WEB_LINK    := -O2 -msimd128 --no-entry -sMODULARIZE=1 -sEXPORT_NAME=createGlint
                  -sMAXIMUM_MEMORY=2GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=2MB -sFORCE_FILESYSTEM=1 \
                  -sEXPORTED_FUNCTIONS=_malloc,_free -sEXPORTED_RUNTIME_METHODS=FS,UTF8ToString,stringToUTF8,lengthBytesUTF8
 
-.PHONY: web web-module web-files
-web: web-module ## build/web: the module glint-render for pages, workers and Node; installs emscripten and node through apt
+.PHONY: web web-module web-files web-pages site check-web
+web: web-module ## build/web: the module glint-render, live figures, playground and course; installs what it needs through apt and npm
+	+@$(MAKE) --no-print-directory web-pages
 
 web-module:
 	@tests/deps.sh build web
@@ -632,12 +633,7 @@ web-module:
 WEB ?= $(BUILD)/web
 web-files: $(addprefix $(WEB)/,glint.wasm glint.mjs worker.mjs package.json LICENSE)
 
-.PHONY: check-web
-check-web: web-module ## the module for browsers in node: goldens and gallery with the command's bits, errors, limits, memory
-	@tests/deps.sh build test
-	@$(MAKE) --no-print-directory all
-	@TEST_LIMIT_S=900 $(RUNNER) tests/web/module.sh
-
+ifneq ($(WASM),)
 # The loader that emscripten writes and the worker around it are one file.
 $(BUILD)/glint.js: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
@@ -662,6 +658,69 @@ $(WEB)/package.json: bindings/web/package.json engine/glint.h
 $(WEB)/LICENSE: LICENSE
 	@mkdir -p $(@D)
 	@cp $< $@
+endif
+
+# The pages. npm brings the editor, the bundler and the tools of tests, as package-lock.json has them.
+NPM         := $(BUILD)/npm
+PAGES_SRC   := $(wildcard bindings/web/pages/*.js bindings/web/pages/*.mjs)
+ESBUILD     := $(NPM)/node_modules/.bin/esbuild --bundle --format=esm --minify --log-level=warning
+COURSE      := $(wildcard scripts/course/*.lua)
+WEB_PAGES   := $(addprefix $(WEB)/,glint-figure.js playground.js publish.js glint.wasm.gz site.css index.html figure.html course.html \
+                  examples/index.json examples/moving_light.png $(patsubst scripts/%,%,$(COURSE) $(COURSE:.lua=.png)))
+
+web-pages: $(WEB_PAGES)
+
+$(NPM)/node_modules: $(addprefix bindings/web/pages/,package.json package-lock.json .npmrc)
+	@mkdir -p $(NPM)
+	@cp $^ $(NPM)
+	$(call say,NPM)
+	$(Q)cd $(NPM) && npm ci --silent
+	@touch $@
+
+# esbuild finds packages beside the sources.
+$(NPM)/sources: $(PAGES_SRC) $(WEB)/glint.mjs $(WEB)/worker.mjs | $(NPM)/node_modules
+	@cp $(PAGES_SRC) $(WEB)/glint.mjs $(NPM) && cp $(WEB)/worker.mjs $(NPM)/worker.txt
+	@touch $@
+
+$(WEB)/playground.js: $(NPM)/sources
+	$(call say,BUNDLE)
+	$(Q)cd $(NPM) && $(CURDIR)/$(ESBUILD) playground.js --external:./glint.mjs --external:./glint-figure.js --outfile=$(CURDIR)/$@
+
+$(WEB)/publish.js: $(NPM)/sources
+	$(call say,BUNDLE)
+	$(Q)cd $(NPM) && $(CURDIR)/$(ESBUILD) publish.js --loader:.txt=text --external:node:* --outfile=$(CURDIR)/$@
+
+$(WEB)/glint.wasm.gz: $(WEB)/glint.wasm
+	@gzip -9 -n <$< >$@
+
+$(addprefix $(WEB)/,glint-figure.js site.css index.html figure.html course.html): $(WEB)/%: bindings/web/pages/%
+	@mkdir -p $(@D)
+	@cp $< $@
+
+$(WEB)/examples/index.json: $(NPM)/sources $(WEB)/glint.wasm $(wildcard scripts/*.lua)
+	$(Q)mkdir -p $(@D) && node bindings/web/pages/examples.mjs $(WEB) scripts
+
+$(WEB)/examples/moving_light.png: scripts/moving_light.lua $(BUILD)/glint
+	@mkdir -p $(@D)
+	$(Q)$(BUILD)/glint $< --quiet --set frames=1 --size 640x360 -o $@
+
+$(WEB)/course/%.lua: scripts/course/%.lua
+	@mkdir -p $(@D)
+	@cp $< $@
+
+$(WEB)/course/%.png: scripts/course/%.lua $(BUILD)/glint
+	@mkdir -p $(@D)
+	$(Q)$(BUILD)/glint $< --quiet -o $@
+
+check-web: web ## the module in node (bits, errors, limits, memory), the pages in headless Chromium, which it installs through apt
+	@tests/deps.sh build test films
+	@$(MAKE) --no-print-directory all
+	@TEST_LIMIT_S=900 $(RUNNER) tests/web/module.sh tests/web/pages.sh
+
+site: web ## build/site: the pages of make web with the manual, the gallery and the reference, for any static host
+	@rm -rf $(BUILD)/site
+	$(Q)node $(NPM)/site.mjs $(CURDIR) $(WEB) $(BUILD)/site
+	@cp bindings/web/pages/search.js $(BUILD)/site
 
 # What is installed: mode, from, to.
 define INSTALLED

@@ -66,6 +66,7 @@ musl-tools      command:musl-gcc
 web_required='
 emscripten      command:emcc
 nodejs          command:node
+npm             command:npm
 '
 package_optional='
 dpkg-dev        command:dpkg-buildpackage

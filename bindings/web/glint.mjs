@@ -305,12 +305,14 @@ class Engine {
 }
 
 /**
- * Loads the engine. wasm: where glint.wasm is (a URL, bytes or a module); worker: where worker.mjs is (a URL).
+ * Loads the engine. wasm: where glint.wasm is (a URL, bytes or a module); worker: where worker.mjs is (a URL); a blob has
+ * its text in an async function.
  */
 export async function load({ wasm, worker } = {}) {
   const url = new URL(worker ?? "worker.mjs", import.meta.url)
+  const isBlob = url.protocol === "blob:" // a page from a disk may not make a module of one
   const Worker = isNode ? (await import("node:worker_threads")).Worker : globalThis.Worker
-  const engine = new Engine(await compile(wasm), () => new Worker(url, { type: "module" }))
+  const engine = new Engine(await compile(wasm), () => new Worker(url, isBlob ? {} : { type: "module" }))
   return {
     /** Runs a script. files: { name: text or bytes } that it may read; set: { name: value }; seconds that it may take at a time. */
     async open(source, { name = "scene.lua", files = {}, set = {}, seconds = 10, signal } = {}) {

@@ -43,7 +43,7 @@ const style = `
   label { display: grid; grid-template-columns: 1fr auto; gap: 0 0.5rem; align-items: center; }
   label > input[type=range], label > select, label > input[type=text] { grid-column: 1 / -1; width: 100%; box-sizing: border-box;
     min-height: 1.75rem; margin: 0; font: inherit; }
-  output, .note { font-variant-numeric: tabular-nums; color: color-mix(in srgb, currentColor 75%, transparent); }
+  .note { font-variant-numeric: tabular-nums; color: color-mix(in srgb, currentColor 75%, transparent); }
   .bar { display: flex; flex-wrap: wrap; gap: 0.5rem 0.75rem; align-items: center; }
   .bar input { flex: 1 1 8rem; }
   button { font: inherit; padding: 0.25rem 0.8rem; min-height: 2rem; }
@@ -60,7 +60,8 @@ export function control(param, changed) {
   const name = document.createElement("span")
   name.textContent = param.name.replaceAll("_", " ")
   if (param.doc) label.title = param.doc
-  const output = document.createElement("output")
+  const output = document.createElement("span") // an <output> would be what the label is for
+  output.className = "note"
   const read = makeInput(param, label)
   const { input } = read
   label.prepend(name)

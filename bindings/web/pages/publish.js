@@ -9,7 +9,8 @@ const bytesOf = base64 => Uint8Array.from(atob(base64), letter => letter.charCod
 async function loadFromPage() {
   const squeezed = new Blob([bytesOf(textOf("glint-wasm"))]).stream().pipeThrough(new DecompressionStream("gzip"))
   const wasm = await new Response(squeezed).arrayBuffer()
-  return load({ wasm, worker: URL.createObjectURL(new Blob([workerText], { type: "text/javascript" })) })
+  const worker = new Blob(["(async () => {", workerText, "\n})()"], { type: "text/javascript" })
+  return load({ wasm, worker: URL.createObjectURL(worker) })
 }
 
 const { name, text, files, same, values } = JSON.parse(textOf("glint-job"))

@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# pages.sh: the pages of `make web` in headless Chromium, see pages.mjs. Exit 77: no browser.
+set -u
+browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || {
+    echo "skip: Chromium is not installed; get it with:  apt-get install chromium"
+    exit 77
+}
+cp tests/web/pages.mjs "$BUILD/npm" # whose folder has the packages that it imports
+CHROMIUM=$browser node "$BUILD/npm/pages.mjs" "$PWD/$BUILD/web" "$GLINT" "$PWD/scripts" "$PWD/$BUILD/tests/pages"
