@@ -744,8 +744,11 @@ $(foreach file,$(EXAMPLES),$(if $(filter %.sh,$(file)),755,644) scripts/$(file) 
 endef
 export INSTALLED
 
+# The installed tree may be moved: its prefix is found from where glint.pc lies, where the libraries are below the prefix.
+pc_prefix = $(if $(filter $(PREFIX)/%,$(libdir)),$${pcfiledir}/..$(shell echo '$(libdir:$(PREFIX)/%=/%)' | sed 's|/[^/]*|/..|g'),$(PREFIX))
 $(BUILD)/glint.pc: engine/glint.pc.in FORCE
-	@sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(libdir)|' -e 's|@includedir@|$(incdir)|' \
+	@sed -e 's|@prefix@|$(pc_prefix)|' -e 's|@libdir@|$(libdir:$(PREFIX)/%=$${prefix}/%)|' \
+	    -e 's|@includedir@|$(incdir:$(PREFIX)/%=$${prefix}/%)|' \
 	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES) $(if $(FONT_LIBS),freetype2) $(if $(JPEG_LIBS),libjpeg)|' -e 's|@private@|$(EXR_LIBS)|' $< > $@
 
 $(BUILD)/completion/%: $(BUILD)/glint

@@ -7,7 +7,7 @@
 /// Vectors   `double v[3]` is x, y, z or red, green, blue. The world is right-handed.
 /// Errors    every function that can fail returns a glint_status and fills `error` (which may be NULL). Outputs and
 ///           objects are then as they were. The message starts with the argument's name: "shininess: number >= 0
-///           expected, got -1".
+///           expected, got -1". NULL for a pointer that is not optional is GLINT_ERR_INVALID, too: "shape: pointer expected, got NULL".
 /// Ownership `_create` returns a reference the caller owns and gives back with `_release`; `_retain` takes another.
 ///           `_release(NULL)` does nothing. What a description struct points to is borrowed for the call only.
 /// Threads   described objects (material, light, camera, shape, overlay, scene) belong to one thread at a time. A plan is
@@ -20,6 +20,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #define GLINT_VERSION "0.1.0"
 
@@ -1521,5 +1525,9 @@ double glint_log(double x);
 double glint_pow(double x, double y);
 double glint_srgb_encode(double linear); ///< IEC 61966-2-1:1999; input clamped to 0 .. 1, NaN gives 0
 double glint_srgb_decode(double encoded); ///< the inverse; input clamped to 0 .. 1
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

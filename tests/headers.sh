@@ -28,6 +28,13 @@ for header in engine/*.h engine/*/*.h engine/stages/*/*.h engine/effects/*/*.h b
     esac
 done
 
+# The public header is for C++, too, by C names.
+if command -v c++ >/dev/null && ! printf '#include "engine/glint.h"\nint main() { return glint_sin(0) != 0 || !glint_pass_name(GLINT_PASS_DEPTH); }\n' |
+    c++ -I. -Wall -Wextra -Werror -x c++ -S -o - - | grep -q '[^0-9]glint_sin'; then
+    echo "engine/glint.h does not compile as C++"
+    bad=1
+fi
+
 # refused SENTENCE FLAG...    A machine that the engine does not work on is refused with a sentence.
 refused() {
     local sentence=$1 said

@@ -8,6 +8,13 @@
 glint_status glint_fail(glint_error *error, glint_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/// Ends the function with GLINT_ERR_INVALID where a pointer that the caller must give is NULL.
+#define GLINT_REFUSE_NULL(argument, error) \
+    do { \
+        if (!(argument)) \
+            return glint_fail(error, GLINT_ERR_INVALID, #argument ": pointer expected, got NULL"); \
+    } while (0)
+
 /// "out of memory" with GLINT_ERR_NOMEM.
 glint_status glint_fail_nomem(glint_error *error);
 

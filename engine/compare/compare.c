@@ -119,6 +119,10 @@ static glint_status compare(const char *a, const picture *pa, const char *b, con
 glint_status glint_compare_files(const char *a, const char *b, const glint_compare_desc *desc,
                                  glint_compare_result *out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(a, error);
+    GLINT_REFUSE_NULL(b, error);
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_compare_desc thresholds = desc ? *desc : (glint_compare_desc) { 1e-6, 1e-6 };
     if (!(thresholds.fail >= 0) || !(thresholds.warn >= 0))
         return glint_fail(error, GLINT_ERR_INVALID, "fail, warn: numbers >= 0 expected, got %g, %g", thresholds.fail,

@@ -136,6 +136,9 @@ static void average(const glint_image *const *images, size_t count, glint_image 
 glint_status glint_reference_create(const glint_image *const *images, size_t count, const glint_tone_desc *tone,
                                     glint_reference **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(images, error);
+    GLINT_REFUSE_NULL(tone, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_status status = GLINT_OK;
     for (size_t i = 0; i < count && !status; i++)
         status = check_image(images[i], images[0]->width, images[0]->height, error);
@@ -244,6 +247,9 @@ static glint_status measure(const glint_reference *reference, const glint_image 
 glint_status glint_reference_measure(const glint_reference *reference, const glint_image *image, int file_bits,
                                      glint_picture_error *out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(reference, error);
+    GLINT_REFUSE_NULL(image, error);
+    GLINT_REFUSE_NULL(out, error);
     if (file_bits != 0 && file_bits != 8 && file_bits != 16)
         return glint_fail(error, GLINT_ERR_INVALID, "file_bits: 0, 8 or 16 expected, got %d", file_bits);
     glint_status status = check_image(image, reference->image->width, reference->image->height, error);
@@ -255,6 +261,9 @@ glint_status glint_reference_measure(const glint_reference *reference, const gli
 glint_status glint_reference_difference(const glint_reference *reference, const glint_image *image, double scale,
                                         glint_image **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(reference, error);
+    GLINT_REFUSE_NULL(image, error);
+    GLINT_REFUSE_NULL(out, error);
     codes mine = { 0 }, theirs = { 0 };
     glint_image *made = NULL;
     glint_tone_desc tone = reference->tone;

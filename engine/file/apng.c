@@ -176,6 +176,9 @@ static glint_status open_apng(glint_apng *apng, const char *path, glint_error *e
 
 glint_status glint_apng_create(const char *path, const glint_apng_desc *desc, glint_apng **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(path, error);
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_status status = check_desc(desc, error);
     if (status)
         return status;
@@ -193,6 +196,7 @@ glint_status glint_apng_create(const char *path, const glint_apng_desc *desc, gl
 
 glint_status glint_apng_finish(glint_apng *apng, glint_error *error)
 {
+    GLINT_REFUSE_NULL(apng, error);
     if (apng->frames != apng->desc.frame_count)
         return glint_fail(error, GLINT_ERR_INVALID, "frame_count: %u frames expected, got %u", apng->desc.frame_count,
                           apng->frames);
@@ -270,6 +274,8 @@ static glint_status check_picture(const glint_apng *apng, const glint_picture *p
 
 glint_status glint_apng_add(glint_apng *apng, const glint_picture *picture, glint_error *error)
 {
+    GLINT_REFUSE_NULL(apng, error);
+    GLINT_REFUSE_NULL(picture, error);
     glint_status status = check_picture(apng, picture, error);
     if (status)
         return status;

@@ -263,6 +263,8 @@ static int open_draft(glint_draft *draft)
 
 glint_status glint_draft_create(const char *path, glint_draft **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(path, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_draft *draft = calloc(1, sizeof *draft);
     if (!draft)
         return glint_fail_nomem(error);
@@ -281,12 +283,16 @@ const char *glint_draft_name(const glint_draft *draft) { return draft->temporary
 
 glint_status glint_draft_append(glint_draft *draft, const void *bytes, size_t size, glint_error *error)
 {
+    GLINT_REFUSE_NULL(draft, error);
+    if (size)
+        GLINT_REFUSE_NULL(bytes, error);
     int code = write_all(draft->file, bytes, size);
     return code ? glint_file_fail(error, draft->path, code) : GLINT_OK;
 }
 
 glint_status glint_draft_finish(glint_draft *draft, glint_error *error)
 {
+    GLINT_REFUSE_NULL(draft, error);
     int code = draft->temporary ? sync_again(draft->file) : 0;
     code = close_after(draft->file, code);
     draft->file = -1;

@@ -172,6 +172,8 @@ static glint_status read_part(exr_input *file, glint_error *error)
 
 glint_status glint_lights_read(const char *path, glint_image **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(path, error);
+    GLINT_REFUSE_NULL(out, error);
     exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
     exr_input file = { .image = NULL };
     glint_error inner;

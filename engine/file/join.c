@@ -88,6 +88,8 @@ static glint_status write_canvas(const canvas *from, const glint_picture *first,
 glint_status glint_picture_join(const glint_picture_part *parts, size_t count, int width, int height,
                                 const glint_write_desc *desc, glint_error *error)
 {
+    GLINT_REFUSE_NULL(parts, error);
+    GLINT_REFUSE_NULL(desc, error);
     if (!count)
         return glint_fail(error, GLINT_ERR_INVALID, "parts: one or more expected");
     glint_status status = glint_check_whole("width", width, 1, GLINT_SIDE_MAX, error);

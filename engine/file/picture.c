@@ -115,6 +115,8 @@ static glint_status read_pfm(glint_picture *picture, const glint_bytes *bytes, b
 
 glint_status glint_picture_read(const char *path, bool pixels, glint_picture **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(path, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_file_kind kind;
     glint_bytes bytes = { 0 };
     glint_error inner;
@@ -140,6 +142,8 @@ glint_status glint_picture_read(const char *path, bool pixels, glint_picture **o
 
 glint_status glint_picture_from_bytes(const void *data, size_t size, glint_picture **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(data, error);
+    GLINT_REFUSE_NULL(out, error);
     const glint_bytes bytes = { .data = (uint8_t *)(uintptr_t)data, .size = size };
     glint_picture *picture = calloc(1, sizeof *picture);
     glint_status status = picture ? read_png(picture, &bytes, true, error) : glint_fail_nomem(error);

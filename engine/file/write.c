@@ -387,6 +387,9 @@ static void copy_rgba(const glint_png_source *source, const uint8_t *row, uint8_
 
 glint_status glint_image_rgba(const glint_image *image, const glint_write_desc *desc, uint8_t *out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(image, error);
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     code_rows rows;
     if (desc->tone.bits != 8)
         return glint_fail(error, GLINT_ERR_INVALID, "tone.bits: 8 expected, got %d", desc->tone.bits);
@@ -437,6 +440,8 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
 
 glint_status glint_image_write(const glint_image *image, const glint_write_desc *desc, glint_error *error)
 {
+    GLINT_REFUSE_NULL(image, error);
+    GLINT_REFUSE_NULL(desc, error);
     glint_bytes bytes = { 0 };
     glint_status status = glint_image_encode(image, desc, NULL, &bytes, NULL, error);
     if (!status)
@@ -448,6 +453,10 @@ glint_status glint_image_write(const glint_image *image, const glint_write_desc 
 glint_status glint_image_to_bytes(const glint_image *image, const glint_write_desc *desc, uint8_t **data, size_t *size,
                                   glint_error *error)
 {
+    GLINT_REFUSE_NULL(image, error);
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(data, error);
+    GLINT_REFUSE_NULL(size, error);
     glint_bytes bytes = { 0 };
     glint_status status = glint_image_encode(image, desc, NULL, &bytes, NULL, error);
     if (status) {

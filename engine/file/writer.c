@@ -232,6 +232,7 @@ static void free_writer(glint_writer *writer)
 
 glint_status glint_writer_create(int queue_depth, int threads, glint_writer **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(out, error);
     glint_status status = glint_check_range("queue_depth", queue_depth, 1, 1 << 20, "number 1 .. 1048576", error);
     if (!status)
         status = glint_check_whole("threads", threads, 0, 1024, error);
@@ -315,6 +316,9 @@ static job *make_job(const glint_write_desc *desc)
 glint_status glint_writer_submit(glint_writer *writer, glint_image *image, const glint_write_desc *desc, void *user,
                                  glint_error *error)
 {
+    GLINT_REFUSE_NULL(writer, error);
+    GLINT_REFUSE_NULL(image, error);
+    GLINT_REFUSE_NULL(desc, error);
     job *j = make_job(desc);
     if (!j)
         return glint_fail_nomem(error);

@@ -323,6 +323,8 @@ bool glint_image_has_pass(const glint_image *image, glint_pass pass)
 glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3],
                                glint_error *error)
 {
+    GLINT_REFUSE_NULL(image, error);
+    GLINT_REFUSE_NULL(out, error);
     float *const *plane = glint_image_planes(image, pass);
     if ((int)pass < 0)
         return glint_fail(error, GLINT_ERR_INVALID, "pass: one of the %d passes expected, got %d", GLINT_PASS_COUNT,

@@ -52,6 +52,8 @@ glint_status glint_image_split_rest(glint_image *image, bool half, glint_error *
 glint_status glint_image_relight(const glint_image *lights, const double (*factors)[3], glint_image **out,
                                  glint_error *error)
 {
+    GLINT_REFUSE_NULL(lights, error);
+    GLINT_REFUSE_NULL(out, error);
     const size_t pixels = (size_t)lights->width * (size_t)lights->height;
     const bool alpha = lights->plane[GLINT_PASS_ALPHA][0];
     glint_image *image = NULL;

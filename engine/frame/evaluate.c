@@ -9,6 +9,9 @@
 glint_status glint_program_evaluate(const glint_program *program, const double inputs[GLINT_INPUT_COUNT],
                                     double *outputs, glint_error *error)
 {
+    GLINT_REFUSE_NULL(program, error);
+    GLINT_REFUSE_NULL(inputs, error);
+    GLINT_REFUSE_NULL(outputs, error);
     const glint_stages *stages;
     const uint16_t first_lane = 1;
     const glint_status status = glint_choose_isa(NULL, &stages, error);

@@ -80,6 +80,11 @@ static void read_hit(const glint_geometry *geometry, uint32_t id, const lane_gro
 glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], const double direction[3], bool *hit,
                               glint_hit *out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(scene, error);
+    GLINT_REFUSE_NULL(origin, error);
+    GLINT_REFUSE_NULL(direction, error);
+    GLINT_REFUSE_NULL(hit, error);
+    GLINT_REFUSE_NULL(out, error);
     const glint_stages *stages;
     glint_status status = glint_check_vector("origin", origin, error);
     if (!status)
@@ -190,6 +195,11 @@ static void evaluate_lane(const glint_stages *stages, const glint_material_desc 
 glint_status glint_material_evaluate(const glint_material *material, const double normal[3], const double to_light[3],
                                      const double to_eye[3], glint_reflection *out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(material, error);
+    GLINT_REFUSE_NULL(normal, error);
+    GLINT_REFUSE_NULL(to_light, error);
+    GLINT_REFUSE_NULL(to_eye, error);
+    GLINT_REFUSE_NULL(out, error);
     const glint_stages *stages;
     glint_status status = glint_check_direction("normal", normal, error);
     if (!status)

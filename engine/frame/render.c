@@ -36,6 +36,8 @@ glint_renderer_desc glint_renderer_desc_default(void) { return (glint_renderer_d
 
 glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_renderer *renderer = calloc(1, sizeof *renderer);
     if (!renderer)
         return glint_fail_nomem(error);
@@ -348,6 +350,9 @@ glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *pl
 glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
                           glint_error *error)
 {
+    GLINT_REFUSE_NULL(renderer, error);
+    GLINT_REFUSE_NULL(plan, error);
+    GLINT_REFUSE_NULL(out, error);
     const double *r = plan->desc.region;
     glint_image *whole = NULL, *part = NULL;
     glint_status status = plan->times ? glint_render_times(renderer, plan, &whole, stats, error)

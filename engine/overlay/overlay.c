@@ -159,6 +159,8 @@ static glint_status check(const glint_overlay_desc *desc, glint_error *error)
 
 glint_status glint_overlay_create(const glint_overlay_desc *desc, glint_overlay **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_status status = check(desc, error);
     if (status)
         return status;
@@ -172,6 +174,8 @@ glint_status glint_overlay_create(const glint_overlay_desc *desc, glint_overlay 
 
 glint_status glint_overlay_set(glint_overlay *overlay, const glint_overlay_desc *desc, glint_error *error)
 {
+    GLINT_REFUSE_NULL(overlay, error);
+    GLINT_REFUSE_NULL(desc, error);
     if (desc->kind != overlay->desc.kind)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: that of the overlay expected");
     glint_status status = check(desc, error);

@@ -233,6 +233,9 @@ static glint_status create(const glint_scene *scene, const glint_render_desc *de
 glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
                                glint_error *error)
 {
+    GLINT_REFUSE_NULL(scene, error);
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     return create(scene, desc, NULL, 0, out, error);
 }
 
@@ -269,6 +272,10 @@ static glint_status check_times(glint_plan *const *times, size_t count, const gl
 glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_render_desc *desc, glint_plan **times,
                                        size_t count, glint_plan **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(scene, error);
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(times, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_plan *plan = NULL, *all = NULL;
     glint_status status = check_times(times, count, desc, error);
     if (!status)

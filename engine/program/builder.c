@@ -9,6 +9,7 @@
 
 glint_status glint_builder_create(glint_program_kind kind, glint_builder **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(out, error);
     if ((unsigned)kind > GLINT_PROGRAM_SHADER)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: pattern or shader expected, got %d", (int)kind);
     if (!GLINT_WITH_PROGRAM)
@@ -117,11 +118,15 @@ glint_status glint_builder_keep(glint_builder *builder, uint16_t kind, uint32_t 
 
 glint_status glint_builder_number(glint_builder *builder, double number, glint_value *out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(builder, error);
+    GLINT_REFUSE_NULL(out, error);
     return glint_builder_keep(builder, GLINT_SSA_NUMBER, 0, number, out, error);
 }
 
 glint_status glint_builder_input(glint_builder *builder, glint_input input, glint_value *out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(builder, error);
+    GLINT_REFUSE_NULL(out, error);
     if ((unsigned)input >= GLINT_INPUT_COUNT)
         return glint_fail(error, GLINT_ERR_INVALID, "input: no such input: %d", (int)input);
     if (builder->kind == GLINT_PROGRAM_PATTERN && input >= GLINT_INPUT_L_X)
@@ -251,6 +256,9 @@ glint_status glint_builder_add(glint_builder *builder, glint_op op, uint32_t tex
 glint_status glint_builder_op(glint_builder *builder, glint_op op, const glint_value *operands, glint_value *out,
                               glint_error *error)
 {
+    GLINT_REFUSE_NULL(builder, error);
+    GLINT_REFUSE_NULL(operands, error);
+    GLINT_REFUSE_NULL(out, error);
     if ((unsigned)op > GLINT_OP_PARITY)
         return glint_fail(error, GLINT_ERR_INVALID, "op: no operation of a caller's: %d", (int)op);
     return glint_builder_add(builder, op, 0, operands, out, error);
@@ -278,6 +286,9 @@ glint_status glint_builder_texture(glint_builder *builder, const glint_texture *
 glint_status glint_builder_texel(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
                                  glint_value footprint, glint_value out[4], glint_error *error)
 {
+    GLINT_REFUSE_NULL(builder, error);
+    GLINT_REFUSE_NULL(texture, error);
+    GLINT_REFUSE_NULL(out, error);
     const glint_value operands[] = { u, v, footprint };
     uint32_t index;
     const glint_status status = glint_builder_texture(builder, texture, &index, error);
@@ -287,6 +298,9 @@ glint_status glint_builder_texel(glint_builder *builder, const glint_texture *te
 glint_status glint_builder_finish(glint_builder *builder, const glint_value *outputs, size_t count, glint_program **out,
                                   glint_error *error)
 {
+    GLINT_REFUSE_NULL(builder, error);
+    GLINT_REFUSE_NULL(outputs, error);
+    GLINT_REFUSE_NULL(out, error);
     const bool pattern = builder->kind == GLINT_PROGRAM_PATTERN;
     if (pattern && count != 1 && count != 3)
         return glint_fail(error, GLINT_ERR_INVALID, "count: 1 or 3 outputs of a pattern expected, got %zu", count);

@@ -9,6 +9,8 @@
 glint_status glint_builder_parameter(glint_builder *builder, double number, const double *slopes, size_t count,
                                      glint_value *out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(builder, error);
+    GLINT_REFUSE_NULL(out, error);
     double all[GLINT_PARAMETERS_MAX] = { 0 };
     uint32_t i = 0;
     if (count > GLINT_PARAMETERS_MAX)

@@ -187,6 +187,8 @@ static glint_status check(const glint_texture_desc *desc, glint_error *error)
 
 glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_png png = { 0 };
     bool linear = desc->linear;
     glint_status status = check(desc, error);
@@ -214,6 +216,8 @@ glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture 
 glint_status glint_texture_rewrap(const glint_texture *texture, glint_wrap wrap, glint_texture **out,
                                   glint_error *error)
 {
+    GLINT_REFUSE_NULL(texture, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_texture *owner = texture->owner ? texture->owner : (glint_texture *)(uintptr_t)texture;
     if ((unsigned)wrap > GLINT_WRAP_AROUND)
         return glint_fail(error, GLINT_ERR_INVALID, "wrap: repeat, clamp or around expected, got %d", (int)wrap);

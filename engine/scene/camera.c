@@ -85,6 +85,8 @@ static glint_status check(const glint_camera_desc *desc, glint_error *error)
 
 glint_status glint_camera_create(const glint_camera_desc *desc, glint_camera **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_status status = check(desc, error);
     if (status)
         return status;
@@ -98,6 +100,8 @@ glint_status glint_camera_create(const glint_camera_desc *desc, glint_camera **o
 
 glint_status glint_camera_set(glint_camera *camera, const glint_camera_desc *desc, glint_error *error)
 {
+    GLINT_REFUSE_NULL(camera, error);
+    GLINT_REFUSE_NULL(desc, error);
     glint_status status = check(desc, error);
     if (!status)
         camera->desc = *desc;

@@ -111,6 +111,8 @@ glint_status glint_check_part(const char *who, const glint_shape *part, glint_er
 
 glint_status glint_group_add(glint_shape *group, glint_shape *child, glint_error *error)
 {
+    GLINT_REFUSE_NULL(group, error);
+    GLINT_REFUSE_NULL(child, error);
     static uint64_t stamps;
     const char *kind = glint_shape_kind_name(group->desc.kind);
     if (!glint_shape_has_children(group))
@@ -135,6 +137,8 @@ glint_status glint_group_add(glint_shape *group, glint_shape *child, glint_error
 
 glint_status glint_group_remove(glint_shape *group, glint_shape *child, glint_error *error)
 {
+    GLINT_REFUSE_NULL(group, error);
+    GLINT_REFUSE_NULL(child, error);
     const size_t index = glint_list_find(&group->children, child);
     if (index == group->children.count)
         return glint_fail(error, GLINT_ERR_INVALID, "%s: not in the %s", glint_shape_kind_name(group->desc.kind),

@@ -130,6 +130,8 @@ static glint_status take(glint_light *light, const glint_light_desc *desc, glint
 
 glint_status glint_light_create(const glint_light_desc *desc, glint_light **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     if (desc->kind > GLINT_LIGHT_SPHERE)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: no such kind of light");
     glint_status status = check(desc, error);
@@ -149,6 +151,8 @@ glint_status glint_light_create(const glint_light_desc *desc, glint_light **out,
 
 glint_status glint_light_set(glint_light *light, const glint_light_desc *desc, glint_error *error)
 {
+    GLINT_REFUSE_NULL(light, error);
+    GLINT_REFUSE_NULL(desc, error);
     if (desc->kind != light->desc.kind)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: a light cannot become one of another kind");
     glint_status status = check(desc, error);

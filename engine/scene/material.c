@@ -171,6 +171,8 @@ static glint_status take(const glint_material_desc *desc, glint_material_desc *o
 
 glint_status glint_material_create(const glint_material_desc *desc, glint_material **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_material_desc taken;
     glint_status status = take(desc, &taken, error);
     if (status)
@@ -186,6 +188,8 @@ glint_status glint_material_create(const glint_material_desc *desc, glint_materi
 
 glint_status glint_material_set(glint_material *material, const glint_material_desc *desc, glint_error *error)
 {
+    GLINT_REFUSE_NULL(material, error);
+    GLINT_REFUSE_NULL(desc, error);
     glint_material_desc taken;
     glint_status status = take(desc, &taken, error);
     if (status)

@@ -429,5 +429,7 @@ glint_status glint_mesh_make(const glint_mesh_desc *desc, glint_mesh_faults *fau
 
 glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     return glint_mesh_make(desc, NULL, out, error);
 }

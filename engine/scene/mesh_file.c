@@ -246,6 +246,9 @@ static reading reader_of(const glint_mesh_text *text)
 
 glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glint_shape **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(path, error);
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_mesh_reader r = { .desc = desc, .error = error };
     r.vertices.size = r.normals.size = r.vertex_colors.size = 3 * sizeof(double);
     r.uv.size = 2 * sizeof(double);

@@ -76,6 +76,9 @@ static void make_globe(globe *g, const double center[3], double radius)
 glint_status glint_sphere_mesh_create(const double center[3], double radius, double segments,
                                       const glint_mesh_desc *desc, glint_shape **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(center, error);
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     glint_status status = glint_check_vector("center", center, error);
     if (!status && !(radius > 0 && isfinite(radius)))
         status = glint_fail(error, GLINT_ERR_INVALID, "radius: number > 0 expected, got %.15g", radius);

@@ -8,6 +8,7 @@
 
 glint_status glint_scene_create(glint_scene **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(out, error);
     glint_scene *scene = calloc(1, sizeof *scene);
     if (!scene)
         return glint_fail_nomem(error);
@@ -55,6 +56,9 @@ static glint_status check_ambient_occlusion(const glint_scene_desc *desc, glint_
 
 glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *given, glint_error *error)
 {
+    GLINT_REFUSE_NULL(scene, error);
+    if (!given)
+        return glint_fail(error, GLINT_ERR_INVALID, "desc: pointer expected, got NULL");
     glint_scene_desc folded = *given;
     const glint_scene_desc *desc = &folded;
     if (given->background_program &&
@@ -127,6 +131,8 @@ static glint_status drop(glint_list *list, const void *object, const char *what,
 
 glint_status glint_scene_add_shape(glint_scene *scene, glint_shape *shape, glint_error *error)
 {
+    GLINT_REFUSE_NULL(scene, error);
+    GLINT_REFUSE_NULL(shape, error);
     glint_status status = add(&scene->shapes, shape, "shape", error);
     if (!status)
         glint_shape_retain(shape);
@@ -135,6 +141,8 @@ glint_status glint_scene_add_shape(glint_scene *scene, glint_shape *shape, glint
 
 glint_status glint_scene_add_light(glint_scene *scene, glint_light *light, glint_error *error)
 {
+    GLINT_REFUSE_NULL(scene, error);
+    GLINT_REFUSE_NULL(light, error);
     glint_status status = add(&scene->lights, light, "light", error);
     if (!status)
         glint_light_retain(light);
@@ -143,6 +151,8 @@ glint_status glint_scene_add_light(glint_scene *scene, glint_light *light, glint
 
 glint_status glint_scene_add_overlay(glint_scene *scene, glint_overlay *overlay, glint_error *error)
 {
+    GLINT_REFUSE_NULL(scene, error);
+    GLINT_REFUSE_NULL(overlay, error);
     glint_status status = add(&scene->overlays, overlay, "overlay", error);
     if (!status)
         glint_overlay_retain(overlay);
@@ -151,6 +161,8 @@ glint_status glint_scene_add_overlay(glint_scene *scene, glint_overlay *overlay,
 
 glint_status glint_scene_remove_shape(glint_scene *scene, glint_shape *shape, glint_error *error)
 {
+    GLINT_REFUSE_NULL(scene, error);
+    GLINT_REFUSE_NULL(shape, error);
     glint_status status = drop(&scene->shapes, shape, "shape", error);
     if (!status)
         glint_shape_release(shape);
@@ -159,6 +171,8 @@ glint_status glint_scene_remove_shape(glint_scene *scene, glint_shape *shape, gl
 
 glint_status glint_scene_remove_light(glint_scene *scene, glint_light *light, glint_error *error)
 {
+    GLINT_REFUSE_NULL(scene, error);
+    GLINT_REFUSE_NULL(light, error);
     glint_status status = drop(&scene->lights, light, "light", error);
     if (!status)
         glint_light_release(light);
@@ -167,6 +181,8 @@ glint_status glint_scene_remove_light(glint_scene *scene, glint_light *light, gl
 
 glint_status glint_scene_remove_overlay(glint_scene *scene, glint_overlay *overlay, glint_error *error)
 {
+    GLINT_REFUSE_NULL(scene, error);
+    GLINT_REFUSE_NULL(overlay, error);
     glint_status status = drop(&scene->overlays, overlay, "overlay", error);
     if (!status)
         glint_overlay_release(overlay);

@@ -158,6 +158,8 @@ glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_cou
 
 glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     if (desc->kind > GLINT_SHAPE_DIFFERENCE || desc->kind == GLINT_SHAPE_SPHERES || desc->kind == GLINT_SHAPE_MESH)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: one that a description alone makes expected");
     glint_status status = check(desc, error);
@@ -179,6 +181,8 @@ glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out,
 
 glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error)
 {
+    GLINT_REFUSE_NULL(shape, error);
+    GLINT_REFUSE_NULL(desc, error);
     if (desc->kind != shape->desc.kind)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: a shape cannot become one of another kind");
     glint_status status = check(desc, error);
@@ -300,6 +304,8 @@ static glint_status fill_spheres(glint_shape *shape, const glint_spheres_desc *d
 
 glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **out, glint_error *error)
 {
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(out, error);
     if (desc->count < 1 || desc->count > MAX_SPHERES)
         return glint_fail(error, GLINT_ERR_INVALID, "data: 1 .. %zu spheres expected, got %zu", MAX_SPHERES,
                           desc->count);

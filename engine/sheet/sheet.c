@@ -417,6 +417,8 @@ static glint_status check_sides(const layout *l, glint_error *error)
 
 glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error)
 {
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(path, error);
     glint_picture *first = NULL;
     glint_letters *letters = NULL;
     glint_status status = check_desc(desc, path, error);

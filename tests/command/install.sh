@@ -159,5 +159,10 @@ check "DESTDIR goes before PREFIX" quiet_make install PREFIX=/opt/glint DESTDIR=
 multiarch=$(${CC:-cc} -print-multiarch 2>/dev/null)
 check "as a system's own package" quiet_make install PREFIX=/usr DESTDIR="$work/system"
 check "with the libraries of this architecture" test -s "$work/system/usr/lib${multiarch:+/$multiarch}/libglint.so"
-check "into the root's folder, not the files" grep -qx 'prefix=/opt/glint' "$work/root/opt/glint/lib/pkgconfig/glint.pc"
+check "into the root's folder, not the files" grep -qx 'prefix=${pcfiledir}/../..' "$work/root/opt/glint/lib/pkgconfig/glint.pc"
+if command -v pkg-config >/dev/null; then
+    mv "$work/root/opt/glint" "$work/moved"
+    headers=$(PKG_CONFIG_PATH="$work/moved/lib/pkgconfig" pkg-config --variable=includedir glint)
+    check "glint.pc finds the headers of a moved tree" test "$(realpath "$headers")" = "$(realpath "$work/moved/include")"
+fi
 totals
