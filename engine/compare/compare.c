@@ -121,7 +121,6 @@ glint_status glint_compare_files(const char *a, const char *b, const glint_compa
 {
     GLINT_REFUSE_NULL(a, error);
     GLINT_REFUSE_NULL(b, error);
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
     glint_compare_desc thresholds = desc ? *desc : (glint_compare_desc) { 1e-6, 1e-6 };
     if (!(thresholds.fail >= 0) || !(thresholds.warn >= 0))

@@ -95,7 +95,7 @@ static const field light_fields[] = {
     L(position, VECTOR, -6, 6),   L(direction, VECTOR, -1, 1),  L(name, FIXED, 0, 0),       L(inner_rad, NUMBER, 0, 1),
     L(outer_rad, NUMBER, 0.5, 3), L(exponent, NUMBER, 0, 20),   L(normal, VECTOR, -1, 1),   L(radius, NUMBER, 0, 2),
     L(vertices, FIXED, 0, 0),     L(vertex_count, FIXED, 0, 0), L(two_sided, FLAG, 0, 1),   L(samples, WHOLE, 1, 20),
-    L(has_radiance, FLAG, 0, 1),  L(radiance, NUMBER, 0, 9),
+    L(has_radiance, FLAG, 0, 1),  L(radiance, NUMBER, 0, 9),  L(group, FIXED, 0, 0),
 #undef L
 };
 
@@ -147,7 +147,8 @@ static const field render_fields[] = {
     R(outline, CHOICE, 0, 3),       R(tone.curve, CHOICE, 0, 3),
     R(tone.transfer, CHOICE, 0, 3), R(tone.rounding, CHOICE, 0, 2),
     R(tone.bits, DEPTH, 0, 0),      R(tone.exposure, NUMBER, -2, 3),
-    R(region, REGION, 0, 0), R(derivatives, FIXED, 0, 0), R(derivative_count, FIXED, 0, 0), // refused here, see tests/lua
+    R(region, REGION, 0, 0),        R(light_passes, FIXED, 0, 0), // see tests/lua for these
+    R(derivatives, FIXED, 0, 0),    R(derivative_count, FIXED, 0, 0),
 #undef R
 };
 
