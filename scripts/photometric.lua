@@ -148,7 +148,7 @@ local function write_glint()
   local rows = { "file,x,y,z,intensity\n" }
   local function path(name) return folder .. "/" .. name end
   local truth = render(OBJECTS.balls(painter(MATERIALS.matt)), function(k, x, y, z, lamp)
-    local file = given and given_name(k) or ("light_%03d.%s"):format(k, P.exact and "pfm" or "png")
+    local file = given and given ~= "none" and given_name(k) or ("light_%03d.%s"):format(k, P.exact and "pfm" or "png")
     rows[#rows + 1] = ("%s,%.17g,%.17g,%.17g,%.17g\n"):format(file, x, y, z, lamp.intensity)
     return path(file)
   end)

@@ -89,7 +89,7 @@ static bool put(glintL_set **sets, size_t *count, const char *name, const char *
     if (at < *count)
         free((char *)grown[at].text);
     else
-        grown[(*count)++].name = own;
+        grown[(*count)++] = (glintL_set) { .name = own };
     grown[at].text = copy;
     grown[at].is_known = is_known;
     return true;

@@ -255,12 +255,14 @@ class Job {
   }
   /**
    * Renders a frame. `set` beats the values the job was opened with; `passes` have their numbers in image.plane(), which takes
-   * longer than the picture only; other options are the fields of scene:render{}.
+   * longer than the picture only; `view` is the pass that image.rgba shows, as its .png does; other options are the fields of
+   * scene:render{}.
    */
-  async render({ frame = 1, passes = [], set, signal, ...options } = {}) {
+  async render({ frame = 1, passes = [], view = "beauty", set, signal, ...options } = {}) {
     const named = [passes].flat().flatMap(list => String(list).split(",")).filter(name => name !== "")
-    const message = { call: "render", frame, set: { ...this.#set, ...spellAll(set) }, passes: named, options: spellAll(options) }
-    if (named.length) message.options.passes = named.join(",")
+    const needed = view === "beauty" || named.includes(view) ? named : [...named, view]
+    const message = { call: "render", frame, view, set: { ...this.#set, ...spellAll(set) }, passes: named, options: spellAll(options) }
+    if (needed.length) message.options.passes = needed.join(",")
     message.options.bits = "8" // a page shows no more
     return new Image(await this.#host.ask(message, signal))
   }

@@ -354,20 +354,6 @@ EMSCRIPTEN_KEEPALIVE bool web_render(double frame, bool keeps)
 EMSCRIPTEN_KEEPALIVE int web_image_width(void) { return glint_image_width(job.image); }
 EMSCRIPTEN_KEEPALIVE int web_image_height(void) { return glint_image_height(job.image); }
 
-/// The codes of the last frame, RGBA; until the next call.
-EMSCRIPTEN_KEEPALIVE const uint8_t *web_rgba(void)
-{
-    glint_error error;
-    glint_write_desc desc = { .tone = job.render.desc.tone, .dpi = job.render.dpi };
-    desc.tone.bits = 8; // a screen shows no more
-    free(job.bytes);
-    job.bytes = malloc(4 * (size_t)web_image_width() * (size_t)web_image_height());
-    if (job.bytes && glint_image_rgba(job.image, &desc, job.bytes, &error) == GLINT_OK)
-        return job.bytes;
-    glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "%s", job.bytes ? error.message : "out of memory");
-    return NULL;
-}
-
 // The number of the pass with that name in the last frame, or -1.
 static int find_pass(const char *name)
 {
@@ -380,6 +366,25 @@ static int find_pass(const char *name)
         if (strcmp(other, of) == 0)
             return (int)(i + (is_light ? GLINT_PASS_LIGHT : GLINT_PASS_DERIVATIVE));
     return -1;
+}
+
+// The 8-bit values of the last frame's pass, as its .png has them: RGBA, from the top.
+EMSCRIPTEN_KEEPALIVE const uint8_t *web_rgba(const char *view)
+{
+    glint_error error;
+    const int pass = strcmp(view, "beauty") == 0 ? GLINT_PASS_BEAUTY : find_pass(view);
+    glint_write_desc desc = { .pass = (glint_pass)pass, .tone = job.render.desc.tone, .dpi = job.render.dpi };
+    if (pass < 0) {
+        glintL_run_fail(job.run, GLINTL_EXIT_USAGE, 0, "view: no pass '%s'", view);
+        return NULL;
+    }
+    desc.tone.bits = 8; // a screen shows no more
+    free(job.bytes);
+    job.bytes = malloc(4 * (size_t)web_image_width() * (size_t)web_image_height());
+    if (job.bytes && glint_image_rgba(job.image, &desc, job.bytes, &error) == GLINT_OK)
+        return job.bytes;
+    glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "%s", job.bytes ? error.message : "out of memory");
+    return NULL;
 }
 
 /// The name of light pass number `index` of the last frame, without "light:"; NULL: it has not so many.

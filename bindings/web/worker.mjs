@@ -107,12 +107,12 @@ function namePasses(passes) {
   return passes.flatMap(name => name === "light:*" ? lights : [name])
 }
 
-function render({ set, frame, options, passes }) {
+function render({ set, frame, options, passes, view }) {
   run(set)
   choose(options)
-  check(call("web_render", frame, passes.length > 0))
+  check(call("web_render", frame, "passes" in options))
   const width = call("web_image_width"), height = call("web_image_height")
-  const at = check(call("web_rgba"))
+  const at = check(call("web_rgba", view))
   const rgba = new Uint8ClampedArray(engine.HEAPU8.slice(at, at + 4 * width * height).buffer)
   const planes = Object.fromEntries(namePasses(passes).map(name => [name, plane(name)]))
   return { frame, width, height, rgba, planes, warnings: warnings(), printed, memory: engine.HEAPU8.length }

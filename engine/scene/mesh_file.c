@@ -267,6 +267,9 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
         status = reader_of(&r.text)(&r);
     if (!status && has_bad_vertices(&r))
         drop_vertices(&r);
+    if (!status && r.sizes.count == 0)
+        status = glint_fail(error, GLINT_ERR_FORMAT,
+                            "%s: faces expected, got only such with a vertex that is not finite", path);
     if (!status)
         status = make_mesh(&r, out);
     if (!status)

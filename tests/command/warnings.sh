@@ -282,8 +282,10 @@ mesh() {
     printf "$2" >m.mtl
 }
 scene 'objects = { glint.mesh { file = "m.obj" } }'
-mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\nanything else\n'
+mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\n'
 silent "materials that are there"
+mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\nanything else\n'
+warns "a statement that no material has" "m.obj: m.mtl: anything is passed over: no field of a material$"
 mesh 'mtllib m.mtl\nusemtl b\n' 'newmtl a\nbump b.png\nnewmtl b\nmap_bump -bm 0.1 b.png\nmap_Bump -bm none b.png\n'
 warns "reliefs without a height" "m.obj: material 'a' and 1 more: no relief: map_Bump has no -bm, which says how high it is, in world units$"
 for height in x nan 1e400 0; do
@@ -309,7 +311,7 @@ warns "materials that the file has not" "m.obj: material 'a' and 1 more: not in 
 mesh 'mtllib gone.mtl\nusemtl b\n' ''
 warns "a file of materials that is not there" "m.obj: its materials are not all there: gone.mtl: No such file or directory$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0\nKd 1 0 x\n'
-warns "a colour that is none" "m.obj: its materials are not all there: m.mtl: line 3: a number expected, got 'x'$"
+warns "a colour that is none" "m.obj: m.mtl: line 3: a number expected, got 'x'; the line is passed over$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nmap_Kd wood.png\n'
 warns "a picture without coordinates" "m.obj: material 'a' has its Kd in place of its map_Kd: faces of it have no coordinates (vt)$"
 scene 'objects = { glint.mesh { file = "m.obj", material = glint.material {} } }'

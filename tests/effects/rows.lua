@@ -66,9 +66,9 @@ return {
       scene:remove(parts.lamp)
       scene:add(glint.sphere_light { position = { 0, 6, 0 }, radius = 1, samples = 4, visible = true })
     end },
-  { name = "depth_cue", stage = "depth_cue", functions = { "_cue" },
+  { name = "depth_cue", stage = "depth_cue", functions = { "take_faded" },
     call = function(_, _, scene) scene.depth_cue = { color = 0, near = 10, far = 30 } end },
-  { name = "eye_in_glass", stage = "depth_cue", functions = { "_cue" },
+  { name = "eye_in_glass", stage = "depth_cue", functions = { "take_faded" },
     call = function(glint, _, scene)
       scene:add(glint.plane { point = { 0, 1000, 0 }, normal = { 0, 1, 0 },
         material = glint.material { transmission = 1, ior = 1, absorption = 0.01 } })
@@ -85,7 +85,7 @@ return {
     call = function(glint, parts)
       parts.ball.bump = glint.pattern(function(p) return 0.1 * glint.sin(9 * p.x) end)
     end },
-  { name = "opacity", functions = { "glint_tile_see_through" }, call = function(_, parts) parts.ball.opacity = 0 end },
+  { name = "opacity", functions = { "glint_tile_find_holes" }, call = function(_, parts) parts.ball.opacity = 0 end },
   { name = "lens", part = "LENS", functions = { "camera_lens", "through_lens" },
     call = function(_, _, scene) scene.camera.aperture = 0.5 end },
   { name = "shutter", file = "png", functions = { "^glint_plan_create_exposed$", "^glint_shutter_desc$" },

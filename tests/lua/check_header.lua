@@ -9,7 +9,7 @@ local function declarations(path)
   local number = 0
   for line in io.lines(path) do
     number = number + 1
-    local code = line:gsub("//.*", "")
+    local code = line:gsub("//.*", ""):gsub('^extern "C" {', ""):gsub("^} // extern.*", "")
     if line:match "^%s*$" then
       explained = false
     elseif line:match "^%s*///?[^/<]" and not line:match "^%s*///<" then

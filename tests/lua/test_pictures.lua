@@ -1,4 +1,5 @@
 -- Pictures as numbers: image:bytes, glint.read_image; what a scene holds; the camera of a scene that has none.
+package.path = "scripts/lib/?.lua;" .. package.path
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"

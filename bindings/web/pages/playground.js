@@ -99,13 +99,11 @@ function size() {
 }
 
 function ask(coarse) {
-  const pass = get("pass").value
-  renderer.ask({ frame, set: values, passes: pass === "beauty" ? ["beauty"] : ["beauty", pass] }, coarse)
+  renderer.ask({ frame, set: values, view: get("pass").value }, coarse)
 }
 
 function shown(image, { coarse, ms }) {
-  const pass = get("pass").value
-  show(get("picture"), pass === "beauty" ? image : { width: image.width, height: image.height, rgba: image.view(pass) })
+  show(get("picture"), image)
   clearError()
   get("state").textContent = coarse ? "coarse" : "ready"
   if (!coarse) {
@@ -183,7 +181,7 @@ function table(heads, rows) {
 async function explain() {
   const pane = get("pane-explain")
   try {
-    const plan = await job.explain()
+    const plan = JSON.parse(await job.explain({ frame, set: values }))
     const callers = new Map()
     for (const { effect, caller } of plan.effects) callers.set(effect, [...callers.get(effect) ?? [], caller])
     pane.replaceChildren(
