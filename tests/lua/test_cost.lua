@@ -418,8 +418,8 @@ check(knobs_of(sent) == "indirect_samples indirect_bounces", "indirect light has
 check(find(sent, "indirect_samples", 2).default and find(sent, "indirect_bounces", 1).default, "its own among the values")
 check(find(sent, "indirect_samples", 64).rmse < find(sent, "indirect_samples", 1).rmse, "error falls with the ways")
 check(find(sent, "indirect_bounces", 0).counters.indirect == 0, "0 bounces: no ways")
-local once = find(sent, "indirect_bounces", 1).rmse
-check(find(sent, "indirect_bounces", 8).rmse < once and find(sent, "indirect_bounces", 2).rmse < once,
+local single = find(sent, "indirect_bounces", 1).rmse
+check(find(sent, "indirect_bounces", 8).rmse < single and find(sent, "indirect_bounces", 2).rmse < single,
   "more bounces are nearer to the truth")
 check(find(sent, "indirect_samples", 16).counters.indirect == 8 * find(sent, "indirect_samples", 2).counters.indirect,
   "16 ways are 8 times 2")
