@@ -174,12 +174,15 @@ async function sharing() {
 
 // Waits for the full picture of a figure after `act`.
 async function rendered(figure, act) {
-  const done = figure.evaluate(one => new Promise((resolve, reject) => {
-    one.addEventListener("glint-render", event => event.detail.coarse || resolve(), { passive: true })
-    one.addEventListener("glint-error", event => reject(event.detail.error))
-  }))
+  await figure.evaluate((one, limit) => { // listens before `act` begins
+    one.done = new Promise((resolve, reject) => {
+      one.addEventListener("glint-render", event => event.detail.coarse || resolve())
+      one.addEventListener("glint-error", event => reject(event.detail.error))
+      setTimeout(() => reject(new Error("no full picture")), limit)
+    })
+  }, LIMIT_MS)
   await act()
-  await done
+  await figure.evaluate(one => one.done)
 }
 
 async function figure() {
