@@ -48,7 +48,19 @@ local function listing(source)
   return "<details><summary>Script</summary>\n<pre><code>" .. html(source) .. "</code></pre></details>"
 end
 
+local function check_controls(page)
+  local known = {}
+  for _, param in ipairs(page.params) do known[#known + 1], known[param.name] = param.name, true end
+  for name in (page.controls or ""):gmatch "[^,]+" do
+    if not known[name] then
+      local list = #known > 0 and "its parameters are " .. table.concat(known, ", ") or "it has no parameters"
+      error(("--controls: the script has no parameter '%s'; %s"):format(name, list), 0)
+    end
+  end
+end
+
 function the.publish(page)
+  check_controls(page)
   local files, same = files_of(page)
   local values = {
     VERSION = page.version, TITLE = html(page.title), WIDTH = page.width, HEIGHT = page.height,
@@ -59,17 +71,4 @@ function the.publish(page)
     },
   }
   return (page.template:gsub("@(%u+)@", function(name) return values[name] and tostring(values[name]) end))
-end
-
--- Returns a message when --controls names what is no parameter, else nothing.
-function the.wrong_control(page)
-  local known = {}
-  for _, param in ipairs(page.params) do known[#known + 1], known[param.name] = param.name, true end
-  for name in (page.controls or ""):gmatch "[^,]+" do
-    if not known[name] then
-      local list = #known > 0 and "its parameters are " .. table.concat(known, ", ") or "it has no parameters"
-      return ("--controls: the script has no parameter '%s'; %s"):format(name, list)
-    end
-  end
-  return ""
 end

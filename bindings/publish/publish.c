@@ -104,7 +104,7 @@ static void take_image(void *context, const glintL_run *run, const glintL_work *
     p->frame = work->index;
 }
 
-static bool render(publication *p, char *message)
+static bool render(publication *p)
 {
     glintL_run *run = p->run;
     glint_error error;
@@ -125,8 +125,7 @@ static bool render(publication *p, char *message)
     desc.tone.bits = 8;
     if (glint_image_to_bytes(p->image, &desc, &p->poster, &p->poster_size, &error) == GLINT_OK)
         return true;
-    snprintf(message, GLINTL_MESSAGE_SIZE, "%s", error.message);
-    return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", message);
+    return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", error.message);
 }
 
 // ---- The engine for the page ----
@@ -240,34 +239,19 @@ static void push_page(lua_State *L, const void *context)
     lua_setfield(L, -2, "files");
 }
 
-// Makes the text of the page's function. May raise, in the script's state.
-static void make(const publication *p, const char *function, glintL_made_text *made)
-{
-    char message[GLINTL_MESSAGE_SIZE];
-    if (glintL_make_text(&MODULE, 1, function, push_page, p, made, message))
-        return;
-    glintL_drop_text(made);
-    luaL_error(p->script.state, "%s", message);
-}
-
 static int write_page(lua_State *L)
 {
     const publication *p = lua_touserdata(L, 1);
+    char message[GLINTL_MESSAGE_SIZE];
     glintL_made_text made;
-    glint_error error;
+    glint_error error = { .message = "" };
     if (glintL_push_unknown_set(L))
         return lua_error(L);
     glintL_push_params(L);
-    make(p, "wrong_control", &made);
-    lua_pushlstring(L, made.text, made.size);
+    const bool is_made = glintL_make_text(&MODULE, 1, "publish", push_page, p, &made, message);
+    const bool is_written = is_made && glintL_write_text(p->options->output, made.text, made.size, &error) == GLINT_OK;
     glintL_drop_text(&made);
-    if (lua_rawlen(L, -1) > 0)
-        return lua_error(L);
-    lua_pop(L, 1);
-    make(p, "publish", &made);
-    const bool is_written = glintL_write_text(p->options->output, made.text, made.size, &error) == GLINT_OK;
-    glintL_drop_text(&made);
-    return is_written ? 0 : luaL_error(L, "%s", error.message);
+    return is_written ? 0 : luaL_error(L, "%s", is_made ? error.message : message);
 }
 
 static void destroy(publication *p)
@@ -286,13 +270,12 @@ static void destroy(publication *p)
 int cli_publish(cli_options *options, cli_output *output, glintL_run *run)
 {
     publication p = { .options = options, .run = run };
-    char message[GLINTL_MESSAGE_SIZE];
     const char *ending = options->output ? strrchr(options->output, '.') : NULL;
     if (!ending || strcmp(ending, ".html") != 0) {
         cli_report_error(output, 0, GLINTL_EXIT_USAGE, "publish: -o PAGE.html expected");
         return GLINTL_EXIT_USAGE;
     }
-    if (read_engine(&p) && render(&p, message)) {
+    if (read_engine(&p) && render(&p)) {
         lua_State *L = p.script.state;
         lua_settop(L, 0);
         lua_pushcfunction(L, write_page);
@@ -303,5 +286,7 @@ int cli_publish(cli_options *options, cli_output *output, glintL_run *run)
     destroy(&p);
     if (run->exit_code)
         cli_report_error(output, 0, run->exit_code, run->message);
+    else
+        cli_reporter(output).figure(output, "page", options->output, 1);
     return run->exit_code;
 }

@@ -142,8 +142,8 @@ export function show(canvas, image) {
 
 // Renders a job's pictures as controls ask for them: one at a time, the newest request wins, coarse while a control moves.
 export class Renderer {
-  constructor(job, { size, shown, failed, busy = () => {} }) {
-    Object.assign(this, { job, size, shown, failed, busy })
+  constructor(job, { size, shown, failed }) {
+    Object.assign(this, { job, size, shown, failed })
     this.scale = 0.5
     this.running = false
     this.next = null
@@ -166,14 +166,12 @@ export class Renderer {
 
   async run() {
     this.running = true
-    this.busy(true)
     while (this.next) {
       const { request, coarse } = this.next
       this.next = null
       await this.render(request, coarse)
     }
     this.running = false
-    this.busy(false)
   }
 
   async render(request, coarse) {
