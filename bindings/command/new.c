@@ -87,7 +87,7 @@ static int write_script(const char *path)
     return finish(file, path);
 }
 
-// The folder of the types: PREFIX/share/glint, or that of the checkout that a build is in. False: there is none.
+// Finds the folder of the editor's types: PREFIX/share/glint, or the folder of the checkout around a build. False: none.
 static bool find_types(const char *program, char out[GLINTL_PATH_SIZE])
 {
     static const char *const places[] = { "../share/glint", "../bindings/meta" };

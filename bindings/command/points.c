@@ -47,7 +47,7 @@ static void exchange_text(points *p)
     p->at_hand->params_text = text;
 }
 
-// What the run says of its script from here on is of this point; NULL: of none.
+// Makes `next` the point whose script the run reports on; NULL: none.
 static void take(points *p, point *next)
 {
     if (p->at_hand == next)
@@ -64,7 +64,7 @@ static void take(points *p, point *next)
     cli_sweep_to(p->options, p->run, next->number);
 }
 
-// Whether what has failed, if anything, is a script's mistake, which ends its own point: not one of the command line.
+// Returns whether a failure is a script's mistake, which ends only its own point, and not one of the command line.
 static bool is_own(const glintL_run *run)
 {
     return !run->interrupted && (run->exit_code == GLINTL_EXIT_DONE ||
@@ -80,7 +80,7 @@ static void report(points *p, int64_t number, const char *said)
     cli_report_error(p->output, p->run->failed_index, GLINTL_EXIT_USAGE, message);
 }
 
-// Takes a failure from the run and marks the point.
+// Clears the run's failure and marks the point as failed.
 static void set_aside(points *p, int64_t number)
 {
     p->failed[number - 1] = 1;
@@ -89,7 +89,7 @@ static void set_aside(points *p, int64_t number)
     p->run->failed_index = 0;
 }
 
-// Whether the run goes on after what has just happened at a point.
+// Returns whether the run goes on after the last call of a point's script.
 static bool goes_on(points *p, int64_t number)
 {
     if (!is_own(p->run))
@@ -364,7 +364,7 @@ static bool group(points *p, int64_t most)
     return good;
 }
 
-// Of the frames in order, those of this shard. False: no memory.
+// Keeps the frames of this shard, in order. False: out of memory.
 static bool choose(points *p)
 {
     int64_t from, to;

@@ -59,7 +59,7 @@ typedef struct glintL_trace {
     struct glintL_trace *outer; ///< the function within which this one was called, or NULL
     char place[96]; ///< where the function begins: "scene.lua:12: "
     int64_t steps; ///< of Lua, about, of the outermost one
-    lua_Hook hook; ///< what the state had before the outermost one
+    lua_Hook hook; ///< the state's hook before the outermost call; restored after it
     int hook_mask, hook_count;
 } glintL_trace;
 

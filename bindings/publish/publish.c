@@ -150,7 +150,7 @@ static uint8_t *read_file(const char *path, size_t *size)
     return bytes;
 }
 
-// Reads NAME of the folder that `make web` leaves: GLINT_WEB, or web/ beside the command, or where `make install` puts it.
+// Reads a file of the folder that `make web` leaves: GLINT_WEB, web/ next to the command, or ../share/glint/web.
 static uint8_t *read_part(const publication *p, const char *name, size_t *size)
 {
     char folder[GLINTL_PATH_SIZE], path[GLINTL_PATH_SIZE + 64];

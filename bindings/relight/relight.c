@@ -223,7 +223,7 @@ static bool is_page(const char *path)
     return length > 5 && strcmp(path + length - 5, ".html") == 0;
 }
 
-// What -o names. False: the message says what is wrong.
+// Reads the name that -o gives. False: the message says what is wrong.
 static bool open_output(job *j, char *message)
 {
     const char *path = j->options->output;

@@ -84,7 +84,7 @@ static lua_Integer take_frame(glintL_walk *walk, int64_t g, int64_t *n)
     return i;
 }
 
-// Puts back what the sweep that was at hand has changed. False: the run has failed.
+// Restores the values that the current sweep changed. False: the run has failed.
 static bool end_sweep(glintL_walk *walk, glintL_jobs_state *state)
 {
     const lua_Integer i = state->sweeping;

@@ -13,7 +13,7 @@ typedef struct glintL_order_axis {
     bool is_forward; ///< its values come in ascending order only
     bool may_fail; ///< a value whose frame cannot be planned is passed over
     double work; ///< mean of glint_plan_work_after over its steps
-    char stages[192]; ///< what a step runs: "light, occlude, shade"
+    char stages[192]; ///< the stages that a step runs: "light, occlude, shade"
     char name[2 * GLINT_NAME_SIZE]; ///< "lamp.position"; "": it has none
 } glintL_order_axis;
 

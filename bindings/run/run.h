@@ -247,7 +247,7 @@ typedef struct glintL_moments {
 /// A file that the run has written, in a hash table.
 typedef struct glintL_place {
     uint64_t path; ///< hash; 0: a free entry
-    uint64_t picture; ///< hash of what is in the file
+    uint64_t picture; ///< hash of the file's content
     int64_t index; ///< number of the first frame that it was written for
 } glintL_place;
 

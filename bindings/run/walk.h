@@ -27,7 +27,7 @@ bool glintL_walk_open_film(glintL_walk *walk);
 /// Calls `function` with the job, n and the walk. False: it raised, and the run has failed.
 bool glintL_walk_call(glintL_walk *walk, lua_CFunction function, int64_t n, int64_t number);
 int glintL_walk_build(lua_State *L); ///< for glintL_walk_call: builds frame n at the walk's time
-int glintL_walk_restore(lua_State *L); ///< for glintL_walk_call: puts back what a sweep has changed
+int glintL_walk_restore(lua_State *L); ///< for glintL_walk_call: restores the values that a sweep changed
 /// Sets the scene to frame n at its own time. False: the run has failed.
 bool glintL_walk_build_frame(glintL_walk *walk, int64_t n, int64_t number);
 /// A job begins with the scene as the jobs before it leave it, whichever of their frames are rendered here: an animation

@@ -145,7 +145,7 @@ class Image {
   data() { return new ImageData(this.rgba, this.width, this.height) }
 }
 
-// ---- A worker, and what is asked of it ----
+// ---- A worker and its queue of requests ----
 
 const CLOSED = "the job is closed"
 
@@ -292,7 +292,7 @@ class Engine {
     this.module = module
     this.#make = make
   }
-  // A worker that calls `take` with what it says, and `fail` when it cannot go on.
+  // Starts a worker. `take` gets its messages; `fail` is called when it cannot go on.
   start(take, fail) {
     const worker = this.#make()
     if (worker.on) {

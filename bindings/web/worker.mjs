@@ -61,7 +61,7 @@ function run(given) {
 }
 
 async function open({ module, name, source, files, set, seconds }) {
-  globalThis.self ??= globalThis // what the loader looks for in a worker
+  globalThis.self ??= globalThis // the loader expects it in a worker
   globalThis.location ??= { href: "" }
   engine = await createGlint({
     print, printErr: print,

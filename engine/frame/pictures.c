@@ -49,7 +49,7 @@ static void drop(glint_renderer *renderer, glint_picture *picture)
     picture->image = NULL;
 }
 
-/// Takes the last picture out of those whose memory is used again, where there is room for the next.
+/// Moves the last picture from the spare images to the stored ones, if the budget has space for it.
 static void set_aside(glint_renderer *renderer, const glint_picture *last, int spare)
 {
     const size_t bytes = glint_image_bytes(last->image);
@@ -65,7 +65,7 @@ static void set_aside(glint_renderer *renderer, const glint_picture *last, int s
     *place = *last;
     place->used = ++renderer->pictures_given;
     glint_image_retain(place->image);
-    glint_reuse_unreserve(&renderer->reuse, bytes); // it keeps what it had as a spare
+    glint_reuse_unreserve(&renderer->reuse, bytes); // the spare image's memory was reserved already
     glint_image_release(renderer->spare[spare]);
     renderer->spare[spare] = NULL;
 }
@@ -81,7 +81,7 @@ void glint_picture_remember(glint_renderer *renderer, const glint_plan *plan, gl
     if (!renderer->reuse.on || spare < 0)
         return;
     *last = (glint_picture) { .image = glint_image_retain(image), .key = picture_key(plan), .stats = *stats };
-    if (renderer->shares) // what adaptive sampling has found in the pixels of a base is of the last one
+    if (renderer->shares) // the counts of adaptive sampling belong to the last frame
         return;
     if (glint_recent_has(&renderer->recent, GLINT_PICTURES_MAX - 1, last->key))
         set_aside(renderer, last, spare);

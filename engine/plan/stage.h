@@ -68,7 +68,7 @@ typedef enum glint_stage_time {
 
 typedef struct glint_stage {
     const char *name; ///< in `glint explain`, --json and the statistics of a frame; NULL: it is a part of another stage, and not listed
-    const char *doc; ///< what it computes, for `glint explain`
+    const char *doc; ///< the result in a few words, for `glint explain`
     bool (*called)(const struct glint_plan *plan); ///< whether the frame needs the stage; the plan's tables are filled
     uint64_t reads; ///< GLINT_READS and GLINT_READS_OWN: with the stages before it, what its result depends on
     glint_key (*own)(const struct glint_plan *plan,

@@ -1,18 +1,18 @@
 /// Results of frames before the last. The keys of the last frames are remembered; a key that comes back is a sign that others will,
-/// so its results are kept from then on, and when it goes again they are set aside and not overwritten. Whole tiles are set
+/// so its results are cached from then on, and set aside instead of overwritten when the key changes. Whole tiles are set
 /// aside where the hits' key changes (cameras in turn), else single lights (a lamp that goes around).
 ///
-/// All results of one kind take the same time to find and the same memory, so that the one that was used least recently goes.
+/// All results of one kind take the same time and memory, so the least recently used one is evicted.
 #include "engine/reuse/reuse.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define EARLIER_PRIMS 128 ///< in a scene of fewer, a light is found as fast as what was set aside is read
+#define EARLIER_PRIMS 128 ///< with fewer primitives, computing a light takes no longer than reading a stored result
 
 static const glint_key none = { 0 };
 
-/// Half of what whole pictures leave of the budget is for what is set aside.
+/// Results that are set aside may take half of the budget that whole pictures leave.
 static size_t room_for(const glint_reuse *reuse, size_t bytes, size_t most)
 {
     const size_t fits = (reuse->budget - reuse->pictures) / 2 / bytes;
@@ -77,7 +77,7 @@ static bool exchange_light(glint_reuse *reuse, int s, uint32_t row)
     return true;
 }
 
-/// Whether the light's results are kept in this frame, whose key for it is new.
+/// Returns whether the results of a light with a new key are cached in this frame.
 static bool find_light(glint_reuse *reuse, uint32_t row, glint_key key)
 {
     glint_earlier *e = reuse->earlier;

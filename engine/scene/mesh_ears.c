@@ -12,11 +12,11 @@
 #define LEAF_SIZE 64 ///< corners of a leaf
 #define DEPTH_MAX 40
 
-/// Corners form a ring, and those that one corner is in the way of a list.
+/// The corners form a ring. The corners that one corner blocks form a list.
 typedef struct corner {
     double at[2]; ///< in the polygon's plane, about -1 .. 1
     uint32_t previous, next;
-    uint32_t blocker; ///< what is in its way; NONE: nothing
+    uint32_t blocker; ///< the corner that blocks it; NONE: none
     uint32_t first_blocked, list_previous, list_next;
     uint32_t leaf; ///< the node that it is in
     bool is_there, is_ear, is_queued;
@@ -145,7 +145,7 @@ static void bound(const cutting *c, node *made)
     }
 }
 
-/// Makes node `k` of a range of `order`, and what is below it; `leaves` of them, a power of two.
+/// Makes node `k` over a range of `order`, with its subtree of `leaves` leaves, a power of two.
 static void build(const cutting *c, uint32_t k, uint32_t first, uint32_t count, uint32_t leaves)
 {
     glint_ears *ears = c->ears;

@@ -1,4 +1,4 @@
-/// glint_mesh_load: the reader of a file's format; then the mesh of what was read.
+/// glint_mesh_load: chooses the reader of a file's format and makes the mesh from its result.
 #include "engine/scene/mesh_file.h"
 
 #include "engine/base/status.h"

@@ -121,10 +121,10 @@ typedef struct glint_mesh_reader {
     glint_error *error;
 } glint_mesh_reader;
 
-/// Counts something that is passed over; the first message of a kind is that of its warning.
+/// Counts a statement that is ignored. The first message of a kind becomes its warning.
 void glint_mesh_note_that(glint_mesh_reader *reader, glint_mesh_note_kind kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/// Corners whose normal is 0 have none: they take that of their face.
+/// Gives corners without a normal the normal of their face.
 glint_status glint_mesh_drop_normals(glint_mesh_reader *reader);
 
 /// Says that something is passed over; the file's name stands before the message.

@@ -9,7 +9,7 @@
 
 #define ILLUM_DEFAULT 2 ///< a highlight, no mirror
 #define ROUGHNESS_DEFAULT 0.5
-#define F0_OF_PLASTIC 0.04 ///< what is reflected head-on at an index of 1.5
+#define F0_OF_PLASTIC 0.04 ///< reflectance head-on at an index of 1.5
 
 glint_mesh_library *glint_mesh_library_create(void)
 {

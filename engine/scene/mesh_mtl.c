@@ -166,7 +166,7 @@ static glint_status read_one(const glint_mesh_text *text, const char *at, glint_
     return status;
 }
 
-/// Whether what a statement says is none: all of its words are 0.
+/// Returns whether all words of a statement are 0.
 static bool says_nothing(const glint_mesh_text *text, const char *at)
 {
     while (!glint_ends_word(*at))
@@ -251,7 +251,7 @@ static glint_status read_lines(glint_mesh_library *library, glint_mesh_text *tex
 
 // ---- Files ----
 
-/// Says what was passed over in a file.
+/// Writes the warnings about ignored parts of a file.
 static void tell_left(const glint_mesh_reader *reader, const char *path, leavings *left)
 {
     const size_t length = strlen(left->words);

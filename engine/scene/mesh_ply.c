@@ -313,7 +313,7 @@ static glint_status read_rows(body *b)
     return status;
 }
 
-/// Makes the materials of what is read: of its picture, or of its colours.
+/// Makes the materials from the file's picture or from its colours.
 static glint_status make_materials(glint_mesh_reader *r, const glint_ply_head *h)
 {
     const bool has_own = r->desc->material || r->desc->material_count;

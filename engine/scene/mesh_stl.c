@@ -151,7 +151,7 @@ static bool is_text(const char *bytes, size_t count)
 /// is a longer one that is no text; the bytes behind its triangles are passed over.
 glint_status glint_mesh_read_stl(glint_mesh_reader *r)
 {
-    char bytes[1024 + 8] = { 0 }; // zeros behind what is looked at
+    char bytes[1024 + 8] = { 0 }; // the zeros end every comparison
     uint32_t count;
     glint_mesh_text *t = &r->text;
     glint_status status = glint_mesh_text_rewind(t, 0);

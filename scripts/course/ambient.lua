@@ -1,4 +1,4 @@
--- Ambient light alone: every point of a surface shows the same value, ka Ia, so a ball looks like a disk.
+-- Only ambient light: every point of a surface shows the same value, ka Ia, so a ball looks like a disk.
 local glint = require "glint"
 
 local P = glint.params {

@@ -12,7 +12,7 @@ const glint = await load()
 const data = readdirSync(join(scripts, "data")).map(name => `data/${name}`)
 const out = join(web, "examples")
 
-// What the comment at the top says first, up to its first stop.
+// Returns the first words of the comment at the top, up to its first stop.
 function titleOf(text) {
   const first = text.match(/^-- (.*(?:\n-- .*)*)/)?.[1].replaceAll("\n-- ", " ") ?? ""
   return first.split(/[.:;](?:\s|$)/)[0]

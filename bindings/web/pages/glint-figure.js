@@ -19,7 +19,7 @@
 import { load } from "./glint.mjs"
 
 const REST_MS = 150         // a control at rest for this long gets the full picture
-const COARSE_MS = 30        // what a picture may take while a control moves
+const COARSE_MS = 30        // limit for a picture while a control moves
 const PATIENCE_MS = 300     // a full picture that takes longer is cancelled for the next one; its worker starts anew
 const LOGARITHMIC = 100     // a range of more than this factor has a logarithmic slider
 

@@ -50,7 +50,7 @@ ${body}
 
 const index = [] // { page, title, heading, anchor, text }: a section each, for the search
 
-// Where a link of a source file leads in the site; what is not a page of the site goes to its source there.
+// Returns the address in the site of a link in a source file. Files that are no page go to source/.
 function target(from, link) {
   if (/^[a-z]+:|^#/.test(link)) return link
   const [path, anchor] = link.split("#")

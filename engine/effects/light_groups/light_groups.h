@@ -39,7 +39,7 @@ void glint_groups_fade(const glint_tile *tile, const glint_plan *plan, const dou
 void glint_groups_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
 void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, glint_vertex_args *args);
 
-/// Makes the means of all samples; takes those of the pixels that are not refined from the base; stores them.
+/// Averages all samples, copies the base's means for the pixels that are not refined, and stores them.
 void glint_groups_resolve(const glint_tile *tile, const glint_tile_frame *frame);
 void glint_groups_take_base(const glint_tile *tile, const glint_tile_frame *frame);
 

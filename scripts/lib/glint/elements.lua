@@ -74,7 +74,7 @@ end
 local NAMES = { CA = "C", CD = "C", CE = "C", CF = "C", CM = "C", HE = "H", HF = "H", HG = "H", HO = "H", HS = "H",
   NB = "N", ND = "N", NE = "N", NO = "N", NP = "N", OS = "O", PA = "P", SG = "S" }
 
--- Labels of places without an atom that would else be those of an element.
+-- Labels of sites without an atom that would otherwise be read as elements.
 local SITES = { BQ = true, DA = true, DU = true, DUM = true, TV = true, VC = true, VS = true, VAC = true }
 
 --- The symbol that a label begins with: of an atom with a number or charge (C13, Fe+3, O2-, 13C), of a place (CB, HG11,
