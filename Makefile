@@ -486,8 +486,9 @@ soak-run: all $(HARD_BIN) $(BUILD)/tests/engine/test_reuse $(BUILD)/tests/engine
 	@tests/hard/soak.sh $(BUILD)/tests/hard $(SOAK_RAYS)
 	@STEP=1 BUILD=$(BUILD) bash tests/command/faults.sh
 
-gallery: all ## renders the pictures of scripts/README.md anew, where they are not what the scripts render
+gallery: all ## renders the pictures of scripts/README.md and bindings/docs/ anew, where they are not what the scripts render
 	@BUILD=$(BUILD) tests/command/gallery.sh update
+	@BUILD=$(BUILD) bash tests/command/readme.sh update
 
 golden-update: all ## writes the golden pictures anew, and prints which moved and by how much
 	@BUILD=$(BUILD) tests/command/golden.sh update
@@ -590,9 +591,11 @@ LUA_LIBRARY := $(patsubst scripts/lib/%,%,$(sort $(wildcard scripts/lib/*.lua sc
 # pages of the sources alone are words. Commands name the examples where they are installed.
 docdir   := $(datadir)/doc/glint
 examples := $(datadir)/glint/examples
-PAGES    := README.md:README.md lua-and-command.md:bindings/README.md engine.md:engine/README.md examples.md:scripts/README.md \
-            farms.md:scripts/farm/README.md python.md:scripts/python.md particles.md:scripts/particles.md CHANGELOG.md:.github/CHANGELOG.md
+PAGES    := README.md:README.md learn.md:bindings/docs/learn.md how-to.md:bindings/docs/how-to.md explain.md:bindings/docs/explain.md \
+            lua-and-command.md:bindings/README.md engine.md:engine/README.md \
+            examples.md:scripts/README.md farms.md:scripts/farm/README.md python.md:scripts/python.md particles.md:scripts/particles.md CHANGELOG.md:.github/CHANGELOG.md
 EXAMPLES := $(sort $(patsubst scripts/%,%,$(wildcard scripts/*.lua scripts/*.c scripts/data/* scripts/farm/*.sh)))
+PICTURES := $(notdir $(wildcard bindings/docs/pictures/*.png))
 page_to   = $(firstword $(subst :, ,$(1)))
 
 $(BUILD)/doc/data.md: scripts/lib/page.awk $(wildcard scripts/lib/glint/*.lua)
@@ -602,12 +605,14 @@ $(BUILD)/doc/data.md: scripts/lib/page.awk $(wildcard scripts/lib/glint/*.lua)
 .PHONY: pages
 pages: $(BUILD)/doc/data.md ## the installed manual by topic, in build/doc/
 	@for page in $(PAGES); do \
-	    sed -e 's|](\(\.\./\)*bindings/README\.md|](lua-and-command.md|g' -e 's|](engine/README\.md|](engine.md|g' \
-	        -e 's|](scripts/README\.md|](examples.md|g' -e 's|](farm/README\.md|](farms.md|g' \
+	    case $$page in *:bindings/docs/*) shown= ;; *) shown='s|!\[[^]]*\]([^)]*)||g' ;; esac; \
+	    sed -e 's|](\(\.\./\)*bindings/README\.md|](lua-and-command.md|g' -e 's|](\(\.\./\)*engine/README\.md|](engine.md|g' \
+	        -e 's|](bindings/docs/\([a-z-]*\.md\)|](\1|g' -e 's|](\(\.\./\)*scripts/\([a-z]*\.md\)|](\2|g' \
+	        -e 's|](\(\.\./\)*scripts/README\.md|](examples.md|g' -e 's|](\(\.\./\.\./scripts/\)*farm/README\.md|](farms.md|g' \
 	        -e 's|](\.github/CHANGELOG\.md|](CHANGELOG.md|g' -e 's,](\([a-z_]*\.lua\)),](../../glint/examples/\1),g' \
 	        -e 's,](\([a-z_]*\.c\)),](../../glint/examples/\1),g' -e 's,\([ "]\)scripts/\([a-z_]*\.lua\),\1$(examples)/\2,g' \
 	        -e 's,\([ "]\)scripts/data/,\1$(examples)/data/,g' \
-	        -e 's|!\[[^]]*\]([^)]*)||g' -e 's|\[\([^]]*\)\]([a-z./]*/[A-Z]*\.md)|\1|g' "$${page#*:}" > "$(BUILD)/doc/$${page%%:*}" || exit 1; done
+	        -e "$$shown" -e 's|\[\([^]]*\)\]([a-z./]*/[A-Z]*\.md)|\1|g' "$${page#*:}" > "$(BUILD)/doc/$${page%%:*}" || exit 1; done
 
 # ---- The module for browsers and Node ----
 
@@ -739,6 +744,8 @@ $(foreach module,$(LUA_LIBRARY),644 scripts/lib/$(module) $(luasharedir)/$(modul
 )
 $(foreach page,$(PAGES) data.md,644 $(BUILD)/doc/$(call page_to,$(page)) $(docdir)/$(call page_to,$(page))
 )
+$(foreach picture,$(PICTURES),644 bindings/docs/pictures/$(picture) $(docdir)/pictures/$(picture)
+)
 $(foreach file,$(EXAMPLES),$(if $(filter %.sh,$(file)),755,644) scripts/$(file) $(examples)/$(file)
 )
 endef
@@ -789,7 +796,7 @@ uninstall: ## removes what install has put there, with the same PREFIX and DESTD
 	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
 	    [ -z "$$mode" ] || { echo "  REMOVE	$(DESTDIR)$$to"; rm -f "$(DESTDIR)$$to" || exit 1; }; done
 	@rm -f $(addprefix "$(DESTDIR)$(libdir)"/,$(LINKS))
-	@for folder in $(examples)/data $(examples)/farm $(examples) $(datadir)/glint $(docdir) $(luasharedir)/glint $(luasharedir)/gr; do \
+	@for folder in $(examples)/data $(examples)/farm $(examples) $(datadir)/glint $(docdir)/pictures $(docdir) $(luasharedir)/glint $(luasharedir)/gr; do \
 	    if [ -d "$(DESTDIR)$$folder" ]; then rmdir "$(DESTDIR)$$folder" || exit 1; fi; done
 
 deps: ## installs what the build and the tests need, through apt

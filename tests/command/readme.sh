@@ -1,8 +1,12 @@
 #!/usr/bin/env bash
 # Runs every script and every command of the pages: the ```lua blocks by glint at a small size, the ```sh blocks line by line,
-# with the build's glint first in the path, each page in a folder of its own. Files that pages name must be there. The two
-# indented make commands of README.md are what this runs under.
+# with the build's glint first in the path, each page in a folder of its own. A block that begins "-- NAME.lua:" is saved under that name
+# for the commands after it, and ```python blocks run where NumPy is installed. Files that pages name must be there, and the pictures of
+# bindings/docs are what its commands make: `readme.sh update` writes those that differ. The two indented make commands of README.md
+# are what this runs under.
 set -u
+mode=${1:-check}
+export GLINT_FONT=bitmap # text has the same pixels everywhere
 root=$PWD
 build=${BUILD:-build}
 glint=${GLINT:-$root/$build/glint}
@@ -27,21 +31,48 @@ run() {
     fi
 }
 
+python= # one that has NumPy; tests/command/python.sh runs the blocks of scripts/python.md
+for name in python3 /usr/bin/python3; do
+    if [ -z "$python" ] && $name -c 'import numpy' 2>/dev/null; then python=$name; fi
+done
+
 # Runs the blocks of a page: each becomes a file, 01.lua, 02.sh ...
 run_page() {
-    local folder=$work/${1//\//_} block line
+    local folder=$work/${1//\//_} block line saved
     mkdir -p "$folder"
     ln -s "$root/scripts" "$folder/scripts"
     awk -v folder="$folder" '
-        /^```(lua|sh)$/ { kind = substr($0, 4); name = sprintf("%s/%02d.%s", folder, ++blocks, kind); next }
+        /^```(lua|sh|python)$/ { kind = substr($0, 4); name = sprintf("%s/%02d.%s", folder, ++blocks, kind); next }
         /^```/ { if (name) close(name); name = ""; next }
         name { print > name }' "$root/$1"
     cd "$folder" || exit 1
     for block in [0-9]*.*; do
         case $block in
-        *.lua) run "$1: $block" glint "$block" --size 64x36 --quiet ;;
+        *.lua)
+            saved=$(sed -nE '1s/^-- ([a-z_]+\.lua):.*/\1/p' "$block")
+            if [ -n "$saved" ]; then cp "$block" "$saved"; else run "$1: $block" glint "$block" --size 64x36 --quiet; fi
+            ;;
+        *.python) if [ -n "$python" ] && [ "$1" != scripts/python.md ]; then run "$1: $block" "$python" "$block"; fi ;;
         *.sh) while read -r line; do run "${line%%#*}" bash -c "$line" </dev/null; done <"$block" ;;
         esac
+    done
+}
+
+# The pictures of a page of bindings/docs are those that its commands made; light_01.png is light/01.png.
+check_pictures() {
+    local folder=$work/${1//\//_} shown=$root/bindings/docs/pictures path made
+    for path in $(grep -oE '\]\(pictures/[a-zA-Z_/.0-9]+\)' "$root/$1" | sed -E 's/^..pictures.(.*)\)$/\1/' | sort -u); do
+        made=$folder/$path
+        [ -e "$made" ] || made=$folder/${path/_//}
+        if glint compare "$made" "$shown/$path" --fail 0 --warn 0 >/dev/null 2>&1; then
+            echo "ok - $1: the picture $path"
+        elif [ "$mode" = update ]; then
+            cp "$made" "$shown/$path"
+            echo "$shown/$path: written"
+        else
+            echo "not ok - $1: its picture $path is not what its commands make: make gallery writes it"
+            bad=1
+        fi
     done
 }
 
@@ -60,8 +91,9 @@ check_paths() {
 }
 
 for page in README.md bindings/README.md engine/README.md engine/stages/README.md tests/README.md scripts/README.md \
-    scripts/python.md scripts/particles.md .github/CONTRIBUTING.md; do
+    scripts/python.md scripts/particles.md .github/CONTRIBUTING.md bindings/docs/*.md; do
     run_page "$page"
+    case $page in bindings/docs/*) check_pictures "$page" ;; esac
     check_paths "$page"
 done
 lines=$(wc -l <"$root/README.md")

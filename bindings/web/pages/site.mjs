@@ -10,10 +10,13 @@ const read = path => readFileSync(join(root, path), "utf8")
 
 // Pages made of the repository's texts: where each is written, its source, and its name in the navigation.
 const pages = [
+  { to: "learn.html", from: "bindings/docs/learn.md", title: "Learn glint" },
+  { to: "how-to.html", from: "bindings/docs/how-to.md", title: "How to" },
+  { to: "explain.html", from: "bindings/docs/explain.md", title: "How glint thinks" },
   { to: "manual.html", from: "bindings/README.md", title: "Manual" },
   { to: "gallery.html", from: "scripts/README.md", title: "Gallery" },
   { to: "about.html", from: "README.md", title: "About" },
-  { to: "engine.html", from: "engine/README.md", title: "How it works" },
+  { to: "engine.html", from: "engine/README.md", title: "The engine" },
   { to: "python.html", from: "scripts/python.md", title: "Pictures in Python" },
   { to: "particles.html", from: "scripts/particles.md", title: "Particles" },
   { to: "farms.html", from: "scripts/farm/README.md", title: "Farms" },
@@ -24,8 +27,9 @@ const plain = html => html.replace(/<[^>]*>/g, " ").replaceAll("&lt;", "<").repl
   .replaceAll("&#39;", "'").replaceAll("&amp;", "&").replace(/\s+/g, " ").trim()
 const slug = text => text.toLowerCase().replace(/[^\p{L}\p{N} _-]/gu, "").trim().replaceAll(" ", "-")
 
-const navigation = [["index.html", "Playground"], ["course.html", "Course"], ["manual.html", "Manual"], ["reference.html", "Reference"],
-  ["gallery.html", "Gallery"], ["engine.html", "How it works"], ["about.html", "About"]]
+const navigation = [["index.html", "Playground"], ["learn.html", "Learn"], ["how-to.html", "How to"], ["course.html", "Course"],
+  ["manual.html", "Manual"], ["reference.html", "Reference"],
+  ["gallery.html", "Gallery"], ["explain.html", "How it works"], ["about.html", "About"]]
 
 function layout(title, body) {
   const links = navigation.map(([to, name]) => `<a href="${to}">${name}</a>`).join(" ")
