@@ -1,6 +1,6 @@
 /// The `glint` command: its command line, what it prints, and its sub-commands. Private to bindings/.
 ///
-/// stdout is data, stderr is for people. What the functions here print goes to the streams of a cli_output.
+/// stdout is data, stderr is for people. The functions here print to the streams of a cli_output.
 #ifndef GLINT_CLI_H
 #define GLINT_CLI_H
 
@@ -59,7 +59,7 @@ typedef struct cli_options {
     bool json, quiet, help, version, verbose;
     const char *program; ///< what the command was started as
     const char *script; ///< NULL: none given
-    char **arguments; ///< words of a command that takes files; after `--` those of the script
+    char **arguments; ///< the file names of a command that takes files, or the script's arguments after `--`
     int argument_count;
     const char **lights; ///< owned; of relight: NAME=VALUE each
     size_t light_count;
@@ -98,11 +98,11 @@ typedef struct cli_option cli_option;
 struct cli_option {
     const char *name;
     char letter; ///< 0: none
-    /// What stands for its text in --help: "LIST"; "show|error|none": one of these; "": the words of the field of
+    /// The placeholder of its value in --help: "LIST"; "show|error|none": one of these; "": the choices of the field of
     /// scene:render{}; "[PORT]": a number that may be left out, and `text` is then NULL; NULL: it takes no text.
     const char *value;
     unsigned commands; ///< that know it
-    /// Takes the option's text, which it may cut up. False: `message` says what was expected and what was got.
+    /// Reads the option's text, and may change it. Returns false when the text is wrong; `message` then says why.
     bool (*read)(cli_options *options, const cli_option *option, char *text, char *message);
     const char *help; ///< a line for people
     size_t at; ///< of the member of cli_options, for readers of plain values
@@ -115,7 +115,7 @@ struct cli_option {
 #define CLI_OPTION_COUNT 68
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
-/// What stands for the option's text, its words where it takes words; "": it takes no text.
+/// Returns the placeholder of the option's value in --help, or its choices; "" when it takes no value.
 void cli_option_value(const cli_option *option, char out[CLI_VALUE_SIZE]);
 bool cli_option_may_lack(const cli_option *option); ///< its text may be left out
 /// Adds a --set. False: out of memory.
@@ -188,7 +188,7 @@ void cli_print_rays(FILE *out, const glint_ray_counts *rays); ///< "rays":{...}
 /// The error as an event and for people.
 void cli_report_error(cli_output *output, int64_t index, int exit_code, const char *message);
 void cli_warning_event(cli_output *output, const char *message); ///< under --json
-/// When much of what the run rendered is above white.
+/// Warns when many pixels of the run are above white.
 void cli_warn_clipped(glintL_run *run);
 /// The end of a run that did all that was requested.
 void cli_report_end(cli_output *output);
@@ -199,11 +199,11 @@ void cli_end_line(cli_output *output);
 cli_progress *cli_progress_create(bool color);
 void cli_progress_destroy(cli_progress *progress);
 void cli_progress_update(cli_progress *progress, const glintL_run *run, bool rendering);
-/// What one step of a study does, how long the steps before it took and those after it will, as far as is known.
+/// Shows the current step of a study, the time spent so far, and the expected time of this step and of the rest.
 void cli_progress_step(cli_progress *progress, const char *what, double done_ms, double step_ms, double left_ms);
 /// A film is being made, `done` of `count` frames are in it; NULL: it is made, frames are counted again.
 void cli_progress_film(cli_progress *progress, const char *film, size_t done, size_t count);
-/// Whose progress is that of the step; it lives as long as the bar is drawn, or until another is named.
+/// Names the renderer whose progress the bar shows. It must live until the bar is gone or another renderer is named.
 void cli_progress_watch(cli_progress *progress, glint_renderer *renderer);
 /// Wipes the bar, so that a line can be printed; it comes back with the next update.
 void cli_progress_clear(cli_progress *progress);
@@ -222,7 +222,7 @@ typedef struct cli_script {
     cli_lua_memory memory; ///< of an untrusted script
 } cli_script;
 
-/// Runs the script, and what it returns. False: the run has failed, was interrupted or was stopped.
+/// Runs the script and renders what it returns. Returns false when the run failed or was interrupted.
 bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *run);
 /// Runs the selected frames of the jobs that a script run in GLINTL_MODE_WATCH has returned, once more each time.
 bool cli_run_jobs(cli_script *script, glintL_run *run);

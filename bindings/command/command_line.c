@@ -19,7 +19,7 @@ bool cli_add_set(glintL_request *request, const char *name, const char *text)
     return true;
 }
 
-// What other programs call an option.
+// Names of options in other programs.
 static const char *const MEANINGS[][2] = {
     { "width", "size" }, { "height", "size" }, { "resolution", "size" }, { "param", "set" }, { "parameter", "set" },
     { "spp", "samples" }, { "antialias", "samples" }, { "aa", "samples" }, { "jobs", "threads" }, { "cores", "threads" },
@@ -292,7 +292,7 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
     return cli_check_dialect(options, message);
 }
 
-// Adds the swept parameters to those that are set, and -s -e -j as a range. --help shows the defaults of what is swept.
+// Adds the swept parameters to those that are set, and -s -e -j as a range. --help shows the defaults of the swept parameters.
 static bool complete(cli_options *options, char *message)
 {
     bool good = true;

@@ -5,7 +5,7 @@
 
 typedef enum argument { WORD, FILES, CHOICES } argument;
 
-// What is offered for an option's text, blanks between; "": anything, CLI_SUGGEST_FILES: files.
+// The completions of an option's value, separated by blanks; "": anything, CLI_SUGGEST_FILES: file names.
 static void find_offers(const cli_option *option, char out[256])
 {
     size_t used = 0;

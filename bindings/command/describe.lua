@@ -1,4 +1,4 @@
--- What glint describe prints: the comment that a script begins with, and its parameters, for people or for programs.
+-- Prints the comment at the beginning of a script and its parameters, for people or for programs (glint describe).
 local the = ...
 local json = the.json
 

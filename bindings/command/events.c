@@ -1,4 +1,4 @@
-// What a run reports: one JSON object a line under --json, else lines and a bar for people.
+// Reports of a run: one JSON object per line with --json, otherwise lines and a progress bar.
 #include <errno.h>
 #include <inttypes.h>
 #include <string.h>
@@ -54,7 +54,7 @@ void cli_print_rays(FILE *out, const glint_ray_counts *rays)
             rays->primary, rays->shadow, rays->mirror, rays->refraction, rays->indirect);
 }
 
-// Which way tiles went that could read hits or find them anew, and what either takes.
+// For tiles with cached hits: how many read them, how many cast again, and the time of each.
 static void print_hits(FILE *out, const glint_frame_stats *stats)
 {
     if (stats->hits_kept + stats->hits_anew == 0)
@@ -272,7 +272,7 @@ void cli_warn_clipped(glintL_run *run)
                         100 * clipped);
 }
 
-// What became of a name without a place for the number that -o has given to several frames.
+// Tells the numbered names that a name without a number was changed to, because the job has several frames.
 static void print_numbering(const glintL_run *run)
 {
     const char *name = run->request.render_text[glintL_render_find("output")];

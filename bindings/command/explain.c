@@ -22,7 +22,7 @@ static void print_pair(FILE *out, const char *first, const char *value, const ch
     glintL_json_string(out, other);
 }
 
-// What each axis of the frame's sweep costs, and which of them changes most often.
+// The stages that each axis of the sweep runs again, and the order of the axes.
 static void print_order(FILE *out, const glintL_order *order)
 {
     fputs("\nsweep\n  axes: ", out);

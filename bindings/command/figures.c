@@ -98,7 +98,7 @@ int cli_sheet(const cli_options *options, cli_output *output)
     return code;
 }
 
-// What is wrong with the film before its frames are looked at; NULL: nothing.
+// Returns what is wrong with the film, before its frames are read; NULL when nothing is.
 static const char *check_film(const cli_options *options, const glintL_film *film)
 {
     if (!options->output || film->kind == GLINTL_FILM_NONE)

@@ -32,7 +32,7 @@ static bool take_region(const char *options, double region[4])
     return true;
 }
 
-// The options of the whole: those of a part without its region, as lines and as they are read.
+// Reads the options of the whole frame: the options of a part without its region.
 static bool take_options(join *j, const char *options)
 {
     size_t used = 0;
@@ -92,7 +92,7 @@ static bool read_part(join *j, size_t i)
 
 // ---- The whole ----
 
-// What the file of the whole frame says of itself, in its order.
+// Writes the text entries of the whole frame's file, in their order.
 static size_t list_texts(const join *j, glint_text texts[GLINTL_TEXT_COUNT])
 {
     static const char *const keywords[] = { "Software",     "glint:key",    "glint:script", "glint:source",

@@ -1,4 +1,4 @@
-// glint new NAME: a folder with a scene to begin with, and what tells editors of glint's types; or NAME.lua, the scene only.
+// glint new NAME: writes a folder with a first scene and the types for editors; NAME.lua: only the scene.
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -107,7 +107,7 @@ static bool find_types(const char *program, char out[GLINTL_PATH_SIZE])
     return false;
 }
 
-// What the language server of Lua reads. A file that is there stays. 0 or an errno.
+// Writes the settings of the Lua language server, unless the file exists. Returns 0 or an errno.
 static int write_settings(const char *path, const char *program)
 {
     char types[GLINTL_PATH_SIZE];

@@ -131,7 +131,7 @@ static bool call(points *p, lua_CFunction function)
     return status == LUA_OK && !p->run->exit_code && !p->run->interrupted;
 }
 
-// Ends a point: its sheets, and what all its frames have shown. False: the run has failed.
+// Ends a point: makes its sheets and prints its summary. Returns false when the run failed.
 static bool close_point(points *p, point *which)
 {
     const int64_t number = which->number;

@@ -38,7 +38,7 @@ static void format_time(char out[32], double seconds)
         snprintf(out, 32, "%d:%02d", (int)(whole / 60), (int)(whole % 60));
 }
 
-// One line: the bar, as wide as the terminal has room for, and the text. What does not fit would begin a line of its own.
+// One line: the bar, as wide as the terminal has room for, and the text. A longer text would wrap.
 static void draw_line(cli_progress *progress, double share, const char *text)
 {
     char bar[BAR_WIDTH + 1];

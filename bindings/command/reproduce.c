@@ -1,4 +1,4 @@
-// glint reproduce FILE SCRIPT: renders the frame of a finished file again, by what the file says of itself, and compares.
+// glint reproduce FILE SCRIPT: renders the frame of a finished file again, with the options stored in the file, and compares.
 #include <dirent.h>
 #include <errno.h>
 #include <signal.h>

@@ -1,4 +1,4 @@
-// Running a script: its Lua state, where it finds modules, and what it returns.
+// Runs a script: makes its Lua state, finds its modules, takes what it returns.
 #include <errno.h>
 #include <lualib.h>
 #include <stdlib.h>
@@ -34,8 +34,8 @@ static void set_arguments(lua_State *L, const cli_options *options)
     lua_setglobal(L, "arg");
 }
 
-// Puts templates before those of package.path, which is at 1, or after them. A ';' or '?' in a folder's name would be misread:
-// then it stays out.
+// Adds templates to the front or the end of package.path; `package` is at index 1. Lua would misread a folder with ';' or '?',
+// so such a folder is left out.
 static void add_path(lua_State *L, const char *folder, const char *templates, bool first)
 {
     if (strpbrk(folder, ";?"))
@@ -47,8 +47,8 @@ static void add_path(lua_State *L, const char *folder, const char *templates, bo
     lua_pop(L, 2);
 }
 
-// The modules that were installed with this command lie beside it: PREFIX/bin and PREFIX/share. Another version's, elsewhere,
-// come after them; what the user's LUA_PATH has, before. A build that is not installed has those of its checkout.
+// Adds the modules that were installed with this command (PREFIX/share next to PREFIX/bin). The order is: LUA_PATH, these
+// modules, then modules installed elsewhere. A build that is not installed uses the modules of its source tree.
 static void add_own_modules(lua_State *L, const char *program)
 {
     char folder[GLINTL_PATH_SIZE], probe[GLINTL_PATH_SIZE + 64];
@@ -113,7 +113,7 @@ static int refuse_silence(lua_State *L, const cli_options *options)
     return lua_error(L);
 }
 
-// What the script returned is on the stack, from 1 on.
+// The script's results are on the stack, from 1 on.
 static void take_results(lua_State *L, const task *work)
 {
     glintL_run *run = work->run;
@@ -174,7 +174,7 @@ static bool is_picture(const char *path)
     return is;
 }
 
-// Loads a script, from standard input where its name is "-". What it waits for without an end is no script.
+// Loads a script, from standard input where its name is "-". Endless input is rejected.
 static int load_script(lua_State *L, const char *path)
 {
     const bool is_input = strcmp(path, "-") == 0;
@@ -215,7 +215,7 @@ static const char *dialect_hint(const cli_options *options, const char *message)
     return !options->dialect && strstr(message, "(global 'gr')") ? "; is it a scene for --dialect gr?" : "";
 }
 
-// The first word may have been meant for the name of a command, or for that of a script without its ending.
+// Suggests a command with a similar name, or the script with its ending, when the script is not there.
 static const char *missing_hint(const cli_options *options, char out[GLINTL_PATH_SIZE + 32])
 {
     char path[GLINTL_PATH_SIZE];

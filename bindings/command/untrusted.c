@@ -50,13 +50,13 @@ static bool make_folder(char *folder, char *message)
     return true;
 }
 
-// ---- The parent: the clock, what was written, and what became of the child ----
+// ---- The parent: watches the clock and the written bytes, and reports how the child ended ----
 
 typedef enum end_cause { NONE_YET, LATE, TOO_MUCH, BY_SIGNAL } end_cause;
 
 typedef struct watched {
     pid_t process;
-    double until_ms; // then it is told to end; once told, killed
+    double until_ms; // SIGTERM at this time; SIGKILL at the next
     end_cause ended_by;
     int number; // BY_SIGNAL: the first one
     uint64_t most; // bytes that it may write in all
@@ -151,7 +151,7 @@ static int judge(int status, const watched *child, const cli_options *options, c
     return GLINTL_EXIT_USAGE;
 }
 
-// The parent's part. What a killed child has left half written is removed.
+// The parent's part. It removes the incomplete files of a killed child.
 static int await_child(pid_t process, const sigset_t *signals, const cli_options *options, cli_output *output,
                        int *signal_number)
 {

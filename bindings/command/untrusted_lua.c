@@ -1,4 +1,4 @@
-// What an untrusted script has of Lua: an environment made of a list of names, in a state whose memory is counted.
+// The Lua of an untrusted script: an environment made from a list of names, in a state whose memory is counted.
 #include "bindings/command/untrusted.h"
 
 #include <lualib.h>
@@ -9,7 +9,7 @@
 
 // ---- Memory ----
 
-// What malloc takes for a block: its size and a header, in steps of two words, four at least.
+// Returns the bytes that malloc uses for a block: its size and a header, in steps of two words, at least four words.
 static size_t taken(size_t size)
 {
     const size_t word = sizeof(size_t), whole = (size + word + 2 * word - 1) & ~(2 * word - 1);
@@ -52,7 +52,7 @@ static void look(lua_State *L, lua_Debug *where)
 
 // ---- The functions that are not Lua's own ----
 
-// load(chunk, name, mode, env): text alone, whatever the mode; `load` of Lua is the upvalue.
+// load(chunk, name, mode, env): accepts only text, whatever the mode; `load` of Lua is the upvalue.
 static int load_text(lua_State *L)
 {
     const bool has_env = lua_gettop(L) >= 4;

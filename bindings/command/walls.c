@@ -1,5 +1,5 @@
 // The walls around an untrusted script's process, built from the inside: limits of the process, Landlock for files, seccomp for
-// calls. What each of them stops is a table in ../README.md.
+// calls. A table in ../README.md says what each of them stops.
 #include "bindings/command/untrusted.h"
 
 #ifdef GLINT_HAVE_SECCOMP
@@ -72,7 +72,7 @@ static bool close_range_of(unsigned from, unsigned to)
     return true;
 }
 
-// Whatever the caller had open is closed, but for the output and the messages; there is nothing to read.
+// Closes everything that the caller had open except stdout and stderr. stdin is empty.
 static bool close_descriptors(int data, char *message)
 {
     const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);

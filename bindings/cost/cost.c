@@ -54,7 +54,7 @@ static void say_frame(const cost_study *study)
 
 // ---- The phases ----
 
-// What a run of a case takes by the rays it casts, before it has run.
+// Guesses the time of a case from its number of rays, before its first run.
 static bool guess(cost_study *study, int index)
 {
     cost_case *c = &study->cases[index];
@@ -89,7 +89,7 @@ static void warn_long(const cost_study *study)
             ceil(ms / 60e3));
 }
 
-// What measuring a case takes: a run, its errors, and at least so many runs later.
+// Returns the time to measure a case: one run, its errors, and the least number of further runs.
 static double price(const cost_study *study, const cost_case *c)
 {
     return study->overhead_ms + c->estimate_ms * (1 + COST_RUNS_LEAST);
@@ -216,7 +216,7 @@ static void close_study(cost_study *study)
     free(study);
 }
 
-// What a frame is measured as whose times are not known.
+// Warns that a frame with an open shutter is measured as an instant, because its times are not known.
 static bool tell_of_instant(cost_study *study)
 {
     const char *lack = cost_moments_lack(study->moments);

@@ -41,7 +41,7 @@ typedef struct cost_copy {
     glint_scene *scene; ///< owned
 } cost_copy;
 
-/// What a knob may edit, each object once, with its description as the script left it.
+/// The objects that a knob may edit, each once, with their descriptions as the script left them.
 typedef struct cost_scene {
     glint_scene *scene; ///< what is planned: the original or a copy
     glint_scene *original; ///< borrowed
@@ -63,7 +63,7 @@ bool cost_scene_open(cost_scene *scene, glint_scene *engine_scene); ///< false: 
 void cost_scene_close(cost_scene *scene);
 /// Puts everything back.
 void cost_scene_restore(cost_scene *scene);
-/// What to edit: sets material or light i to a description.
+/// Sets material or light i to a description.
 glint_status cost_scene_set_material(cost_scene *scene, size_t i, const glint_material_desc *desc, glint_error *error);
 glint_status cost_scene_set_light(cost_scene *scene, size_t i, const glint_light_desc *desc, glint_error *error);
 /// Sets what the scene itself is described by.
@@ -75,7 +75,7 @@ glint_status cost_scene_show_light(cost_scene *scene, size_t light, glint_error 
 // ---- cost/shapes.c ----
 
 typedef struct cost_meshes {
-    size_t count, globe_count; ///< as often as they show; the latter: spheres of triangles
+    size_t count, globe_count; ///< meshes, and of these the spheres made of triangles; instances are counted
     bool is_mixed; ///< in their shading
     glint_shading shading; ///< of one of them
     double segments; ///< of all spheres of triangles; 0: they differ
@@ -110,7 +110,7 @@ typedef struct cost_value {
     double number;
 } cost_value;
 
-/// What a knob is applied to.
+/// The frame that a knob is applied to.
 typedef struct cost_subject {
     const glint_plan *plan; ///< of the frame as the script has it
     const glintL_render *render;
@@ -129,7 +129,7 @@ typedef struct cost_values {
     cost_value value[COST_VALUES_MAX];
 } cost_values;
 
-/// One setting on its way to be measured; knobs change it.
+/// One setting before it is measured; knobs change it.
 typedef struct cost_draft {
     cost_scene *scene;
     glintL_render render;
@@ -175,8 +175,8 @@ typedef struct cost_quartiles {
     double min, q1, median, q3;
 } cost_quartiles;
 
-/// COST_TOTAL: wall time of what is before it. COST_CPU: time that all threads of the process were on a processor; rows
-/// are compared by it, since a busy machine changes it little.
+/// COST_TOTAL: wall time of rendering, tone and encoding. COST_CPU: processor time of all threads. Rows are compared by
+/// COST_CPU, because a busy machine changes it little.
 typedef enum cost_part { COST_RENDER, COST_TONE, COST_ENCODE, COST_TOTAL, COST_CPU, COST_PART_COUNT } cost_part;
 
 /// A setting that is measured. Several rows may show one.
@@ -184,9 +184,9 @@ typedef struct cost_case {
     int choice[COST_KNOBS_MAX]; ///< the value of each knob; -1: as in the base
     int bits; ///< of its file, once it was run
     bool needs_file; ///< a row shows what the file keeps
-    double estimate_ms; ///< of a run with all that is around it
+    double estimate_ms; ///< of a run with its overhead
     int batch; ///< frames in a run, so that it takes long enough to be timed; 0: one
-    double guess_ms, guess_cpu_ms; ///< of the frame alone, before it is timed in earnest
+    double guess_ms, guess_cpu_ms; ///< of the frame without overhead, before the timed runs
     int run_count;
     double ms[COST_PART_COUNT][COST_RUNS_MAX];
     cost_quartiles time[COST_PART_COUNT]; ///< of the runs, by cost_summarize
@@ -196,13 +196,13 @@ typedef struct cost_case {
     glint_work work;
     bool is_counted; ///< work is known
     bool has_error;
-    glint_picture_error film, file; ///< by what the error is of
+    glint_picture_error film, file; ///< errors in linear light, and of the values in the file
     uint64_t wrong_object, wrong_shadow; ///< pixels
     uint8_t *picture, *difference; ///< PNG, owned, for the report; NULL without one
     size_t picture_size, difference_size;
 } cost_case;
 
-/// What is seen and what is lit at the sample in the middle of each pixel.
+/// The visible object and the lights that reach it, at the sample in the middle of each pixel.
 typedef struct cost_decisions {
     float *object; ///< owned; its number, 0: background
     uint8_t *lit; ///< owned; light_count planes: whether light i reaches the pixel
@@ -217,7 +217,7 @@ typedef struct cost_row {
     bool is_default, is_front, is_resolved, is_partial;
     double x_fastest;
     int difference; ///< from the script's own time: -1 faster, 1 slower, 0 within the quartile range
-    bool is_apart; ///< its quartiles have nothing in common with those of the rows next to it in time
+    bool is_apart; ///< its quartile range overlaps with neither neighbour in the order of times
 } cost_row;
 
 typedef struct cost_study {
@@ -229,7 +229,7 @@ typedef struct cost_study {
     int shutter_times; ///< the script's own, where there are moments; 0: the frame is of an instant
     const glintL_render *own;
     cost_values values[COST_KNOBS_MAX]; ///< of each knob; count 0: not selected, or the scene does not respond
-    glint_renderer *renderers[2][2]; ///< [keeps stages][counts work]; owned, but for the one that is the run's
+    glint_renderer *renderers[2][2]; ///< [keeps stages][counts work]; owned, except the one that belongs to the run
     cost_case *cases; ///< number 0 is the base
     int case_count;
     cost_row *rows;
@@ -295,7 +295,7 @@ bool cost_expect(cost_study *study, const cost_case *c, double *rays);
 
 // ---- cost/errors.c ----
 
-/// What the reference is made with where that is not the script's own: ", with segments exact"; else "".
+/// Writes the settings of the reference that differ from the script's: ", with segments exact"; "" when there are none.
 void cost_truth_name(const cost_study *study, char out[COST_LABEL_SIZE]);
 /// The reference, its own error and the true decisions. `allowance_ms` is for all of its parts.
 bool cost_make_reference(cost_study *study, double allowance_ms);
@@ -308,20 +308,20 @@ double cost_left_ms(const cost_study *study); ///< of the budget; infinite witho
 /// The runs of all cases, one at a time, in random order; then more of those whose quartiles meet their neighbours', up to
 /// the most runs or the budget's end.
 bool cost_time_cases(cost_study *study);
-void cost_summarize(cost_study *study); ///< quartiles of what was measured
+void cost_summarize(cost_study *study); ///< computes the quartiles of the measured times
 double cost_time_ms(const cost_case *c); ///< the median of the time that rows are compared by
 double cost_quartile_range(const cost_case *c); ///< of the same
-/// Whether a case's quartiles have nothing in common with those of the cases next to it in time.
+/// Returns whether a case's quartile range overlaps with neither neighbour in the order of times.
 bool cost_is_apart(const cost_study *study, int index);
 double cost_round_ms(const cost_study *study); ///< a run of every case that is not left out, as far as is known
-/// Shows on a terminal what is being done; this step and those of the study after it take so long.
+/// Shows the current step on a terminal, with the expected time of this step and of the rest of the study.
 void cost_show(const cost_study *study, const char *what, double step_ms, double left_ms);
 
 // ---- cost/front.c ----
 
-/// Adds the combinations that ought to be on the front, by what each knob did alone.
+/// Adds the combinations that should be on the front, judging from the effect of each knob on its own.
 bool cost_add_combinations(cost_study *study);
-/// Fills in what compares rows with each other, and the advice.
+/// Fills in the fields that compare rows, and the advice.
 void cost_judge(cost_study *study);
 
 // ---- cost/present.c, cost/report.c ----

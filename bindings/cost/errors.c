@@ -107,7 +107,7 @@ static double choose_samples(const cost_study *study, double allowance_ms)
     return samples < LEAST_TIMES * own ? 0 : fmin(samples, 65536);
 }
 
-// What the reference is a picture of: the script's scene, where a knob knows nothing nearer to the truth.
+// Returns the case of the reference: the script's settings, except for knobs that have a setting nearer to the truth.
 static cost_case true_case(const cost_study *study)
 {
     cost_case c = study->cases[0];
@@ -131,7 +131,7 @@ void cost_truth_name(const cost_study *study, char out[COST_LABEL_SIZE])
     }
 }
 
-// Seeds that have nothing to do with each other: those of neighbouring numbers share a sequence, and their errors might
+// Chooses independent seeds. Neighbouring seeds share a sequence, and their errors might
 // cancel. Below 2^20, where a seed's shift keeps all of its digits.
 static void choose_seeds(cost_study *study)
 {

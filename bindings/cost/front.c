@@ -1,4 +1,4 @@
-// What the numbers say: the Pareto front of time and error, combinations worth measuring, one sentence to act on.
+// Evaluates the measurements: the Pareto front of time and error, combinations worth measuring, one sentence to act on.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@ static double range_of(const cost_case *a, const cost_case *b)
     return fmax(cost_quartile_range(a), cost_quartile_range(b));
 }
 
-// ---- Combinations: what each knob did alone, put together ----
+// ---- Combinations of settings that are good on their own ----
 
 typedef struct candidate {
     int choice[COST_KNOBS_MAX];
@@ -181,7 +181,7 @@ static void spell_share(double share, char out[48])
     snprintf(out, 48, share < 0.1 ? "%.1g of the" : "%.2g times the", share);
 }
 
-// "samples 4 -> 16", "samples=16 precision=float in place of the script's setting"
+// "samples 4 -> 16", "samples=16 precision=float instead of the script's setting"
 static void spell_step(const cost_study *study, const cost_row *row, char out[2 * COST_LABEL_SIZE])
 {
     char own[32];

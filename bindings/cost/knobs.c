@@ -87,7 +87,7 @@ static bool is_soft(const glint_light_desc *light)
     return light->shadows && (light->kind == GLINT_LIGHT_POLYGON || (has_radius && light->radius > 0));
 }
 
-// Whether caps are what lights would have: of spheres and planes alone, and opaque ones.
+// Returns whether caps apply: all shapes are spheres and planes, and opaque.
 static bool takes_caps(const cost_scene *scene)
 {
     bool takes = true;
@@ -292,7 +292,7 @@ static glint_status apply_shading(cost_draft *draft, cost_value value, glint_err
 
 // ---- max_depth: chains of mirrors and refractions ----
 
-// By its materials alone: a script whose own depth is 0 has no stage for them.
+// Looks only at materials: a script with depth 0 has no stage for mirrors and glass.
 static bool has_bounce(const cost_scene *scene)
 {
     bool has = false;
@@ -324,7 +324,7 @@ static glint_status apply_max_depth(cost_draft *draft, cost_value value, glint_e
     return GLINT_OK;
 }
 
-// ---- indirect_samples, indirect_bounces: ways of light from surface to surface ----
+// ---- indirect_samples, indirect_bounces: paths of light from surface to surface ----
 
 static void list_indirect_samples(const cost_subject *subject, cost_values *out)
 {
@@ -405,7 +405,7 @@ static glint_status apply_encode(cost_draft *draft, cost_value value, glint_erro
     return GLINT_OK;
 }
 
-// ---- reuse: a frame after its neighbour, with what that left ----
+// ---- reuse: a frame after its neighbour, with the neighbour's cached results ----
 
 static const char *const SWITCH[] = { "off", "on" };
 

@@ -1,4 +1,4 @@
--- What glint cost prints: a table for people, or an object a line for programs, the advice last.
+-- Prints the study: a table for people, or one object per line for programs, with the advice last.
 local the = ...
 local format, json = string.format, the.json
 

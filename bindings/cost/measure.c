@@ -60,7 +60,7 @@ static glint_status out_of_memory(glint_error *error)
     return GLINT_ERR_NOMEM;
 }
 
-// What of a case the scene is planned with; a shot may have its own.
+// Applies the render options of a case. A shot may replace passes, samples and seed.
 static glint_status apply_case(cost_study *study, const cost_case *c, const cost_shot *how, cost_draft *draft, glint_error *error)
 {
     glint_render_desc *desc = &draft->render.desc;
@@ -74,7 +74,7 @@ static glint_status apply_case(cost_study *study, const cost_case *c, const cost
     return status;
 }
 
-// Plans the scene at one time of an open shutter, with what the case makes of it then.
+// Plans the scene at one time of an open shutter, with the case's settings applied.
 static glint_status plan_time(cost_study *study, const cost_case *c, const cost_shot *how, int times, int k, glint_plan **out,
                               glint_error *error)
 {
@@ -180,7 +180,7 @@ static glint_status encode_values(const glint_image *image, glint_error *error)
     return status;
 }
 
-// By the writer that a job uses, with its threads and what it remembers of the picture before, and into nothing.
+// Encodes with the writer of a job, including its threads and its memory of the previous picture, without writing a file.
 static glint_status encode(cost_study *study, const glintL_render *render, glint_image *image, double *ms,
                            glint_error *error)
 {
@@ -204,7 +204,7 @@ static glint_status encode(cost_study *study, const glintL_render *render, glint
     return result.status;
 }
 
-// What comes before a frame of the case: the neighbouring one, where it is measured so.
+// Renders the neighbouring frame first, when the case is measured after its neighbour.
 static glint_status prepare(cost_study *study, const cost_draft *draft, bool counts, glint_error *error)
 {
     glint_image *before = NULL;
@@ -296,7 +296,7 @@ glint_status cost_take(cost_study *study, const cost_case *c, const cost_shot *h
     if (!draft)
         return out_of_memory(error);
     glint_status status = plan_case(study, c, how, draft, &plan, error);
-    // A renderer keeps from the second frame on: the work counted is that of a third, amid frames that do.
+    // A renderer caches from the second frame on, so the work of a third frame is counted.
     for (int frames = stats && draft->reuses ? 2 : 1; frames > 0 && !status; frames--) {
         glint_image_release(*out);
         *out = NULL;

@@ -20,7 +20,7 @@ local function remarks_of(row)
     .. ((row.partial or row.case.left_out) and ", partial" or "")
 end
 
--- What the page says when the row's point is reached.
+-- The tooltip of the row's point.
 local function text_of(row)
   local time, error = row.case.time, row.error
   local text = format("%s: %.4g ms by the clock, %.4g ms (%.4g to %.4g) of processor time, %.3g times the fastest",

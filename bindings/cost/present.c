@@ -1,4 +1,4 @@
-// What a study has found, as data for the modules in Lua that make its table, its lines for programs and its report.
+// The results of a study as Lua tables, for the modules that make its table, its JSON lines and its report.
 #include <stddef.h>
 #include <string.h>
 

@@ -130,7 +130,7 @@ static glint_status make_globe(const glint_shape *from, double segments, glint_s
     return glint_shape_create(&sphere, out, error);
 }
 
-// The caller owns a reference. What has no sphere of triangles is shared.
+// Copies a shape; the caller owns a reference. Shapes without a sphere of triangles are shared.
 static glint_status copy_shape(glint_shape *from, double segments, glint_shape **out, glint_error *error)
 {
     double own;
@@ -173,7 +173,7 @@ static glint_status copy_scene(glint_scene *from, double segments, glint_scene *
     return status;
 }
 
-// Copies are kept until the study ends: their indices are built once.
+// Copies live until the study ends, so their indices are built once.
 glint_status cost_scene_set_segments(cost_scene *scene, double segments, glint_error *error)
 {
     for (int i = 0; i < scene->copy_count; i++)

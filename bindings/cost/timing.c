@@ -99,7 +99,7 @@ static bool run_round(cost_study *study, int *order, int count, double left)
 
 static bool is_timed(const cost_case *c) { return !c->is_left_out && c->run_count > 0; }
 
-// The cases that are timed and, with `more`, not told apart from a neighbour yet and may run on. *ms: what a round of them takes.
+// Lists the timed cases; with `more`, only those too close to a neighbour that may run again. *ms: the time of one round.
 static int list_cases(cost_study *study, bool more, int *order, double *ms)
 {
     int count = 0;

@@ -34,7 +34,7 @@ void watch_client_destroy(watch_client *c)
     free(c);
 }
 
-// Adds bytes to what is to be sent. False: out of memory.
+// Appends bytes to the output buffer. Returns false when out of memory.
 static bool add_bytes(watch_client *c, const char *bytes, size_t size)
 {
     if (c->sent == c->size)

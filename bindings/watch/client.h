@@ -1,5 +1,5 @@
-/// watch/client.c: one connection to the watch page's server: its request, and what is still to be sent to it. Of the server's
-/// thread alone; nothing blocks. What returns false wants the client let go: it has gone, or memory has.
+/// watch/client.c: one connection to the watch page's server: its request and its output buffer. Used only by the server's
+/// thread; nothing blocks. After false, the caller closes the connection: the client is gone, or memory is.
 #ifndef GLINTL_WATCH_CLIENT_H
 #define GLINTL_WATCH_CLIENT_H
 

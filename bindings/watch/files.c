@@ -166,7 +166,7 @@ static void tell_later(watch_files *files, const watched *file, double delay_ms)
     files->due_ms = glintL_now_ms() + delay_ms;
 }
 
-// A new file is told when it has been written; a new link is whole at once.
+// A new file is reported when it has been written, a new link at once.
 static bool is_link(const watched *file)
 {
     char path[GLINTL_PATH_SIZE];

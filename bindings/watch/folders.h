@@ -1,4 +1,4 @@
-/// What happens to the names in folders: inotify's events on Linux, elsewhere what differs between two looks.
+/// Changes of the files in folders: inotify's events on Linux, elsewhere the differences between two looks.
 #ifndef GLINT_WATCH_FOLDERS_H
 #define GLINT_WATCH_FOLDERS_H
 
@@ -22,7 +22,7 @@ void watch_folders_destroy(watch_folders *folders); ///< may be NULL
 int watch_folders_add(watch_folders *folders, const char *path);
 void watch_folders_remove(watch_folders *folders, int number);
 
-/// What to poll; -1: nothing, then looks are due every *look_ms.
+/// Returns the descriptor to poll, or -1 when the folders must be looked at every *look_ms.
 int watch_folders_poll(const watch_folders *folders, int *look_ms);
 /// Calls `take` for each change since the last time. `name` is "" where the change is of the folder.
 void watch_folders_read(watch_folders *folders, void (*take)(void *user, int number, const char *name, watch_change change),

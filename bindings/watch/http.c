@@ -1,4 +1,4 @@
-// The server of the watch page: one poll() loop over a few non-blocking sockets, on 127.0.0.1 alone.
+// The server of the watch page: one poll() loop over a few non-blocking sockets, on 127.0.0.1 only.
 //
 //   GET  /TOKEN/            the page
 //   GET  /TOKEN/events      server-sent events: the state, at once and whenever it changes

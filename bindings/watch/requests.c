@@ -1,4 +1,4 @@
-// What the threads of glint watch request of its loop: a changed file, a frame to show, a parameter's value.
+// Requests from the threads of glint watch to its loop: a changed file, a frame to show, a parameter's value.
 #include <errno.h>
 #include <poll.h>
 #include <stdlib.h>

@@ -62,7 +62,7 @@ static watch_graphics find_graphics(void)
     return strstr(answer, "_Gi=31;OK") ? WATCH_KITTY : has_sixel(answer) ? WATCH_SIXEL : WATCH_BLOCKS;
 }
 
-// Terminals without colours, by what terminfo calls them: DEC's VT52 to VT525, all but VT525 and VT241; and "...-m".
+// Terminals without colours, by their terminfo names: DEC's VT52 to VT525, all but VT525 and VT241; and "...-m".
 static bool has_colors(void)
 {
     const char *term = getenv("TERM");

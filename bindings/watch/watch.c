@@ -49,7 +49,7 @@ typedef struct watcher {
     char warnings[GLINTL_MESSAGE_SIZE]; // of the last run, a line each
 } watcher;
 
-// ---- What is told ----
+// ---- Messages ----
 
 // The state as the page gets it.
 static char *make_state(const watcher *w)
@@ -303,7 +303,7 @@ static void begin_run(watcher *w, quality now)
         w->warnings[0] = '\0';
 }
 
-// Runs the script from its beginning; its calls of scene:render render on the way.
+// Runs the script from its beginning; its calls of scene:render render meanwhile.
 static bool run_script(watcher *w, quality now)
 {
     glintL_run *run = w->run;

@@ -3,7 +3,7 @@
 ///   watch.c           the loop: runs the script, renders a preview and then the picture in full
 ///   watch/requests.c      what the other threads request of the loop, and the overrides of parameters
 ///   watch/files.c     a thread that waits for changes of files; watch_track.lua tells it which
-///   watch/client.c    one connection to that server: its request, and what is still to be sent
+///   watch/client.c    one connection to that server: its request and its output buffer
 ///   watch/http.c      the server of the page, a thread with a poll loop; watch_page.html is the page
 ///   watch/picture.c   pictures as PNG in memory, and made small for a terminal
 ///   watch/terminal.c  pictures in a terminal
@@ -64,7 +64,7 @@ size_t watch_files_count(watch_files *files);
 
 typedef struct watch_server watch_server;
 
-/// What the page requests. Called in the server's thread; the texts are borrowed.
+/// Requests of the page. Called in the server's thread; the texts are borrowed.
 typedef struct watch_orders {
     void *context;
     void (*frame)(void *context, int64_t frame);
@@ -72,7 +72,7 @@ typedef struct watch_orders {
     void (*reset)(void *context);
 } watch_orders;
 
-/// Serves on 127.0.0.1 alone, below a random path. `port` 0: any free one. NULL: `message` says why.
+/// Serves on 127.0.0.1 only, below a random path. `port` 0: any free port. Returns NULL on failure; `message` says why.
 watch_server *watch_server_create(int port, const watch_orders *orders, char message[GLINTL_MESSAGE_SIZE]);
 void watch_server_destroy(watch_server *server);
 const char *watch_server_url(const watch_server *server);
@@ -88,7 +88,7 @@ typedef struct watch_terminal {
     bool full_color, color, is_fresh; ///< is_fresh: nothing is drawn yet
 } watch_terminal;
 
-/// What stderr's terminal says of itself; `name` as in --terminal, NULL: query it.
+/// Finds out the abilities of stderr's terminal. `name` as in --terminal; NULL: query the terminal.
 void watch_terminal_open(watch_terminal *terminal, const char *name, bool color);
 void watch_terminal_close(watch_terminal *terminal);
 /// Draws a picture with a line below it.
@@ -97,7 +97,7 @@ void watch_terminal_error(watch_terminal *terminal, const char *message);
 
 // ---- watch/requests.c ----
 
-/// What is to be done next, told by the threads of the files and of the server, and by signals.
+/// The next things to do, requested by the threads of files and server, and by signals.
 typedef struct watch_requests {
     pthread_mutex_t lock;
     glintL_wake wake;
