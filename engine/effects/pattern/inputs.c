@@ -13,7 +13,7 @@
 #define READS_FOOTPRINT (BITS(GLINT_INPUT_FOOTPRINT, 1) | READS_UV_FOOTPRINT)
 #define READS_GATHERED (READS_P | READS_WORLD | READS_N | READS_V | READS_UV | READS_FOOTPRINT)
 
-/// An entry's group: where it is in the tile, and where in the rows.
+/// The group of an entry: its position in the tile and in the rows.
 typedef struct gathering {
     glint_pattern_inputs *inputs;
     const glint_tile_frame *frame;
@@ -23,7 +23,7 @@ typedef struct gathering {
 
 static double *row(const gathering *g, int input) { return g->inputs->row[input] + g->to; }
 
-/// Sixteen numbers of an array of real.
+/// Loads sixteen numbers from an array of real.
 static void load_group(const gathering *g, const void *array, double out[GLINT_GROUP])
 {
     glint_reals_of(array, g->frame->plan->desc.precision, (uint32_t)(g->at / GLINT_GROUP), out);
@@ -31,7 +31,7 @@ static void load_group(const gathering *g, const void *array, double out[GLINT_G
 
 // ---- Normals ----
 
-/// The geometric normal of a triangle that is shaded smoothly, turned to the viewer.
+/// Computes the geometric normal of a smoothly shaded triangle, on the viewer's side.
 static void face_normal(const glint_prim *prim, double scale, bool back, double out[3])
 {
     double f[3], h[3], n[3];
@@ -68,7 +68,7 @@ static void gather_normals(const gathering *g, unsigned lanes)
 
 // ---- The point in the shape's own space ----
 
-/// Lanes whose primitives are of one part with the first, and its place.
+/// Finds the lanes whose primitives belong to the same part as the first lane's. Returns the place of the part.
 static const glint_pattern_place *next_place(const gathering *g, unsigned left, unsigned *lanes)
 {
     const glint_geometry *geometry = g->frame->plan->geometry;
@@ -85,7 +85,7 @@ static const glint_pattern_place *next_place(const gathering *g, unsigned left, 
     return &g->frame->plan->patterns->places[part];
 }
 
-/// Which face of a box a lane is on, by the normal in its own space: axis, and whether it is the upper one.
+/// Returns the axis of the box face that a lane is on, from the normal in the shape's own space. *upper: it is the face at `max`.
 static int face_of(const gathering *g, const glint_pattern_place *place, uint32_t lane, bool *upper)
 {
     const size_t i = g->at + lane;
@@ -103,8 +103,8 @@ static int face_of(const gathering *g, const glint_pattern_place *place, uint32_
     return axis;
 }
 
-/// Of faces along an axis the coordinate is the face's own, to the last bit: what rounding moved a point by off it must not
-/// decide on which side of a whole number a pattern sees it.
+/// Sets the coordinate of points on axis-aligned faces to the exact coordinate of the face. Otherwise rounding would decide
+/// on which side of a whole number a pattern sees the point.
 static void put_exact(const gathering *g, const glint_pattern_place *place, unsigned lanes)
 {
     if (place->kind == GLINT_SHAPE_BOX) {
@@ -122,7 +122,7 @@ static void put_exact(const gathering *g, const glint_pattern_place *place, unsi
         row(g, GLINT_INPUT_P_X + place->axis)[__builtin_ctz(lanes)] = place->face;
 }
 
-/// Takes a group's points in the world, which are in the rows, into the shape's own space.
+/// Maps a group's points, which are in the rows, from world space to the shape's own space.
 static void map_points(const gathering *g, const glint_pattern_place *place, unsigned lanes)
 {
     double own[3][GLINT_GROUP];
@@ -153,13 +153,13 @@ static void gather_points(const gathering *g, unsigned lanes)
 
 // ---- The viewer ----
 
-/// The camera whose rays show the points, where the stage `unit` can read them; NULL: load_way_back does.
+/// Returns the camera of the rays if the stage `unit` can compute the directions; NULL: load_way_back computes them.
 static const glint_camera_args *camera_of(const glint_tile_frame *frame, const glint_pattern_points *points)
 {
     return points->direction[0] || frame->plan->desc.precision != GLINT_DOUBLE ? NULL : glint_tile_rays_of(points->tile);
 }
 
-/// A component of the ways back along the group's rays, not unit: see glint_tile_direction.
+/// Loads a component of the directions back along the group's rays, not normalised: see glint_tile_direction.
 static void load_way_back(const gathering *g, int c, double *restrict out)
 {
     const glint_tile *tile = g->points->tile;
@@ -190,7 +190,7 @@ static void make_views(glint_pattern_inputs *inputs, const glint_tile_frame *fra
     frame->stages->unit(&args);
 }
 
-/// Width of a pixel at a point: that of the pixel whose ray, by whatever mirrors, has come there.
+/// Computes the width of a pixel at each point, also after mirrors: the width that the pixel's ray has there.
 static void gather_footprints(const gathering *g, unsigned lanes)
 {
     const glint_plan_patterns *patterns = g->frame->plan->patterns;
@@ -205,7 +205,7 @@ static void gather_footprints(const gathering *g, unsigned lanes)
 
 // ---- Coordinates on the surface ----
 
-/// What those of one lane depend on; the point in the shape's own space is there.
+/// Returns the input of the surface coordinates for one lane. The point in the shape's own space must be known.
 static glint_uv_point uv_point_of(const gathering *g, const glint_pattern_place *place, uint32_t lane)
 {
     const glint_prim *prim = &g->frame->geometry.prims[g->points->prim[g->at + lane]];
@@ -265,7 +265,7 @@ void glint_pattern_put_number(glint_pattern_inputs *inputs, glint_input input, d
     inputs->same |= bit;
 }
 
-/// Whether the entries' groups lie one after the other in arrays of doubles, so that these are read as they are.
+/// Returns whether the entries' groups are consecutive in arrays of doubles, so that the arrays can be read directly.
 static bool are_in_order(const glint_tile_frame *frame, const glint_pattern_lanes *entries, uint32_t count)
 {
     if (frame->plan->desc.precision != GLINT_DOUBLE)
@@ -281,8 +281,8 @@ static void read_array(glint_pattern_inputs *inputs, int input, const void *arra
     inputs->from[input] = (const double *)array + (size_t)group * GLINT_GROUP;
 }
 
-/// The place of an entry's shape whose points are in the world where they are in its own space, but for a coordinate that all of
-/// them share. NULL: there is none, or there are several.
+/// Returns the place of the entry's shape if its own space is world space, except for a coordinate that all its points
+/// share. NULL: there is none, or there are several.
 static const glint_pattern_place *plain_place(const glint_tile_frame *frame, const glint_pattern_points *points,
                                               const glint_pattern_lanes *entry)
 {
@@ -292,7 +292,7 @@ static const glint_pattern_place *plain_place(const glint_tile_frame *frame, con
     return place->mapped || place->kind == GLINT_SHAPE_BOX || here != entry->lanes ? NULL : place;
 }
 
-/// Reads the points where they are, if all entries are of one such shape.
+/// Reads the points directly from the tile if all entries show one such shape.
 static bool read_points(glint_pattern_inputs *inputs, const glint_tile_frame *frame, const glint_pattern_points *points,
                         const glint_pattern_lanes *entries, uint32_t count)
 {
@@ -311,7 +311,7 @@ static bool read_points(glint_pattern_inputs *inputs, const glint_tile_frame *fr
     return true;
 }
 
-/// Finds what can be read where it is. Returns the inputs that are left.
+/// Sets the inputs that can be read directly from the tile. Returns the remaining ones.
 static uint32_t read_in_place(glint_pattern_inputs *inputs, const glint_tile_frame *frame,
                               const glint_pattern_points *points, uint32_t reads, const glint_pattern_lanes *entries,
                               uint32_t count)
@@ -327,7 +327,7 @@ static uint32_t read_in_place(glint_pattern_inputs *inputs, const glint_tile_fra
     return reads & ~(READS_WORLD | (normals ? READS_N : 0) | (own ? READS_P : 0));
 }
 
-/// One entry's share of what is in rows.
+/// Gathers the rows of one entry.
 static void gather_group(const gathering *g, uint32_t reads, unsigned lanes)
 {
     if (reads & (READS_P | READS_UV))

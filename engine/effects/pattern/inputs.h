@@ -1,4 +1,4 @@
-/// What programs read of points: a row of doubles an input. Internal.
+/// The inputs of programs at points: one row of doubles per input. Internal.
 #ifndef GLINT_PATTERN_INPUTS_H
 #define GLINT_PATTERN_INPUTS_H
 
@@ -11,20 +11,20 @@ typedef struct glint_pattern_lanes {
 } glint_pattern_lanes;
 
 typedef struct glint_pattern_inputs {
-    const double *from[GLINT_INPUT_COUNT]; ///< where a program reads: a row, or arrays of the tile as they are
-    uint32_t used, same; ///< a bit an input: there is something in `from`; as glint_program_args has it
+    const double *from[GLINT_INPUT_COUNT]; ///< where a program reads: a row, or directly an array of the tile
+    uint32_t used, same; ///< one bit per input: `from` is set; see glint_program_args
     _Alignas(64) double row[GLINT_INPUT_COUNT][GLINT_PROGRAM_LANES];
-    double uv_slope[2][3][GLINT_PROGRAM_LANES]; ///< with u and v: how they grow along the axes of the shape's own space
+    double uv_slope[2][3][GLINT_PROGRAM_LANES]; ///< the gradients of u and v in the shape's own space
 } glint_pattern_inputs;
 
-/// Finds the inputs in `reads`, a bit each, for the lanes of `count` entries, a group each: lanes 16 k and on are entry k's. Other
-/// lanes hold anything.
+/// Computes the inputs in `reads` (one bit each) for the lanes of `count` entries, one group each: entry k has the lanes from 16 k on.
+/// Other lanes are undefined.
 void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *frame,
                           const glint_pattern_points *points, uint32_t reads, const glint_pattern_lanes *entries,
                           uint32_t count);
 /// Points an input at its own row.
 double *glint_pattern_row(glint_pattern_inputs *inputs, glint_input input);
-/// Gives every lane of an input one number, which stays until the input is gathered.
+/// Sets every lane of an input to one number, until the input is gathered again.
 void glint_pattern_put_number(glint_pattern_inputs *inputs, glint_input input, double number);
 
 #endif

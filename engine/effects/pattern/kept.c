@@ -1,11 +1,11 @@
-/// Programs whose first parts need not run again: what these give is kept of the tile, and the second parts read it. See
+/// Split programs: the results of their first parts are cached for each tile, and only the second parts run. See
 /// reuse/splits.h.
 #include "engine/program/program.h"
 #include "engine/effects/pattern/work.h"
 
 #include <string.h>
 
-/// Where what is kept of a sample is; of a tile whose key says that it is.
+/// The cached results of a sample, in a tile whose key matches.
 typedef struct kept_sample {
     double *numbers;
     float *planes;
@@ -20,7 +20,7 @@ static kept_sample sample_at(const glint_cached_tile *cached, const glint_splits
     return at;
 }
 
-/// Whether all programs of what is listed are split, or need not run again at all.
+/// Returns whether all programs of the list are split, or need not run again at all.
 static bool are_split(const struct glint_pattern *pattern, const glint_splits *splits)
 {
     uint32_t last = GLINT_MISS;
@@ -33,7 +33,7 @@ static bool are_split(const struct glint_pattern *pattern, const glint_splits *s
     return true;
 }
 
-/// Whether this frame keeps anything of the tile. Planes that are kept for other reasons stand elsewhere.
+/// Returns whether this frame caches results of the tile. Planes cached for other reasons are stored elsewhere.
 static bool may_keep(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_splits *splits = &frame->reuse->splits;
@@ -41,7 +41,7 @@ static bool may_keep(const glint_tile *tile, const glint_tile_frame *frame)
            are_split(tile->pattern, splits);
 }
 
-// ---- Truths -------------------------------------------------------------------------------------------------------
+// ---- Booleans ----------------------------------------------------------------------------------------------------
 
 /// Four lanes of numbers from four bits.
 static const double numbers_of[16][4] = { { 0, 0, 0, 0 }, { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 1, 1, 0, 0 },
@@ -55,7 +55,7 @@ static void unpack(unsigned bits, double to[GLINT_GROUP])
         memcpy(to + i, numbers_of[bits >> i & 15], sizeof numbers_of[0]);
 }
 
-/// Puts a group's truths into bits, those of `lanes`. Returns false where one is none, as of NaN.
+/// Packs a group's booleans into bits, for `lanes`. Returns false if a value is neither 0 nor 1, such as NaN.
 static bool pack(const double from[GLINT_GROUP], unsigned lanes, uint16_t *bits)
 {
     unsigned set = 0;
@@ -71,7 +71,7 @@ static bool pack(const double from[GLINT_GROUP], unsigned lanes, uint16_t *bits)
 
 // ---- The first part -----------------------------------------------------------------------------------------------
 
-/// Keeps one of a batch's values. Returns false where it cannot be.
+/// Caches one of a batch's values. Returns false if that is impossible.
 static bool keep_value(const glint_pattern_batch *batch, const double *value, bool truth, uint32_t place,
                        const kept_sample *to)
 {
@@ -94,7 +94,7 @@ static glint_program_code part_of(const glint_program_code *part, const glint_pr
     return code;
 }
 
-/// Runs a program's first part on inputs that are gathered, and keeps what it gives. Returns false where that cannot be.
+/// Runs a program's first part on gathered inputs, and caches its results. Returns false if that is impossible.
 static bool keep_first(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_batch *batch,
                        const glint_split_field *of, const glint_program *program, const kept_sample *to)
 {
@@ -119,7 +119,7 @@ static bool are_in_order(const glint_pattern_batch *batch)
     return true;
 }
 
-/// Points an input of the second part at what is kept.
+/// Sets an input of the second part to a cached value.
 static void read_value(struct glint_pattern *pattern, glint_pattern_batch *batch, uint32_t k, bool truth, uint32_t place,
                        const kept_sample *from)
 {
@@ -136,7 +136,7 @@ static void read_value(struct glint_pattern *pattern, glint_pattern_batch *batch
     }
 }
 
-/// Makes the planes of a second part that does nothing but choose by what is kept: without rows. Returns false where it does more.
+/// Computes a second part that only selects by cached booleans, without rows. Returns false if it does more.
 static bool choose_outputs(const glint_tile_frame *frame, const glint_pattern_batch *batch, const glint_split_field *of,
                            const glint_program_code *code, const kept_sample *from)
 {
@@ -144,7 +144,7 @@ static bool choose_outputs(const glint_tile_frame *frame, const glint_pattern_ba
     for (uint32_t k = 0; k < code->output_count; k++) {
         glint_choose_args *call = &calls[k];
         const glint_instruction *by = glint_find_choice(code, k, call->number);
-        const uint32_t value = by ? by->in[0] - GLINT_ROW_INPUT : GLINT_PROGRAM_OUTPUTS_MAX; // of a row or a number more
+        const uint32_t value = by ? by->in[0] - GLINT_ROW_INPUT : GLINT_PROGRAM_OUTPUTS_MAX; // larger for a row or a number
         if (value >= GLINT_PROGRAM_OUTPUTS_MAX || !(of->split->truths >> value & 1))
             return false;
         call->group_count = batch->count;
@@ -166,7 +166,7 @@ static bool any_odd(const glint_pattern_batch *batch)
     return any;
 }
 
-/// The second part of a field's program. Returns false where it gave what is no reflectance.
+/// Runs the second part of a field's program. Returns false if it gave an invalid reflectance.
 static bool run_field(glint_tile *tile, const glint_tile_frame *frame, glint_pattern_batch *batch,
                       const glint_split_field *of, const glint_program_code *code, const kept_sample *from)
 {
@@ -179,7 +179,7 @@ static bool run_field(glint_tile *tile, const glint_tile_frame *frame, glint_pat
     return !any_odd(batch);
 }
 
-/// The second parts of a batch's programs, and what follows from them. Returns false where one gave what is no reflectance,
+/// Runs the second parts of a batch's programs and computes the derived planes. Returns false if one gave an invalid reflectance,
 /// which has to be reported with its point.
 static bool run_second(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_pattern_batch *batch, const kept_sample *from)
@@ -203,7 +203,7 @@ static bool run_second(glint_tile *tile, const glint_tile_frame *frame, const gl
 
 // ---- A sample -----------------------------------------------------------------------------------------------------
 
-/// Both parts, and the programs that need not be split, of which the planes are kept.
+/// Runs both parts, and the programs that need no split, whose planes are cached.
 static bool keep_batch(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_pattern_batch *batch, const kept_sample *to)
 {
@@ -213,14 +213,14 @@ static bool keep_batch(glint_tile *tile, const glint_tile_frame *frame, const gl
     rest.fields = GLINT_FIELDS_PLANES & ~split->again;
     glint_pattern_gather(&tile->pattern->inputs, frame, points, batch->own->reads, batch->entries, batch->count);
     glint_pattern_run_batch(tile->pattern, frame, &rest, batch, &tile->counts);
-    bool good = tile->counts.odd.count == odd; // which later frames report, too
+    bool good = tile->counts.odd.count == odd; // later frames must report it, too
     for (int field = 0; field < GLINT_FIELD_PLANES && good; field++)
         if (split->of[field].split)
             good = keep_first(tile->pattern, frame, batch, &split->of[field], batch->own->program[field], to);
     return good && run_second(tile, frame, points, batch, to);
 }
 
-/// Runs all that is listed, and adds to the counts. known: the first parts' values are kept.
+/// Runs all listed programs, and adds to the counts. known: the values of the first parts are cached.
 static bool run_split(glint_tile *tile, const glint_tile_frame *frame, const kept_sample *at, bool known)
 {
     const glint_odd_pattern odd = tile->counts.odd;
@@ -239,7 +239,7 @@ static bool run_split(glint_tile *tile, const glint_tile_frame *frame, const kep
     }
     tile->counts.odd = odd;
     tile->counts.work.patterns = patterns;
-    glint_tile_find_painted(tile, frame); // some of what is to be run was taken off the list
+    glint_tile_find_painted(tile, frame); // entries were taken off the list
     return false;
 }
 
@@ -293,5 +293,5 @@ const glint_stage glint_stage_pattern = {
     .called = gives_numbers,
     .reads = GLINT_READS(PATTERNS),
     .step[GLINT_AT_SIGN] = sign,
-    .aside = true, // stages that read what it gives read the materials, with their programs
+    .aside = true, // stages that read its results also read the materials with their programs
 };

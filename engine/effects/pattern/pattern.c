@@ -9,13 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// What a plan needs room for.
+/// Returns the sizes that a plan needs.
 static glint_pattern_room room_for(const glint_plan *plan)
 {
     const glint_plan_patterns *patterns = plan->patterns;
     return (glint_pattern_room) { .planes = (size_t)patterns->plane_count * GLINT_TILE_SAMPLES,
                                   .samples = plan->together ? (size_t)plan->desc.samples : 1,
-                                  // a first part's kept values may all live to its end
+                                  // all cached values of a first part may live to its end
                                   .rows = patterns->row_count + GLINT_PROGRAM_OUTPUTS_MAX,
                                   .bumps = patterns->bumps,
                                   .cut_outs = patterns->cut_outs };
@@ -83,7 +83,7 @@ float *glint_pattern_planes(struct glint_pattern *pattern, glint_walk walk) { re
 
 // ---- Which lanes ----
 
-/// Those of `lanes` of a group that have material `m`.
+/// Returns those of `lanes` that have material `m`.
 static unsigned lanes_of(const uint32_t *material, uint32_t m, unsigned lanes)
 {
     unsigned same = 0;
@@ -125,7 +125,7 @@ void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_pa
     const uint32_t *material = points->material, group_count = points->group_count;
     glint_pattern_lanes *entries = pattern->lanes;
     uint32_t count = 0, last = GLINT_MISS;
-    bool wanted = false, several = false; // whether material `last` is; whether others were
+    bool wanted = false, several = false; // whether material `last` is wanted; whether there were others
     if (points->only) {
         list_one_material(pattern, patterns, points, wants);
         return;
@@ -147,7 +147,7 @@ void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_pa
     pattern->several = several;
 }
 
-/// Of a list of several materials: moves entries of one to `taken`.
+/// Moves the entries of one material to `taken`, from a list with several materials.
 static uint32_t pick(struct glint_pattern *pattern)
 {
     glint_pattern_lanes *lanes = pattern->lanes;
@@ -176,14 +176,14 @@ uint32_t glint_pattern_take(struct glint_pattern *pattern, const glint_pattern_l
     return taken;
 }
 
-// ---- What follows from what programs give ----
+// ---- Planes derived from the results of programs ----
 
 static float *plane_at(const glint_pattern_points *points, const glint_plan *plan, int field, int channel)
 {
     return (float *)(uintptr_t)glint_plane_of(points->planes, plan, field, channel);
 }
 
-/// What makes Phong's and Blinn-Phong's highlights even.
+/// Returns the normalising factor of Phong's and Blinn-Phong's highlights.
 static double even_factor(const glint_material_desc *desc, double s)
 {
     if (desc->model != GLINT_MODEL_BLINN_PHONG)
@@ -206,8 +206,8 @@ static void finish_exponent(const glint_plan_pattern *own, const glint_pattern_p
     }
 }
 
-/// What is left of ambient light where indirect light stands for as much of it as the diffuse reflectance; of a program's
-/// also how much that is.
+/// Computes the ambient light that remains if indirect light replaces a part of it as large as the diffuse reflectance; for a
+/// program's ambient also that part.
 static void finish_ambient(const glint_plan_pattern *own, const glint_pattern_points *points, const glint_plan *plan,
                            uint32_t i)
 {
@@ -355,7 +355,7 @@ void glint_pattern_run_batch(struct glint_pattern *pattern, const glint_tile_fra
 
 static bool has_planes(const glint_plan_pattern *own, uint32_t fields) { return own->made & fields; }
 
-/// The programs of all that is listed.
+/// Runs the programs of all listed entries.
 static void run_list(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
                      glint_tile_counts *counts)
 {
@@ -378,7 +378,7 @@ bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *fr
 
 glint_pattern_points glint_pattern_points_of(const glint_tile *tile)
 {
-    glint_pattern_points points; // each field by itself: an initializer clears all of it first, which takes longer
+    glint_pattern_points points; // field by field: an initializer would clear everything first, which is slower
     points.group_count = tile->group_count;
     points.hits = tile->at.hits;
     points.back = tile->hit.back;
@@ -431,7 +431,7 @@ bool glint_tile_find_painted(glint_tile *tile, const glint_tile_frame *frame)
                                           .hits = tile->at.hits,
                                           .material = tile->surface.material,
                                           .only = tile->at.only,
-                                          .fields = GLINT_FIELDS_PLANES }; // the list depends on no more
+                                          .fields = GLINT_FIELDS_PLANES }; // the list depends on nothing else
     glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, has_planes);
     return tile->pattern->count > 0;
 }

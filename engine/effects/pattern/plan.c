@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-/// As of a material's numbers; see shading.c.
+/// The limit for numbers of materials; see shading.c.
 #define STRENGTH_MAX 1e150
 
 // ---- A material's programs ----
@@ -46,7 +46,7 @@ const glint_program *glint_pattern_program_of(const glint_material_programs *pro
     }
 }
 
-/// Whether a field's number is read at all, by the material's model.
+/// Returns whether the material's model reads a field.
 static bool is_read(const glint_material_desc *desc, int field)
 {
     const bool facets = desc->model == GLINT_MODEL_COOK_TORRANCE, shader = desc->program.shader;
@@ -63,7 +63,7 @@ static bool is_read(const glint_material_desc *desc, int field)
     }
 }
 
-/// The fields that have planes.
+/// Returns the fields that have planes.
 static uint32_t made_by(const glint_plan_pattern *pattern, bool indirect)
 {
     const glint_material_desc *desc = &pattern->desc;
@@ -71,7 +71,7 @@ static uint32_t made_by(const glint_plan_pattern *pattern, bool indirect)
     for (int field = 0; field < GLINT_FIELD_COUNT; field++)
         made |= pattern->program[field] ? 1u << field : 0;
     if (made >> GLINT_FIELD_SHININESS & 1 && desc->normalized && !pattern->program[GLINT_FIELD_SHADER])
-        made |= 1u << GLINT_FIELD_SPECULAR; // whose factor depends on the exponent
+        made |= 1u << GLINT_FIELD_SPECULAR; // its factor depends on the exponent
     if (pattern->program[GLINT_FIELD_AMBIENT])
         made |= indirect ? 1u << GLINT_FIELD_REST : 0;
     else if (made >> GLINT_FIELD_DIFFUSE & 1 && indirect && !pattern->ambient_follows)
@@ -79,7 +79,7 @@ static uint32_t made_by(const glint_plan_pattern *pattern, bool indirect)
     return made;
 }
 
-/// The numbers of the description that are read beside its programs: by what follows from these, and by shaders.
+/// Hashes the fields that are read in addition to the programs: by derived planes and by shaders.
 static glint_key numbers_key(const glint_plan_pattern *pattern)
 {
     const glint_material_desc *desc = &pattern->desc;
@@ -94,7 +94,7 @@ static glint_key numbers_key(const glint_plan_pattern *pattern)
     return pattern->made >> GLINT_FIELD_AMBIENT & 1 ? glint_key_add(key, desc->ambient, sizeof desc->ambient) : key;
 }
 
-/// The derivatives of a bump by the point in the shape's own space, in the world and, where it reads it, on the surface.
+/// Makes the derivatives of a bump by p, by the world point and, if it reads them, by u and v.
 static glint_status find_slope(glint_plan_patterns *patterns, glint_plan_pattern *pattern, glint_error *error)
 {
     static const glint_input by[] = { GLINT_INPUT_P_X,     GLINT_INPUT_P_Y,     GLINT_INPUT_P_Z,  GLINT_INPUT_WORLD_X,
@@ -140,7 +140,7 @@ static void add_material(glint_plan_patterns *patterns, glint_plan_pattern *patt
     patterns->any = patterns->any || pattern->made & GLINT_FIELDS_PLANES;
 }
 
-/// Whether a material's field is one number for all channels, which nothing that follows from its programs changes.
+/// Returns whether a material's field is one number for all channels, also after derived planes.
 static bool is_grey(const glint_plan_pattern *pattern, int field)
 {
     if (field == GLINT_FIELD_AMBIENT || field == GLINT_FIELD_REST)
@@ -168,7 +168,7 @@ static void lay_out(glint_plan_patterns *patterns, uint32_t material_count)
 
 // ---- Where shapes are ----
 
-/// The axis that a vector is along; -1: none.
+/// Returns the axis that a vector is parallel to; -1: none.
 static int axis_of(const double v[3])
 {
     for (int c = 0; c < 3; c++)
@@ -177,7 +177,7 @@ static int axis_of(const double v[3])
     return -1;
 }
 
-/// Of the map to the shape's own space.
+/// Returns the determinant of the map to the shape's own space.
 static double determinant_of(const glint_pattern_place *place)
 {
     double cross[3];
@@ -214,7 +214,7 @@ static void sides_of(const double n[3], double side[2][3])
     vec_copy(side[1], y);
 }
 
-/// What the coordinates on the surface are measured by.
+/// Sets the origin and the axes of the surface coordinates.
 static void surface_init(glint_pattern_place *place, const glint_shape_desc *desc)
 {
     double along[3];
@@ -288,7 +288,7 @@ static bool reads_uv(const glint_plan_pattern *own)
     return reads & GLINT_READS_UV;
 }
 
-/// Sees to it that a program finds coordinates on all faces of a mesh that have the `material`-th of its materials.
+/// Checks that all faces of a mesh with its `material`-th material have coordinates.
 static glint_status take_mesh_uv(glint_pattern_place *place, const glint_shape *shape, size_t material,
                                  glint_error *error)
 {
@@ -304,7 +304,7 @@ static glint_status take_mesh_uv(glint_pattern_place *place, const glint_shape *
     return GLINT_OK;
 }
 
-/// The places of the shapes whose materials have programs.
+/// Fills the places of the shapes whose materials have programs.
 static glint_status find_places(glint_plan_patterns *patterns, const glint_geometry *geometry, glint_error *error)
 {
     patterns->places = glint_alloc(geometry->part_count, sizeof *patterns->places);

@@ -1,6 +1,6 @@
-/// The stage shader: programs that say what one light leaves of a material, in place of the built-in models.
+/// The stage shader: programs that compute the light reflected by a material, instead of the built-in models.
 ///
-/// The groups that show a material are taken sixteen at a time. What they are is gathered once, what each light does there follows,
+/// The groups that show a material are taken sixteen at a time. The inputs of the surface are gathered once, then those of each light,
 /// and the program's results are added up in double before the next sixteen come.
 #include "engine/program/program.h"
 #include "engine/effects/pattern/work.h"
@@ -9,24 +9,24 @@
 #include <math.h>
 #include <string.h>
 
-/// What is one number of a material and a light, unless programs give it.
+/// Inputs that are constant for a material and a light, unless programs compute them.
 #define NUMBERS (7u << GLINT_INPUT_KD_R | 7u << GLINT_INPUT_KS_R | 1u << GLINT_INPUT_SHININESS | 7u << GLINT_INPUT_LIGHT_R)
 
-/// Some groups that show one material.
+/// Groups that show one material.
 typedef struct batch {
     const glint_program *program;
     const glint_pattern_lanes *entries;
-    uint32_t groups[GLINT_PROGRAM_GROUPS]; ///< theirs
+    uint32_t groups[GLINT_PROGRAM_GROUPS]; ///< indices of the groups
     uint32_t count;
 } batch;
 
-/// Where a light's share goes.
+/// The destination of a light's contribution.
 typedef enum result { TO_SUMS, TO_TOTALS, TO_PLANES } result;
 
-/// Those of a batch that a light reaches: `count` of its entries from `first` on, with what lies between them.
+/// The part of a batch that a light reaches: `count` entries from `first` on, including unlit ones between.
 typedef struct reached {
     uint32_t first, count;
-    uint16_t lanes[GLINT_PROGRAM_GROUPS]; ///< of each of the batch's entries
+    uint16_t lanes[GLINT_PROGRAM_GROUPS]; ///< lit lanes of each entry of the batch
 } reached;
 
 static void find_reached(const batch *b, const uint16_t *lit, reached *out)
@@ -44,7 +44,7 @@ static void find_reached(const batch *b, const uint16_t *lit, reached *out)
 
 // ---- What a program reads ----
 
-/// What gathers numbers of a material.
+/// The arguments for gathering a material's fields.
 typedef struct reading {
     const glint_plan_pattern *own;
     uint32_t inputs;
@@ -52,7 +52,7 @@ typedef struct reading {
     uint32_t count;
 } reading;
 
-/// A number of a material, or what a program gave of it, if it is read.
+/// Gathers a field of a material if the program reads it: the constant, or the result of the field's own program.
 static void gather_field(glint_tile *tile, const glint_plan *plan, const reading *r, glint_field field, int channel,
                          double number, int input)
 {
@@ -90,7 +90,7 @@ void glint_shader_gather(glint_tile *tile, const glint_tile_frame *frame, const 
     gather_material(tile, frame->plan, &r);
 }
 
-/// Where the batch sees an area light's sample.
+/// Computes the direction and distance from the batch to a sample of an area light.
 static void place_sample(glint_tile *tile, const glint_plan *plan, const batch *b, const reached *lit,
                          const glint_plan_light *light, const glint_light_sample *sample)
 {
@@ -104,13 +104,13 @@ static void place_sample(glint_tile *tile, const glint_plan *plan, const batch *
         }
 }
 
-/// Ways to a light and, where the program reads it, how far it is.
+/// Gathers the directions to a light and, if the program reads it, the distance.
 static void gather_way(glint_tile *tile, const glint_tile_frame *frame, const batch *b, const reached *lit,
                        const glint_plan_light *light)
 {
     glint_pattern_inputs *inputs = &tile->pattern->inputs;
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
-    const size_t at = light->directional ? 0 : (size_t)lit->first * GLINT_GROUP; // one way for all points
+    const size_t at = light->directional ? 0 : (size_t)lit->first * GLINT_GROUP; // one direction for all points
     const bool measured = glint_program_reads(b->program, GLINT_INPUT_DISTANCE) && !light->directional;
     glint_unit_args args = { .group_count = light->directional ? 1 : lit->count,
                              .place = sample ? NULL : light->position,
@@ -131,7 +131,7 @@ static void gather_way(glint_tile *tile, const glint_tile_frame *frame, const ba
     glint_pattern_put_number(inputs, GLINT_INPUT_DISTANCE, HUGE_VAL);
 }
 
-/// What arrives of a light's colour.
+/// Gathers the light's colour at the points, after attenuation.
 static void gather_color(glint_tile *tile, const batch *b, const glint_shader_light *from)
 {
     for (int c = 0; c < 3; c++) {
@@ -149,7 +149,7 @@ static void gather_color(glint_tile *tile, const batch *b, const glint_shader_li
     }
 }
 
-/// How much of a light that is partly covered is seen; without the attenuation, which is in its colour.
+/// Computes the visible share of a partly covered light, without the attenuation, which is in its colour.
 static void gather_share(const batch *b, const reached *lit, const glint_shader_light *from, float *share)
 {
     for (uint32_t k = 0; k < lit->count; k++)
@@ -160,9 +160,9 @@ static void gather_share(const batch *b, const reached *lit, const glint_shader_
         }
 }
 
-// ---- What comes of it ----
+// ---- Results ----
 
-/// What one light gives, added to the sums or to the totals of a batch; of the only one, into planes.
+/// Adds the contribution of one light to the sums or to the totals of a batch; with a single light, writes it into planes.
 static void add_light(glint_tile *tile, const glint_tile_frame *frame, const batch *b, const reached *lit,
                       const glint_shader_light *from, result to)
 {
@@ -207,7 +207,7 @@ static void round_totals(struct glint_pattern *pattern, const batch *b)
         }
 }
 
-/// Makes the planes 0 that the program has no output for.
+/// Clears the planes that the program has no output for.
 static void clear_missing(struct glint_pattern *pattern, const batch *b)
 {
     for (uint32_t term = b->program->code.output_count; term < GLINT_SHADER_TERMS; term++)
@@ -216,7 +216,7 @@ static void clear_missing(struct glint_pattern *pattern, const batch *b)
                 pattern->shaded[term][b->groups[k] * GLINT_GROUP + (unsigned)__builtin_ctz(left)] = 0;
 }
 
-/// One material's shader, for some groups that show it and all lights.
+/// Runs the shader of one material for a batch of groups and all lights.
 static void shade_batch(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
                         const batch *b, const glint_shader_light *lights, uint32_t light_count)
 {
@@ -257,7 +257,7 @@ glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint
     return points;
 }
 
-/// The lanes that any of the lights reaches; `room`: for those of several.
+/// Returns the lanes that any light reaches; `room` holds them if there are several lights.
 static const uint16_t *find_lit(const glint_tile *tile, const glint_shader_light *lights, uint32_t light_count,
                                 uint16_t room[GLINT_TILE_GROUPS])
 {

@@ -5,7 +5,7 @@
 #define TURN 0x1.921fb54442d18p+2 // 2 pi
 #define BELOW_1 0x1.fffffffffffffp-1
 
-/// The angle of x, z around an axis, 0 .. 1: from -z on by -x, z and x.
+/// Returns the angle of x, z around an axis, 0 .. 1: from -z through -x, z and x.
 static double around(double x, double z)
 {
     const double operands[GLINT_OPERANDS_MAX] = { x, z };
@@ -14,7 +14,7 @@ static double around(double x, double z)
     return 0.5 + angle[0] / TURN;
 }
 
-/// Of a ball: u eastwards, v from the south pole at y = -1 to the north.
+/// Sphere: u grows eastwards, v from the south pole at y = -1 to the north pole.
 static void ball_uv(const double d[3], glint_surface_uv *out)
 {
     const double radius = sqrt(vec_dot(d, d)), operands[GLINT_OPERANDS_MAX] = { fmin(fmax(-d[1] / radius, -1), 1) };
@@ -30,7 +30,7 @@ static void ball_uv(const double d[3], glint_surface_uv *out)
         out->slope[1][c] = steep * ((c == 1) - d[1] / (radius * radius) * d[c]);
 }
 
-/// Of a box: 0 .. 1 on each face, as seen from outside with y upwards; above and below with -z and z upwards.
+/// Box: 0 .. 1 on each face, seen from outside with y upwards; on the top and bottom faces with -z and z upwards.
 static void box_uv(const glint_pattern_place *place, const glint_uv_point *point, glint_surface_uv *out)
 {
     const int axis = point->axis, along[2] = { axis == 0 ? 2 : 0, axis == 1 ? 2 : 1 };
@@ -43,7 +43,7 @@ static void box_uv(const glint_pattern_place *place, const glint_uv_point *point
     }
 }
 
-/// Of a plane or disk: lengths from its point. Of a cylinder or cone: around, and from base to top.
+/// Plane and disk: lengths from the point. Cylinder and cone: u around the axis, v from base to top.
 static void axis_uv(const glint_pattern_place *place, const double p[3], glint_surface_uv *out)
 {
     double d[3];
@@ -56,14 +56,14 @@ static void axis_uv(const glint_pattern_place *place, const double p[3], glint_s
         return;
     }
     out->at[0] = around(x, -y);
-    out->at[1] = fmin(fmax(vec_dot(d, place->along), 0), BELOW_1); // a cap is in one row of a texture, whatever rounding does
+    out->at[1] = fmin(fmax(vec_dot(d, place->along), 0), BELOW_1); // so that a cap shows one row of a texture in spite of rounding
     out->unit = fmin(TURN * place->radius, place->length);
     for (int c = 0; c < 3; c++)
         out->slope[0][c] = (x * place->side[1][c] - y * place->side[0][c]) / turn;
     vec_copy(out->slope[1], place->along);
 }
 
-/// Of a torus: around its axis as of a cylinder, and around its tube: from the inside of the ring on by its under side, 0 .. 1.
+/// Torus: u around its axis like a cylinder, v around its tube, 0 .. 1 from the inside of the ring through its lower side.
 static void torus_uv(const glint_pattern_place *place, const double p[3], glint_surface_uv *out)
 {
     double d[3];
@@ -80,7 +80,7 @@ static void torus_uv(const glint_pattern_place *place, const double p[3], glint_
     }
 }
 
-/// Sides of a triangle from its first corner, and the way from there to p, all times a power of two. Returns that.
+/// Computes two sides of a triangle from its first corner, and the vector from there to p, scaled by a power of two. Returns the scale.
 static double sides_of(const glint_mesh *mesh, uint32_t triangle, const double p[3], double side[3][3])
 {
     const uint32_t *at = mesh->triangles[triangle];
@@ -94,8 +94,8 @@ static double sides_of(const glint_mesh *mesh, uint32_t triangle, const double p
     return scale;
 }
 
-/// Of a mesh: those of the corners by the point's weights, u0 + (w1 (u1 - u0) + w2 (u2 - u0)). What rounding moves a point by
-/// beyond an edge does not take them beyond what the corners have: a face whose corners agree has that number exactly.
+/// Mesh: interpolated between the corners, u0 + (w1 (u1 - u0) + w2 (u2 - u0)). The result is clamped to the range of the corners,
+/// because rounding can move a point beyond an edge. If the corners agree, the result is exactly their value.
 static void mesh_uv(const glint_pattern_place *place, const glint_uv_point *point, glint_surface_uv *out)
 {
     const glint_mesh *mesh = place->mesh;

@@ -4,19 +4,19 @@
 
 #include "engine/plan/plan.h"
 
-/// A point of a shape, as far as its coordinates depend on it; each kind reads what it names.
+/// A point on a shape. Each kind of shape reads only some of the fields.
 typedef struct glint_uv_point {
     double p[3]; ///< in the shape's own space
-    double from_center[3]; ///< spheres: of the same
-    int axis; ///< box: of the face that it is on
+    double from_center[3]; ///< spheres: from the centre to p
+    int axis; ///< box: axis of the face that the point is on
     bool upper; ///< box: that face is the one at `max`
-    uint32_t triangle; ///< mesh: its number, from 0
+    uint32_t triangle; ///< mesh: index of the triangle, from 0
 } glint_uv_point;
 
 typedef struct glint_surface_uv {
     double at[2];
-    double unit; ///< how wide one unit of them is, in the shape's own space
-    double slope[2][3]; ///< how they grow along the axes of that space
+    double unit; ///< width of one unit of u and v, in the shape's own space
+    double slope[2][3]; ///< gradients of u and v in that space
 } glint_surface_uv;
 
 void glint_surface_uv_at(const glint_pattern_place *place, const glint_uv_point *point, glint_surface_uv *out);
