@@ -1,8 +1,8 @@
-/// How fast a hit moves on its surface, held to its ray, where the surface does or what sees it.
+/// The derivative of a hit: the point stays on its ray and on its surface while the surface or the viewer moves.
 #include "engine/base/vec.h"
 #include "engine/effects/derivative/work.h"
 
-/// What of a way from the eye of a pinhole changes as the view turns: as far along it as the hit is.
+/// Computes the slope of the vector from a pinhole's eye to a hit as the view turns, at constant distance.
 static void turn_way(const glint_plan *plan, const glint_derivative_view *view, const double way[3], double out[3])
 {
     const glint_plan_camera *c = &plan->camera;
@@ -12,15 +12,15 @@ static void turn_way(const glint_plan *plan, const glint_derivative_view *view, 
         out[i] = (along * view->forward[i] + across * view->right[i]) + down * view->up[i];
 }
 
-/// A hit: where it is, and what moves it.
+/// A hit and its motion.
 typedef struct bent_hit {
-    double point[3], normal[3], way[3]; ///< the last: along the ray, of any length
-    double carried[3]; ///< slope of the point if it stayed as far from where the ray starts
+    double point[3], normal[3], way[3]; ///< way: along the ray, of any length
+    double carried[3]; ///< slope of the point at constant distance along the ray
 } bent_hit;
 
 // ---- Normals of curved surfaces -------------------------------------------------------------------------------------
 
-/// The slope of a unit vector that is `length` long and changes by `change` before it is made unit.
+/// Computes the slope of a normalised vector whose original has the length `length` and the slope `change`.
 static void turn_unit(const double unit[3], double length, const double change[3], double out[3])
 {
     const double along = vec_dot(unit, change);
@@ -28,8 +28,8 @@ static void turn_unit(const double unit[3], double length, const double change[3
         out[c] = (change[c] - along * unit[c]) / length;
 }
 
-/// Of the unit shape, where its surface is curved: half the gradient of what is 0 on it, and how that changes along `way`.
-/// False: the face is flat. `turn`: along the normal, where the shape is the unit one.
+/// Computes half the gradient of the unit shape's implicit function on a curved surface, and its slope along `way`.
+/// Returns false on a flat face. `turn`: along the normal, in the space of the unit shape.
 static bool find_gradient(const glint_solid *solid, const double k[3], const double turn[3], const double way[3],
                           double gradient[3], double change[3])
 {
@@ -52,13 +52,13 @@ static bool find_gradient(const glint_solid *solid, const double k[3], const dou
     return true;
 }
 
-/// `moved`: the slope of the point. A part that moves is a ball.
+/// Computes the slope of the normal. `moved`: the slope of the point. A part that moves is a sphere.
 static void curve_solid(const glint_solid *solid, const glint_prim *prim, const glint_derivative_part *part,
                         const bent_hit *hit, const double moved[3], double out[3])
 {
     double k[3], turn[3], way[3], gradient[3], change[3], normal[3] = { 0 }, turned[3] = { 0 }, from[3], within[3];
     vec_sub(from, hit->point, prim->center);
-    for (int c = 0; c < 3; c++) // as the ball would see it that stays where it is
+    for (int c = 0; c < 3; c++) // relative to the moving sphere
         within[c] = (moved[c] - part->place[c]) - from[c] * part->growth;
     for (int c = 0; c < 3; c++) {
         const double column[3] = { solid->forward[0][c], solid->forward[1][c], solid->forward[2][c] };
@@ -75,7 +75,7 @@ static void curve_solid(const glint_solid *solid, const glint_prim *prim, const 
     turn_unit(hit->normal, vec_dot(normal, hit->normal), turned, out);
 }
 
-/// See glint_bend_shares. f, g: the sides from the first corner; gradient: their cross product.
+/// See glint_bend_shares. f, g: the sides from the first corner; gradient: their cross product
 static void find_shares_of(const double f[3], const double g[3], const double gradient[3], const double at[3], double out[3])
 {
     const double size = vec_dot(gradient, gradient);
@@ -107,7 +107,7 @@ void glint_bend_shares(double scale, const glint_prim *prim, const double at[3],
     find_shares_of(f, g, gradient, scaled, out);
 }
 
-/// Of a triangle whose normals are those between its corners.
+/// Computes the slope of the interpolated normal of a smooth triangle.
 static void curve_triangle(const glint_corner_normals *corners, const glint_prim *prim, const double gradient[3],
                            const bent_hit *hit, const double moved[3], double out[3])
 {
@@ -121,13 +121,13 @@ static void curve_triangle(const glint_corner_normals *corners, const glint_prim
         turned[j % 3] += change[j / 3] * corners->normal[j / 3][j % 3];
     }
     const double length = vec_dot(normal, hit->normal);
-    if (length != 0) // else it is the face's own
+    if (length != 0) // otherwise it is the normal of the face
         turn_unit(hit->normal, length, turned, out);
 }
 
 // ---- A hit ------------------------------------------------------------------------------------------------------------
 
-/// Across the surface, of any length.
+/// Computes a vector perpendicular to the surface, of any length.
 static void find_across(const bent_hit *hit, const glint_prim *prim, double out[3])
 {
     double f[3], g[3];
@@ -144,7 +144,7 @@ static void find_across(const bent_hit *hit, const glint_prim *prim, double out[
     }
 }
 
-/// The slopes of point and normal: the point stays on the tangent plane, which moves as the surface does there.
+/// Computes the slopes of point and normal. The point stays on the tangent plane, which moves with the surface.
 static void hold(const bent_hit *hit, const glint_geometry_table *table, const glint_prim *prim,
                  const glint_derivative_part *part, glint_bend *out)
 {
@@ -169,7 +169,7 @@ static void hold(const bent_hit *hit, const glint_geometry_table *table, const g
         curve_triangle(&table->corner_normals[prim->item], prim, gradient, hit, out->point, out->normal);
 }
 
-/// Where a sample is in its picture, in pixels' halves from the middle: to the right and up. See the stage camera.
+/// Computes the position of a sample in the picture, in half pixels from the middle: to the right and up. See the stage camera.
 static void find_place(const glint_tile *tile, uint32_t i, double out[2])
 {
     const glint_camera_args *c = &tile->camera;
@@ -178,7 +178,7 @@ static void find_place(const glint_tile *tile, uint32_t i, double out[2])
     out[1] = c->height - 2 * (c->y0 + 4 * (group / c->groups_across) + lane / 4 + c->offset[1]);
 }
 
-/// Of a ray's place on the lens: where it is, and how that changes.
+/// Computes the position of a ray on the lens, and its slope.
 static void find_lens(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t lane,
                       double at[3], double slope[3])
 {
@@ -189,7 +189,7 @@ static void find_lens(const glint_tile *tile, const glint_plan *plan, const glin
     }
 }
 
-/// The ray of a sample of an orthographic camera, or of one with a lens: from `from` along `way`; with the slopes of both.
+/// Computes the ray of a sample, from `from` along `way`, with the slopes of both, for orthographic cameras and lenses.
 static void aim(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t i, double from[3],
                 double way[3], double moved[3], double turned[3])
 {
@@ -208,7 +208,7 @@ static void aim(const glint_tile *tile, const glint_plan *plan, const glint_deri
     }
 }
 
-/// Seen by the eye.
+/// Computes the slopes of a hit seen by the eye.
 static void bend_view(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t i,
                       const double eye[3], bent_hit *hit, glint_bend *out)
 {
@@ -231,7 +231,7 @@ static void bend_view(const glint_tile *tile, const glint_plan *plan, const glin
     }
 }
 
-/// Seen by a ray that left a surface. False: that does not move it.
+/// Computes the slopes of a hit seen by a ray that left a surface. Returns false if the ray does not move it.
 static bool bend_ray(const glint_batch *batch, const glint_plan *plan, size_t index, uint32_t i, const double eye[3],
                      bent_hit *hit, glint_bend *out)
 {
@@ -252,7 +252,7 @@ static bool bend_ray(const glint_batch *batch, const glint_plan *plan, size_t in
     return moves;
 }
 
-/// A face or vertex, which stays where it is: it is seen from another eye.
+/// Computes the slopes of a face or vertex, which does not move, for a moving eye.
 static bool bend_site(const glint_plan *plan, const glint_derivative_view *view, const double point[3], const double eye[3],
                       glint_bend *out)
 {
@@ -312,13 +312,13 @@ void glint_bend_aim(const glint_tile *tile, const glint_plan *plan)
     }
 }
 
-/// Of hits on one sphere or plane, what the kernel reads.
+/// The input of the kernel for hits on one sphere or plane.
 typedef struct bend_room {
     glint_bend_args args;
     _Alignas(64) double place[2][GLINT_GROUP], shift[3][GLINT_GROUP], shift_slope[3][GLINT_GROUP];
 } bend_room;
 
-/// Where a group's samples are in the picture and on the lens.
+/// Computes the positions of a group's samples in the picture and on the lens.
 static void find_places(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t g,
                         bend_room *out)
 {
@@ -339,7 +339,7 @@ static void find_places(const glint_tile *tile, const glint_plan *plan, const gl
     }
 }
 
-/// Puts some lanes beside others.
+/// Copies the given lanes.
 static void put_lanes(unsigned lanes, double (*from)[GLINT_GROUP], double *const to[9])
 {
     for (unsigned left = lanes; left; left &= left - 1)
@@ -347,7 +347,7 @@ static void put_lanes(unsigned lanes, double (*from)[GLINT_GROUP], double *const
             to[k][__builtin_ctz(left)] = from[k][__builtin_ctz(left)];
 }
 
-/// One by one.
+/// Bends the lanes one by one.
 static unsigned bend_each(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
                           const glint_derivative_points *points, double *const slope[9])
 {
@@ -367,8 +367,8 @@ static unsigned bend_each(const glint_tile *tile, const glint_tile_frame *frame,
     return bent;
 }
 
-/// Begins to bend those of `lanes` that show the primitive of the first of them. Returns these. *moves: they move; *seen: the kernel
-/// bends them, else they are bent one by one.
+/// Prepares those of `lanes` that hit the same primitive as the first one. Returns these lanes. *moves: they move; *seen: the kernel
+/// bends them, otherwise they are bent one by one.
 static unsigned begin(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
                       const glint_derivative_points *points, bend_room *out, bool *seen, bool *moves)
 {

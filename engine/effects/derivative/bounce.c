@@ -1,5 +1,5 @@
-/// Derivatives beyond the first surface: each ray that a mirror or glass sends on has the slopes of where it starts, of its
-/// direction and of its weight; what it finds is held to its surface as what the eye sees is.
+/// Derivatives beyond the first surface: each reflected or refracted ray has the slopes of its origin, of its
+/// direction and of its weight. Its hits are held to their surfaces like the hits of the eye.
 #include "engine/base/alloc.h"
 #include "engine/base/dual.h"
 #include "engine/base/vec.h"
@@ -9,16 +9,16 @@
 
 // ---- Where rays go on -------------------------------------------------------------------------------------------------
 
-/// A ray at a surface, by one derivative.
+/// A ray at a surface, with its slopes for one derivative.
 typedef struct turning {
     glint_dual way[3], normal[3]; ///< unit
     glint_dual ratio; ///< see glint_batch
     glint_dual cosine; ///< between them
-    glint_dual left[3]; ///< of the light along the ray, when it comes
+    glint_dual left[3]; ///< share of the light along the ray on arrival
     double point[3]; ///< slopes
 } turning;
 
-/// The refractive index of a medium.
+/// Returns the refractive index of a medium.
 static glint_dual index_of(const glint_plan *plan, const glint_plan_derivative *d, uint32_t medium)
 {
     return medium == GLINT_NO_MEDIUM ? dual(1, 0) : dual(plan->bouncing[medium].ior, d->bounces[medium].ior);
@@ -48,12 +48,12 @@ static turning find_turning(const glint_batch *batch, const glint_tile *tile, co
         t.left[c] = later ? dual(batch->rays->weight[c][ray], batch->rays->slopes[ray * plan->derivatives->count + index].weight[c])
                           : dual(1, 0);
     }
-    if (!(t.cosine.value > 0)) // as the stage bounce has it
+    if (!(t.cosine.value > 0)) // as in the stage bounce
         t.cosine = dual(0, 0);
     return t;
 }
 
-/// Of what is refracted: the cosine beyond, and the reflectance by Fresnel's formula; see stages/shade/bounce.h.
+/// Computes the cosine of the refracted ray, and the reflectance by Fresnel's formula; see stages/shade/bounce.h.
 static void refract(const turning *t, glint_dual *beyond, glint_dual *reflectance)
 {
     const glint_dual one = dual(1, 0), c = t->cosine, r = t->ratio;
@@ -67,7 +67,7 @@ static void refract(const turning *t, glint_dual *beyond, glint_dual *reflectanc
     *reflectance = dual_scale(dual_add(dual_mul(p, p), dual_mul(q, q)), 0.5);
 }
 
-/// The slopes of a ray along ratio way + bend normal, that has `share` times `factor` of the light.
+/// Returns the slopes of a ray along ratio way + bend normal, with the weight `share` times `factor`.
 static glint_ray_slope slope_of(const turning *t, glint_dual ratio, glint_dual bend, const glint_dual share[3],
                                 glint_dual factor)
 {
@@ -80,7 +80,7 @@ static glint_ray_slope slope_of(const turning *t, glint_dual ratio, glint_dual b
     return out;
 }
 
-/// What a material sends on of a colour, in channel c: `value`, and how fast it changes as a number or as what a program gives.
+/// Returns channel c of a mirror or transmission: `value` and its slope, as a number or as a program's result.
 static glint_dual share_of(const glint_tile *tile, const glint_plan *plan, size_t index, uint32_t i, int field, int c,
                            double value, double slope)
 {
@@ -88,7 +88,7 @@ static glint_dual share_of(const glint_tile *tile, const glint_plan *plan, size_
     return dual(value, program ? glint_derivative_painted(tile, plan, index, field, c)[i] : slope);
 }
 
-/// As glint_batch_split, by one derivative.
+/// Like glint_batch_split, for one derivative.
 static void split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
                   glint_ray_slope *mirror, glint_ray_slope *through)
 {
@@ -123,7 +123,7 @@ void glint_derive_split(const glint_batch *batch, const glint_tile *tile, const 
         split(batch, tile, frame, k, i, &mirror[k], &through[k]);
 }
 
-// ---- What they find -----------------------------------------------------------------------------------------------------
+// ---- Light of the rays -----------------------------------------------------------------------------------------------------
 
 void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *frame)
 {
@@ -157,7 +157,7 @@ void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *f
     }
 }
 
-/// What keeps neighbours from being alike: what a ray has met, and what lights that does not see.
+/// Adds to the pixel's hash the surfaces that a ray has hit, and the lights hidden from them.
 static void note_ray(const glint_batch *batch, glint_tile *to, uint32_t ray)
 {
     const glint_derivative_work *work = glint_derivative_of(&batch->tile);

@@ -1,9 +1,9 @@
-/// What of a frame no derivative goes through.
+/// Refuses frames with effects that have no derivative.
 #include "engine/base/status.h"
 #include "engine/effects/derivative/slopes.h"
 #include "engine/program/program.h"
 
-/// Whether a surface moves, or the eye.
+/// Returns whether a surface or the eye moves.
 static bool moves(const glint_plan *plan, const glint_plan_derivative *d)
 {
     bool any = d->view.moves;
@@ -12,7 +12,7 @@ static bool moves(const glint_plan *plan, const glint_plan_derivative *d)
     return any;
 }
 
-/// Whether something changes by a derivative that is described; an empty one: nothing.
+/// Returns whether something changes with a derivative.
 static bool varies(const glint_plan *plan, const glint_plan_derivatives *all, const glint_plan_derivative *d)
 {
     if (!d->materials)
@@ -25,7 +25,7 @@ static bool varies(const glint_plan *plan, const glint_plan_derivatives *all, co
     return any;
 }
 
-/// What of the frame no derivative goes through, or NULL.
+/// Returns the name of an effect without derivatives in the frame, or NULL.
 static const char *find_obstacle(const glint_plan *plan)
 {
     if (plan->runs[GLINT_STAGE_INDIRECT])
@@ -33,8 +33,8 @@ static const char *find_obstacle(const glint_plan *plan)
     return NULL;
 }
 
-/// Whether a material has something of a pattern, or a shader that reads coordinates on surfaces or how wide a pixel is: what moves
-/// changes these in ways that are not followed.
+/// Returns whether a material has a pattern, or a shader that reads surface coordinates or footprints. Motion
+/// changes these, and that is not differentiated.
 static bool is_painted(const glint_plan_pattern *pattern)
 {
     const uint32_t unknown = GLINT_READS_UV | 1u << GLINT_INPUT_FOOTPRINT;
@@ -53,7 +53,7 @@ static bool is_any_painted(const glint_plan *plan)
     return false;
 }
 
-/// What beyond the first surface a derivative does not go through, or NULL.
+/// Returns the name of an effect without derivatives beyond the first surface, or NULL.
 static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan_derivative *d)
 {
     bool absorbs = false;
@@ -129,7 +129,7 @@ glint_status glint_plan_check_derivatives(const glint_plan *plan, const glint_sc
                               "derivative; before a colour it has", d->name);
         if ((why = find_bounce_obstacle(plan, d)))
             return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", d->name, why);
-        if (!varies(plan, all, d) && !varies(plan, all, &all->level[i])) // else it is 0 here, and elsewhere may not be
+        if (!varies(plan, all, d) && !varies(plan, all, &all->level[i])) // otherwise it is 0 here, but may not be elsewhere
             return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': nothing in the scene depends on it", d->name);
         for (size_t k = 0; k < all->light_count && !status; k++)
             status = d->lights[k].varies || d->bends ? check_light(plan, d, scene, k, error) : GLINT_OK;

@@ -1,4 +1,4 @@
-/// The stage derivative: how fast the light of each sample changes with parameters, hits and shadows held as they are.
+/// The stage derivative: how fast the light of each sample changes with parameters, with hits and shadows held constant.
 #include "engine/effects/derivative/work.h"
 
 #include "engine/base/alloc.h"
@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NO_SHADOWS 0x811c9dc5u ///< where nothing is kept from a sample
+#define NO_SHADOWS 0x811c9dc5u ///< no light is hidden from the sample
 
 // ---- Points ---------------------------------------------------------------------------------------------------------
 
-/// The group's rays, one by one.
+/// Loads the directions of the group's rays.
 static void gather_directions(const glint_tile *tile, glint_precision precision, uint32_t g, double (*out)[GLINT_GROUP])
 {
     for (uint32_t c = 0; c < 3; c++) {
@@ -27,7 +27,7 @@ static void gather_directions(const glint_tile *tile, glint_precision precision,
     }
 }
 
-/// Finds the group's ways to where it is seen from.
+/// Computes the directions from the group's points to the viewer.
 static void find_eyes(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
     double (*eye)[GLINT_TILE_SAMPLES] = glint_derivative_of(tile)->eye;
@@ -43,7 +43,7 @@ static void find_eyes(const glint_tile *tile, const glint_tile_frame *frame, uin
     frame->stages->eyes(&args);
 }
 
-/// The lanes of group g, among those that are left, that show the material of the first of them.
+/// Returns those lanes of `left` in group g that have the same material as the first one.
 static unsigned lanes_of_material(const glint_tile *tile, uint32_t g, unsigned left, uint32_t *material)
 {
     const uint32_t *of = tile->surface.material + (size_t)g * GLINT_GROUP;
@@ -51,7 +51,7 @@ static unsigned lanes_of_material(const glint_tile *tile, uint32_t g, unsigned l
     return glint_lanes_alike(of, left);
 }
 
-/// Whether the derivatives of a group read from where it is seen: for highlights, for what turns with the view, for rays that go on.
+/// Returns whether the derivatives of a group read the viewer's direction: for highlights, moving views and secondary rays.
 static bool reads_eyes(const glint_tile *tile, const glint_plan *plan, uint32_t g)
 {
     const glint_plan_derivatives *all = plan->derivatives;
@@ -95,7 +95,7 @@ void glint_derivative_find_points(const glint_tile *tile, const glint_tile_frame
 
 // ---- Lights -------------------------------------------------------------------------------------------------------
 
-/// A light as all groups see it, but for GLINT_EMIT_CONE; a plain one's place is put into every lane.
+/// Returns a light in the form for all groups, except for GLINT_EMIT_CONE. The position of a plain light is copied to every lane.
 static glint_derivative_source source_of(glint_tile *tile, const glint_plan_light *light)
 {
     glint_derivative_work *work = glint_derivative_of(tile);
@@ -103,7 +103,7 @@ static glint_derivative_source source_of(glint_tile *tile, const glint_plan_ligh
     glint_derivative_source out = { .weight = NULL };
     for (int c = 0; c < 3; c++) {
         out.position[c] = sample ? sample->position[c] : work->position[c];
-        out.normal[c] = sample ? sample->normal[c] : work->position[c]; // of a plain one not read
+        out.normal[c] = sample ? sample->normal[c] : work->position[c]; // not read for a plain light
         for (int i = 0; i < GLINT_GROUP && !sample; i++)
             work->position[c][i] = light->position[c];
     }
@@ -141,7 +141,7 @@ void glint_derivative_take_tint(const glint_tile *tile, size_t index, uint32_t g
     }
 }
 
-// ---- What programs give -------------------------------------------------------------------------------------------
+// ---- Results of programs -------------------------------------------------------------------------------------------
 
 static void take_field(const glint_tile *tile, const glint_plan *plan, size_t index, int field, int which, uint32_t g,
                        glint_derivative_planes *out)
@@ -155,7 +155,7 @@ static void take_field(const glint_tile *tile, const glint_plan *plan, size_t in
     }
 }
 
-/// Of a material, in group g, by derivative number `index`. NULL: it has numbers alone.
+/// Returns the planes of a material in group g for derivative number `index`. NULL: it has only numbers.
 static const glint_derivative_planes *planes_of(const glint_tile *tile, const glint_plan *plan, size_t index,
                                                 uint32_t material, uint32_t g, glint_derivative_planes *room)
 {
@@ -174,7 +174,7 @@ static const glint_derivative_planes *planes_of(const glint_tile *tile, const gl
     return room;
 }
 
-/// What a program gives of sample i's ambient reflectance in channel c; 1: the material's number is all of it.
+/// Returns a program's result for the ambient reflectance of sample i in channel c; 1 if the material has only a number.
 static double ambient_plane(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c)
 {
     const uint32_t planes = plan->materials[tile->surface.material[i]].planes;
@@ -183,7 +183,7 @@ static double ambient_plane(const glint_tile *tile, const glint_plan *plan, uint
     return planes & GLINT_PLANE_AMBIENT ? (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_AMBIENT, c)[i] : 1;
 }
 
-/// Adds how fast the ambient light of lanes `hits` of group g changes in channel c by derivative number `index`.
+/// Adds the slope of the ambient light in channel c for the lanes `hits` of group g and derivative number `index`.
 static void add_ambient(const glint_tile *tile, const glint_plan *plan, size_t index, uint32_t g, unsigned hits, int c)
 {
     const glint_plan_derivative *d = &plan->derivatives->of[index];
@@ -203,7 +203,7 @@ static void add_ambient(const glint_tile *tile, const glint_plan *plan, size_t i
 
 // ---- One light ----------------------------------------------------------------------------------------------------
 
-/// `reached`: lanes that the light reaches; `tinted`: through something, which leaves its tint.
+/// Adds the derivatives of one light in a group. `reached`: lanes that the light reaches; `tinted`: through transparent surfaces.
 static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
                          glint_derivative_source source, uint32_t g, unsigned reached,
                          bool tinted)
@@ -253,7 +253,7 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
     }
 }
 
-/// Whether shaders say what the light leaves on all of `lanes`.
+/// Returns whether all of `lanes` have shaders.
 static bool are_shaded(const glint_tile *tile, const glint_plan *plan, uint32_t g, unsigned lanes)
 {
     bool all = plan->patterns && plan->patterns->shaders;
@@ -265,7 +265,7 @@ static bool are_shaded(const glint_tile *tile, const glint_plan *plan, uint32_t 
     return all;
 }
 
-/// Whether a derivative moves the shadows of a light.
+/// Returns whether a derivative moves the shadows of a light.
 static bool moves(const glint_plan_derivatives *all, uint32_t source)
 {
     bool any = false;
@@ -274,7 +274,7 @@ static bool moves(const glint_plan_derivatives *all, uint32_t source)
     return any;
 }
 
-/// Notes which lanes above the horizon of a light it does not reach.
+/// Records the lanes above the horizon of a light that it does not reach.
 static void note_shadows(glint_tile *tile, const glint_plan_light *light, uint32_t g, unsigned lit, unsigned open)
 {
     glint_derivative_work *work = glint_derivative_of(tile);
@@ -359,7 +359,7 @@ void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, c
 
 // ---- A sample -----------------------------------------------------------------------------------------------------
 
-/// What a derivative has without lights.
+/// Starts the derivatives of a group with the part that does not depend on lights.
 static void begin_group(glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
     glint_derivative_work *work = glint_derivative_of(tile);
@@ -376,7 +376,7 @@ static void begin_group(glint_tile *tile, const glint_tile_frame *frame, uint32_
         }
 }
 
-/// What hits give without lights, where that is read.
+/// Starts the light of hits with the part that does not depend on lights, if it is read.
 static void begin_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
     for (uint32_t i = g * GLINT_GROUP; i < (g + 1) * GLINT_GROUP; i++)
@@ -388,7 +388,7 @@ static void begin_light(glint_tile *tile, const glint_tile_frame *frame, uint32_
                     : 0;
 }
 
-/// After a sample: which lanes have not kept from them what the first had.
+/// After a sample: finds the pixels whose hidden lights differ from the first sample's.
 static void end_shadows(glint_tile *tile, bool is_first)
 {
     glint_derivative_work *work = glint_derivative_of(tile);
@@ -408,7 +408,7 @@ static void fill_group(uint32_t out[GLINT_GROUP], uint32_t number)
         out[i] = number;
 }
 
-/// Before lights keep anything from group g: which surfaces it shows, where these move.
+/// Starts the hashes of group g with its surfaces, if these move.
 static void begin_shadows(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
     uint32_t *shadows = glint_derivative_of(tile)->shadows + (size_t)g * GLINT_GROUP;

@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-/// What is left of a pixel's light, and the share of the colour that it fades towards.
+/// The share of a pixel's light that remains, and the share of the colour that it fades towards.
 typedef struct fade {
     glint_dual left[3], share;
 } fade;
@@ -17,7 +17,7 @@ bool glint_derive_fade_fits(glint_derivative_work *work, const glint_plan *plan)
     return !plan->runs[GLINT_STAGE_DEPTH_CUE] || work->faded;
 }
 
-/// How far what the eye sees in lane i is, which is something.
+/// Returns the distance of the hit that the eye sees in lane i.
 static glint_dual way_of(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i, double way)
 {
     glint_derivative_points points;

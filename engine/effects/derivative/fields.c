@@ -1,4 +1,4 @@
-/// Which fields of a scene have derivatives, and the slopes that a derivative gives them.
+/// The fields of a scene that have derivatives, and their slopes.
 #include "engine/base/status.h"
 #include "engine/effects/derivative/slopes.h"
 #include "engine/program/program.h"
@@ -10,7 +10,7 @@ typedef struct slope_field {
     const char *name;
     size_t offset;
     int count; ///< components
-    unsigned kinds; ///< of lights that have it, a bit each
+    unsigned kinds; ///< kinds of lights that have it, one bit each
 } slope_field;
 
 #define MATERIAL(name, count) { #name, offsetof(glint_material_desc, name), count, 0 }
@@ -55,7 +55,7 @@ static const slope_field scene_fields[] = {
     SCENE(depth_cue_near, 1), SCENE(depth_cue_far, 1), { NULL, 0, 0, 0 },
 };
 
-/// kinds: of what has the field, a bit each; 0: all are alike.
+/// kinds: the kinds of objects that have the field, one bit each; 0: all.
 static const slope_field *find_field(const slope_field *fields, const char *name, unsigned kinds)
 {
     for (; name && fields->name; fields++)
@@ -83,7 +83,7 @@ static void add(void *desc, const slope_field *field, const double slope[3])
         to[c] += slope[c];
 }
 
-/// The program's field of that name, of those that have derivatives; GLINT_FIELD_COUNT: there is none.
+/// Returns the field of that name, if its programs have derivatives; otherwise GLINT_FIELD_COUNT.
 static int find_program_field(const char *name)
 {
     for (int field = 0; field < GLINT_FIELD_COUNT; field++)
@@ -104,7 +104,7 @@ static glint_status add_program(const glint_plan *plan, const glint_derivative *
     if (field == GLINT_FIELD_COUNT)
         return refuse_field(d, "material", s->field, material_fields, 0, error);
     const glint_program *own = plan->patterns ? plan->patterns->of[i].program[field] : NULL;
-    if (!own && glint_pattern_program_of(&s->material->desc.program, field)) // which nothing reads
+    if (!own && glint_pattern_program_of(&s->material->desc.program, field)) // the number is not read
         return GLINT_OK;
     if (!own || own->code.output_count != s->program->code.output_count || own->kind != s->program->kind)
         return glint_fail(error, GLINT_ERR_INVALID,
@@ -118,7 +118,7 @@ static glint_status add_program(const glint_plan *plan, const glint_derivative *
     return GLINT_OK;
 }
 
-/// Whether a slope of `specular` is of a channel that is 0, which leaves no plane of the pattern that shapes the highlight.
+/// Returns whether a slope of `specular` belongs to a channel that is 0, so that the highlight's pattern has no plane.
 static bool is_lost(const glint_material_desc *desc, const glint_slope *s)
 {
     const bool facets = desc->model == GLINT_MODEL_COOK_TORRANCE;

@@ -1,4 +1,4 @@
-/// How fast what programs of materials give changes with their numbers: beside the tile's planes, a double a sample for each derivative.
+/// The derivatives of materials' programs by their numbers: for each plane of the tile, one double per sample and derivative.
 #include "engine/base/alloc.h"
 #include "engine/base/dual.h"
 #include "engine/program/program.h"
@@ -37,9 +37,9 @@ static double *painted_at(const glint_tile *tile, const glint_plan *plan, size_t
     return (double *)(uintptr_t)glint_derivative_painted(tile, plan, index, field, channel);
 }
 
-// ---- What follows from what programs give; see `finish` in effects/pattern/pattern.c ---------------------------------
+// ---- Planes derived from the results of programs; see `finish` in effects/pattern/pattern.c ---------------------------------
 
-/// What makes Phong's and Blinn-Phong's highlights even.
+/// Returns the normalising factor of Phong's and Blinn-Phong's highlights.
 static glint_dual even_factor(const glint_material_desc *desc, glint_dual s)
 {
     const glint_dual two = dual(2, 0), four = dual(4, 0), more = dual_add(s, two);
@@ -94,7 +94,7 @@ static void run(const glint_tile *tile, const glint_tile_frame *frame, const gli
     glint_pattern_call(tile->pattern, frame, &program->code, 0, &args);
 }
 
-/// Whether some plane of an entry holds what may be a bound, and not what the program gave.
+/// Returns whether a plane of an entry may hold a limit instead of the program's result.
 static bool is_bounded(const glint_tile *tile, const glint_plan *plan, int field, const glint_pattern_lanes *entry)
 {
     bool any = false;
@@ -106,8 +106,8 @@ static bool is_bounded(const glint_tile *tile, const glint_plan *plan, int field
     return any;
 }
 
-/// Puts the slopes of one entry, number e of its call, in their places. What is below 0 is taken as 0, and stays; so does what has no
-/// slope, such as the root of what is 0 all around.
+/// Stores the slopes of one entry, number e of its call. A value that was clamped to 0 has the slope 0, and so has a value without a
+/// slope, such as the root of a constant 0.
 static void put_slopes(const glint_tile *tile, const glint_plan *plan, size_t index, int field, bool one, bool bounded,
                        const glint_pattern_lanes *entry, uint32_t e)
 {
@@ -123,7 +123,7 @@ static void put_slopes(const glint_tile *tile, const glint_plan *plan, size_t in
     }
 }
 
-/// One program of some groups that show a material.
+/// Runs one program for groups that show a material.
 static void run_field(const glint_tile *tile, const glint_tile_frame *frame, size_t index, int field,
                       const glint_pattern_lanes *entries, const glint_program_args *args)
 {
@@ -138,7 +138,7 @@ static void run_field(const glint_tile *tile, const glint_tile_frame *frame, siz
         put_slopes(tile, frame->plan, index, field, program->code.output_count == 1, bounded, &entries[e], e);
 }
 
-/// Some groups that show one material.
+/// Runs the programs of one material for some groups.
 static void run_material(const glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
                          const glint_pattern_lanes *entries, uint32_t count)
 {

@@ -1,4 +1,4 @@
-/// Derivatives of a frame: from slopes of described fields to those of what shading reads.
+/// Derivatives of a frame: from the slopes of described fields to the slopes of the numbers that shading reads.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -15,7 +15,7 @@
 
 // ---- Materials ----------------------------------------------------------------------------------------------------
 
-/// Phong and Blinn-Phong; see power_init in plan/shading.c. `even`: what makes them so is in no plane.
+/// Phong and Blinn-Phong; see power_init in plan/shading.c. `even`: the normalising factor is in no plane.
 static void power_material(glint_derivative_material *out, const glint_material_desc *desc, bool even)
 {
     const bool blinn = desc->model == GLINT_MODEL_BLINN_PHONG;
@@ -56,7 +56,7 @@ static void set_constant(double value[3], double slope[3])
     }
 }
 
-/// Of a constant whose product with a program's factor is in planes: 1, and its slope in shares of it. What is 0 has no
+/// For a constant whose product with a program's result is in planes: sets it to 1 and scales its slope to match. A constant 0 has no
 /// slope here; see is_lost in derivative_fields.c.
 static void set_share(double value[3], double slope[3])
 {
@@ -66,7 +66,7 @@ static void set_share(double value[3], double slope[3])
     }
 }
 
-/// Of what programs give: 1 for what it is multiplied by.
+/// Sets the constants that are multiplied by planes to 1.
 static void take_planes(uint32_t planes, glint_material_desc *d, glint_material_desc *slope)
 {
     if (planes & (GLINT_PLANE_AMBIENT | GLINT_PLANE_AMBIENT_IS_DIFFUSE))
@@ -74,7 +74,7 @@ static void take_planes(uint32_t planes, glint_material_desc *d, glint_material_
     if (planes & GLINT_PLANE_DIFFUSE)
         set_constant(d->diffuse, slope->diffuse);
     if (planes & GLINT_PLANE_SPECULAR && !d->program.specular)
-        set_share(d->specular, slope->specular); // of normalized highlights
+        set_share(d->specular, slope->specular); // normalised highlights
     else if (planes & GLINT_PLANE_SPECULAR)
         set_constant(d->specular, slope->specular);
     if (planes & GLINT_PLANE_SHININESS)
@@ -83,7 +83,7 @@ static void take_planes(uint32_t planes, glint_material_desc *d, glint_material_
         slope->roughness = 0;
 }
 
-/// Of a resolved description. Without one of its own f0 follows ior; see glint_material_desc_resolve.
+/// Computes f0 and its slope from a resolved description. If f0 is not set, it follows ior; see glint_material_desc_resolve.
 static void fill_f0(glint_dual out[3], const glint_material_desc *d, const glint_material_desc *slope, bool is_own)
 {
     const double up = d->ior + 1, by_ior = is_own || !(d->ior < 1e300) ? 0 : 4 * (d->ior - 1) / up / up / up * slope->ior;
@@ -91,7 +91,7 @@ static void fill_f0(glint_dual out[3], const glint_material_desc *d, const glint
         out[c] = dual(d->f0[c], is_own ? slope->f0[c] : by_ior);
 }
 
-/// What a shader reads has the description's numbers, and has slopes; anything else of them has none.
+/// Clears the fields that the shader does not read.
 static void shader_material(glint_derivative_material *out, uint32_t inputs)
 {
     for (int c = 0; c < 3; c++) {
@@ -131,7 +131,7 @@ static void fill_material(glint_derivative_material *out, const glint_material_d
         facet_material(out, &d, f0, dual(d.roughness, slope->roughness));
     else if (shiny)
         power_material(out, &d, !(planes & GLINT_PLANE_SHININESS));
-    if (out->highlight == GLINT_HIGHLIGHT_NONE && !d.program.shader) // what nothing reads makes nothing vary
+    if (out->highlight == GLINT_HIGHLIGHT_NONE && !d.program.shader) // fields that are not read change nothing
         out->shininess = out->specular[0] = out->specular[1] = out->specular[2] = dual(0, 0);
     if (out->highlight == GLINT_HIGHLIGHT_FACETS)
         out->shininess = dual(0, 0);
@@ -139,7 +139,7 @@ static void fill_material(glint_derivative_material *out, const glint_material_d
                   glint_has_slope(out->ambient, 3) || glint_has_slope(&out->shininess, 1) || glint_has_slope(&out->alpha, 1);
 }
 
-/// What nothing reads has no slope.
+/// Fields that are not read get no slope.
 static void fill_bounce(glint_derivative_bounce *out, const glint_material_desc *desc, const glint_material_desc *slope)
 {
     const bool transmits = glint_material_transmits(desc);
@@ -177,7 +177,7 @@ static glint_dual strength_of(const glint_light_desc *desc, const glint_light_de
     return dual_scale(radiance, (desc->kind == GLINT_LIGHT_SPHERE ? PI : glint_light_sample_area(desc)) / count);
 }
 
-/// `rows`: the first of the plan's that are this light's; NULL: it has none.
+/// `rows`: the first row of this light in the plan; NULL: it has none.
 static void fill_light(glint_derivative_light *out, const glint_plan_light *rows, uint32_t count,
                        const glint_light_desc *desc, const glint_light_desc *slope)
 {
@@ -205,7 +205,7 @@ static void fill_light(glint_derivative_light *out, const glint_plan_light *rows
     if (desc->kind == GLINT_LIGHT_SPOT)
         fill_spot(out, desc, slope);
     out->attenuated = is_cap ? false : out->coefficients[0].value != 1 || out->coefficients[1].value != 0 ||
-                      out->coefficients[2].value != 0 || glint_has_slope(out->coefficients, 3); // caps: what is seen has it
+                      out->coefficients[2].value != 0 || glint_has_slope(out->coefficients, 3); // caps: the visible share has a slope
     out->moves = glint_has_slope(out->position, 3);
     out->turns = out->moves || glint_has_slope(out->axis, 3);
     out->shines = glint_has_slope(out->diffuse, 3) || glint_has_slope(out->specular, 3) ||
@@ -216,7 +216,7 @@ static void fill_light(glint_derivative_light *out, const glint_plan_light *rows
 
 // ---- Surfaces -----------------------------------------------------------------------------------------------------
 
-/// The slope of a plane's unit normal in the world.
+/// Computes the slope of a plane's unit normal in world space.
 static void turn_normal(const glint_transform *map, const double normal[3], const double slope[3], double out[3])
 {
     glint_dual own[3], turned[3];
@@ -257,7 +257,7 @@ static void fill_part(glint_derivative_part *out, const glint_part *part, const 
     out->moves = glint_any_slope(out->place) || out->growth != 0 || glint_any_slope(out->normal);
 }
 
-/// What changes with programs that do.
+/// Marks what changes with the programs that have derivatives.
 static void take_programs(const glint_derivative_programs *programs, size_t material, glint_plan_derivative *out)
 {
     for (int field = 0; field < GLINT_FIELD_COUNT; field++) {
@@ -268,13 +268,13 @@ static void take_programs(const glint_derivative_programs *programs, size_t mate
             out->weighs = true;
         else
             out->materials[material].varies = 1;
-        out->everywhere = out->everywhere || field == GLINT_FIELD_AMBIENT || field == GLINT_FIELD_DIFFUSE; // which may be both
+        out->everywhere = out->everywhere || field == GLINT_FIELD_AMBIENT || field == GLINT_FIELD_DIFFUSE; // diffuse may also be ambient
     }
 }
 
 // ---- A derivative ---------------------------------------------------------------------------------------------------
 
-/// Ia, of the scene and all lights.
+/// Computes Ia, the sum over the scene and all lights.
 static void total_ambient(const glint_scene *scene, const glint_scene_slopes *slopes, glint_dual out[3])
 {
     duals(out, scene->desc.ambient, slopes->scene.ambient);
@@ -286,7 +286,7 @@ static void total_ambient(const glint_scene *scene, const glint_scene_slopes *sl
     }
 }
 
-/// Of a depth cue, whose colour may be the background's.
+/// Fills the slopes of a depth cue, whose colour may be the background's.
 static void fill_fade(const glint_plan *plan, const glint_scene_desc *desc, const glint_scene_desc *slope,
                       glint_plan_derivative *out)
 {
@@ -388,7 +388,7 @@ static glint_status check_names(const glint_render_desc *desc, glint_error *erro
     return GLINT_OK;
 }
 
-/// What a derivative's slopes are of, in the scene as it is: with 1 for each that is 0 here. The lists are NULL where none is 0.
+/// Fills the level of a derivative: its slopes, with 1 for each that is 0. The lists are NULL if none is 0.
 static glint_status make_level(const glint_plan *plan, const glint_scene *scene, const glint_derivative *d,
                                glint_scene_slopes *slopes, glint_plan_derivative *out, glint_error *error)
 {

@@ -1,4 +1,4 @@
-/// Derivatives of shaders: programs of how fast each changes with what it reads and derivatives change.
+/// Derivatives of shaders: programs for their derivatives by those inputs that some derivative changes.
 #include "engine/base/status.h"
 #include "engine/effects/derivative/slopes.h"
 #include "engine/program/program.h"
@@ -6,12 +6,12 @@
 #include <stdlib.h>
 
 #define BITS(first, count) (((1u << (count)) - 1) << (first))
-#define PLACE (BITS(GLINT_INPUT_P_X, 12) | BITS(GLINT_INPUT_UV_U, 4)) ///< where a point is, how it lies, what sees it
-#define WAYS (BITS(GLINT_INPUT_L_X, 3) | 1u << GLINT_INPUT_DISTANCE) ///< to lights
-#define COLORS BITS(GLINT_INPUT_LIGHT_R, 3) ///< what of theirs arrives
+#define PLACE (BITS(GLINT_INPUT_P_X, 12) | BITS(GLINT_INPUT_UV_U, 4)) ///< position, normal and viewer
+#define WAYS (BITS(GLINT_INPUT_L_X, 3) | 1u << GLINT_INPUT_DISTANCE) ///< directions and distances to lights
+#define COLORS BITS(GLINT_INPUT_LIGHT_R, 3) ///< light that arrives
 #define REFLECTANCES BITS(GLINT_INPUT_KD_R, 7) ///< with the exponent
 
-/// Whether how much of some light arrives depends on the way it comes.
+/// Returns whether the amount of some light depends on its direction.
 static bool ways_weigh(const glint_plan *plan, const glint_plan_derivative *d)
 {
     bool any = false;
@@ -22,19 +22,19 @@ static bool ways_weigh(const glint_plan *plan, const glint_plan_derivative *d)
     return any;
 }
 
-/// What of a shader's inputs a derivative changes, a bit each.
+/// Returns the inputs of a shader that a derivative changes, one bit each.
 static uint32_t find_inputs(const glint_plan *plan, const glint_plan_derivative *d, uint32_t material)
 {
     const uint32_t arrival = WAYS | (ways_weigh(plan, d) ? COLORS : 0);
     uint32_t inputs = d->bends ? PLACE | arrival : 0;
     for (size_t i = 0; i < plan->derivatives->light_count; i++)
         inputs |= d->lights[i].varies ? arrival | (d->lights[i].shines ? COLORS : 0) : 0;
-    for (size_t i = 0; i < plan->derivatives->material_count; i++) // through which the light may come
+    for (size_t i = 0; i < plan->derivatives->material_count; i++) // the light may come through any material
         inputs |= glint_any_slope(d->bounces[i].transmission) ? WAYS | COLORS : 0;
     return inputs | (d->materials[material].varies ? REFLECTANCES : 0);
 }
 
-/// name: of the derivative that an error is told of.
+/// name: the derivative that an error message names.
 static glint_status find_gradient(glint_plan *plan, const glint_program *shader, uint32_t inputs, const char *name,
                                   glint_gradient *out, glint_error *error)
 {
@@ -50,7 +50,7 @@ static glint_status find_gradient(glint_plan *plan, const glint_program *shader,
     return GLINT_OK;
 }
 
-/// The forward programs of a material's shader, where there are few derivatives.
+/// Makes the forward programs of a material's shader, if there are few derivatives.
 static glint_status find_forward(glint_plan *plan, const glint_program *shader, uint32_t material, glint_gradient *out,
                                  glint_error *error)
 {
@@ -77,7 +77,7 @@ glint_status glint_derivative_find_gradients(glint_plan *plan, glint_error *erro
         return glint_fail_nomem(error);
     for (uint32_t i = 0; i < all->material_count && !status; i++) {
         const glint_program *shader = plan->patterns->of[i].program[GLINT_FIELD_SHADER];
-        const char *name = NULL; // of the first derivative that needs any
+        const char *name = NULL; // the first derivative that needs any
         uint32_t inputs = 0;
         for (size_t k = 0; k < all->count && shader; k++) {
             inputs |= shader->inputs & find_inputs(plan, &all->of[k], i);

@@ -1,4 +1,4 @@
-/// How fast what shaders make of a light changes: the slopes of what each reads, by the gradient of its program, and those of its own
+/// The derivatives of shaders: slopes of the inputs times the gradient of the program, plus the slopes of the shader's own
 /// numbers.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
@@ -14,21 +14,21 @@
 
 #define VIEWS BITS(GLINT_INPUT_V_X, 3)
 
-/// By one derivative.
+/// The slopes for one derivative.
 typedef struct input_slopes {
-    _Alignas(64) double input[GLINT_INPUT_COUNT][GLINT_PROGRAM_LANES]; ///< slopes of what the shader reads
-    uint32_t found; ///< which there are, a bit each
+    _Alignas(64) double input[GLINT_INPUT_COUNT][GLINT_PROGRAM_LANES]; ///< slopes of the shader's inputs
+    uint32_t found; ///< the inputs that have slopes, one bit each
     _Alignas(64) double sum[3][GLINT_PROGRAM_LANES]; ///< slopes of the light
 } input_slopes;
 
-/// Of the groups of a call.
+/// The memory for the groups of a call.
 struct glint_shader_slopes {
-    _Alignas(64) double value[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< what the shader gives
-    _Alignas(64) double tangent[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< how fast that changes with its numbers
-    float share[GLINT_PROGRAM_LANES]; ///< how much is seen of a light that may be partly covered
+    _Alignas(64) double value[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< results of the shader
+    _Alignas(64) double tangent[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< derivatives of the results by the shader's numbers
+    float share[GLINT_PROGRAM_LANES]; ///< visible share of a light that may be partly covered
     uint16_t wanted[GLINT_PROGRAM_GROUPS], odd[GLINT_PROGRAM_GROUPS];
-    glint_program_sums sums[GLINT_DERIVATIVES_MAX]; ///< of the derivatives that change something
-    size_t room; ///< derivatives that there is memory for
+    glint_program_sums sums[GLINT_DERIVATIVES_MAX]; ///< one for each derivative that changes something
+    size_t room; ///< number of derivatives with memory
     input_slopes of[];
 };
 
@@ -56,10 +56,10 @@ bool glint_derive_shaders_fit(glint_derivative_work *work, const glint_plan *pla
 
 void glint_shader_slopes_free(struct glint_shader_slopes *slopes) { free(slopes); }
 
-// ---- What a shader reads --------------------------------------------------------------------------------------------
+// ---- Inputs of a shader --------------------------------------------------------------------------------------------
 
-/// Puts how the light comes to an entry's group where the shader reads it, once for all derivatives, and where it is wanted `sloped`
-/// its slopes by number `index` where the points' slopes are.
+/// Computes the light's inputs for an entry's group, once for all derivatives, and with `sloped`
+/// their slopes by derivative number `index`, next to the points' slopes.
 static void find_arrival(const shading *s, size_t index, uint32_t e, const glint_derivative_points *points, bool sloped)
 {
     const glint_plan_light *light = s->reach->light;
@@ -72,7 +72,7 @@ static void find_arrival(const shading *s, size_t index, uint32_t e, const glint
     for (int i = 0; i < GLINT_GROUP && light->cap && light->shadows; i++) {
         const float seen = s->tile->at.light[slot].visible[at + (size_t)i];
         const float whole = light->attenuated ? s->tile->at.light[slot].attenuation[at + (size_t)i] : 1;
-        const float weight = s->reach->tinted ? seen : whole; // as the shader itself has it
+        const float weight = s->reach->tinted ? seen : whole; // as in the shader itself
         s->slopes->share[e * GLINT_GROUP + (uint32_t)i] = weight > 0 ? seen / weight : seen;
         work->weight[i] = (double)weight;
         source.weight = work->weight;
@@ -93,21 +93,21 @@ static void find_arrival(const shading *s, size_t index, uint32_t e, const glint
     s->frame->stages->arrival(&args);
 }
 
-/// Makes other lanes 0.
+/// Clears all other lanes.
 static void keep_lanes(unsigned lanes, double slope[GLINT_GROUP])
 {
     for (unsigned left = 0xffff & ~lanes; left; left &= left - 1)
         slope[__builtin_ctz(left)] = 0;
 }
 
-/// Whether the shader reads points in their shapes' own space.
+/// Returns whether the shader reads points in the shapes' own space.
 static bool reads_own_space(const shading *s)
 {
     const glint_program *shader = s->frame->plan->patterns->of[s->entries->material].program[GLINT_FIELD_SHADER];
     return shader->inputs & BITS(GLINT_INPUT_P_X, 3);
 }
 
-/// The slopes of points in their shapes' own space, after those in the world.
+/// Computes the slopes of points in the shapes' own space from those in world space.
 static void turn_points(const shading *s, size_t index, uint32_t e)
 {
     double (*input)[GLINT_PROGRAM_LANES] = s->slopes->of[index].input;
@@ -122,7 +122,7 @@ static void turn_points(const shading *s, size_t index, uint32_t e)
     }
 }
 
-/// The slopes of where an entry's points are and how they lie, and where `arrives` of how the light comes there.
+/// Computes the slopes of an entry's points and normals, and with `arrives` of the light's inputs.
 static void find_entry(const shading *s, size_t index, uint32_t e, bool arrives)
 {
     static const int first[3] = { GLINT_INPUT_WORLD_X, GLINT_INPUT_N_X, GLINT_INPUT_V_X };
@@ -145,7 +145,7 @@ static void find_entry(const shading *s, size_t index, uint32_t e, bool arrives)
         find_arrival(s, index, e, &points, arrives);
 }
 
-/// Those of one number of the material, or of what a program gives of it. False: there are none.
+/// Writes the slopes of one field of the material, constant or from a program. Returns false if there are none.
 static bool find_number(const shading *s, size_t index, glint_field field, int channel, double slope, double *to)
 {
     const glint_plan *plan = s->frame->plan;
@@ -159,8 +159,8 @@ static bool find_number(const shading *s, size_t index, glint_field field, int c
     return true;
 }
 
-/// The slopes of what the shader reads, by derivative number `index`, the first of which finds how the light comes, too. Returns which
-/// there are, a bit each.
+/// Computes the slopes of the shader's inputs by derivative number `index`; the first call also computes the light's inputs. Returns the
+/// inputs that have slopes, one bit each.
 static uint32_t find_inputs(const shading *s, size_t index)
 {
     const glint_plan_derivative *d = &s->frame->plan->derivatives->of[index];
@@ -181,7 +181,7 @@ static uint32_t find_inputs(const shading *s, size_t index)
     return found;
 }
 
-// ---- What it gives --------------------------------------------------------------------------------------------------
+// ---- Results --------------------------------------------------------------------------------------------------
 
 static void run(const shading *s, const glint_program *program, double (*to)[GLINT_PROGRAM_LANES])
 {
@@ -191,7 +191,7 @@ static void run(const shading *s, const glint_program *program, double (*to)[GLI
     glint_pattern_call(s->tile->pattern, s->frame, &program->code, 0, &args);
 }
 
-/// Adds what a shader gives to the light of its samples, as bounded as planes are.
+/// Adds the shader's results to the light of its samples, clamped like planes.
 static void add_light(const shading *s, uint32_t terms)
 {
     glint_derivative_work *work = glint_derivative_of(s->tile);
@@ -205,7 +205,7 @@ static void add_light(const shading *s, uint32_t terms)
             }
 }
 
-/// The derivatives, first .. end - 1, that part of a gradient is summed up for: its slopes from `from` on. Returns how many there are.
+/// Lists the derivatives among first .. end - 1 that need a part of a gradient, namely its slopes from `from` on. Returns their number.
 static uint32_t list_sums(const shading *s, const glint_gradient *gradient, uint32_t from, size_t first, size_t end)
 {
     uint32_t count = 0;
@@ -227,7 +227,7 @@ static uint32_t list_sums(const shading *s, const glint_gradient *gradient, uint
     return count;
 }
 
-/// Sums up how fast a shader's light changes with what it reads.
+/// Sums up the derivatives of a shader's light by its inputs.
 static void sum_up(const shading *s, const glint_gradient *gradient, size_t first, size_t end)
 {
     for (uint32_t from = 0; from < gradient->count; from += gradient->each) {
@@ -239,7 +239,7 @@ static void sum_up(const shading *s, const glint_gradient *gradient, size_t firs
     }
 }
 
-/// Adds how fast it changes with its own numbers.
+/// Adds the derivative by the shader's own numbers.
 static void add_tangent(const shading *s, size_t index, const glint_program *tangent)
 {
     struct glint_shader_slopes *slopes = s->slopes;
@@ -250,7 +250,7 @@ static void add_tangent(const shading *s, size_t index, const glint_program *tan
                 slopes->of[index].sum[k % 3][i] += slopes->tangent[k][i];
 }
 
-/// Adds the sums to those of the samples. What has no slope, such as the root of what is 0 all around, stays.
+/// Adds the sums to those of the samples. Values without a slope, such as the root of a constant 0, add nothing.
 static void add_sums(const shading *s, size_t index)
 {
     double (*to)[GLINT_TILE_SAMPLES] = glint_derivative_of(s->tile)->sum[index];
@@ -268,7 +268,7 @@ static void add_sums(const shading *s, size_t index)
         }
 }
 
-/// Points what the shader reads of the ways to the eye at those that are found.
+/// Sets the shader's inputs for the directions to the eye to those already computed.
 static void find_views(const shading *s)
 {
     glint_pattern_inputs *inputs = &s->tile->pattern->inputs;
@@ -285,7 +285,7 @@ static void find_views(const shading *s)
     }
 }
 
-/// Finds what the shader reads of points and material. False: the light reaches no group.
+/// Gathers the inputs of points and material. Returns false if the light reaches no group.
 static bool begin(const shading *s, const glint_pattern_points *points)
 {
     unsigned any = 0;
@@ -302,8 +302,8 @@ static bool begin(const shading *s, const glint_pattern_points *points)
     return true;
 }
 
-/// Adds how fast the light changes with what the shader reads, in one sweep for derivative number `index`. Returns whether that was all:
-/// of the lanes where it is not, which are the wanted ones left, nothing is added.
+/// Adds the derivative of the light by the shader's inputs, in one forward sweep for derivative number `index`. Returns whether that was all:
+/// for the lanes that remain wanted, nothing was added.
 static bool sweep(const shading *s, size_t index, const glint_program *forward)
 {
     input_slopes *own = &s->slopes->of[index];
@@ -328,7 +328,7 @@ static bool sweep(const shading *s, size_t index, const glint_program *forward)
     return !odd;
 }
 
-/// The same of one derivative or of all, by the gradient and what depends on the shader's own numbers.
+/// Does the same for one or all derivatives, by the gradient and the shader's own numbers.
 static void derive_exactly(const shading *s, size_t from, size_t to)
 {
     const glint_plan_derivatives *all = s->frame->plan->derivatives;
@@ -345,7 +345,7 @@ static void derive_exactly(const shading *s, size_t from, size_t to)
     }
 }
 
-/// By derivative number `index`, forward where that does.
+/// Computes derivative number `index`, by a forward sweep if possible.
 static void derive_one(const shading *s, size_t index)
 {
     const glint_plan_derivatives *all = s->frame->plan->derivatives;

@@ -1,28 +1,28 @@
-/// What the parts of plan/derivative*.c share: the slopes of a scene. Internal to them.
+/// The slopes of a scene, shared by the files of this folder. Internal.
 #ifndef GLINT_DERIVATIVE_SLOPES_H
 #define GLINT_DERIVATIVE_SLOPES_H
 
 #include "engine/plan/plan.h"
 
-/// The slopes of a derivative, in the descriptions' own form: a number is how fast that of the description changes.
+/// The slopes of a derivative in the form of descriptions: each number is the derivative of the description's number.
 typedef struct glint_scene_slopes {
-    glint_material_desc *materials; ///< in the geometry's order
-    glint_light_desc *lights; ///< in the scene's
-    glint_shape_desc *shapes; ///< of the geometry's parts
+    glint_material_desc *materials; ///< in the order of the geometry
+    glint_light_desc *lights; ///< in the order of the scene
+    glint_shape_desc *shapes; ///< one for each part of the geometry
     glint_camera_desc camera;
     glint_scene_desc scene;
-    glint_derivative_programs *programs; ///< as glint_plan_derivative has them
+    glint_derivative_programs *programs; ///< as in glint_plan_derivative
 } glint_scene_slopes;
 
-/// effects/derivative/fields.c: adds one slope to those of its object's description; fails where no derivative goes through the field.
+/// effects/derivative/fields.c: adds one slope to the description of its object; fails if the field has no derivative.
 glint_status glint_derivative_add(const glint_plan *plan, const glint_scene *scene, const glint_derivative *d,
                                   const glint_slope *s, glint_scene_slopes *out, glint_error *error);
 
-/// effects/derivative/view.c: of the eye, by slopes of its camera; `out` is 0 before.
+/// effects/derivative/view.c: computes the slopes of the view from those of the camera; `out` must be zeroed.
 void glint_derivative_fill_view(glint_derivative_view *out, const glint_plan *plan, const glint_camera_desc *desc,
                                 const glint_camera_desc *slope);
 
-/// effects/derivative/plan_shaders.c: how fast shaders change with what derivatives change of what they read.
+/// effects/derivative/plan_shaders.c: makes the gradients of shaders for the inputs that derivatives change.
 glint_status glint_derivative_find_gradients(glint_plan *plan, glint_error *error);
 
 static inline void duals(glint_dual out[3], const double value[3], const double slope[3])

@@ -1,9 +1,9 @@
-/// Derivatives of light that is found once a face or vertex: each has its slopes beside its light, and a sample has what lies between
-/// those of its triangle, in shares that change as the sample moves. See effects/vertex_shading/vertex.c.
+/// Derivatives of light that is computed once per face or vertex. Each has its slopes next to its light, and a sample interpolates
+/// between those of its triangle, with weights that change as the sample moves. See effects/vertex_shading/vertex.c.
 #include "engine/base/vec.h"
 #include "engine/effects/derivative/work.h"
 
-/// What is kept of a face or vertex: its light, then its slopes by each derivative.
+/// Returns the cached values of a face or vertex: its light, then its slopes for each derivative.
 static double *kept_of(const glint_tile_frame *frame, uint32_t side, uint32_t number)
 {
     const glint_shading_points_cached *all = frame->shading_points;
@@ -24,7 +24,7 @@ void glint_derive_keep_block(const glint_tile *tile, const glint_tile_frame *fra
     }
 }
 
-/// The shares of a triangle's corners at sample i.
+/// Computes the weights of a triangle's corners at sample i.
 static void find_share(const glint_tile_frame *frame, const glint_prim *prim, const glint_derivative_points *points, uint32_t i,
                        double out[3])
 {
@@ -35,7 +35,7 @@ static void find_share(const glint_tile_frame *frame, const glint_prim *prim, co
     out[0] += 1;
 }
 
-/// Adds what lies between three corners. change: the slopes of their shares; NULL: the sample does not move.
+/// Adds the value interpolated between three corners. change: the slopes of their weights; NULL: the sample does not move.
 static void spread(const glint_tile *tile, double *const at[3], const double share[3],
                    const double *change, size_t index, uint32_t i)
 {

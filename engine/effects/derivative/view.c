@@ -1,4 +1,4 @@
-/// Derivatives by where the eye is, how it looks and what its lens is like.
+/// Derivatives by the position of the eye, its orientation and its lens.
 #include "engine/base/vec.h"
 #include "engine/effects/derivative/slopes.h"
 
@@ -23,7 +23,7 @@ static void put_slopes(double out[3], const glint_dual v[3])
         out[c] = v[c].slope;
 }
 
-/// The unit axes across the view; see view_axes in plan/camera.c. Where `up` is along the view it is another axis, which stays.
+/// Computes the unit axes across the view; see view_axes in plan/camera.c. If `up` is parallel to the view, a constant axis replaces it.
 static void find_axes(const glint_plan *plan, const glint_camera_desc *desc, const glint_camera_desc *slope,
                       const glint_dual forward[3], glint_dual right[3], glint_dual up[3])
 {
@@ -42,7 +42,7 @@ static void find_axes(const glint_plan *plan, const glint_camera_desc *desc, con
     dual_cross(up, right, forward);
 }
 
-/// Half a pixel, in shares of the unit axes; see plan/camera.c.
+/// Returns half a pixel, in units of the axes; see plan/camera.c.
 static glint_dual find_size(const glint_plan *plan, const glint_camera_desc *desc, const glint_camera_desc *slope)
 {
     const double tangent = glint_tan(desc->fov_y_rad / 2);
@@ -52,7 +52,7 @@ static glint_dual find_size(const glint_plan *plan, const glint_camera_desc *des
     return dual_scale(half, 1 / plan->desc.height);
 }
 
-/// One over how far away what is sharp is; see find_focus in plan/lens.c.
+/// Returns one over the distance of the plane of focus; see find_focus in plan/lens.c.
 static glint_dual find_nearness(const glint_camera_desc *desc, const glint_camera_desc *slope, const glint_dual eye[3],
                                 const glint_dual forward[3])
 {
