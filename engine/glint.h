@@ -693,12 +693,13 @@ glint_mesh_desc glint_mesh_desc_default(void);
 /// face is left out.
 glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
 /// Reads a mesh; `desc` gives the fields that are not in the file. GLINT_ERR_IO when it cannot be read, GLINT_ERR_FORMAT
-/// when it is not as it should be, with the number of the line, or of the vertex or face. By the ending of the name:
+/// when it is not as it should be: "FILE:LINE: ...", or the number of the vertex or face. By the ending of the name:
 ///
 /// .stl  text or binary; corners at one place are one vertex. Normals are those of the faces, whatever the file says.
 /// .ply  text or binary, of either byte order: vertices (x y z, nx ny nz, u v or s t), faces (texcoord) and tristrips. Where `desc` has no
-///       material: a comment TextureFile names the picture of the diffuse colour; else red, green and blue of 8 bits, sRGB codes, give
-///       each face a material of its colour, named by it ("#ff8000"): its own, or the mean of its corners' light, rounded to 8 bits.
+///       material: a comment TextureFile names the picture of the diffuse colour; else red, green and blue (8-bit or 16-bit codes, or
+///       floats 0 .. 1 or 0 .. 255; sRGB) give each face a material of its colour,
+///       named by it ("#ff8000"): its own, or the mean of its corners' light, rounded to 8 bits.
 /// else  Wavefront .obj: v (x y z, and r g b as in .ply), vt, vn and f (any polygon; numbers from the end where negative), and, where `desc`
 ///       has no material, usemtl and mtllib: Kd, Ks, Ns, d (or Tr), Pr and Pm (microfacets), illum 3 .. 7 (mirror of Ks; 5, 7 fresnel; 6, 7 Ni),
 ///       map_Kd, map_Ks, map_d (holes where red is below one half), map_Bump (grey, -bm is its height). d < 1 is not refracted otherwise, and

@@ -443,27 +443,36 @@ static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_
     return glint_mesh_load(path, &a->desc, shape, error);
 }
 
+// Raises what is wrong with the file at OTHER: "FILE:LINE: what", as readers in Lua do. The lines of the script follow.
+static void check_loaded(lua_State *L, const glint_error *error, glint_status status)
+{
+    const char *path = lua_tostring(L, OTHER);
+    if (status && strncmp(error->message, path, strlen(path)) == 0) {
+        lua_pushstring(L, error->message);
+        lua_error(L);
+    }
+    glintL_check_status(L, "mesh", error, status);
+}
+
 int glintL_new_mesh(lua_State *L)
 {
     arguments a = { .desc = glint_mesh_desc_default() };
     glint_shape *shape = NULL;
     glint_error error;
-    glint_status status;
     glintL_box *box = begin(L);
     glintL_read_table(L, ARGUMENT, "mesh", FIELDS, &a, false);
     fetch(L, "material", MATERIAL);
     fetch(L, "file", OTHER);
     if (!lua_isnil(L, OTHER)) {
-        status = load(L, &a, &shape, &error);
+        check_loaded(L, &error, load(L, &a, &shape, &error));
     } else {
         glint_material **pointers = glintL_many_prepare(L, &MANY, &a.desc.material_count);
         read_arrays(L, &a);
         a.desc.material_index = glintL_many_index(L, &MANY, a.desc.face_count, a.desc.material_count);
         glintL_many_read(L, &MANY, a.desc.material_count, pointers);
         a.desc.materials = pointers;
-        status = glint_mesh_create(&a.desc, &shape, &error);
+        glintL_check_status(L, "mesh", &error, glint_mesh_create(&a.desc, &shape, &error));
     }
-    glintL_check_status(L, "mesh", &error, status);
     return finish(L, box, shape);
 }
 

@@ -2,8 +2,12 @@
 #include "engine/base/status.h"
 #include "engine/scene/mesh_mtl.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+#define GREY_CODE 231 ///< as default materials have it: 0.8 of the light
+#define FAR_ABOVE_1 16.0 ///< no light of 0 .. 1
 
 /// The light of each code.
 static void fill_lights(double lights[256])
@@ -33,6 +37,35 @@ static glint_status add_material(glint_mesh_array *materials, uint32_t color, co
     glint_status status = glint_material_create(&desc, &material, error);
     if (!status && (status = glint_mesh_append(materials, &material, error)))
         glint_material_release(material);
+    return status;
+}
+
+/// Whether numbers are codes 0 .. 255. A light of 0 .. 1 that is a little too bright has fractions.
+static bool are_codes(const double *numbers, size_t count)
+{
+    double most = 0;
+    bool whole = true;
+    for (size_t i = 0; i < count; i++) {
+        most = fmax(most, numbers[i]);
+        whole = whole && numbers[i] == floor(numbers[i]);
+    }
+    return most > (whole ? 1 : FAR_ABOVE_1);
+}
+
+glint_status glint_mesh_take_colors(glint_mesh_reader *r, size_t count)
+{
+    const double *v = r->numbers_of_colors.items;
+    const size_t known = r->numbers_of_colors.count;
+    const double scale = are_codes(v, 3 * known) ? 1 : 255;
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < count && !status; i++) {
+        uint8_t codes[3];
+        for (size_t c = 0; c < 3; c++) {
+            const bool has = i < known && v[3 * i + c] != GLINT_MESH_NO_COLOR;
+            codes[c] = has ? (uint8_t)(fmin(v[3 * i + c] * scale, 255) + 0.5) : GREY_CODE;
+        }
+        status = glint_mesh_append(&r->colors, codes, r->error);
+    }
     return status;
 }
 
@@ -94,7 +127,7 @@ glint_status glint_mesh_picture_faces(glint_mesh_reader *r, const char *name)
     if (status == GLINT_ERR_NOMEM)
         return glint_fail_nomem(r->error);
     if (status) {
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE, "its picture is passed over: %.120s", inner.message);
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE, 0, "its picture is passed over: %.120s", inner.message);
         return GLINT_OK;
     }
     status = make_painted(texture, name, &material, r->error);

@@ -30,7 +30,6 @@ typedef struct glint_mesh_entry {
     glint_mesh_map place[GLINT_MAP_COUNT]; ///< of each
     double height; ///< -bm of the relief, world units; 0: none that can be taken
     char bm[GLINT_NAME_SIZE]; ///< what the file says for it; "": nothing
-    bool bm_last; ///< it stands after the picture's name
 } glint_mesh_entry;
 
 typedef struct glint_mesh_picture {

@@ -15,10 +15,12 @@ static void tell_notes(const glint_mesh_reader *r)
 {
     for (int kind = 0; kind < GLINT_MESH_NOTE_COUNT; kind++) {
         const glint_mesh_note *note = &r->notes[kind];
+        char place[256], more[32] = "";
+        snprintf(place, sizeof place, note->line ? "%.220s:%zu" : "%.220s", r->text.path, note->line);
         if (note->count > 1)
-            glint_mesh_warn(r->desc, r->text.path, "%s, and %zu more", note->first, note->count - 1);
-        else if (note->count)
-            glint_mesh_warn(r->desc, r->text.path, "%s", note->first);
+            snprintf(more, sizeof more, ", and %zu more", note->count - 1);
+        if (note->count)
+            glint_mesh_warn(r->desc, place, "%s%s", note->first, more);
     }
 }
 
@@ -59,7 +61,7 @@ static void drop_vertices(glint_mesh_reader *r)
             kept_corners += size;
             kept++;
         } else {
-            glint_mesh_note_that(r, GLINT_MESH_NOTE_VERTEX, "face %zu is left out: a vertex of it is not finite",
+            glint_mesh_note_that(r, GLINT_MESH_NOTE_VERTEX, 0, "face %zu is left out: a vertex of it is not finite",
                                  i + 1);
         }
         first += size;
@@ -124,9 +126,10 @@ static glint_status make_mesh(glint_mesh_reader *r, glint_shape **out)
 
 static void release(glint_mesh_reader *r)
 {
-    glint_mesh_array *const arrays[] = { &r->vertices,       &r->normals,   &r->uv,           &r->corners,
-                                         &r->corner_normals, &r->corner_uv, &r->sizes,        &r->material_index,
-                                         &r->colors,         &r->materials, &r->vertex_colors };
+    glint_mesh_array *const arrays[] = { &r->vertices,  &r->normals,          &r->uv,
+                                         &r->corners,   &r->corner_normals,   &r->corner_uv,
+                                         &r->sizes,     &r->material_index,   &r->colors,
+                                         &r->materials, &r->numbers_of_colors };
     for (size_t i = 0; i < r->materials.count; i++)
         glint_material_release(((glint_material **)r->materials.items)[i]);
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
@@ -187,20 +190,12 @@ static const char *const ENDINGS[][2] = {
 
 /// By their first bytes, whatever the name.
 static const char *const BEGINNINGS[][2] = {
-    { "glTF", "glTF" },
-    { "PK\3\4", "a zip archive, as .3mf and .usdz are" },
-    { "Kaydara FBX", "FBX" },
-    { "BLENDER", "Blender's" },
-    { "#VRML", "VRML" },
-    { "\x1f\x8b", "compressed" },
-    { "\xff\xfe", "UTF-16, not UTF-8" },
-    { "\xfe\xff", "UTF-16, not UTF-8" },
-    { "OFF\n", "OFF" },
-    { "OFF\r", "OFF" },
-    { "# vtk DataFile", "VTK" },
-    { "<?xml", "XML" },
-    { "ISO-10303-21", "STEP" },
-    { "PXR-USDC", "USD" },
+    { "glTF", "glTF" },          { "PK\3\4", "a zip archive, as .3mf and .usdz are" },
+    { "Kaydara FBX", "FBX" },    { "BLENDER", "Blender's" },
+    { "#VRML", "VRML" },         { "\x1f\x8b", "compressed" },
+    { "OFF\n", "OFF" },          { "OFF\r", "OFF" },
+    { "# vtk DataFile", "VTK" }, { "<?xml", "XML" },
+    { "ISO-10303-21", "STEP" },  { "PXR-USDC", "USD" },
     { "#usda", "USD" },
 };
 
@@ -221,6 +216,8 @@ static glint_status refuse_foreign(const glint_mesh_reader *r)
         if (r->text.begin_bytes >= length && memcmp(r->text.begin, BEGINNINGS[i][0], length) == 0)
             kind = BEGINNINGS[i][1];
     }
+    if (glint_mesh_text_is_utf16(&r->text))
+        kind = "UTF-16, not UTF-8";
     return kind ? glint_fail(r->error, GLINT_ERR_FORMAT, "%s: is %s; %s", r->text.path, kind, READS) : GLINT_OK;
 }
 
@@ -250,7 +247,7 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
     GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
     glint_mesh_reader r = { .desc = desc, .error = error };
-    r.vertices.size = r.normals.size = r.vertex_colors.size = 3 * sizeof(double);
+    r.vertices.size = r.normals.size = r.numbers_of_colors.size = 3 * sizeof(double);
     r.uv.size = 2 * sizeof(double);
     r.colors.size = 3;
     r.materials.size = sizeof(glint_material *);

@@ -49,15 +49,21 @@ glint_status glint_mesh_text_open(glint_mesh_text *text, const char *path, glint
 void glint_mesh_text_close(glint_mesh_text *text);
 /// Goes on from a place of the file, bytes.
 glint_status glint_mesh_text_rewind(glint_mesh_text *text, long start);
+/// Whether the file begins with the mark of UTF-16.
+bool glint_mesh_text_is_utf16(const glint_mesh_text *text);
 /// The next line, without its end, which is LF, CRLF or CR. *more: there was one. joined: a backslash at the end joins the following one.
 glint_status glint_mesh_next_line(glint_mesh_text *text, bool joined, bool *more);
-/// GLINT_ERR_FORMAT: "PATH: line N: WHAT expected, got 'GOT'".
+/// GLINT_ERR_FORMAT: "PATH:LINE: WHAT expected, got 'GOT'".
 glint_status glint_mesh_refuse(const glint_mesh_text *text, const char *expected, const char *got);
-/// A finite number at *at, which moves behind it; ended by a blank or the line's end.
+/// Reads a number as strtod does, in decimal points. Also takes exponents as Fortran writes them (1.5D+03), and numbers
+/// that are none as Windows writes them (-1.#IND). *end is `at` where there is no number.
+double glint_mesh_read_double(const glint_mesh_text *text, const char *at, const char **end);
+/// A finite number at *at, which moves behind it; ended by a blank, a comment (#) or the line's end.
 glint_status glint_mesh_number(const glint_mesh_text *text, const char **at, double *out);
 
 static inline bool glint_is_blank(char c) { return c == ' ' || c == '\t'; }
 static inline bool glint_ends_word(char c) { return !c || glint_is_blank(c); }
+static inline bool glint_ends_number(char c) { return glint_ends_word(c) || c == '#'; }
 
 static inline const char *glint_skip_blanks(const char *at)
 {
@@ -69,7 +75,7 @@ static inline const char *glint_skip_blanks(const char *at)
 /// Whether a line begins with a word.
 bool glint_mesh_is_word(const char *line, const char *word);
 
-/// The file named `name` in the folder of `path`, or `name` where it begins at the root; where that is not there, the file of
+/// The file named `name`, perhaps in quotation marks, in the folder of `path`, or `name` where it begins at the root; where that is not there, the file of
 /// the same last name in the folder of `path`. NULL: out of memory; free() frees it.
 char *glint_mesh_beside(const char *path, const char *name);
 
@@ -88,6 +94,8 @@ typedef enum glint_mesh_note_kind {
     GLINT_MESH_NOTE_FACE, ///< a face of fewer than 3 corners
     GLINT_MESH_NOTE_VERTEX, ///< a face with a vertex that is not finite
     GLINT_MESH_NOTE_NORMAL, ///< a normal of length 0
+    GLINT_MESH_NOTE_NO_NORMALS, ///< a corner names a normal, and there are none
+    GLINT_MESH_NOTE_NO_UV, ///< likewise texture coordinates
     GLINT_MESH_NOTE_FREE_FORM, ///< curves and surfaces
     GLINT_MESH_NOTE_UNKNOWN, ///< a statement
     GLINT_MESH_NOTE_COLOR, ///< colours that are not shown
@@ -97,6 +105,7 @@ typedef enum glint_mesh_note_kind {
 
 typedef struct glint_mesh_note {
     size_t count;
+    size_t line; ///< of the first one; 0: the message says where it is
     char first[160]; ///< the message about the first one
 } glint_mesh_note;
 
@@ -110,7 +119,8 @@ typedef struct glint_mesh_reader {
     glint_mesh_library *library; ///< .obj: the materials; NULL: those of `desc`
     glint_mesh_array colors; ///< sRGB codes of red, green and blue, of each vertex or face; none: there are none
     bool colors_of_faces; ///< not of vertices
-    glint_mesh_array vertex_colors; ///< .obj: three numbers a vertex, up to the last that has a colour
+    glint_mesh_array
+        numbers_of_colors; ///< red, green and blue as numbers, of vertices or faces, up to the last that has them
     struct {
         size_t index, line;
     } far[GLINT_MESH_OF_COUNT]; ///< .obj: the largest number that named nothing so far, from 0, and its line; 0: none
@@ -122,8 +132,9 @@ typedef struct glint_mesh_reader {
 } glint_mesh_reader;
 
 /// Counts a statement that is ignored. The first message of a kind becomes its warning.
-void glint_mesh_note_that(glint_mesh_reader *reader, glint_mesh_note_kind kind, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+/// line  of the file, which the warning names; 0: none
+void glint_mesh_note_that(glint_mesh_reader *reader, glint_mesh_note_kind kind, size_t line, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 /// Gives corners without a normal the normal of their face.
 glint_status glint_mesh_drop_normals(glint_mesh_reader *reader);
 
@@ -134,6 +145,11 @@ void glint_mesh_warn(const glint_mesh_desc *desc, const char *path, const char *
 glint_status glint_mesh_read_obj(glint_mesh_reader *reader);
 glint_status glint_mesh_read_stl(glint_mesh_reader *reader);
 glint_status glint_mesh_read_ply(glint_mesh_reader *reader);
+/// A number of a colour that is not there.
+#define GLINT_MESH_NO_COLOR (-1.0)
+/// Fills `colors`, for `count` vertices or faces, from numbers_of_colors. These are 0 .. 1, or codes 0 .. 255 where one is
+/// above 1 and all are whole, or one is far above 1. What has no colour is grey, as default materials are.
+glint_status glint_mesh_take_colors(glint_mesh_reader *reader, size_t count);
 /// Makes the materials, and the index of each face among them, of the colours of a file that is read.
 glint_status glint_mesh_color_faces(glint_mesh_reader *reader);
 /// Makes one material of the picture that a file names; a picture that cannot be read is a warning.

@@ -309,10 +309,9 @@ static void tell_flat(const glint_mesh_library *library, const glint_mesh_reader
                         "got '%s'",
                         e->desc.name, more, e->bm);
     else
-        glint_mesh_warn(reader->desc, reader->text.path, "material '%s'%s: no relief: map_Bump has %s", e->desc.name,
-                        more,
-                        e->bm_last ? "its -bm after the picture's name; options come before it"
-                                   : "no -bm, which says how high it is, in world units");
+        glint_mesh_warn(reader->desc, reader->text.path,
+                        "material '%s'%s: no relief: map_Bump has no -bm, which says how high it is, in world units",
+                        e->desc.name, more);
 }
 
 static void tell_invisible(const glint_mesh_library *library, const glint_mesh_reader *reader)

@@ -5,8 +5,26 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 // ---- The statements of a file ----
+
+/// What is passed over in a .mtl file: each of both kinds is one warning.
+typedef struct leavings {
+    size_t bad; ///< lines that are not as they should be
+    glint_error first_bad;
+    char words[160]; ///< statements that mean nothing here, each once
+} leavings;
+
+/// Notes a word that means nothing here, once.
+static void add_word(const char *at, leavings *left)
+{
+    char word[40];
+    const size_t length = strcspn(at, " \t"), used = strlen(left->words);
+    snprintf(word, sizeof word, " %.*s,", (int)(length < 32 ? length : 32), at);
+    if (!strstr(left->words, word) && used + strlen(word) < sizeof left->words)
+        strcpy(left->words + used, word);
+}
 
 /// One number stands for three.
 static glint_status read_color(const glint_mesh_text *text, const char *at, double out[3])
@@ -70,9 +88,8 @@ static const char *skip_option(const glint_mesh_text *text, const char *at, int 
     while (!glint_ends_word(*at))
         at++;
     for (int i = 0; i < words; i++) {
-        char *end;
-        const char *word = glint_skip_blanks(at);
-        const double number = glint_read_double(word, &end, text->c_locale);
+        const char *end, *word = glint_skip_blanks(at);
+        const double number = glint_mesh_read_double(text, word, &end);
         const bool is_number = end != word && glint_ends_word(*end);
         if (words == 3 && i > 0 && !is_number)
             break;
@@ -84,40 +101,70 @@ static const char *skip_option(const glint_mesh_text *text, const char *at, int 
     return glint_skip_blanks(at);
 }
 
-/// Takes a picture, with the options before its name; the options of a statement that names none are not taken.
-static glint_status read_map(const glint_mesh_text *text, const char *at, glint_mesh_map_kind kind,
-                             glint_mesh_entry *to)
+/// What the options of a map say.
+typedef struct map_options {
+    glint_mesh_map place;
+    double height; ///< -bm
+    char bm[GLINT_NAME_SIZE]; ///< what the file says for it
+} map_options;
+
+/// Reads options up to the first word that is none, which it returns.
+static const char *read_options(const glint_mesh_text *text, const char *at, map_options *o, leavings *left)
 {
-    glint_mesh_map place = to->place[kind];
-    double height = 0;
-    char bm[GLINT_NAME_SIZE] = "";
-    at = glint_skip_blanks(at);
     for (int words; (words = option_words(at)) > 0;) {
         const char *option = at;
+        double mm[2] = { 0, 1 };
         at = skip_option(text, at, words,
-                         glint_mesh_is_word(at, "-o")    ? place.offset
-                         : glint_mesh_is_word(at, "-s")  ? place.scale
-                         : glint_mesh_is_word(at, "-bm") ? &height
+                         glint_mesh_is_word(at, "-o")    ? o->place.offset
+                         : glint_mesh_is_word(at, "-s")  ? o->place.scale
+                         : glint_mesh_is_word(at, "-bm") ? &o->height
+                         : glint_mesh_is_word(at, "-mm") ? mm
                                                          : NULL);
         if (glint_mesh_is_word(option, "-clamp"))
-            place.clamp = strncmp(glint_skip_blanks(option + 6), "on", 2) == 0;
+            o->place.clamp = strncmp(glint_skip_blanks(option + 6), "on", 2) == 0;
         if (glint_mesh_is_word(option, "-bm")) {
-            glint_mesh_copy_name(bm, glint_skip_blanks(option + 3));
-            bm[strcspn(bm, " \t")] = 0;
+            glint_mesh_copy_name(o->bm, glint_skip_blanks(option + 3));
+            o->bm[strcspn(o->bm, " \t")] = 0;
         }
+        if (mm[0] != 0 || mm[1] != 1 || glint_mesh_is_word(option, "-imfchan"))
+            add_word(option, left);
     }
-    if (!*at)
+    return at;
+}
+
+/// Where the name of a picture ends: at the end of the line, or before options that follow it.
+static const char *find_name_end(const char *at)
+{
+    const char *end = at;
+    while ((end = strpbrk(end, " \t")) != NULL && option_words(glint_skip_blanks(end)) == 0)
+        end = glint_skip_blanks(end);
+    return end ? end : at + strlen(at);
+}
+
+/// Takes a picture, with its options; the options of a statement that names no picture are not taken.
+static glint_status read_map(const glint_mesh_text *text, const char *at, glint_mesh_map_kind kind,
+                             glint_mesh_entry *to, leavings *left)
+{
+    map_options o = { .place = to->place[kind] };
+    at = read_options(text, glint_skip_blanks(at), &o, left);
+    const char *end = find_name_end(at);
+    read_options(text, glint_skip_blanks(end), &o, left);
+    if (end == at)
         return glint_mesh_refuse(text, "the name of a picture", at);
-    char *path = glint_mesh_beside(text->path, at);
+    char *name = strndup(at, (size_t)(end - at)), *path = name ? glint_mesh_beside(text->path, name) : NULL;
+    free(name);
     if (!path)
         return glint_fail_nomem(text->error);
+    if (*at == '-' && access(path, F_OK) != 0) {
+        free(path);
+        return glint_mesh_refuse(text, "an option of a map or the name of a picture", at);
+    }
     free(to->map[kind]);
     to->map[kind] = path;
-    to->place[kind] = place;
+    to->place[kind] = o.place;
     if (kind == GLINT_MAP_BUMP) {
-        to->height = height;
-        to->bm_last = strstr(at, " -bm ") != NULL;
-        memcpy(to->bm, bm, sizeof bm);
+        to->height = o.height;
+        memcpy(to->bm, o.bm, sizeof o.bm);
     }
     return GLINT_OK;
 }
@@ -126,15 +173,16 @@ const char *const glint_mesh_map_words[GLINT_MAP_COUNT] = { "map_Kd", "map_Ks", 
 static const char *const bump_words[] = { "map_bump", "bump" }; ///< other spellings of map_Bump
 
 /// Reads a statement that is about a picture; *known: it was one.
-static glint_status read_picture(const glint_mesh_text *text, const char *at, glint_mesh_entry *to, bool *known)
+static glint_status read_picture(const glint_mesh_text *text, const char *at, glint_mesh_entry *to, leavings *left,
+                                 bool *known)
 {
     *known = true;
     for (int kind = 0; kind < GLINT_MAP_COUNT; kind++)
         if (glint_mesh_is_word(at, glint_mesh_map_words[kind]))
-            return read_map(text, at + strlen(glint_mesh_map_words[kind]), (glint_mesh_map_kind)kind, to);
+            return read_map(text, at + strlen(glint_mesh_map_words[kind]), (glint_mesh_map_kind)kind, to, left);
     for (size_t i = 0; i < sizeof bump_words / sizeof *bump_words; i++)
         if (glint_mesh_is_word(at, bump_words[i]))
-            return read_map(text, at + strlen(bump_words[i]), GLINT_MAP_BUMP, to);
+            return read_map(text, at + strlen(bump_words[i]), GLINT_MAP_BUMP, to, left);
     *known = false;
     return GLINT_OK;
 }
@@ -146,7 +194,7 @@ static glint_status read_one(const glint_mesh_text *text, const char *at, glint_
         const char *word;
         double most, *out;
     } fields[] = { { "Ns", 1e308, &to->desc.shininess },
-                   { "illum", 1e308, &to->illum },
+                   { "illum", 10, &to->illum },
                    { "Ni", 1e308, &to->ni },
                    { "Pr", 1, &to->rough },
                    { "Pm", 1, &to->metal } };
@@ -166,44 +214,34 @@ static glint_status read_one(const glint_mesh_text *text, const char *at, glint_
     return status;
 }
 
-/// Returns whether all words of a statement are 0.
+/// Returns whether all words of a statement are 0, or of Tf, which filters light, 1.
 static bool says_nothing(const glint_mesh_text *text, const char *at)
 {
+    const bool is_tf = glint_mesh_is_word(at, "Tf");
     while (!glint_ends_word(*at))
         at++;
     at = glint_skip_blanks(at);
     if (!*at)
         return false;
     for (; *at && *at != '#'; at = glint_skip_blanks(at)) {
-        char *end;
-        if (glint_read_double(at, &end, text->c_locale) != 0 || end == at || !glint_ends_word(*end))
+        const char *end;
+        const double number = glint_mesh_read_double(text, at, &end);
+        if (!(number == 0 || (is_tf && number == 1)) || end == at || !glint_ends_word(*end))
             return false;
         at = end;
     }
     return true;
 }
 
-/// What is passed over in a .mtl file: each of both kinds is one warning.
-typedef struct leavings {
-    size_t bad; ///< lines that are not as they should be
-    glint_error first_bad;
-    char words[160]; ///< statements that mean nothing here, each once
-} leavings;
-
-/// Notes a statement that materials have no field for. Ka follows Kd here; Tf and sharpness belong to other statements.
+/// Notes a statement that materials have no field for. Ka follows Kd here; sharpness belongs to another one.
 static void note_word(const glint_mesh_text *text, const char *at, leavings *left)
 {
-    static const char *const silent[] = { "Ka", "map_Ka", "Tf", "sharpness", "Km" };
-    char word[40];
-    const size_t length = strcspn(at, " \t"), used = strlen(left->words);
+    static const char *const silent[] = { "Ka", "map_Ka", "sharpness", "Km" };
     for (size_t i = 0; i < sizeof silent / sizeof *silent; i++)
         if (glint_mesh_is_word(at, silent[i]))
             return;
-    if (!length || *at == '#' || says_nothing(text, at))
-        return;
-    snprintf(word, sizeof word, " %.*s,", (int)(length < 32 ? length : 32), at);
-    if (!strstr(left->words, word) && used + strlen(word) < sizeof left->words)
-        strcpy(left->words + used, word);
+    if (*at && *at != '#' && !says_nothing(text, at))
+        add_word(at, left);
 }
 
 static glint_status read_field(const glint_mesh_text *text, const char *at, glint_mesh_entry *to, leavings *left)
@@ -218,7 +256,7 @@ static glint_status read_field(const glint_mesh_text *text, const char *at, glin
     } else {
         status = read_one(text, at, to, &known);
         if (!known)
-            status = read_picture(text, at, to, &known);
+            status = read_picture(text, at, to, left, &known);
     }
     if (!known)
         note_word(text, at, left);
@@ -278,6 +316,8 @@ static glint_status read_file(glint_mesh_library *library, const glint_mesh_read
     *there = !status;
     if ((!status || last) && reader->desc->reads)
         reader->desc->reads(reader->desc->context, path);
+    if (!status && glint_mesh_text_is_utf16(&text))
+        status = glint_fail(&inner, GLINT_ERR_FORMAT, "%s: is UTF-16, not UTF-8", path);
     if (!status)
         status = read_lines(library, &text, &left);
     glint_mesh_text_close(&text);
@@ -290,26 +330,20 @@ static glint_status read_file(glint_mesh_library *library, const glint_mesh_read
     return GLINT_OK;
 }
 
-/// The whole of `names` is a file, which may have blanks in its name, or each word of it is one.
+/// The whole of `names` is a file, which may have blanks in its name, or each word of it is one, up to a comment.
 glint_status glint_mesh_library_read(glint_mesh_library *library, const glint_mesh_reader *reader, const char *names)
 {
     bool there = false;
     char *words = strdup(names), *rest = NULL;
-    const size_t length = strlen(names);
-    if (words && length > 2 && *words == '"' && words[length - 1] == '"') { // one name
-        words[length - 1] = 0;
-        memmove(words, words + 1, length - 1);
-        names = words;
-    }
     char *path = glint_mesh_beside(reader->text.path, names);
     glint_status status = path && words ? GLINT_OK : glint_fail_nomem(reader->error);
     if (!status && !library->file)
         library->file = strdup(path);
-    const bool several = names != words && (strchr(names, ' ') || strchr(names, '\t'));
+    const bool several = *names != '"' && strpbrk(names, " \t");
     if (!status)
         status = read_file(library, reader, path, !several, &there);
-    for (char *word = several && !status && !there ? strtok_r(words, " \t", &rest) : NULL; word && !status;
-         word = strtok_r(NULL, " \t", &rest)) {
+    for (char *word = several && !status && !there ? strtok_r(words, " \t", &rest) : NULL;
+         word && *word != '#' && !status; word = strtok_r(NULL, " \t", &rest)) {
         char *one = glint_mesh_beside(reader->text.path, word);
         status = one ? read_file(library, reader, one, true, &there) : glint_fail_nomem(reader->error);
         free(one);

@@ -19,12 +19,13 @@ void glint_mesh_warn(const glint_mesh_desc *desc, const char *path, const char *
     desc->warns(desc->context, message);
 }
 
-void glint_mesh_note_that(glint_mesh_reader *reader, glint_mesh_note_kind kind, const char *format, ...)
+void glint_mesh_note_that(glint_mesh_reader *reader, glint_mesh_note_kind kind, size_t line, const char *format, ...)
 {
     glint_mesh_note *note = &reader->notes[kind];
     va_list args;
     if (note->count++)
         return;
+    note->line = line;
     va_start(args, format);
     vsnprintf(note->first, sizeof note->first, format, args);
     va_end(args);

@@ -9,9 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NO_COLOR (-1.0)
-#define GREY_CODE 231 ///< as default materials have it: 0.8 of the light
-
 typedef glint_mesh_reader reader;
 typedef glint_mesh_index_kind index_kind;
 
@@ -33,37 +30,59 @@ static glint_status complain(const reader *r, const char *expected, const char *
 static glint_status read_numbers(reader *r, const char **at, int count, double v[3])
 {
     for (int i = 0; i < count; i++) {
-        char *end;
+        const char *end;
         *at = glint_skip_blanks(*at);
         if (count == 2 && i == 1 && (!**at || **at == '#'))
             break;
-        v[i] = glint_read_double(*at, &end, r->text.c_locale);
-        if (end == *at || !glint_ends_word(*end))
+        v[i] = glint_mesh_read_double(&r->text, *at, &end);
+        if (end == *at || !glint_ends_number(*end))
             return complain(r, "a number", *at);
         *at = end;
     }
     return GLINT_OK;
 }
 
+/// Notes that numbers which could be colours are none, of this vertex and of all others.
+static void refuse_colors(reader *r)
+{
+    glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, r->text.number,
+                         "the numbers after the coordinates are passed over: colours 0 .. 1 or 0 .. 255 expected");
+}
+
 /// Numbers after a vertex: three are its colour, as many programs write it, also with a fourth, alpha. One is its weight.
 static glint_status read_color(reader *r, const char *at)
 {
-    static const double grey[3] = { NO_COLOR, NO_COLOR, NO_COLOR };
+    static const double grey[3] = { GLINT_MESH_NO_COLOR, GLINT_MESH_NO_COLOR, GLINT_MESH_NO_COLOR };
     double v[3];
-    int count = 0;
+    bool good = true;
     glint_status status = GLINT_OK;
-    for (char *end; count < 3; count++) {
+    for (int i = 0; i < 3; i++) {
+        const char *end;
         at = glint_skip_blanks(at);
-        v[count] = glint_read_double(at, &end, r->text.c_locale);
-        if (end == at || !glint_ends_word(*end) || !(v[count] >= 0 && v[count] <= 255))
-            break;
+        v[i] = glint_mesh_read_double(&r->text, at, &end);
+        if (end == at || !glint_ends_number(*end))
+            return GLINT_OK;
+        good = good && v[i] >= 0 && v[i] <= 255;
         at = end;
     }
-    if (count < 3)
-        return GLINT_OK;
-    while (r->vertex_colors.count + 1 < r->vertices.count && !status)
-        status = append(r, &r->vertex_colors, grey);
-    return status ? status : append(r, &r->vertex_colors, v);
+    if (!good)
+        refuse_colors(r);
+    while (r->numbers_of_colors.count + 1 < r->vertices.count && !status)
+        status = append(r, &r->numbers_of_colors, grey);
+    return status ? status : append(r, &r->numbers_of_colors, v);
+}
+
+/// A comment "#MRGB " of ZBrush has the mask, red, green and blue of the next vertices, two hexadecimal digits each.
+static glint_status read_zbrush(reader *r, const char *at)
+{
+    glint_status status = GLINT_OK;
+    unsigned codes[4];
+    for (at = glint_skip_blanks(at);
+         sscanf(at, "%2x%2x%2x%2x", &codes[0], &codes[1], &codes[2], &codes[3]) == 4 && !status; at += 8) {
+        const double v[3] = { codes[1] / 255.0, codes[2] / 255.0, codes[3] / 255.0 };
+        status = append(r, &r->numbers_of_colors, v);
+    }
+    return status;
 }
 
 static glint_status read_vertex(reader *r, const char *at)
@@ -83,7 +102,7 @@ static glint_status read_normal(reader *r, const char *at)
         return status;
     if (!isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]) || vec_max_abs(v) == 0) {
         v[0] = v[1] = v[2] = 0;
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_NORMAL, "line %zu: a normal of length 0 is none", r->text.number);
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_NORMAL, r->text.number, "a normal of length 0 is none");
     }
     return append(r, &r->normals, v);
 }
@@ -116,7 +135,7 @@ static glint_status read_index(reader *r, const char **at, size_t count, index_k
     }
     *at = end;
     *out = (uint32_t)index;
-    if ((size_t)index >= count && (size_t)index > r->far[kind].index) {
+    if ((size_t)index >= count && (!r->far[kind].line || (size_t)index > r->far[kind].index)) {
         r->far[kind].index = (size_t)index;
         r->far[kind].line = r->text.number;
     }
@@ -141,7 +160,7 @@ static glint_status read_corner(reader *r, const char **at)
         status = read_part(r, at, r->uv.count, GLINT_MESH_OF_UV, &uv);
     if (!status && **at == '/')
         status = read_part(r, at, r->normals.count, GLINT_MESH_OF_NORMAL, &normal);
-    if (!status && !glint_ends_word(**at))
+    if (!status && !glint_ends_number(**at))
         return complain(r, "v, v/vt, v//vn or v/vt/vn", start);
     if (!status)
         status = append(r, &r->corners, &vertex);
@@ -162,8 +181,7 @@ static glint_status read_face(reader *r, const char *at)
         r->corners.count -= size;
         r->corner_normals.count -= size;
         r->corner_uv.count -= size;
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_FACE, "line %zu: a face of fewer than 3 corners is left out",
-                             r->text.number);
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_FACE, r->text.number, "a face of fewer than 3 corners is left out");
         return GLINT_OK;
     }
     glint_status status = append(r, &r->sizes, &size);
@@ -218,10 +236,10 @@ static void pass_over(reader *r, const char *at)
         return;
     const bool is_curve = is_among(at, free_form);
     const int length = (int)strcspn(at, " \t");
-    glint_mesh_note_that(r, is_curve ? GLINT_MESH_NOTE_FREE_FORM : GLINT_MESH_NOTE_UNKNOWN,
-                         is_curve ? "line %zu: '%.*s' is passed over: free-form curves and surfaces are not read"
-                                  : "line %zu: '%.*s' is passed over: no statement of .obj files",
-                         r->text.number, length < 24 ? length : 24, at);
+    glint_mesh_note_that(r, is_curve ? GLINT_MESH_NOTE_FREE_FORM : GLINT_MESH_NOTE_UNKNOWN, r->text.number,
+                         is_curve ? "'%.*s' is passed over: free-form curves and surfaces are not read"
+                                  : "'%.*s' is passed over: no statement of .obj files",
+                         length < 24 ? length : 24, at);
 }
 
 static glint_status read_statement(reader *r)
@@ -230,6 +248,8 @@ static glint_status read_statement(reader *r)
     char *at = r->text.line;
     while (glint_is_blank(*at))
         at++;
+    if (strncmp(at, "#MRGB ", 6) == 0)
+        return read_zbrush(r, at + 6);
     if (!*at || *at == '#')
         return GLINT_OK;
     if (glint_mesh_is_word(at, "v"))
@@ -248,12 +268,18 @@ static glint_status read_statement(reader *r)
 
 // ---- The file ----
 
-/// Whether all numbers of one kind name something that the file has.
+/// Whether all numbers of one kind name something that the file has. Without any normals or coordinates none are named.
 static glint_status check_far(reader *r, index_kind kind, size_t count)
 {
     char expected[96], got[32];
     if (!r->far[kind].line || r->far[kind].index < count)
         return GLINT_OK;
+    if (count == 0 && kind != GLINT_MESH_OF_VERTEX) {
+        glint_mesh_note_that(r, kind == GLINT_MESH_OF_UV ? GLINT_MESH_NOTE_NO_UV : GLINT_MESH_NOTE_NO_NORMALS,
+                             r->far[kind].line, "%s %zu is passed over: the file has none", KINDS[kind],
+                             r->far[kind].index + 1);
+        return GLINT_OK;
+    }
     snprintf(expected, sizeof expected, "the number of a %s, 1 .. %zu,", KINDS[kind], count);
     snprintf(got, sizeof got, "%zu", r->far[kind].index + 1);
     r->text.number = r->far[kind].line;
@@ -268,13 +294,13 @@ static bool names_any(const glint_mesh_array *numbers)
     return false;
 }
 
-/// Checks the numbers of corners, now that all is read. Where the file has no normals, or no coordinates, none are named.
+/// Checks the numbers of corners, now that all is read.
 static glint_status check_corners(reader *r)
 {
     glint_status status = check_far(r, GLINT_MESH_OF_VERTEX, r->vertices.count);
-    if (!status && r->normals.count)
+    if (!status)
         status = check_far(r, GLINT_MESH_OF_NORMAL, r->normals.count);
-    if (!status && r->uv.count)
+    if (!status)
         status = check_far(r, GLINT_MESH_OF_UV, r->uv.count);
     r->has_normals = r->normals.count && names_any(&r->corner_normals);
     if (!r->uv.count || !names_any(&r->corner_uv))
@@ -282,40 +308,21 @@ static glint_status check_corners(reader *r)
     return !status && r->has_normals && r->notes[GLINT_MESH_NOTE_NORMAL].count ? glint_mesh_drop_normals(r) : status;
 }
 
-/// The colours of vertices as codes: 0 .. 1, or 0 .. 255 where one is above 1. Vertices without one are grey.
-static glint_status take_colors(reader *r)
-{
-    const double *v = r->vertex_colors.items;
-    const size_t count = 3 * r->vertex_colors.count;
-    double most = 0;
-    glint_status status = GLINT_OK;
-    for (size_t i = 0; i < count; i++)
-        most = fmax(most, v[i]);
-    for (size_t i = 0; i < r->vertices.count && !status; i++) {
-        uint8_t codes[3];
-        for (size_t c = 0; c < 3; c++) {
-            const bool has = i < r->vertex_colors.count && v[3 * i + c] != NO_COLOR;
-            codes[c] = has ? (uint8_t)(v[3 * i + c] * (most > 1 ? 1 : 255) + 0.5) : GREY_CODE;
-        }
-        status = append(r, &r->colors, codes);
-    }
-    return status;
-}
-
 /// Gives faces the colours of their vertices, unless they have materials.
 static glint_status color(reader *r)
 {
-    if (!r->vertex_colors.count || r->desc->material || r->desc->material_count)
+    if (!r->numbers_of_colors.count || r->notes[GLINT_MESH_NOTE_COLOR].count || r->desc->material ||
+        r->desc->material_count)
         return GLINT_OK;
     if (r->library && glint_mesh_library_found(r->library)) {
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR,
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0,
                              "the colours of its vertices are passed over: its faces have materials");
         return GLINT_OK;
     }
     glint_mesh_library_free(r->library);
     r->library = NULL;
     r->material_index.count = 0;
-    glint_status status = take_colors(r);
+    glint_status status = glint_mesh_take_colors(r, r->vertices.count);
     return status ? status : glint_mesh_color_faces(r);
 }
 

@@ -23,8 +23,11 @@ typedef struct body {
 
 static glint_status fail_at(const body *b, const char *expected, const char *got)
 {
-    return glint_fail(b->reader->error, GLINT_ERR_FORMAT, "%s: %s %llu of %llu: %s expected, got %s",
-                      b->reader->text.path, b->element->name, (unsigned long long)b->row,
+    char line[24] = "";
+    if (b->head->format == GLINT_PLY_TEXT)
+        snprintf(line, sizeof line, ":%zu", b->reader->text.number);
+    return glint_fail(b->reader->error, GLINT_ERR_FORMAT, "%s%s: %s %llu of %llu: %s expected, got %s",
+                      b->reader->text.path, line, b->element->name, (unsigned long long)b->row,
                       (unsigned long long)b->element->count, expected, got);
 }
 
@@ -95,12 +98,13 @@ static glint_status next_line(body *b)
 /// The next word, on this line or a later one.
 static glint_status read_word(body *b, double *out)
 {
-    char *end, shown[48];
+    const char *end;
+    char shown[48];
     b->at = glint_skip_blanks(b->at);
     glint_status status = *b->at ? GLINT_OK : next_line(b);
     if (status)
         return status;
-    *out = glint_read_double(b->at, &end, b->reader->text.c_locale);
+    *out = glint_mesh_read_double(&b->reader->text, b->at, &end);
     if (end != b->at && glint_ends_word(*end)) {
         b->at = end;
         return GLINT_OK;
@@ -152,7 +156,7 @@ static glint_status read_face(body *b, const glint_ply_property *p, uint32_t *si
     if (status || *size >= 3)
         return status ? status : glint_mesh_append(&r->sizes, size, r->error);
     r->corners.count -= *size;
-    glint_mesh_note_that(r, GLINT_MESH_NOTE_FACE, "face %llu of fewer than 3 corners is left out",
+    glint_mesh_note_that(r, GLINT_MESH_NOTE_FACE, 0, "face %llu of fewer than 3 corners is left out",
                          (unsigned long long)b->row);
     return GLINT_OK;
 }
@@ -173,7 +177,9 @@ static glint_status read_strips(body *b, const glint_ply_property *p)
         }
         if (!status)
             status = check_whole(b, number, (double)b->head->vertex_count - 1, "the number of a vertex", &last[2]);
-        if (!status && ++length >= 3) {
+        const bool is_flat =
+            last[0] == last[1] || last[1] == last[2] || last[0] == last[2]; // joins two parts of a strip
+        if (!status && ++length >= 3 && !is_flat) {
             const uint32_t odd = length % 2, corners[3] = { last[odd ? 0 : 1], last[odd ? 1 : 0], last[2] };
             for (int k = 0; k < 3 && !status; k++)
                 status = glint_mesh_append(&r->corners, &corners[k], r->error);
@@ -242,10 +248,31 @@ static glint_status read_properties(body *b, double v[GLINT_PLY_NUMBERS])
     return GLINT_OK;
 }
 
+/// Adds a colour that is no 8-bit codes: as numbers, whose range is known when all are read. Whole numbers of 16 bits are shares of
+/// 65535, others of 255.
+static glint_status add_color_of_type(body *b, const double rgb[3])
+{
+    glint_mesh_reader *r = b->reader;
+    const bool is_float = b->head->color_type == GLINT_PLY_FLOAT32 || b->head->color_type == GLINT_PLY_FLOAT64;
+    const double most = is_float ? 1 : b->head->color_type == GLINT_PLY_UINT16 ? 65535 : 255;
+    double v[3];
+    for (int c = 0; c < 3; c++) {
+        v[c] = rgb[c] / most;
+        if (!(v[c] >= 0 && v[c] <= (is_float ? 255 : 1)))
+            glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0,
+                                 "%s %llu: its colours are passed over: red, green and blue 0 .. %.0f expected",
+                                 b->element->name, (unsigned long long)b->row, most);
+    }
+    return glint_mesh_append(&r->numbers_of_colors, v, r->error);
+}
+
 static glint_status add_color(body *b, const double v[GLINT_PLY_NUMBERS])
 {
+    glint_mesh_reader *r = b->reader;
     uint8_t codes[3];
     char got[40];
+    if (b->head->color_type != GLINT_PLY_UINT8)
+        return add_color_of_type(b, v + GLINT_PLY_RED);
     for (int c = 0; c < 3; c++) {
         const double code = v[GLINT_PLY_RED + c];
         if (!(code >= 0 && code <= 255 && code == floor(code))) { // of a text
@@ -254,7 +281,7 @@ static glint_status add_color(body *b, const double v[GLINT_PLY_NUMBERS])
         }
         codes[c] = (uint8_t)code;
     }
-    return glint_mesh_append(&b->reader->colors, codes, b->reader->error);
+    return glint_mesh_append(&r->colors, codes, r->error);
 }
 
 static glint_status add_vertex(body *b, const double v[GLINT_PLY_NUMBERS])
@@ -317,19 +344,24 @@ static glint_status read_rows(body *b)
 static glint_status make_materials(glint_mesh_reader *r, const glint_ply_head *h)
 {
     const bool has_own = r->desc->material || r->desc->material_count;
+    glint_status status = GLINT_OK;
     if (h->texture[0] && r->uv.count && !has_own) {
         if (h->colored)
-            glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, "its colours are passed over: it has a picture");
+            glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0, "its colours are passed over: it has a picture");
         return glint_mesh_picture_faces(r, h->texture);
     }
     if (h->texture[0] && !has_own)
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE,
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE, 0,
                              "its picture %.60s is passed over: there are no coordinates (s, t)", h->texture);
-    if (h->colored && r->colors_of_faces && r->colors.count != r->sizes.count) {
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, "its colours are passed over: strips of triangles have none");
+    if (!h->colored || r->notes[GLINT_MESH_NOTE_COLOR].count)
+        return GLINT_OK;
+    if (h->color_type != GLINT_PLY_UINT8)
+        status = glint_mesh_take_colors(r, r->numbers_of_colors.count);
+    if (!status && r->colors_of_faces && r->colors.count != r->sizes.count) {
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0, "its colours are passed over: strips of triangles have none");
         return GLINT_OK;
     }
-    return h->colored ? glint_mesh_color_faces(r) : GLINT_OK;
+    return status ? status : glint_mesh_color_faces(r);
 }
 
 static glint_status read_elements(body *b)

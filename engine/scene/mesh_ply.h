@@ -61,6 +61,7 @@ typedef struct glint_ply_head {
     uint64_t vertex_count, face_count; ///< face_count: rows of elements that have faces or strips
     char texture[512]; ///< the picture that the file names; "": none
     const glint_ply_element *colored; ///< whose colours count; NULL: there are none
+    glint_ply_type color_type; ///< of these
     glint_ply_element elements[GLINT_PLY_ELEMENTS_MAX];
 } glint_ply_head;
 

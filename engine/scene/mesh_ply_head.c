@@ -65,8 +65,10 @@ static glint_status read_property(glint_mesh_reader *r, glint_ply_element *e, ch
     p.is_list = words[1] && strcmp(words[1], "list") == 0;
     char **rest = words + (p.is_list ? 3 : 1);
     const bool typed = p.is_list ? words[2] && find_type(words[2], &p.count_type) : true;
-    if (!typed || !rest[0] || !find_type(rest[0], &p.type) || !rest[1] || rest[2] ||
-        (p.is_list && p.count_type >= GLINT_PLY_FLOAT32))
+    if (typed && rest[0] && rest[1] && !find_type(rest[0], &p.type))
+        return glint_mesh_refuse(&r->text, "one of the types char, uchar, short, ushort, int, uint, float and double",
+                                 rest[0]);
+    if (!typed || !rest[0] || !rest[1] || rest[2] || (p.is_list && p.count_type >= GLINT_PLY_FLOAT32))
         return glint_mesh_refuse(&r->text, "property TYPE NAME or property list TYPE TYPE NAME", words[0]);
     if (e->property_count == GLINT_PLY_PROPERTIES_MAX)
         return glint_mesh_refuse(&r->text, "at most 256 properties", words[0]);
@@ -133,7 +135,7 @@ static void take_texture(glint_mesh_reader *r, glint_ply_head *h)
     if (!h->texture[0])
         snprintf(h->texture, sizeof h->texture, "%s", name);
     else
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE, "its picture %.60s is passed over: a mesh has one", name);
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE, 0, "its picture %.60s is passed over: a mesh has one", name);
 }
 
 static glint_status read_words(glint_mesh_reader *r, glint_ply_head *h)
@@ -168,37 +170,39 @@ static glint_status read_words(glint_mesh_reader *r, glint_ply_head *h)
     return status;
 }
 
-/// How many of red, green and blue an element has; 0 where some are not 8 bits.
-static int count_colors(const glint_ply_element *e)
+/// Whether an element has red, green and blue of one type, which goes to *type.
+static bool has_colors(const glint_ply_element *e, glint_ply_type *type)
 {
     int count = 0;
     for (uint32_t i = 0; i < e->property_count; i++) {
         const glint_ply_property *p = &e->properties[i];
         if (p->role < GLINT_PLY_RED || p->role > GLINT_PLY_BLUE)
             continue;
-        if (p->type != GLINT_PLY_UINT8)
-            return 0;
-        count++;
+        if (count++ > 0 && p->type != *type)
+            return false;
+        *type = p->type;
     }
-    return count;
+    return count == 3;
 }
 
 /// Finds the colours that count, those of faces before those of vertices; a material of the script stands for all.
 static void find_colors(const glint_mesh_reader *r, glint_ply_head *h)
 {
     bool any = false;
+    glint_ply_type type;
     for (uint32_t i = 0; i < h->element_count; i++) {
         const glint_ply_element *e = &h->elements[i];
         any = any || glint_ply_has_role(e, GLINT_PLY_RED) || glint_ply_has_role(e, GLINT_PLY_GREEN) ||
               glint_ply_has_role(e, GLINT_PLY_BLUE);
-        if (count_colors(e) == 3 && (!h->colored || strcmp(e->name, "face") == 0))
+        if ((!h->colored || strcmp(e->name, "face") == 0) && has_colors(e, &type)) {
             h->colored = e;
+            h->color_type = type;
+        }
     }
     if (r->desc->material || r->desc->material_count)
         h->colored = NULL;
     else if (any && !h->colored)
-        glint_mesh_warn(r->desc, r->text.path,
-                        "its colours are passed over: red, green and blue of 8 bits (uchar) expected");
+        glint_mesh_warn(r->desc, r->text.path, "its colours are passed over: red, green and blue of one type expected");
 }
 
 /// Whether the elements make a mesh, and have no more rows than the file has room for.

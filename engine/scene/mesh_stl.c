@@ -3,7 +3,6 @@
 #include "engine/scene/mesh_file.h"
 
 #include <errno.h>
-#include <math.h>
 #include <string.h>
 #include <strings.h>
 
@@ -44,12 +43,8 @@ static glint_status read_binary(glint_mesh_reader *r, uint32_t count)
             return ferror(r->text.file) ? glint_fail(r->error, GLINT_ERR_IO, "%s: %s", r->text.path, strerror(errno))
                                         : glint_fail(r->error, GLINT_ERR_FORMAT, "%s: %u triangles expected, got %u",
                                                      r->text.path, count, i);
-        for (int k = 0; k < 9; k++) {
+        for (int k = 0; k < 9; k++)
             corners[k / 3][k % 3] = (double)float_at(record + 12 + 4 * k);
-            if (!isfinite(corners[k / 3][k % 3]))
-                return glint_fail(r->error, GLINT_ERR_FORMAT, "%s: triangle %u: finite numbers expected", r->text.path,
-                                  i + 1);
-        }
         glint_status status = add_triangle(r, corners);
         if (status)
             return status;
@@ -79,7 +74,11 @@ static glint_status read_statement(glint_mesh_reader *r, const char *at, state *
         return GLINT_OK;
     }
     if (s->ended && !glint_mesh_is_word(at, WORDS[0])) {
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, "line %zu, behind the solid, is passed over", r->text.number);
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, r->text.number, "this line, behind the solid, is passed over");
+        return GLINT_OK;
+    }
+    if (place == 0 && (strchr("#;/", *at) || glint_mesh_is_word(at, "color"))) {
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, r->text.number, "this line, between facets, is passed over");
         return GLINT_OK;
     }
     snprintf(expected, sizeof expected, place ? "%s" : "%s or endsolid", WORDS[place]);
@@ -88,9 +87,11 @@ static glint_status read_statement(glint_mesh_reader *r, const char *at, state *
     if (place >= 2 && place <= 4) {
         at += sizeof "vertex" - 1;
         for (int c = 0; c < 3; c++) {
-            glint_status status = glint_mesh_number(&r->text, &at, &s->corners[place - 2][c]);
-            if (status)
-                return status;
+            const char *end, *word = glint_skip_blanks(at);
+            s->corners[place - 2][c] = glint_mesh_read_double(&r->text, word, &end);
+            if (end == word || !glint_ends_word(*end))
+                return glint_mesh_refuse(&r->text, "a number", word);
+            at = end;
         }
     }
     s->place = (place + 1) % 7;
@@ -131,20 +132,37 @@ static glint_status read_text(glint_mesh_reader *r)
 
 // ---- The file ----
 
-/// Whether a file is text: "solid" is its first word, and its first bytes have a facet or an end, or no byte that no text has.
+/// Whether a file is text: "solid" is its first word, and its first bytes have a facet or an end after the first line, or no
+/// byte that no text has.
 static bool is_text(const char *bytes, size_t count)
 {
     size_t at = 0;
-    bool printable = true, facets = false;
+    bool printable = true, behind = false, facets = false;
     while (at < count && (glint_is_blank(bytes[at]) || bytes[at] == '\r' || bytes[at] == '\n'))
         at++;
     if (count - at < 5 || strncasecmp(bytes + at, "solid", 5) != 0)
         return false;
     for (; at < count; at++) {
         printable = printable && bytes[at] != 0;
-        facets = facets || strncasecmp(bytes + at, "facet", 5) == 0 || strncasecmp(bytes + at, "endsolid", 8) == 0;
+        behind = behind || bytes[at] == '\n' || bytes[at] == '\r';
+        facets = facets ||
+                 (behind && (strncasecmp(bytes + at, "facet", 5) == 0 || strncasecmp(bytes + at, "endsolid", 8) == 0));
     }
     return facets || printable;
+}
+
+/// What is wrong with a file that is neither text nor as long as its number of triangles says.
+static glint_status refuse_size(glint_mesh_reader *r, const char *head, size_t got, uint32_t count)
+{
+    bool printable = got > 0;
+    for (size_t i = 0; i < got && i < HEAD_BYTES; i++)
+        printable = printable && ((unsigned char)head[i] >= ' ' || (head[i] && strchr("\t\r\n", head[i])));
+    if (!printable || got < 5)
+        return glint_fail(r->error, GLINT_ERR_FORMAT,
+                          "%s: \"solid\" or %d bytes and %d for each of its %u triangles expected, got %llu bytes",
+                          r->text.path, HEAD_BYTES, TRIANGLE_BYTES, count, (unsigned long long)r->text.size);
+    r->text.number = 1;
+    return glint_mesh_refuse(&r->text, "solid, as the first word of a text,", head);
 }
 
 /// A file whose size fits its number of triangles is binary, whatever its head says: "solid" begins some of both kinds. So
@@ -160,16 +178,18 @@ glint_status glint_mesh_read_stl(glint_mesh_reader *r)
     const uint64_t needed = HEAD_BYTES + (uint64_t)count * TRIANGLE_BYTES;
     const bool text = t->size != needed && is_text(bytes + t->start, got - (size_t)t->start);
     if (!status && !text && (got < HEAD_BYTES || t->size < needed))
-        status = glint_fail(r->error, GLINT_ERR_FORMAT,
-                            "%s: \"solid\" or %d bytes and %d for each of its %u triangles expected, got %llu bytes",
-                            t->path, HEAD_BYTES, TRIANGLE_BYTES, count, (unsigned long long)t->size);
+        status = refuse_size(r, bytes + t->start, got - (size_t)t->start, count);
     if (!status)
         status = glint_mesh_text_rewind(t, text ? t->start : HEAD_BYTES);
     if (!status)
         status = text ? read_text(r) : read_binary(r, count);
     if (!status && !text && t->size > needed)
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, "%llu bytes behind the last triangle are passed over",
-                             (unsigned long long)(t->size - needed));
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, 0,
+                             "what follows the last triangle is passed over: bytes %llu .. %llu",
+                             (unsigned long long)needed, (unsigned long long)t->size - 1);
+    if (!status && !text && strstr(bytes, "COLOR="))
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0,
+                             "its colours are passed over: those of .stl files are not read");
     if (!status && r->sizes.count == 0)
         status = glint_fail(r->error, GLINT_ERR_FORMAT, "%s: triangles expected, got none", t->path);
     return status;

@@ -113,12 +113,13 @@ void glint_mesh_text_close(glint_mesh_text *text)
 
 glint_status glint_mesh_refuse(const glint_mesh_text *text, const char *expected, const char *got)
 {
-    char shown[48];
-    snprintf(shown, sizeof shown, "%.40s", got);
+    char shown[48] = "the end of the line";
+    if (*got)
+        snprintf(shown, sizeof shown, "'%.40s'", got);
     for (char *c = shown; *c; c++)
         *c = (unsigned char)*c < ' ' || *c == 127 ? ' ' : *c;
-    return glint_fail(text->error, GLINT_ERR_FORMAT, "%s: line %zu: %s expected, got '%s'", text->path, text->number,
-                      expected, shown);
+    return glint_fail(text->error, GLINT_ERR_FORMAT, "%s:%zu: %s expected, got %s", text->path, text->number, expected,
+                      shown);
 }
 
 static glint_status grow_line(glint_mesh_text *text, size_t used)
@@ -126,8 +127,8 @@ static glint_status grow_line(glint_mesh_text *text, size_t used)
     if (used + 2 < text->room)
         return GLINT_OK;
     if (text->room >= text->longest)
-        return glint_fail(text->error, GLINT_ERR_FORMAT, "%s: line %zu: at most %zu bytes expected", text->path,
-                          text->number, text->longest);
+        return glint_fail(text->error, GLINT_ERR_FORMAT, "%s:%zu: at most %zu bytes expected", text->path, text->number,
+                          text->longest);
     char *line = realloc(text->line, text->room * 2);
     if (!line)
         return glint_fail_nomem(text->error);
@@ -180,12 +181,44 @@ glint_status glint_mesh_next_line(glint_mesh_text *text, bool joined, bool *more
     return GLINT_OK;
 }
 
+/// Reads the number again with an E where Fortran writes a D, or nothing: 1.5D+03, 1.5-103.
+static double read_fortran(const glint_mesh_text *text, const char *at, const char **end)
+{
+    char copy[64], *copy_end;
+    const size_t length = strcspn(at, " \t#"), mantissa = (size_t)(*end - at);
+    const bool has_d = at[mantissa] == 'D' || at[mantissa] == 'd';
+    const char *exponent = at + mantissa + has_d;
+    if (mantissa == 0 || length + 2 > sizeof copy || !(has_d || *exponent == '+' || *exponent == '-'))
+        return NAN;
+    snprintf(copy, sizeof copy, "%.*se%.*s", (int)mantissa, at, (int)(length - (size_t)(exponent - at)), exponent);
+    const double number = glint_read_double(copy, &copy_end, text->c_locale);
+    if (!*copy_end)
+        *end = at + length;
+    return number;
+}
+
+double glint_mesh_read_double(const glint_mesh_text *text, const char *at, const char **end)
+{
+    static const char *const none[] = { "#IND", "#INF", "#QNAN", "#SNAN" };
+    char *stop;
+    const double number = glint_read_double(at, &stop, text->c_locale);
+    *end = stop;
+    if (stop == at || glint_ends_word(*stop))
+        return number;
+    for (size_t i = 0; i < sizeof none / sizeof *none && *stop == '#'; i++)
+        if (strncmp(stop, none[i], strlen(none[i])) == 0) {
+            *end = stop + strcspn(stop, " \t");
+            return NAN;
+        }
+    return *stop == '#' ? number : read_fortran(text, at, end);
+}
+
 glint_status glint_mesh_number(const glint_mesh_text *text, const char **at, double *out)
 {
-    char *end;
+    const char *end;
     *at = glint_skip_blanks(*at);
-    *out = glint_read_double(*at, &end, text->c_locale);
-    if (end == *at || !glint_ends_word(*end))
+    *out = glint_mesh_read_double(text, *at, &end);
+    if (end == *at || !glint_ends_number(*end))
         return glint_mesh_refuse(text, "a number", *at);
     if (!isfinite(*out))
         return glint_mesh_refuse(text, "a finite number", *at);
@@ -199,15 +232,28 @@ bool glint_mesh_is_word(const char *line, const char *word)
     return strncmp(line, word, length) == 0 && glint_ends_word(line[length]);
 }
 
+bool glint_mesh_text_is_utf16(const glint_mesh_text *text)
+{
+    return text->begin_bytes >= 2 &&
+           (memcmp(text->begin, "\xff\xfe", 2) == 0 || memcmp(text->begin, "\xfe\xff", 2) == 0);
+}
+
+/// Puts a name into the folder of a path. Quotation marks around the name go.
 static char *join(const char *path, const char *name)
 {
     const char *slash = strrchr(path, '/');
-    const size_t folder = *name == '/' || !slash ? 0 : (size_t)(slash - path) + 1, length = strlen(name);
+    size_t length = strlen(name);
+    if (length > 2 && *name == '"' && name[length - 1] == '"') {
+        name++;
+        length -= 2;
+    }
+    const size_t folder = *name == '/' || !slash ? 0 : (size_t)(slash - path) + 1;
     char *out = malloc(folder + length + 1);
     if (!out)
         return NULL;
     memcpy(out, path, folder);
-    memcpy(out + folder, name, length + 1);
+    memcpy(out + folder, name, length);
+    out[folder + length] = 0;
     for (char *c = out + folder; *c; c++)
         *c = *c == '\\' ? '/' : *c;
     return out;

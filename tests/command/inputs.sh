@@ -66,7 +66,7 @@ for bad in device pipe folder huge begun; do
 done
 for bad in device pipe folder huge; do
     for kind in obj stl ply; do
-        script "a mesh of a $bad, .$kind" "$bad.$kind: " 'local glint = require "glint"' "return glint.mesh { file = '$bad.$kind' }"
+        script "a mesh of a $bad, .$kind" "$bad.$kind:(1:)? " 'local glint = require "glint"' "return glint.mesh { file = '$bad.$kind' }"
     done
 done
 for kind in stl ply; do
@@ -78,7 +78,7 @@ printf 'mtllib %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n'
 printf 'mtllib good.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n' >painted.obj
 for bad in device.png pipe folder huge.png; do
     sed "s/device.png/$bad/" named.obj >mesh.obj
-    script "a mesh with materials in $bad" "mesh.obj: its materials are not all there: $bad: " 'require("glint").mesh { file = "mesh.obj" }' \
+    script "a mesh with materials in $bad" "mesh.obj: its materials are not all there: $bad:(1:)? " 'require("glint").mesh { file = "mesh.obj" }' \
         'error "read"'
     printf 'newmtl a\nmap_Kd %s\n' "$bad" >good.mtl
     script "a mesh with the picture $bad" "painted.obj: material 'a' has its Kd in place of its map_Kd: $bad: " \

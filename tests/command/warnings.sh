@@ -293,7 +293,11 @@ for height in x nan 1e400 0; do
     warns "$height for a height" "m.obj: material 'a': no relief: -bm of map_Bump: a height in world units other than 0 expected, got '$height'$"
 done
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nmap_Bump b.png -bm 0.1\n'
-warns "a height after the picture" "m.obj: material 'a': no relief: map_Bump has its -bm after the picture's name; options come before it$"
+warns "a height after the picture" "m.obj: material 'a' has no relief in place of its map_Bump: faces of it have no coordinates (vt)$"
+mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nmap_Kd -texture b.png\n'
+warns "an option that no map has" "m.obj: m.mtl:2: an option of a map or the name of a picture expected, got '-texture b.png'; the line is passed over$"
+mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\nTf 0.5 0.5 0.5\nKe 1 1 1\n'
+warns "statements that mean nothing here" "m.obj: m.mtl: Tf, Ke are passed over: no field of a material$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nbump -bm 0.1 b.png\n'
 warns "a relief without coordinates" "m.obj: material 'a' has no relief in place of its map_Bump: faces of it have no coordinates (vt)$"
 printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nmtllib m.mtl\nusemtl a\nf 1/1 2/2 3/3\n' >m.obj
@@ -311,7 +315,7 @@ warns "materials that the file has not" "m.obj: material 'a' and 1 more: not in 
 mesh 'mtllib gone.mtl\nusemtl b\n' ''
 warns "a file of materials that is not there" "m.obj: its materials are not all there: gone.mtl: No such file or directory$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0\nKd 1 0 x\n'
-warns "a colour that is none" "m.obj: m.mtl: line 3: a number expected, got 'x'; the line is passed over$"
+warns "a colour that is none" "m.obj: m.mtl:3: a number expected, got 'x'; the line is passed over$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nmap_Kd wood.png\n'
 warns "a picture without coordinates" "m.obj: material 'a' has its Kd in place of its map_Kd: faces of it have no coordinates (vt)$"
 scene 'objects = { glint.mesh { file = "m.obj", material = glint.material {} } }'
@@ -319,7 +323,7 @@ silent "a material of the script: the file's are not looked at"
 printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n' >m.ply
 printf 'element face 1\nproperty list uchar int vertex_indices\nend_header\n-1 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2\n' >>m.ply
 scene 'objects = { glint.mesh { file = "m.ply" }, glint.mesh { file = "m.ply" } }'
-warns "colours of vertices, once" "m.ply: its colours are passed over: red, green and blue of 8 bits (uchar) expected$"
+warns "colours of vertices, once" "m.ply: its colours are passed over: red, green and blue of one type expected$"
 printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n' >m.ply
 printf 'property uchar %s\n' red green blue >>m.ply
 printf 'property list uchar int vertex_indices\nend_header\n-1 0 0\n1 0 0\n0 1 0\n9 9 9 3 0 1 2\n' >>m.ply

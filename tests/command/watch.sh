@@ -103,7 +103,7 @@ done
 errors=$(seen error)
 before=$(seen picture)
 printf 'v -1 0 0\nv 1 0 0\nf 1 2 3\n' >data/part.obj
-check "a mesh that is wrong is told" await '"event":"error".*data/part.obj: line 3' 1
+check "a mesh that is wrong is told" await '"event":"error".*data/part.obj:3:' 1
 printf 'v -1 0 0\nv 1 0 0\nv 0 3 0\nf 1 2 3\n' >data/part.obj
 check "and one that is right again shows" await '"event":"picture"' $((before + 1))
 

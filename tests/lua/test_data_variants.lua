@@ -178,6 +178,20 @@ function tests.cell_of_pdb()
   end
 end
 
+function tests.metals_in_rings()
+  local function read(name, residue) return (spell(pdb.frame(write("r.pdb", atom(name, " ", residue, 1, 1)))):match "%a+") end
+  for _, residue in ipairs { "HEM", "HEC", "CLA", "BCL" } do
+    for name, want in pairs { ["NA  "] = "N", NB = "N", ["CHA "] = "C", CMA = "C", O1A = "O", HHA = "H", ["MG  "] = "Mg", FE = "Fe" } do
+      is(read(name, residue), want, name .. " of " .. residue)
+    end
+  end
+  is(read("NA  ", "NA"), "Na", "of an ion")
+  local list = warnings_of(function()
+    pdb.frame(write("c.pdb", "CRYST1 10.0 10.0 10.0 90 90 90 P 1\n" .. atom(" CA ", " ", "ALA", 1, 1)))
+  end)
+  check(#list == 1 and list[1]:find("c.pdb:1: no cell: six numbers of one expected", 1, true), "numbers in other columns: %s", list[1])
+end
+
 function tests.keys_of_xyz()
   local function box_of(comment)
     return xyz.frame(write("k.xyz", "1\n" .. comment .. "\nC 1 2 3\n")).box
@@ -186,19 +200,23 @@ function tests.keys_of_xyz()
   for text, want in pairs { ["pbc='F F F'"] = "FFF", ['pbc="F T F"'] = "FTF", ["pbc=[T, F, T]"] = "TFT", ["pbc={1 0 1}"] = "TFT", ["pbc=F"] = "FFF",
     ["pbc=[true,false,true]"] = "TFT", ["pbc = 'F F T'"] = "FFT", ["PBC=\"F F T\""] = "FFT", [""] = "TTT",
     ["note='pbc=\"F F F\" here' pbc='T T F'"] = "TTF", ["don't pbc='F T T'"] = "FTT", ["title=\"it's\" pbc='T F F'"] = "TFF",
-    ["my_pbc='F F F'"] = "TTT", ["empty='' flag pbc=\"T F T\""] = "TFT" } do
+    ["my_pbc='F F F'"] = "TTT", ["empty='' flag pbc=\"T F T\""] = "TFT",
+    ["pbc=TFT"] = "TFT", ['pbc="[T, F, T]"'] = "TFT", ["pbc=101"] = "TFT" } do
     local got = ""
     for _, is_periodic in ipairs(box_of(lattice .. text).periodic) do got = got .. (is_periodic and "T" or "F") end
     is(got, want, text)
   end
   for _, text in ipairs { "Lattice='4 0 0 0 5 0 0 0 6'", "Lattice=[[4,0,0],[0,5,0],[0,0,6]]", "Lattice={4 0 0 0 5 0 0 0 6}",
-    "name=\"Lattice=none\" Lattice=[4, 0, 0, 0, 5, 0, 0, 0, 6]", "lattice = \"4 0 0 0 5.0D+00 0 0 0 6\"" } do
+    "name=\"Lattice=none\" Lattice=[4, 0, 0, 0, 5, 0, 0, 0, 6]", "lattice = \"4 0 0 0 5.0D+00 0 0 0 6\"",
+    "Lattice=\"4, 0, 0, 0, 5, 0, 0, 0, 6\"", "Lattice=\"[[4 0 0] [0 5 0] [0 0 6]]\"" } do
     local box = box_of(text)
     check(box and box.size[1] == 4 and box.size[2] == 5 and box.size[3] == 6, "%s", text)
   end
   local frame = xyz.frame(write("k.xyz", "1\nProperties='species:S:1:pos:R:3' title=\"a \\\"b\\\" Properties=x\" energy=-1.5\nC 1 2 3\n"))
   check(frame.keys.energy == "-1.5" and frame.keys.title == 'a \\"b\\" Properties=x', "keys: %s", frame.keys.title)
   is(spell(frame), "C 1 2 3")
+  is(spell(xyz.frame(write("k.xyz", "2\nProperties=type:I:1:pos:R:3\n1 1 2 3\n26 0 0 0\n"))), "type1 1 2 3; type26 0 0 0", "types are no elements")
+  is(spell(xyz.frame(write("k.xyz", "1\nProperties=Z:I:1:pos:R:3\n26 1 2 3\n"))), "26 1 2 3", "numbers of elements are")
   raises("k.xyz:2: three words T or F of pbc expected", box_of, lattice .. "pbc='T T'")
   raises('k.xyz:2: T or F of pbc expected, got "yes"', box_of, lattice .. "pbc=yes")
 end
@@ -255,6 +273,14 @@ function tests.dumps()
 end
 
 -- Films whose first frames have no particles.
+function tests.labels_and_shares_of_dumps()
+  is(spell(lammps.frame(write("l.dump", dump(" pp pp pp\n0 10\n0 10\n0 10", "id type x y z", "1 C 1 2 3", "2 Fe 4 5 6")))), "C 1 2 3; Fe 4 5 6",
+    "dump_modify types labels")
+  -- sides (0, 10, 0), (20, 0, 0) and (0, 0, 5) from (1, 2, 3): the point of the shares 0.5, 0.25, 0.2
+  is(spell(lammps.frame(write("l.dump", dump(" abc origin pp pp pp\n0 10 0 1\n20 0 0 2\n0 0 5 3", "id xs ys zs", "1 0.5 0.25 0.2")))), "point 6 7 4",
+    "shares of a cell that lies anyhow")
+end
+
 function tests.empty_frames()
   local empty, one = dump(" pp pp pp\n0 10\n0 10\n0 10", "id type x y z"), dump(" pp pp pp\n0 10\n0 10\n0 10", "id type x y z", "1 1 1 2 3")
   for _, case in ipairs { { lammps, empty .. one }, { xyz, '0\nLattice="10 0 0 0 10 0 0 0 10"\n1\n\nC 1 2 3\n' } } do
@@ -339,7 +365,32 @@ function tests.clouds()
   is(colored("f.pcd", pcd:format("F", "ascii") .. "0 0 0 2.34180515e-38\n1 0 0 9.14767637e-41\n"), RED_GREEN, "colours as the bits of a float")
   is(colored("b.pcd", pcd:format("F", "binary") .. ("<fffI4fffI4"):pack(0, 0, 0, 0xff0000, 1, 0, 0, 0x00ff00)), RED_GREEN, "binary")
   is(colored("v.pcd", (pcd:gsub("^.-\n", ""):format("U", "ascii")) .. "0 0 0 16711680\n1 0 0 65280\n"), RED_GREEN, "without a first comment")
-  raises('c.pcd:11: DATA ascii or binary expected, got "binary_compressed"', colored, "c.pcd", pcd:format("F", "binary_compressed"))
+  is(colored("o.pcd", (pcd:gsub("FIELDS", "COLUMNS"):gsub("0%.7", ".5"):format("U", "ASCII")) .. "0 0 0 16711680\n1 0 0 65280\n"), RED_GREEN, "version .5")
+  is(colored("n.pcd", pcd:format("F", "ascii") .. "0 0 0 nan\n1 0 0 9.14767637e-41\n"), "0 0 0 point; 1 0 0 #00ff00", "a colour that a text lost")
+  is(colored("m.ply", (head:format("ascii", "")) .. "0 0\n0 255 0 0\n1 0 0\n0\n255 0\n"), RED_GREEN, "a point over several lines")
+end
+
+-- Bytes packed by hand: the codes below 32 begin 1 .. 32 bytes as they are, others copy what lies before.
+function tests.packed_clouds()
+  local head = "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\n" ..
+    "DATA binary_compressed\n"
+  local plain = ("<ffffffI4I4"):pack(0, 1, 0, 0, 0, 0, 0xff0000, 0x00ff00)
+  local function cloud(packed, size) return head .. ("<I4I4"):pack(#packed, size or 32) .. packed end
+  is(colored("c.pcd", cloud("\31" .. plain)), RED_GREEN, "as they are")
+  -- a zero, 5 copies of it, 80 3f 00, 17 copies of the last zero, ff 00 00 ff 00 00
+  is(colored("c.pcd", cloud("\0\0" .. "\96\0" .. "\2\128\63\0" .. "\224\8\0" .. "\5\255\0\0\255\0\0")), RED_GREEN, "copies")
+  raises("c.pcd: bytes that LZF packs expected", colored, "c.pcd", cloud("\32\9" .. plain))
+  raises("c.pcd: bytes that LZF packs expected", colored, "c.pcd", cloud("\31" .. plain .. "\0\0"))
+  raises("c.pcd: bytes that LZF packs expected", colored, "c.pcd", cloud("\30" .. plain:sub(2)))
+  raises("c.pcd: 32 unpacked bytes expected, got 33", colored, "c.pcd", cloud("\31" .. plain, 33))
+  raises("c.pcd: 33 packed bytes expected, got 32", colored, "c.pcd", cloud("\31" .. plain):sub(1, -2))
+  raises('d.pcd:10: DATA ascii, binary or binary_compressed expected, got "zip"', colored, "d.pcd", (head:gsub("binary_compressed", "zip")))
+end
+
+function tests.counts_and_ranges_of_points()
+  is(colored("two.pts", "1\n0 0 0 10 255 0 0\n1\n1 0 0 10 0 255 0\n"), RED_GREEN, "two scans in one file")
+  raises("few.pts:4: point 3 of 3 expected, got the end of the file", colored, "few.pts", "3\n0 0 0 10 255 0 0\n1 0 0 10 0 255 0\n")
+  is(colored("over.xyzrgb", "0 0 0 1.0004 0 0\n1 0 0 0 0.9999 0\n"), RED_GREEN, "a little above 1")
 end
 
 tally.run(tests)

@@ -23,7 +23,7 @@ local function warnings_of(path)
   local list = {}
   for line in pipe:lines() do
     local text = line:match "^glint: warning: (.*)$"
-    if text then list[#list + 1] = (text:gsub("^" .. path:gsub("%p", "%%%0") .. ": ", "")) end
+    if text then list[#list + 1] = (text:gsub("^" .. path:gsub("%p", "%%%0") .. ":( ?)", function(blank) return blank == "" and ":" or "" end)) end
   end
   pipe:close()
   return list
@@ -39,8 +39,7 @@ local function load(name, ...) return glint.mesh { file = write(name, ...) } end
 local function refuses(want, name, ...)
   local path = write(name, ...)
   local good, message = pcall(glint.mesh, { file = path })
-  message = tostring(message):gsub("^.-: mesh[.:] ?", "", 1)
-  check(not good and message == path .. ": " .. want, "<%s> expected, got <%s>", want, message)
+  check(not good and message == path .. want, "<%s> expected, got <%s>", want, message)
 end
 
 local function is(v, r, g, b) return v[1] == r and v[2] == g and v[3] == b end
@@ -64,7 +63,7 @@ function tests.line_ends_and_marks()
       check(mesh.count == 1 and is(mesh.materials[1].diffuse, 1, 0, 0), "%q of .obj and .mtl", mark .. ending)
       check(load("a.stl", mark .. STL:gsub("\n", ending)).count == 1, "%q of .stl", mark .. ending)
       check(load("a.ply", mark .. PLY:gsub("\n", ending)).count == 1, "%q of .ply", mark .. ending)
-      refuses("line 5: a number expected, got 'zero 0'", "b.obj", mark .. (TRIANGLE .. "\nv 0 zero 0\n"):gsub("\n", ending))
+      refuses(":5: a number expected, got 'zero 0'", "b.obj", mark .. (TRIANGLE .. "\nv 0 zero 0\n"):gsub("\n", ending))
     end
   end
   -- what follows the head may begin with any byte
@@ -81,21 +80,27 @@ end
 function tests.faces_that_are_none()
   local path = write("f.obj", TRIANGLE .. "f 1 1 2\nf 1 2 3\nf 1 2\nf 3 2\nf 1\n")
   check(glint.mesh { file = path }.count == 1, "one triangle")
-  warns("1 of 2 faces are left out: they have no area\nline 6: a face of fewer than 3 corners is left out, and 2 more", path)
-  refuses("faces expected, got 3 vertices and none", "f.obj", TRIANGLE .. "f 1 2\n")
-  for _, text in ipairs { "f 1//0 2//0 3//0", "f 1/0 2/0 3/0", "f 1/1/ 2/1/ 3/1/", "f 1// 2// 3//", "f 1/ 2/ 3/", "f 1/0/0 2/0/0 3/0/0",
-    "f 1//5 2//5 3//5", "fo 1 2 3", "f 1/9 2/9 3/9" } do
+  warns("1 of 2 faces are left out: they have no area\n:6: a face of fewer than 3 corners is left out, and 2 more", path)
+  refuses(": faces expected, got 3 vertices and none", "f.obj", TRIANGLE .. "f 1 2\n")
+  for _, text in ipairs { "f 1//0 2//0 3//0", "f 1/0 2/0 3/0", "f 1// 2// 3//", "f 1/ 2/ 3/", "f 1/0/0 2/0/0 3/0/0",
+    "fo 1 2 3" } do
     check(load("c.obj", TRIANGLE, text, "\n").count == 1, "%s", text)
     check(warnings_of(folder .. "/c.obj")[1] == nil, "%s: no warning", text)
   end
+  for text, want in pairs { ["f 1 2 3//1"] = "normal 1", ["f 1//5 2//5 3//4"] = "normal 5", ["f 1/9 2/9 3/9"] = "texture coordinate 9",
+    ["f 1/1/ 2/1/ 3/1/"] = "texture coordinate 1" } do
+    path = write("none.obj", TRIANGLE, text, "\n")
+    check(glint.mesh { file = path }.count == 1, "%s", text)
+    warns((":4: %s is passed over: the file has none"):format(want), path)
+  end
   check(load("late.obj", "f 1 2 3\n", TRIANGLE).count == 1, "faces before vertices")
-  refuses("line 4: the number of a vertex, 1 .. 3, expected, got '4'", "far.obj", TRIANGLE .. "f 1 2 4\nf 1 2 3\n")
-  refuses("line 5: the number of a normal, 1 .. 1, expected, got '2'", "far.obj", TRIANGLE .. "vn 0 0 1\nf 1//2 2//1 3//1\n")
-  refuses("line 4: the number of a vertex, 1 .. 3, expected, got '0 1 2'", "far.obj", TRIANGLE .. "f 0 1 2\n")
+  refuses(":4: the number of a vertex, 1 .. 3, expected, got '4'", "far.obj", TRIANGLE .. "f 1 2 4\nf 1 2 3\n")
+  refuses(":5: the number of a normal, 1 .. 1, expected, got '2'", "far.obj", TRIANGLE .. "vn 0 0 1\nf 1//2 2//1 3//1\n")
+  refuses(":4: the number of a vertex, 1 .. 3, expected, got '0 1 2'", "far.obj", TRIANGLE .. "f 0 1 2\n")
   path = write("n.obj", TRIANGLE .. "vn 0 0 1\nvn 0 0 0\nvn nan 0 0\nf 1//1 2//2 3//1\n")
   local mesh = glint.mesh { file = path }
   check(mesh.count == 1 and mesh.shading == "phong", "a normal of 0 is none")
-  warns("line 5: a normal of length 0 is none, and 1 more", path)
+  warns(":5: a normal of length 0 is none, and 1 more", path)
   path = write("nan.obj", TRIANGLE .. "v nan 0 0\nv inf 0 0\nf 1 2 3\nf 1 2 4\nf 3 2 5\n")
   mesh = glint.mesh { file = path }
   check(mesh.count == 1 and mesh.max.x == 1, "faces of vertices that are not finite")
@@ -108,13 +113,50 @@ end
 function tests.statements_of_other_uses()
   local path = write("s.obj", "cstype bspline\ndeg 3\n" .. TRIANGLE .. "curv 0 1 1 2 3\nend\nvp 0 1\nl 1 2\np 1\nsolid x\nweird\nf 1 2 3\n")
   check(glint.mesh { file = path }.count == 1, "the mesh is there")
-  warns("line 1: 'cstype' is passed over: free-form curves and surfaces are not read, and 3 more\n" ..
-    "line 11: 'solid' is passed over: no statement of .obj files, and 1 more", path)
-  refuses("faces expected, got 0 vertices and none: is it a Wavefront .obj?", "text.obj", "Dear reader,\nthis is no mesh.\n")
+  warns(":1: 'cstype' is passed over: free-form curves and surfaces are not read, and 3 more\n" ..
+    ":11: 'solid' is passed over: no statement of .obj files, and 1 more", path)
+  refuses(": faces expected, got 0 vertices and none: is it a Wavefront .obj?", "text.obj", "Dear reader,\nthis is no mesh.\n")
+end
+
+function tests.numbers_as_programs_write_them()
+  for _, one in ipairs { "1.0D+00", "1d0", "0.1D1", "10.-1", "1.0+000", "1e0", "+1.", "1.0E+000" } do
+    check(load("n.obj", (TRIANGLE:gsub("1", one)), "f 1 2 3\n").max.x == 1, "%s of .obj", one)
+    check(load("n.stl", (STL:gsub("vertex 1 0 0", "vertex " .. one .. " 0 0"))).max.x == 1, "%s of .stl", one)
+    check(load("n.ply", (PLY:gsub("\n1 0 0", "\n" .. one .. " 0 0"))).max.x == 1, "%s of .ply", one)
+    write("n.mtl", "newmtl a\nKd ", one, " 0 0\n")
+    check(is(load("n.obj", "mtllib n.mtl\n", TRIANGLE, "usemtl a\nf 1 2 3\n").materials[1].diffuse, 1, 0, 0), "%s of .mtl", one)
+  end
+  for _, none in ipairs { "nan", "-1.#IND", "1.#QNAN", "1.#INF", "inf", "-nan(ind)" } do
+    local path = write("n.obj", "v 0 0 ", none, "\n", TRIANGLE, "f 1 2 3\nf 2 3 4\n")
+    check(glint.mesh { file = path }.count == 1, "%s of .obj", none)
+    warns("face 1 is left out: a vertex of it is not finite", path)
+    path = write("n.stl", "solid a\n", (STL:gsub("solid a\n", "", 1):gsub("vertex 1 0 0", "vertex " .. none .. " 0 0")), STL)
+    check(glint.mesh { file = path }.count == 1, "%s of .stl", none)
+    warns("face 1 is left out: a vertex of it is not finite", path)
+  end
+  for _, wrong in ipairs { "1.0D", "1.0DD0", "1.0-x", "1,0", "0x" } do
+    refuses((":2: a number expected, got '%s 0'"):format(wrong), "n.obj", "v 0 0 0\nv 1 ", wrong, " 0\nv 0 1 0\nf 1 2 3\n")
+  end
+  refuses(":2: a number expected, got the end of the line", "n.obj", "v 0 0 0\nv 1 0\nv 0 1 0\nf 1 2 3\n")
+  check(load("n.obj", "v 0 0 0# a\nv 1 0 0 #b\nv 0 1 0\nf 1 2 3# c\n").count == 1, "comments behind numbers")
+end
+
+function tests.messages_of_a_script()
+  local mesh = write("bad.obj", TRIANGLE, "v x 0 0\n")
+  local script = write("bad.lua", ("local function load(path)\n  return require 'glint'.mesh { file = path }, 1\nend\nload %q\n"):format(mesh))
+  local pipe = assert(io.popen(("'%s' '%s' -o none 2>&1"):format(os.getenv "GLINT" or build .. "/glint", script)))
+  local got = pipe:read "a"
+  pipe:close()
+  check(got == ("glint: error: %s:4: a number expected, got 'x 0 0'\n  called from %s:2\n  called from %s:4\n"):format(mesh, script, script),
+    "the file's line first, then the script's: %s", got)
 end
 
 function tests.colours_of_vertices()
   local function color(text) return load("v.obj", text).materials[1].diffuse end
+  check(is(color "v 0 0 0 1.002 0 0\nv 1 0 0 1 0 0\nv 0 1 0 0.99999 0 0\nf 1 2 3\n", 1, 0, 0), "a little above 1")
+  check(is(color(TRIANGLE .. "#MRGB ff00ff00ff00ff00\n#MRGB ff00ff00\nf 1 2 3\n"), 0, 1, 0), "#MRGB of ZBrush")
+  check(is(color "v 0 0 0 0 0 -1\nv 1 0 0 0 0 1\nv 0 1 0 0 1 0\nf 1 2 3\n", 0.8, 0.8, 0.8), "normals are no colours")
+  warns(":1: the numbers after the coordinates are passed over: colours 0 .. 1 or 0 .. 255 expected", folder .. "/v.obj")
   check(is(color "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n", 1, 0, 0), "0 .. 1")
   check(is(color "v 0 0 0 0 255 0\nv 1 0 0 0 255 0\nv 0 1 0 0 255 0\nf 1 2 3\n", 0, 1, 0), "0 .. 255")
   check(is(color "v 0 0 0 0 0 1 1\nv 1 0 0 0 0 1 1\nv 0 1 0 0 0 1 1\nf 1 2 3\n", 0, 0, 1), "with alpha")
@@ -147,7 +189,7 @@ function tests.materials()
   local m = material "newmtl b\nNs -1\nnewmtl a\nKd 0.25 0.5 0.75\nKd 1 red 0\nNs 12\nKs spectral x.rfl\nd 2\nmap_Kd -clamp on\nNs 9\n"
   check(is(m.diffuse, 0.25, 0.5, 0.75) and m.shininess == 9 and is(m.specular, 0, 0, 0), "a bad line is one line")
   local mtl = folder .. "/t.mtl: "
-  warns(mtl .. "line 2: a number >= 0 expected, got '-1'; the line is passed over, and 4 more", path)
+  warns(folder .. "/t.mtl:2: a number >= 0 expected, got '-1'; the line is passed over, and 4 more", path)
   material "newmtl a\nKd 1 1 1 # white\nKe 0 0 0\nKe 2 0 0\nKa 1 1 1\nnorm n.png\nnorm m.png\nmap_Pr r.png\nPs 0\nNi 1.45\nTf 1 1 1\nwhatever\n"
   warns(mtl .. "Ke, norm, map_Pr, whatever are passed over: no field of a material", path)
   m = material "newmtl a\nKd 1 0.5 0\nPr 0.25\nPm 1\nKs 0.5 0.5 0.5\nillum 3\n"
@@ -162,6 +204,13 @@ function tests.materials()
     m = material(("newmtl a\nKd 0.5 0.5 0.5\nNi 1.4\nd 0.5\nillum %d\n"):format(illum))
     check(m.ior == ((illum == 6 or illum == 7) and 1.4 or 1) and is(m.transmission, 0.5, 0.5, 0.5), "illum %d: what is bent", illum)
   end
+  material "newmtl a\nKd 1 1 1\nTf 0.5 1 1\nillum 11\nmap_d -mm 0 0.5 none.png\nmap_d -mm 0 1 -imfchan l none.png\n"
+  warns(folder .. "/t.mtl:4: a number 0 .. 10 expected, got '11'; the line is passed over\n" ..
+    mtl .. "Tf, -mm, -imfchan are passed over: no field of a material\n" ..
+    ("material 'a' has its d in place of its map_d: %s/none.png: No such file or directory"):format(folder), path)
+  write("t.mtl", ("\xff\xfenewmtl a\n"):gsub("[%g\n]", "%0\0"))
+  load("t.obj", "mtllib t.mtl # of Notepad\n", TRIANGLE, "usemtl a\nf 1 2 3\n")
+  warns("its materials are not all there: " .. folder .. "/t.mtl: is UTF-16, not UTF-8", path)
   write("my file.mtl", "newmtl a\nKd 0 0 1\n")
   check(is(load("q.obj", "mtllib \"my file.mtl\"\n", TRIANGLE, "usemtl a\nf 1 2 3\n").materials[1].diffuse, 0, 0, 1), "a name in quotes")
   write("base.mtl", "newmtl a\nKd 0 1 1\n")
@@ -182,14 +231,39 @@ function tests.stl()
     for _, text in ipairs { binary, table.concat(one) } do
       local path = write("long.stl", text, ("\0"):rep(extra))
       check(glint.mesh { file = path }.count == 1, "%d bytes more", extra)
-      warns(("%d bytes behind the last triangle are passed over"):format(extra), path)
+      warns(("what follows the last triangle is passed over: bytes 134 .. %d"):format(133 + extra), path)
     end
   end
+  one[1] = ("solid facet by CAD"):rep(9):sub(1, 80)
+  check(load("facet.stl", table.concat(one), "\0\0").count == 1, "a head that has the words of a text")
+  one[1] = "COLOR=\255\0\0\255" .. ("\0"):rep(70)
+  check(load("color.stl", table.concat(one)).count == 1, "colours")
+  warns("its colours are passed over: those of .stl files are not read", folder .. "/color.stl")
+  check(load("color.stl", (STL:gsub("solid a\n", "%0# made by hand\ncolor 1 0 0\n", 1))).count == 1, "lines between facets")
+  warns(":2: this line, between facets, is passed over, and 1 more", folder .. "/color.stl")
+  refuses(":1: solid, as the first word of a text, expected, got 'facet normal 0 0 1 outer loop vertex 0 0'", "no.stl", (STL:gsub("solid a\n", "", 1)))
   local path = write("end.stl", STL, "\26\nmade by hand\n", STL)
   check(glint.mesh { file = path }.count == 2, "words between solids")
-  warns("line 10, behind the solid, is passed over, and 1 more", path)
-  refuses("\"solid\" or 84 bytes and 50 for each of its 1 triangles expected, got 133 bytes", "short.stl", binary:sub(1, -2))
+  warns(":10: this line, behind the solid, is passed over, and 1 more", path)
+  refuses(": \"solid\" or 84 bytes and 50 for each of its 1 triangles expected, got 133 bytes", "short.stl", binary:sub(1, -2))
   check(load("stl.txt", STL).count == 1 and load("ply.txt", PLY).count == 1, "by the first bytes, where the name says nothing")
+end
+
+function tests.colours_of_ply()
+  local function color(kind, a, b)
+    local colors = ("property %s red\nproperty %s green\nproperty %s blue\n"):format(kind, kind, kind)
+    local vertices = ("0 0 0 %s\n1 0 0 %s\n0 1 0 %s\n3 0 1 2\n"):format(a, b, a)
+    return load("c.ply", HEAD, "element vertex 3\n", VERTEX, colors, FACE, "end_header\n", vertices).materials[1].name
+  end
+  for kind, codes in pairs { uchar = "255 0 51", float = "1 0 0.2", double = "1.0001 0 .2", float32 = "255 0 51", ushort = "65535 0 13107",
+    int = "255 0 51", uint8 = "255 0 51", char = "127 0 51" } do
+    check(color(kind, codes, codes) == (kind == "char" and "#7f0033" or "#ff0033"), "%s: %s", kind, color(kind, codes, codes))
+  end
+  check(color("float", "1 0 0", "-1 0 0") == "", "normals are no colours")
+  warns("vertex 2: its colours are passed over: red, green and blue 0 .. 1 expected", folder .. "/c.ply")
+  local mesh = load("c.ply", HEAD, "element vertex 3\n", VERTEX, FACE, "property float red\nproperty float green\nproperty float blue\n",
+    "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0 1 0\n")
+  check(mesh.materials[1].name == "#00ff00", "of faces")
 end
 
 function tests.ply()
@@ -201,13 +275,15 @@ function tests.ply()
   for _, at in ipairs { { 0.2, 0.2 }, { 0.9, 0.9 } } do
     check(scene:cast({ at[1], at[2], 5 }, { 0, 0, -1 }).normal.z == 1, "both are seen from the front")
   end
+  mesh = load("s.ply", HEAD, "element vertex 4\n", VERTEX, strips, vertices, "6 0 1 2 2 2 3\n")
+  check(mesh.count == 1 and not warnings_of(folder .. "/s.ply")[1], "corners named twice join two parts of a strip")
   mesh = load("s.ply", HEAD, "element vertex 4\n", VERTEX, strips, vertices, "11 0 1\n2 -1 1 3 2 -1\n0 1 -1\n")
   check(mesh.count == 2, "-1 ends a strip; a list goes over several lines")
   local binary = HEAD:gsub("ascii", "binary_big_endian")
   mesh = load("s.ply", binary, "element vertex 4\n", VERTEX, strips, (">fffffffffffff"):sub(1, 13):pack(0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0),
     (">i4i4i4i4i4"):pack(4, 0, 1, 2, 3))
   check(mesh.count == 2, "binary")
-  refuses("tristrips 1 of 1: the number of a vertex, 0 .. 3, expected, got -2", "s.ply", HEAD, "element vertex 4\n", VERTEX, strips, vertices,
+  refuses(":14: tristrips 1 of 1: the number of a vertex, 0 .. 3, expected, got -2", "s.ply", HEAD, "element vertex 4\n", VERTEX, strips, vertices,
     "3 0 1 -2\n")
   check(load("l.ply", HEAD, "element vertex 3\n", VERTEX, FACE, "end_header\n0\n0 0\n1 0\n0\n\n0 1 0\n3 0\n1 2\n").count == 1,
     "a vertex over several lines")
@@ -250,7 +326,7 @@ function tests.formats_that_are_not_read()
     { "a.3mf", "PK\3\4", "a zip archive, as .3mf and .usdz are" }, { "b.3mf", "x", "3MF" }, { "a.cif", "data_x\n", "CIF" }, { "a.obj", "glTF\2", "glTF" },
     { "b.obj", "\xff\xfev\0 \0", "UTF-16, not UTF-8" }, { "a.fbx", "Kaydara FBX Binary", "FBX" }, { "a.step", "ISO-10303-21;", "STEP" },
     { "a.obj.gz", "\x1f\x8b\8", "compressed" }, { "a.dae", "<?xml", "XML" }, { "a.GLB", "", "glTF" } } do
-    refuses("is " .. case[3] .. "; glint reads .obj .stl .ply", case[1], case[2])
+    refuses(": is " .. case[3] .. "; glint reads .obj .stl .ply", case[1], case[2])
   end
 end
 

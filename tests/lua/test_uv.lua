@@ -115,10 +115,10 @@ function tests.files_have_vt()
     end)
   end
   with_file(head .. "f 1/1 2/2 3/5\n", function(name)
-    raises("line 10: the number of a texture coordinate, 1 .. 4, expected, got '5'", glint.mesh, { file = name })
+    raises(":10: the number of a texture coordinate, 1 .. 4, expected, got '5'", glint.mesh, { file = name })
   end)
   with_file(head .. "f 1/x 2/2 3/5\n", function(name) raises("v/vt/vn expected", glint.mesh, { file = name }) end)
-  with_file(head .. "vt a b\nf 1 2 3\n", function(name) raises("line 10: a number expected, got 'a b'", glint.mesh, { file = name }) end)
+  with_file(head .. "vt a b\nf 1 2 3\n", function(name) raises(":10: a number expected, got 'a b'", glint.mesh, { file = name }) end)
   with_file(head .. "f 1/1 2/2 3/3\nf 1 3/3 4/4\n", function(name)
     local mesh = glint.mesh { file = name, name = "patchy", material = material }
     raises("s.uv: mesh 'patchy': faces[2] has no coordinates (vt)", function() scene_of(mesh):render(PASSES) end)

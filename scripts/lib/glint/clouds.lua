@@ -1,19 +1,22 @@
--- Clouds of points with a head: .ply without faces (text or binary), .pcd (ascii or binary). glint.points calls this.
--- Columns have the names of the file; red, green and blue are the colour of a point. Points that are not finite, as in
--- the gaps of a scan, are passed over.
+-- Clouds of points with a head: .ply without faces (text or binary), .pcd (ascii, binary or binary_compressed).
+-- glint.points calls this. Columns have the names of the file; red, green and blue are the colour of a point. Points
+-- that are not finite, as in the gaps of a scan, are passed over.
 local frames = require "glint.frames"
 
 local clouds = {}
 
 local BLOCK = 1 << 16 -- bytes that are read at once
+local CHUNK = 1 << 12 -- bytes that are put together at once
 local PLY_TYPES = { char = "b", int8 = "b", uchar = "B", uint8 = "B", short = "h", int16 = "h", ushort = "H",
   uint16 = "H", int = "i4", int32 = "i4", uint = "I4", uint32 = "I4", float = "f", float32 = "f",
   double = "d", float64 = "d" }
 local PCD_TYPES = { F4 = "f", F8 = "d", I1 = "b", I2 = "h", I4 = "i4", I8 = "i8", U1 = "B", U2 = "H", U4 = "I4",
   U8 = "I8" }
 -- Names that other programs give to the same thing.
-local SAME = { diffuse_red = "red", diffuse_green = "green", diffuse_blue = "blue", r = "red", g = "green", b = "blue",
-  scalar_radius = "radius" }
+local SAME = { x = "x", y = "y", z = "z", r = "red", g = "green", b = "blue", diffuse_red = "red",
+  diffuse_green = "green", diffuse_blue = "blue", scalar_radius = "radius" }
+
+local function code_size(code) return ("<" .. code):packsize() end
 
 local function words(line)
   local list = {}
@@ -36,6 +39,10 @@ local function text_rows(source, layout)
     done = done + 1
     local line = source:next_full()
     local list = words(line)
+    while line and #list < width do
+      line = source:next_full()
+      for _, word in ipairs(words(line)) do list[#list + 1] = word end
+    end
     if #list ~= width then
       source:fail(("point %d of %d, with %d numbers,"):format(done, layout.count, width), line)
     end
@@ -72,6 +79,69 @@ local function binary_rows(source, layout)
   end
 end
 
+-- The bytes that LZF packs, `size` of them: runs of up to 32 bytes as they are, and copies of at most 264 bytes from at
+-- most 8192 back. Nil: they are not packed so.
+local function unpack_lzf(packed, size)
+  local out, n, at, parts = {}, 0, 1, {}
+  while at <= #packed do
+    local code = packed:byte(at)
+    local length = code >> 5
+    at = at + 1
+    if length == 0 then
+      length = code + 1
+      if at + length - 1 > #packed or n + length > size then return nil end
+      for i = 0, length - 1 do out[n + 1 + i] = packed:byte(at + i) end
+      at = at + length
+    else
+      if length == 7 then length, at = 7 + (packed:byte(at) or 0), at + 1 end
+      length = length + 2
+      local from = n - ((code & 31) << 8 | (packed:byte(at) or 0))
+      at = at + 1
+      if from < 1 or at > #packed + 1 or n + length > size then return nil end
+      for i = 0, length - 1 do out[n + 1 + i] = out[from + i] end
+    end
+    n = n + length
+  end
+  if n ~= size then return nil end
+  for i = 1, n, CHUNK do parts[#parts + 1] = string.char(table.unpack(out, i, math.min(i + CHUNK - 1, n))) end
+  return table.concat(parts)
+end
+
+-- Likewise of bytes that LZF packs: the numbers of the first field of all points, then those of the second ...
+local function packed_rows(source, layout)
+  local function fail(what) error(("%s: %s"):format(source.path, what), 0) end
+  if source.path == "-" then fail "a cloud of points as text expected, got a binary one" end
+  local file = assert(io.open(source.path, "rb"))
+  file:seek("set", (source:tell()) + (layout.skipped or 0))
+  local sizes = file:read(8) or ""
+  local packed, size = (#sizes == 8 and sizes or ("\0"):rep(8)):match "^(....)(....)$"
+  packed, size = ("<I4"):unpack(packed), ("<I4"):unpack(size)
+  local data = file:read(packed) or ""
+  file:close()
+  if #data < packed then fail(("%d packed bytes expected, got %d"):format(packed, #data)) end
+  local starts, width = {}, 0
+  for i, code in ipairs(layout.codes) do
+    local same = layout.field[i] == layout.field[i - 1]
+    starts[i] = same and starts[i - 1] + code_size(code) or width * layout.count
+    width = width + code_size(code)
+  end
+  if size ~= width * layout.count then
+    fail(("%d unpacked bytes expected, got %d"):format(width * layout.count, size))
+  end
+  data = unpack_lzf(data, size)
+  if not data then fail "bytes that LZF packs expected" end
+  local done = 0
+  return function()
+    if done == layout.count then return nil end
+    local list = {}
+    for i, code in ipairs(layout.codes) do
+      list[i] = ("<" .. code):unpack(data, starts[i] + done * layout.strides[i] + 1)
+    end
+    done = done + 1
+    return list
+  end
+end
+
 -- ---- Heads ----
 
 -- The head of a .ply file, whose first line has been read.
@@ -104,14 +174,15 @@ end
 
 -- The head of a .pcd file, whose first line has been taken back.
 local function read_pcd(source)
-  local layout, head = { names = {}, codes = {} }, {}
+  local layout, head = { names = {}, codes = {}, field = {}, strides = {} }, {}
   repeat
     local line = source:next_full()
     local list = words(line)
     if not line then source:fail("DATA", nil) end
     head[list[1]:upper()] = list
   until head.DATA
-  local kind = head.DATA[2]
+  head.FIELDS = head.FIELDS or head.COLUMNS -- of version .5
+  local kind = (head.DATA[2] or ""):lower()
   for _, name in ipairs { "FIELDS", "SIZE", "TYPE" } do
     local list = head[name]
     if not list or #list ~= #head.FIELDS then source:fail(name .. ", one for each field,", "DATA") end
@@ -123,9 +194,13 @@ local function read_pcd(source)
     for k = 1, count do
       layout.names[#layout.names + 1] = count == 1 and head.FIELDS[i] or head.FIELDS[i] .. "_" .. k
       layout.codes[#layout.codes + 1] = code
+      layout.field[#layout.codes], layout.strides[#layout.codes] = i, count * code_size(code)
     end
   end
-  if kind ~= "ascii" and kind ~= "binary" then source:fail("DATA ascii or binary", kind) end
+  if kind ~= "ascii" and kind ~= "binary" and kind ~= "binary_compressed" then
+    source:fail("DATA ascii, binary or binary_compressed", kind)
+  end
+  layout.is_packed = kind == "binary_compressed"
   layout.order = kind == "ascii" and "" or "<"
   local function whole(name, default) return source:whole(head[name] and head[name][2] or default, name, 0) end
   layout.count = head.POINTS and whole "POINTS" or whole "WIDTH" * whole("HEIGHT", "1")
@@ -142,6 +217,10 @@ local function unpack_color(layout, place)
   local is_float = layout.codes[rgb] == "f"
   return function(list)
     local code = list[rgb]
+    if code ~= code then -- lost: a text has the bits of a colour as a number, and some are none
+      list[n + 1], list[n + 2], list[n + 3] = code, code, code
+      return
+    end
     code = is_float and ("<I4"):unpack(("<f"):pack(code)) or math.tointeger(code) or 0
     list[n + 1], list[n + 2], list[n + 3] = code >> 16 & 255, code >> 8 & 255, code & 255
   end
@@ -177,7 +256,7 @@ function clouds.start(source, line)
   for _, name in ipairs { "x", "y", "z" } do
     if not place[name] then source:fail(("a property or field %s of points"):format(name), line) end
   end
-  local rows = (layout.order == "" and text_rows or binary_rows)(source, layout)
+  local rows = (layout.order == "" and text_rows or layout.is_packed and packed_rows or binary_rows)(source, layout)
   local color = unpack_color(layout, place)
   local fields = { count = layout.count }
   frames.name_columns(fields, layout.names, function(wanted) return pick(wanted, fields.places) end)

@@ -4,10 +4,10 @@
 --       for label, x, y, z, radius in frame:atoms() do ... end
 --     end
 -- Columns are found by their names, in any order: x y z or xu yu zu (lengths), xs ys zs or xsu ysu zsu (shares of the
--- box); `radius` or `diameter` where it is given. A label is the column `element` or `typelabel`, or `types[type]` of
--- the options, or "type1", "type2" ..., or "point" where no column has kinds. All columns are there by name:
--- frame:atoms("vx", "c_pe"). The u columns
--- lie outside a periodic box where an atom has left it: wrap = true brings it back.
+-- box); `radius` or `diameter` where it is given. A label is the column `element` or `typelabel`, or a word in `type`,
+-- or `types[type]` of the options, or "type1", "type2" ..., or "point" where no column has kinds. All columns are there
+-- by name: frame:atoms("vx", "c_pe"). The u columns lie outside a periodic box where an atom has left it: wrap = true
+-- brings it back.
 local frames, boxes = require "glint.frames", require "glint.box"
 
 local lammps = {}
@@ -103,6 +103,7 @@ end
 local function label_of(source, columns, list, options)
   if columns.label then return list[columns.label] end
   if not columns.type then return "point" end
+  if list[columns.type]:find "^%a" then return list[columns.type] end -- of dump_modify types labels
   local number = source:whole(list[columns.type], "the type of an atom", 1)
   if not options.types then return "type" .. number end
   return options.types[number] or source:fail(("a type among the %d of the option types"):format(#options.types),
@@ -120,7 +121,13 @@ local function read_atom(source, frame, columns, options)
   end
   local x, y = source:number_of(list[columns.x], "x"), source:number_of(list[columns.y], "y")
   local z, radius = source:number_of(list[columns.z], "z"), nil
-  if columns.scaled or options.wrap then
+  if columns.scaled and not frame.box and not options.wrap then
+    local cell, share = frame.cell, { x, y, z }
+    x, y, z = table.unpack(cell.origin)
+    for i, side in ipairs { cell.a, cell.b, cell.c } do
+      x, y, z = x + share[i] * side[1], y + share[i] * side[2], z + share[i] * side[3]
+    end
+  elseif columns.scaled or options.wrap then
     local box = frame.box or source:fail("a box with a along x and b in the plane of x and y, for shares of it,", line)
     if not columns.scaled then x, y, z = boxes.scale(box, x, y, z) end
     if options.wrap then x, y, z = boxes.wrapped(box, x, y, z) end

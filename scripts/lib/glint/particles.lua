@@ -243,11 +243,14 @@ end
 local function add_colored(self, frame)
   local scale = 255 / frame.color.most
   local function code_of(v)
-    if math.type(v) and v >= 0 and v * scale <= 255 then return math.floor(v * scale + 0.5) end
+    if math.type(v) and v >= 0 and (v * scale <= 255 or frame.color.most == 1 and v <= 16) then
+      return math.floor(math.min(v * scale, 255) + 0.5)
+    end
     frame:fail(("red, green and blue, 0 .. %d,"):format(frame.color.most), tostring(v))
   end
   for label, x, y, z, radius, r, g, b in frame:atoms("red", "green", "blue") do
-    local code = code_of(r) << 16 | code_of(g) << 8 | code_of(b)
+    local is_lost = r ~= r or g ~= g or b ~= b -- NaN
+    local code = not is_lost and code_of(r) << 16 | code_of(g) << 8 | code_of(b) or nil
     local done, expected, got = put(self, frame, label, x, y, z, radius, nil, code)
     if not done then frame:fail(expected, got) end
   end

@@ -27,6 +27,8 @@ HID HIE HIP HSD HSE HSP CYX CYM ASH GLH LYN ACE NME NMA NH2
 A C G U I T N DA DC DG DT DU DI RA RC RG RU A3 A5 C3 C5 G3 G5 U3 U5 RA3 RA5 RC3 RC5 RG3 RG5 RU3 RU5
 DA3 DA5 DC3 DC5 DG3 DG5 DT3 DT5 ADE CYT GUA THY URA AMP ADP ATP GMP GDP GTP]]
 local WATERS = set_of "HOH WAT DOD H2O SOL SPC TIP TIP3 TIP4 TIP5 TP3 TP4 TP5 T3P T4P T4E T5P TI3 TI4 OPC SWM"
+-- Residues around a metal, whose NA and NB are nitrogens and whose CA is a carbon wherever the names stand.
+local PORPHYRINS = set_of "HEM HEA HEB HEC HDD HEME CLA CHL BCL SRM PP9"
 -- Ions as CHARMM names them.
 local IONS = { SOD = "Na", CLA = "Cl", POT = "K", CAL = "Ca", CES = "Cs", LIT = "Li", RUB = "Rb", BAR = "Ba",
   CAD = "Cd" }
@@ -41,6 +43,7 @@ local function element_of(name, residue, is_left)
   local first, two = letters:sub(1, 1), letters:sub(1, 2)
   if WATERS[residue] then return first:find "[OHD]" and elements.symbol(first) or nil end
   if BIOMOLECULES[residue] then return elements.symbol(two == "SE" and two or first) end
+  if PORPHYRINS[residue] and #letters > 1 and not SURE[two] then return elements.symbol(first) end
   local ion = IONS[letters] or residue:match "^%a*" == letters and elements.symbol(letters)
   if ion then return ion end
   local is_placed = name:find "^%a%a" and not is_left and #text < 4 and (first ~= "H" or text == "HG")
@@ -110,14 +113,15 @@ end
 
 -- The cell and box of a CRYST1 record; nil where it has none: 1 1 1 stands in files that are no crystal.
 local function cell_of(source, line)
-  local v, is_whole = {}, true
+  local v, is_whole, is_read = {}, true, true
   for i, columns in ipairs { { 7, 15 }, { 16, 24 }, { 25, 33 }, { 34, 40 }, { 41, 47 }, { 48, 54 } } do
     local text = line:sub(columns[1], columns[2])
     v[i] = i > 3 and not text:find "%S" and 90 or lines.number(text) or 0
+    is_read = is_read and (not text:find "%S" or lines.number(text))
     is_whole = is_whole and v[i] > 0 and v[i] < (i > 3 and 180 or math.huge)
   end
   local a, b, c = v[1], v[2], v[3]
-  if math.max(a, b, c) <= 1 then return nil end
+  if is_read and math.max(a, b, c) <= 1 then return nil end
   local cos_a, cos_b, cos_c = cosine(v[4]), cosine(v[5]), cosine(v[6])
   local sin_c = math.sqrt(1 - cos_c * cos_c)
   local y = (cos_a - cos_b * cos_c) / sin_c

@@ -98,9 +98,14 @@ local function probe(source, line, separator)
   return list
 end
 
+-- The largest number that a colour may have: 255, or 1. A colour 0 .. 1 that is a little too bright has fractions.
+local function most_of_color(most, is_whole)
+  return most > (is_whole and 1 or 16) and 255 or 1
+end
+
 -- What three columns from `first` on are: "normal", or the largest number of a colour, 1 or 255. Nil: neither.
 local function kind_of(rows, first)
-  local most, is_color, is_unit, is_turned = 0, true, true, false
+  local most, is_color, is_unit, is_turned, is_whole = 0, true, true, false, true
   for _, row in ipairs(rows) do
     local square = 0
     for i = first, first + 2 do
@@ -108,11 +113,12 @@ local function kind_of(rows, first)
       most, square = math.max(most, v), square + v * v
       is_color = is_color and v >= 0 and v <= 255
       is_turned = is_turned or v < 0 or v > 0 and v < 1
+      is_whole = is_whole and v == math.floor(v)
     end
     is_unit = is_unit and (square == 0 or math.abs(square - 1) < 0.01)
   end
   if is_unit and is_turned then return "normal" end
-  return is_color and (most > 1 and 255 or 1) or nil
+  return is_color and most_of_color(most, is_whole) or nil
 end
 
 local function is_constant(rows, column)
@@ -154,11 +160,14 @@ end
 
 -- The largest number of a colour whose columns have names.
 local function most_of(source, line, separator, place)
-  local rows, most = probe(source, line, separator), 0
+  local rows, most, is_whole = probe(source, line, separator), 0, true
   for _, row in ipairs(rows) do
-    for _, name in ipairs { "red", "green", "blue" } do most = math.max(most, row[place[name]] or 0) end
+    for _, name in ipairs { "red", "green", "blue" } do
+      local v = row[place[name]] or 0
+      most, is_whole = math.max(most, v), is_whole and v == math.floor(v)
+    end
   end
-  return most > 1 and 255 or 1
+  return most_of_color(most, is_whole)
 end
 
 local LONG = { r = "red", g = "green", b = "blue" }
@@ -180,7 +189,8 @@ local function start(source, number, options)
   if fields then return fields, next_atom end
   if line then source:back(line) end
   line = source:next_full()
-  if line and line:find "^%s*%d+%s*$" then line = source:next_full() end -- how many there are, as of .pts
+  local expected = line and math.tointeger(tonumber(line:match "^%s*%d+%s*$")) -- how many points there are, as of .pts
+  if expected then line = source:next_full() end
   if not line then source:fail("a line of points", nil) end
   local separator = options.separator or line:match "[\t;,]" or " "
   local first = split(source, line, separator)
@@ -199,8 +209,14 @@ local function start(source, number, options)
     fields.color = { most = most or most_of(source, line, separator, place) }
     for _, name in ipairs { "red", "green", "blue" } do fields.places[name] = place[name] end
   end
+  local done = 0
   return fields, function()
     local text = source:next_full()
+    if expected and done == expected and text and text:find "^%s*%d+%s*$" then -- one more scan
+      expected, done, text = math.tointeger(tonumber(text)), 0, source:next_full()
+    end
+    done = done + 1
+    if expected and done <= expected and not text then source:fail(("point %d of %d"):format(done, expected), nil) end
     if text then return read_point(source, fields, text, place, separator, count) end
   end
 end

@@ -22,6 +22,7 @@ local function read_atom(source, frame, index)
   frame.line = line
   local label, x, y, z = line:match(frame.pattern)
   if frame.swaps and label then x, y, z, label = label, x, y, z end
+  if frame.is_type and label and label:find "^%d+$" then label = "type" .. label end
   if not label then source:fail(("atom %d of %d (%s)"):format(index, frame.count, frame.form), line) end
   return label, source:number_of(x, "x"), source:number_of(y, "y"), source:number_of(z, "z")
 end
@@ -92,6 +93,7 @@ local function find_columns(source, fields)
   for i = 1, math.max(label, place.z) do parts[i] = "%S+" end
   for _, i in ipairs { label, place.x, place.y, place.z } do parts[i] = "(%S+)" end
   fields.pattern, fields.swaps = "^%s*" .. table.concat(parts, "%s+"), label > place.x
+  fields.is_type = label == place.type
   fields.form = text and table.concat(names, " ") or "element x y z"
   frames.name_columns(fields, names)
   if not text then
@@ -104,18 +106,20 @@ end
 
 local function numbers_of(source, text, count, what, comment)
   local list = {}
-  for word in text:gmatch "%S+" do list[#list + 1] = source:number_of(word, what) end
+  for word in text:gmatch "[^%s,;{}%[%]]+" do list[#list + 1] = source:number_of(word, what) end
   if #list ~= count then source:fail(("%d numbers for %s"):format(count, what), comment) end
   return list
 end
 
--- Along which sides a frame repeats: pbc="T T F", or one word for all; all where it is not said.
+local TRUTHS = { t = true, ["true"] = true, ["1"] = true, f = false, ["false"] = false, ["0"] = false }
+
+-- Along which sides a frame repeats: pbc="T T F" or TTF, or one word for all; all where it is not said.
 local function periodic_of(source, fields)
-  local list = {}
-  for word in (fields.keys.pbc or "T"):gmatch "[^%s,]+" do
-    local first = word:sub(1, 1):upper()
-    if not first:find "[TF10]" then source:fail("T or F of pbc", word) end
-    list[#list + 1] = first == "T" or first == "1"
+  local list, text = {}, (fields.keys.pbc or "T"):lower()
+  text = text:gsub("^%s*([tf01])([tf01])([tf01])%s*$", "%1 %2 %3")
+  for word in text:gmatch "[^%s,;{}%[%]]+" do
+    if TRUTHS[word] == nil then source:fail("T or F of pbc", word) end
+    list[#list + 1] = TRUTHS[word]
   end
   if #list == 1 then return { list[1], list[1], list[1] } end
   if #list ~= 3 then source:fail("three words T or F of pbc", fields.comment) end
