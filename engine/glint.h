@@ -318,9 +318,20 @@ typedef enum glint_model {
 /// B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007).
 typedef enum glint_distribution { GLINT_DISTRIBUTION_GGX, GLINT_DISTRIBUTION_BECKMANN } glint_distribution;
 
+/// The meaning of an opacity between 0 and 1. In every mode a surface of opacity 0 is invisible, and one of opacity 1 opaque.
+typedef enum glint_opacity_mode {
+    GLINT_OPACITY_AUTO, ///< a number blends, a pattern cuts
+    GLINT_OPACITY_CUT, ///< below 0.5, or NaN, the surface is not there for any ray of a frame; elsewhere it is opaque. Objects
+        ///< behind a hole look as they do without the surface
+    /// The light that the surface gives, including mirrored, refracted and indirect light, is multiplied by the opacity o. Rays of the
+    /// eye, of mirrors, of glass and of indirect light also go straight on with 1 - o of their weight, and rays from lights keep 1 - o
+    /// of their strength. Each surface counts: a ray through a closed ball crosses two surfaces and keeps (1 - o)^2.
+    GLINT_OPACITY_BLEND
+} glint_opacity_mode;
+
 /// Programs that a material has in place of its numbers; NULL: the number. A material retains them. What a pattern gives
 /// that is NaN or below 0 is taken as 0, above 2^100 as that, and counted: see glint_frame_stats. A program whose outputs are
-/// numbers is these numbers: they are what glint_material_get gives.
+/// numbers is these numbers: they are what glint_material_get gives. An opacity between 0 and 1 stays a pattern.
 typedef struct glint_material_programs {
     glint_program *diffuse, *ambient, *specular, *mirror, *transmission; ///< patterns of a colour, or of one number for
         ///< a grey; without one of its own, and until it is set, `ambient` follows that of `diffuse`
@@ -328,7 +339,7 @@ typedef struct glint_material_programs {
     glint_program *bump; ///< pattern of one number, the height over the surface in world units: light, mirrors and glass see
         ///< the normal unit(n - (g - (g.n) n)), g the height's gradient by `p` and `world`. Only where n.l > 0 with the
         ///< surface's own n, too, is there light
-    glint_program *opacity; ///< pattern of one number: where it is below 0.5, or NaN, the surface is not there for any ray
+    glint_program *opacity; ///< pattern of one number; see glint_opacity_mode
     glint_program *shader; ///< in place of `model`: the diffuse term of each light, and the specular one if it has six outputs
 } glint_material_programs;
 
@@ -359,8 +370,8 @@ typedef struct glint_material_desc {
     glint_distribution distribution; ///< default GGX
     bool has_f0; ///< false: f0 = ((ior - 1) / (ior + 1))^2
     double f0[3]; ///< what is reflected head-on, 0 .. 1; coloured for metals
-    double opacity; ///< 0 .. 1, default 1; below 0.5 no ray of a frame meets the surface, neither of the eye, of mirrors and of
-        ///< glass, nor of shadows and indirect light. What stands behind is where it would be without. glint_scene_cast meets it
+    double opacity; ///< 0 .. 1, default 1; see glint_opacity_mode. glint_scene_cast hits the surface whatever its opacity
+    glint_opacity_mode opacity_mode; ///< default auto
     glint_material_programs program;
     char name[GLINT_NAME_SIZE];
 } glint_material_desc;
@@ -931,7 +942,8 @@ typedef enum glint_pass {
     GLINT_PASS_DEPTH, ///< one channel: distance from the eye, +inf where nothing is hit; at the pixel's centre
     GLINT_PASS_NORMAL, ///< shading normal turned to the eye, 0 where nothing is hit; at the pixel's centre
     GLINT_PASS_OBJECT_ID, ///< one channel: 1.. in order of definition, 0 where nothing is hit; at the pixel's centre
-    GLINT_PASS_ALPHA, ///< one channel: the share of the samples that hit something, 0 .. 1
+    GLINT_PASS_ALPHA, ///< one channel, 0 .. 1: the share of the samples that hit something. A sample that reaches the background
+        ///< through glass or translucent surfaces, without a reflection, counts 1 less the mean of its three channels' weight
     GLINT_PASS_OUTLINE, ///< one channel: 1 where objects end, hide each other or have an edge, else 0; at the pixel's centre
     GLINT_PASS_REFINED, ///< one channel: 1 where `adaptive` took all samples, else 0; 1 everywhere without it
     GLINT_PASS_ALBEDO, ///< diffuse reflectance, 0 where nothing is hit; at the pixel's centre
@@ -1038,8 +1050,9 @@ typedef struct glint_render_desc {
         ///< With `outline` those that it is made of, depth, normal and object_id, are kept too
     bool codes; ///< make integer codes of the beauty pass while rendering, by `tone`
     /// Where nothing is hit nothing is shown: the background is black there and codes have alpha, so that a PNG of beauty
-    /// is RGBA. Passes hold light times coverage; codes are of the light alone, beauty / alpha. What rays find behind
-    /// mirrors and glass is the scene's background as ever. Where beauty is kept, GLINT_PASS_ALPHA is too
+    /// is RGBA. Passes hold light times coverage; codes are of the light alone, beauty / alpha. The background is also left out
+    /// behind glass and translucent surfaces: see GLINT_PASS_ALPHA. Mirrored and totally reflected rays show the scene's
+    /// background. Where beauty is kept, GLINT_PASS_ALPHA is too
     bool alpha;
     glint_outline_color outline; ///< in files alone: planes and codes are without; the pass is kept. Default none
     glint_tone_desc tone;

@@ -11,6 +11,7 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 static const char *const MODELS[] = { "phong", "blinn_phong", "lambert", "cook_torrance", NULL };
 static const char *const DISTRIBUTIONS[] = { "ggx", "beckmann", NULL };
+static const char *const OPACITY_MODES[] = { "auto", "cut", "blend", NULL };
 
 static const glintL_field FIELDS[] = {
     { .name = "model",
@@ -48,7 +49,8 @@ static const glintL_field FIELDS[] = {
     { .name = "roughness", .kind = GLINTL_NUMBER, .offset = AT(roughness), .program_offset = AT(program.roughness), .slopes = true },
     { .name = "distribution", .kind = GLINTL_ENUM, .offset = AT(distribution), .names = DISTRIBUTIONS },
     { .name = "f0", .kind = GLINTL_COLOR, .offset = AT(f0), .set_offset = AT(has_f0), .slopes = true },
-    { .name = "opacity", .kind = GLINTL_NUMBER, .offset = AT(opacity), .program_offset = AT(program.opacity) },
+    { .name = "opacity", .kind = GLINTL_NUMBER, .offset = AT(opacity), .program_offset = AT(program.opacity), .slopes = true },
+    { .name = "opacity_mode", .kind = GLINTL_ENUM, .offset = AT(opacity_mode), .names = OPACITY_MODES },
     { .name = "bump", .kind = GLINTL_PROGRAM, .program_offset = AT(program.bump) },
     { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
     { .name = NULL },

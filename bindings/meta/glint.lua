@@ -87,7 +87,8 @@ function vector:reflect(n) end
 ---@field roughness? number|glint.pattern  of "cook_torrance", 0 .. 1; the distribution's width is its square. Below 1e-9 as 1e-9. Default 0.3
 ---@field distribution? "ggx"|"beckmann"  of "cook_torrance": the slopes of its facets. Default "ggx"
 ---@field f0? glint.color  of "cook_torrance", 0 .. 1: what it reflects head-on; coloured for metals. Follows `ior` until set; nil: follows again
----@field opacity? number|glint.pattern  0 .. 1: where it is below 0.5, or NaN, the surface is not there, for no ray of a frame; scene:cast meets it. Default 1
+---@field opacity? number|glint.pattern  0 .. 1: a number o lets 1 - o of each ray and of the light straight through, at each surface; where a pattern is below 0.5, or NaN, the surface is not there for any ray of a frame. scene:cast hits it all the same. Default 1
+---@field opacity_mode? "auto"|"cut"|"blend"  "blend": a pattern, too, lets 1 - o through; "cut": a number, too, cuts at 0.5. Default "auto": numbers blend, patterns cut
 ---@field bump? glint.pattern  height over the surface, world units: light, mirrors and glass see the normals that it would have. Default nil
 ---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
 
@@ -748,7 +749,7 @@ function glint.scene(fields) end
 ---| "depth"  # distance from the eye, one number; inf where nothing is hit
 ---| "normal"  # shading normal turned to the eye; 0 where nothing is hit
 ---| "object_id"  # 1 .. in order of definition, one number; 0 where nothing is hit
----| "alpha"  # the share of the samples that hit something, one number, 0 .. 1
+---| "alpha"  # the share of the samples that hit something, less what glass and translucent surfaces let through to the background; one number, 0 .. 1
 ---| "refined"  # 1 where `adaptive` took all samples, else 0; one number
 ---| "albedo"  # diffuse reflectance, as patterns give it; 0 where nothing is hit
 ---| string  # "d:NAME": how fast beauty changes with the variable or parameter NAME; three numbers. "light:NAME": the light of the lamps
@@ -770,7 +771,7 @@ function glint.scene(fields) end
 ---@field rounding? "nearest"|"truncate"  Default "nearest"
 ---@field tone? "clamp"|"reinhard"|"filmic"  what becomes of bright light: cut at 1; x/(1+x); Hable's curve, white at 5.6. Default "clamp"
 ---@field exposure? number  stops, -32 .. 32: light is multiplied by 2^exposure before the curve. Default 0
----@field alpha? boolean  transparent background: a .png is RGBA, and passes hold light times coverage. Default false
+---@field alpha? boolean  transparent background, behind glass and translucent surfaces too: a .png is RGBA, and passes hold light times coverage. Default false
 ---@field outline? "none"|"black"|"white"  lines drawn into the .png where the pass "outline" is 1. Default "none"
 ---@field encode? "fast"|"small"  of a .png; the pixels are the same. Default "fast"
 ---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"  of the .png of depth and d:NAME. Default "none": grey

@@ -124,7 +124,9 @@ static bool any(const double c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
 
 static bool is_mirror(const glint_material_desc *d) { return glint_material_mirrors(d); }
 static bool is_transparent(const glint_material_desc *d) { return glint_material_transmits(d); }
-static bool is_cut_out(const glint_material_desc *d) { return d->program.opacity || d->opacity < 0.5; }
+static bool is_translucent(const glint_material_desc *d) { return glint_material_blends(d); }
+static bool lets_through(const glint_material_desc *d) { return is_transparent(d) || is_translucent(d); }
+static bool is_cut_out(const glint_material_desc *d) { return glint_material_is_cut(d); }
 static bool is_absorbing(const glint_material_desc *d) { return is_transparent(d) && any(d->absorption); }
 
 static bool shines_as(const glint_material_desc *d, glint_model model)
@@ -322,9 +324,10 @@ static void list_effects(explainer *e, const glint_scene *scene)
         materials(e, "mirror reflection", is_mirror);
         materials(e, "refraction", is_transparent);
         materials(e, "absorption inside", is_absorbing);
+        materials(e, "translucent surface", is_translucent);
     }
     if (plan->tints)
-        materials(e, "tinted shadow", is_transparent);
+        materials(e, "tinted shadow", lets_through);
     one(e, plan->depth_cue.on, "depth cue", "scene.depth_cue");
     veil(e);
     static const char *const inks[] = { "none", "black", "white" };

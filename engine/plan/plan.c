@@ -128,7 +128,7 @@ static void list_steps(glint_plan *plan)
 /// Lists the stages this frame needs.
 static void choose_stages(glint_plan *plan)
 {
-    plan->tints = glint_plan_is_lit(plan) && plan->transmits && plan->shadow_count > 0;
+    plan->tints = glint_plan_is_lit(plan) && (plan->transmits || plan->clears) && plan->shadow_count > 0;
     plan->dims = plan->tints && plan->absorbs;
     plan->depth_cue.on = plan->depth_cue.on && (plan->geometry->table.prim_count > 0 || plan->visible_light_count > 0);
     plan->accumulate = plan->light_groups || plan->desc.samples > 1 || plan->tints || plan->light_count > GLINT_LIGHT_CHUNK;
@@ -151,6 +151,8 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, const glint
         status = glint_geometry_check_reach(plan->geometry, "camera.eye", plan->camera.eye, error);
     if (!status)
         status = glint_plan_find_lens(plan, glint_camera_get(scene->desc.camera), error);
+    if (!status)
+        status = glint_plan_find_translucent(plan, error);
     if (!status)
         status = glint_plan_find_patterns(plan, glint_plan_has_indirect(&scene->desc), error);
     if (!status)
@@ -301,6 +303,7 @@ void glint_plan_destroy(glint_plan *plan)
     if (plan->times)
         glint_plan_free_times(plan->times, plan->shutter_times);
     glint_plan_destroy(plan->base);
+    glint_plan_translucent_free(plan);
     glint_geometry_release(plan->geometry);
     glint_overlays_release(plan->overlays);
     free(plan->lens);
@@ -386,7 +389,7 @@ glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
         rays.shadow = (samples + sides) * (plan->shadow_count - plan->spared_count);
     if (plan->runs[GLINT_STAGE_BOUNCE] && plan->mirrors)
         rays.mirror = samples;
-    if (plan->runs[GLINT_STAGE_BOUNCE] && plan->transmits)
+    if (plan->runs[GLINT_STAGE_BOUNCE] && (plan->transmits || plan->clears))
         rays.refraction = samples;
     rays.indirect = samples * plan->indirect.samples;
     return rays;

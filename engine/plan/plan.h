@@ -18,6 +18,7 @@
 #include "engine/overlay/overlay.h"
 #include "engine/effects/derivative/plan.h"
 #include "engine/effects/pattern/plan.h"
+#include "engine/effects/translucent/plan.h"
 #include "engine/plan/stage.h"
 
 typedef struct glint_plan_camera {
@@ -86,8 +87,13 @@ typedef struct glint_plan_environment {
 /// What a material sends on.
 typedef struct glint_bounce_material {
     double mirror[3], transmission[3], absorption[3], ior;
+    double clear; ///< the share that goes straight on; 0 if a program gives it
     bool fresnel, mirrors, transmits; ///< the latter: some channel
+    bool clears; ///< true if the material is translucent
 } glint_bounce_material;
+
+/// Returns whether a material sends on rays of any kind.
+static inline bool glint_sends_on(const glint_bounce_material *m) { return m->mirrors || m->transmits || m->clears; }
 
 /// Indirect light; all 0: there is none.
 typedef struct glint_plan_indirect {
@@ -119,6 +125,7 @@ struct glint_plan {
     glint_lens_points *lens; ///< of each sample; NULL: the camera has no lens
 
     glint_geometry *geometry;
+    glint_translucent *translucent; ///< beside the geometry's materials; NULL: none is translucent
     glint_shade_material *materials; ///< in the geometry's order
     uint32_t material_count;
     glint_plan_patterns *patterns; ///< what programs give of materials; NULL: no material has any
@@ -149,10 +156,10 @@ struct glint_plan {
     struct glint_light_groups *light_groups; ///< NULL: no light pass is wanted
 
     glint_bounce_material *bouncing; ///< beside materials; NULL: none of them sends rays on
-    bool mirrors, transmits, absorbs; ///< some material; the last: one that transmits
+    bool mirrors, transmits, clears, absorbs; ///< some material; the last: one that transmits
     glint_plan_indirect indirect;
     glint_media eye_media; ///< what the eye of a perspective camera is inside of
-    bool tints; ///< some light casts shadows, and something transmits
+    bool tints; ///< some light casts shadows, and something transmits or is translucent
     bool dims; ///< and something absorbs what goes through it
     double brightest; ///< bound of what any ray can bring; may be infinite
 

@@ -237,7 +237,7 @@ static glint_status make_materials(glint_plan *plan, bool *powers, bool *facets,
         return glint_fail_nomem(error);
     for (size_t i = 0; i < list->count; i++) {
         glint_shade_material *material = &plan->materials[plan->material_count++];
-        glint_shade_material_init(material, &((const glint_material *)list->items[i])->desc, plan->ambient);
+        glint_shade_material_init(material, glint_plan_material(plan, i), plan->ambient);
         *powers =
             *powers || material->highlight == GLINT_HIGHLIGHT_PHONG || material->highlight == GLINT_HIGHLIGHT_BLINN;
         *facets = *facets || material->highlight == GLINT_HIGHLIGHT_FACETS;
@@ -311,12 +311,12 @@ void glint_plan_count_lights(glint_plan *plan)
     }
 }
 
-/// Caps are of spheres and planes, which let no light through and have no holes.
+/// Caps are of spheres and planes, which let no light through, not even in part, and have no holes.
 static bool allows_caps(const glint_plan *plan)
 {
     const glint_geometry_table *table = &plan->geometry->table;
     const glint_list *list = &plan->geometry->materials;
-    bool opaque = !glint_plan_cuts(plan);
+    bool opaque = !glint_plan_cuts(plan) && !plan->translucent;
     for (size_t i = 0; i < list->count; i++)
         opaque = opaque && !glint_material_transmits(&((const glint_material *)list->items[i])->desc);
     return opaque && !table->triangles && !table->solids;

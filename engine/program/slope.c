@@ -11,39 +11,6 @@ static glint_value two(glint_slope_maker *s, glint_op op, glint_value a, glint_v
 
 // ---- The program --------------------------------------------------------------------------------------------------
 
-/// What is in a row, an input or a number. row: of each row the value that is in it.
-static glint_value value_in(glint_slope_maker *s, const glint_program_code *code, const glint_value *row, uint32_t from)
-{
-    glint_value out = 0;
-    if (from < GLINT_ROW_INPUT)
-        return row[from];
-    if (from >= GLINT_ROW_NUMBER)
-        return glint_slope_number(s, code->numbers[from - GLINT_ROW_NUMBER][0]);
-    if (!s->status)
-        s->status = glint_builder_input(s->builder, (glint_input)(from - GLINT_ROW_INPUT), &out, s->error);
-    return out;
-}
-
-/// Builds the program's values once more, and gives its outputs.
-static void copy_values(glint_slope_maker *s, const glint_program *program, glint_value outputs[GLINT_PROGRAM_OUTPUTS_MAX])
-{
-    const glint_program_code *code = &program->code;
-    glint_value row[GLINT_PROGRAM_ROWS_MAX] = { 0 }, operands[GLINT_OPERANDS_MAX], results[GLINT_RESULTS_MAX];
-    for (uint32_t at = 0; at < code->length && !s->status; at++) {
-        const glint_instruction *in = &code->instructions[at];
-        uint32_t texture = 0;
-        for (uint32_t k = 0; k < in->operands; k++)
-            operands[k] = value_in(s, code, row, in->in[k]);
-        if (in->op >= GLINT_OP_TEXEL && !s->status)
-            s->status = glint_builder_texture(s->builder, program->textures[in->texture], &texture, s->error);
-        glint_slope_make(s, (glint_op)in->op, texture, operands, results);
-        for (uint32_t k = 0; k < in->results; k++)
-            row[in->out[k]] = results[k];
-    }
-    for (uint32_t k = 0; k < code->output_count; k++)
-        outputs[k] = value_in(s, code, row, code->outputs[k]);
-}
-
 static void find_what_varies(glint_slope_maker *s, uint32_t inputs)
 {
     const glint_ssa_node *nodes = s->builder->nodes;
@@ -82,7 +49,7 @@ static void begin(glint_slope_maker *s, const glint_program *program, uint32_t i
     s->status = glint_builder_create(program->kind, &s->builder, s->error);
     if (s->status)
         return;
-    copy_values(s, program, outputs);
+    s->status = glint_builder_load(s->builder, program, NULL, outputs, s->error);
     s->count = s->builder->count;
     s->given = malloc((s->count + 1) * sizeof *s->given);
     s->varies = calloc(s->count + 1, sizeof *s->varies);

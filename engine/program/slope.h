@@ -18,8 +18,6 @@ typedef struct glint_slope_maker {
 glint_value glint_slope_number(glint_slope_maker *s, double x);
 /// The result of an operation of three operands, or of fewer; the others are 0.
 glint_value glint_slope_op(glint_slope_maker *s, glint_op op, glint_value a, glint_value b, glint_value c);
-/// The results of any.
-void glint_slope_make(glint_slope_maker *s, glint_op op, uint32_t texture, const glint_value *operands, glint_value *out);
 
 /// Adds to what a value was given, if it varies.
 void glint_slope_give(glint_slope_maker *s, glint_value to, glint_value what);

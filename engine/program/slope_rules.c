@@ -8,7 +8,7 @@
 
 // ---- Making values ------------------------------------------------------------------------------------------------
 
-void glint_slope_make(glint_slope_maker *s, glint_op op, uint32_t texture, const glint_value *operands, glint_value *out)
+static void make(glint_slope_maker *s, glint_op op, uint32_t texture, const glint_value *operands, glint_value *out)
 {
     for (uint32_t k = 0; k < GLINT_RESULTS_MAX; k++)
         out[k] = 0;
@@ -20,7 +20,7 @@ glint_value glint_slope_op(glint_slope_maker *s, glint_op op, glint_value a, gli
 {
     const glint_value operands[GLINT_OPERANDS_MAX] = { a, b, c };
     glint_value out[GLINT_RESULTS_MAX];
-    glint_slope_make(s, op, 0, operands, out);
+    make(s, op, 0, operands, out);
     return out[0];
 }
 
@@ -236,15 +236,15 @@ static void pass_pattern(glint_slope_maker *s, const glint_ssa_node *node, uint3
     case GLINT_OP_NOISE:
     case GLINT_OP_NOISE3:
         operands[3] = glint_slope_number(s, node->op == GLINT_OP_NOISE ? 0 : part + 1);
-        glint_slope_make(s, GLINT_OP_NOISE_SLOPE, 0, operands, slope);
+        make(s, GLINT_OP_NOISE_SLOPE, 0, operands, slope);
         pass_slopes(s, node, g, slope, 3, 1);
         break;
     case GLINT_OP_CELL:
-        glint_slope_make(s, GLINT_OP_CELL_SLOPE, 0, operands, slope);
+        make(s, GLINT_OP_CELL_SLOPE, 0, operands, slope);
         pass_slopes(s, node, g, slope + 3 * part, 3, 1);
         break;
     case GLINT_OP_TEXEL:
-        glint_slope_make(s, GLINT_OP_TEXEL_SLOPE, node->texture, operands, slope);
+        make(s, GLINT_OP_TEXEL_SLOPE, node->texture, operands, slope);
         pass_slopes(s, node, g, slope + part, 2, 4);
         break;
     default: break; // hash and parity: level wherever they have a slope

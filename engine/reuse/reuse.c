@@ -99,8 +99,7 @@ bool glint_reuse_shows_more(const glint_cached_tile *tile, const glint_plan *pla
     if (!plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || tile->shown_count > GLINT_SHOWN_MAX)
         return plan->runs[GLINT_STAGE_BOUNCE] || plan->tints;
     for (uint32_t i = 0; i < tile->shown_count; i++) {
-        const glint_bounce_material *m = &plan->bouncing[tile->shown[i]];
-        if (m->mirrors || m->transmits)
+        if (glint_sends_on(&plan->bouncing[tile->shown[i]]))
             return true;
     }
     return false;

@@ -49,6 +49,8 @@ static glint_status check(const glint_material_desc *desc, glint_error *error)
         status = glint_check_range("roughness", desc->roughness, 0, 1, "number 0 .. 1", error);
     if (!status)
         status = glint_check_range("opacity", desc->opacity, 0, 1, "number 0 .. 1", error);
+    if (!status && desc->opacity_mode > GLINT_OPACITY_BLEND)
+        status = glint_fail(error, GLINT_ERR_INVALID, "opacity_mode: no such mode");
     if (!status && desc->distribution > GLINT_DISTRIBUTION_BECKMANN)
         status = glint_fail(error, GLINT_ERR_INVALID, "distribution: no such distribution");
     if (!status && desc->has_f0)
@@ -129,13 +131,20 @@ bool glint_pattern_numbers(const glint_program *program, double most, double out
     return good;
 }
 
+/// Returns whether a number means the same as a pattern of that number. An opacity does not: by default patterns cut and numbers blend.
+static bool means_the_same(const program_field *field, const double *value)
+{
+    return field->number != AT(opacity) || value[0] == 0 || value[0] == 1;
+}
+
 /// A pattern of numbers alone is these numbers. One height everywhere is no bump.
 static void fold_program(const program_field *field, glint_material_desc *desc)
 {
     double value[GLINT_PROGRAM_OUTPUTS_MAX];
     glint_program **program = program_at(&desc->program, field);
     if (field->count == 0 || (field->number ? !glint_pattern_numbers(*program, field->most, value)
-                                            : !glint_program_constant(*program, value)))
+                                            : !glint_program_constant(*program, value)) ||
+        !means_the_same(field, value))
         return;
     if (field->number)
         memcpy((char *)desc + field->number, value, field->count * sizeof *value);
@@ -250,6 +259,20 @@ bool glint_material_transmits(const glint_material_desc *desc)
 bool glint_material_mirrors(const glint_material_desc *desc)
 {
     return desc->program.mirror || (desc->has_mirror ? is_any(desc->mirror) : desc->fresnel);
+}
+
+bool glint_material_is_cut(const glint_material_desc *desc)
+{
+    if (desc->program.opacity)
+        return desc->opacity_mode != GLINT_OPACITY_BLEND;
+    return desc->opacity_mode == GLINT_OPACITY_CUT ? desc->opacity < 0.5 : desc->opacity == 0;
+}
+
+bool glint_material_blends(const glint_material_desc *desc)
+{
+    if (desc->program.opacity)
+        return desc->opacity_mode == GLINT_OPACITY_BLEND;
+    return desc->opacity_mode != GLINT_OPACITY_CUT && desc->opacity > 0 && desc->opacity < 1;
 }
 
 void glint_describe_material(const glint_material_desc *desc, const char *owner, char *out, size_t size)

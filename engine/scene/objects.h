@@ -135,6 +135,8 @@ bool glint_material_is_shiny(const glint_material_desc *desc);
 /// Whether light goes through, somewhere; whether it has a mirror.
 bool glint_material_transmits(const glint_material_desc *desc);
 bool glint_material_mirrors(const glint_material_desc *desc);
+bool glint_material_is_cut(const glint_material_desc *desc); ///< returns whether its surfaces may have holes
+bool glint_material_blends(const glint_material_desc *desc); ///< returns whether it is translucent
 void glint_describe_material(const glint_material_desc *desc, const char *owner, char *out, size_t size);
 void glint_describe_shape(const glint_shape_desc *desc, size_t number, char *out, size_t size);
 

@@ -407,6 +407,8 @@ static void inherit(const glint_rays *rays, const glint_plan *plan, uint32_t i, 
     ray->pixel = rays->pixel[i];
     ray->point = rays->point[i];
     ray->depth = rays->depth[i];
+    ray->passes = rays->passes[i];
+    ray->sight = rays->sight[i];
     ray->scatters = rays->scatters[i];
     ray->term = rays->term[i];
     if (plan->transmits)
@@ -420,7 +422,8 @@ static void begin_ray(const glint_plan *plan, uint32_t i, glint_ray *ray)
         ray->weight[c] = 1;
     ray->way = ray->least = 0;
     ray->pixel = i;
-    ray->point = ray->depth = ray->scatters = 0;
+    ray->point = ray->depth = ray->passes = ray->scatters = 0;
+    ray->sight = true;
     ray->term = 0;
     if (plan->transmits)
         ray->media = plan->eye_media;
@@ -441,72 +444,104 @@ void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, con
         ray->origin[c] = glint_real_at(tile->surface.point[c], frame->plan->desc.precision, i);
 }
 
-/// What is totally reflected has not crossed the surface: all of it goes on, of which a mirror sends its part already.
+/// Fills the share of totally reflected light. It has not crossed the surface, so all of it goes on, except for the share that a mirror
+/// sends already and the share that goes straight on.
 static void total_share(const glint_bounce_material *m, double share[3])
 {
+    const double all = 1 - m->clear;
     for (int c = 0; c < 3; c++)
-        share[c] = m->mirror[c] < 1 ? 1 - m->mirror[c] : 0;
+        share[c] = m->mirror[c] < all ? all - m->mirror[c] : 0;
 }
 
 void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       double mirrored[3], double through[3])
+                       double weight[GLINT_WAYS][3])
 {
     glint_bounce_material room;
     const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &room);
     const double part = m->fresnel ? glint_real_at(batch->reflectance, frame->plan->desc.precision, i) : 1;
-    for (int c = 0; c < 3; c++)
-        mirrored[c] = glint_weight(mirrored[c] * (m->mirror[c] * part));
-    if (!m->transmits) {
-        through[0] = through[1] = through[2] = 0;
-        return;
-    }
+    const double left = m->fresnel ? 1 - part : 1;
     double rest[3];
     total_share(m, rest);
-    const double *share = glint_has_lane(batch->total, i) ? rest : m->transmission, left = m->fresnel ? 1 - part : 1;
+    const double *share = glint_has_lane(batch->total, i) ? rest : m->transmission;
+    for (int c = 0; c < 3; c++) {
+        weight[GLINT_WAY_MIRRORED][c] = glint_weight(weight[GLINT_WAY_MIRRORED][c] * (m->mirror[c] * part));
+        weight[GLINT_WAY_REFRACTED][c] =
+            m->transmits ? glint_weight(weight[GLINT_WAY_REFRACTED][c] * (share[c] * left)) : 0;
+        weight[GLINT_WAY_STRAIGHT][c] = m->clears ? glint_weight(weight[GLINT_WAY_STRAIGHT][c] * m->clear) : 0;
+    }
+}
+
+/// Returns whether a ray that goes on from sample i crosses its surface.
+static bool crosses(const glint_batch *batch, uint32_t i, glint_way way)
+{
+    return way == GLINT_WAY_STRAIGHT || (way == GLINT_WAY_REFRACTED && !glint_has_lane(batch->total, i));
+}
+
+/// Updates the media of a ray that crosses the surface of sample i. A material that transmits has an inside; any other translucent
+/// surface has none.
+static void cross(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, glint_media *media)
+{
+    if (frame->plan->bouncing[tile->surface.material[i]].transmits)
+        glint_media_cross(media, medium_of(tile, frame, i), glint_has_lane(tile->hit.back, i));
+}
+
+/// Computes the unit direction of a ray that goes on from sample i. A straight ray keeps the bits of a secondary ray's direction, which is
+/// unit; a ray of the eye is normalised.
+static void direction_of(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                         glint_way way, double out[3])
+{
+    const glint_precision precision = frame->plan->desc.precision;
+    const double(*turned)[GLINT_TILE_SAMPLES] = crosses(batch, i, way) ? batch->refracted : batch->reflected;
     for (int c = 0; c < 3; c++)
-        through[c] = glint_weight(through[c] * (share[c] * left));
+        out[c] = way == GLINT_WAY_STRAIGHT ? glint_tile_direction(tile, precision, c, i) : glint_real_at(turned[c], precision, i);
+    if (way == GLINT_WAY_STRAIGHT && tile != &batch->tile)
+        vec_normalize(out, out);
 }
 
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       glint_ray *mirror, glint_ray *through)
+                       glint_ray rays[GLINT_WAYS])
 {
-    const glint_precision precision = frame->plan->desc.precision;
-    const bool back = glint_has_lane(tile->hit.back, i), total = glint_has_lane(batch->total, i);
-    glint_batch_start_ray(batch, tile, frame, i, mirror);
-    glint_batch_start_ray(batch, tile, frame, i, through);
-    glint_batch_weigh(batch, tile, frame, i, mirror->weight, through->weight);
-    for (int c = 0; c < 3; c++) {
-        mirror->direction[c] = glint_real_at(batch->reflected[c], precision, i);
-        through->direction[c] = glint_real_at(total ? batch->reflected[c] : batch->refracted[c], precision, i);
+    const int ways = frame->plan->clears ? GLINT_WAYS : GLINT_WAY_STRAIGHT;
+    double weight[GLINT_WAYS][3] = { { 0 } };
+    for (int way = 0; way < ways; way++) {
+        glint_batch_start_ray(batch, tile, frame, i, &rays[way]);
+        vec_copy(weight[way], rays[way].weight);
     }
-    mirror->depth++;
-    through->depth++;
-    mirror->inward = back;
-    through->inward = total ? back : !back;
-    if (!total && frame->plan->transmits)
-        glint_media_cross(&through->media, medium_of(tile, frame, i), back);
+    glint_batch_weigh(batch, tile, frame, i, weight);
+    for (int way = 0; way < ways; way++) {
+        const bool through = crosses(batch, i, (glint_way)way);
+        vec_copy(rays[way].weight, weight[way]);
+        direction_of(batch, tile, frame, i, (glint_way)way, rays[way].direction);
+        rays[way].depth += way != GLINT_WAY_STRAIGHT;
+        rays[way].passes += way == GLINT_WAY_STRAIGHT;
+        rays[way].inward = glint_has_lane(tile->hit.back, i) != through;
+        rays[way].sight = rays[way].sight && through;
+        if (through && frame->plan->transmits)
+            cross(tile, frame, i, &rays[way].media);
+    }
 }
 
 // ---- Many at once ----
 
-/// Which way each goes, and to which side of its surface.
+/// Fills the directions of rays, and the sides of their surfaces on which they start.
 static void direct(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
                    const glint_sent *sent, glint_rays *rays)
 {
     const glint_precision precision = frame->plan->desc.precision;
     for (uint32_t n = 0; n < sent->count; n++) {
         const uint32_t i = sent->sample[n];
-        const bool crosses = sent->through[n] && !glint_has_lane(batch->total, i),
-                   back = glint_has_lane(tile->hit.back, i);
+        const glint_way way = (glint_way)sent->way[n];
+        const bool through = crosses(batch, i, way), back = glint_has_lane(tile->hit.back, i);
+        double direction[3];
+        direction_of(batch, tile, frame, i, way, direction);
         for (int c = 0; c < 3; c++)
-            glint_real_put(rays->direction[c], precision, n,
-                           glint_real_at(crosses ? batch->refracted[c] : batch->reflected[c], precision, i));
-        rays->inward[n / GLINT_GROUP] |= (uint16_t)((back != crosses) << n % GLINT_GROUP);
+            glint_real_put(rays->direction[c], precision, n, direction[c]);
+        rays->inward[n / GLINT_GROUP] |= (uint16_t)((back != through) << n % GLINT_GROUP);
         if (!frame->plan->transmits)
             continue;
         rays->media[n] = *media_of(batch, tile, frame, i);
-        if (crosses)
-            glint_media_cross(&rays->media[n], medium_of(tile, frame, i), back);
+        if (through)
+            cross(tile, frame, i, &rays->media[n]);
     }
 }
 
@@ -521,8 +556,13 @@ static void hand_on(const glint_batch *batch, const glint_tile *tile, const glin
         const uint32_t i = sent->sample[n], ray = from ? batch->ray_of[i] : 0;
         rays->leaving[n] = tile->at.prim[i];
         rays->pixel[n] = from ? from->pixel[ray] : i;
-        rays->depth[n] = from ? from->depth[ray] + 1 : 1;
-        rays->term[n] = from ? from->term[ray] : sent->through[n] ? GLINT_TERM_TRANSMISSION : GLINT_TERM_MIRROR;
+        const bool straight = sent->way[n] == GLINT_WAY_STRAIGHT;
+        rays->depth[n] = (from ? from->depth[ray] : 0) + !straight;
+        rays->passes[n] = (from ? from->passes[ray] : 0) + straight;
+        rays->sight[n] = (from ? from->sight[ray] : true) && crosses(batch, i, (glint_way)sent->way[n]);
+        rays->term[n] = from                                       ? from->term[ray]
+                        : sent->way[n] == GLINT_WAY_MIRRORED ? GLINT_TERM_MIRROR
+                                                             : GLINT_TERM_TRANSMISSION;
     }
     memset(rays->point, 0, sent->count * sizeof *rays->point);
     memset(rays->scatters, 0, sent->count * sizeof *rays->scatters);

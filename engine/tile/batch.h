@@ -33,11 +33,21 @@ typedef struct glint_batch {
     _Alignas(64) double reflected[3][GLINT_TILE_SAMPLES], refracted[3][GLINT_TILE_SAMPLES];
 } glint_batch;
 
+/// The direction in which a ray goes on from a surface.
+typedef enum glint_way {
+    GLINT_WAY_MIRRORED,
+    GLINT_WAY_REFRACTED, ///< or totally reflected
+    GLINT_WAY_STRAIGHT, ///< through a translucent surface
+    GLINT_WAYS
+} glint_way;
+
+#define GLINT_PASSES_MAX 4096 ///< translucent surfaces that one ray may go straight through
+
 /// Rays that go on from samples of a tile.
 typedef struct glint_sent {
     uint32_t count;
     uint16_t sample[GLINT_TILE_SAMPLES]; ///< where each begins
-    bool through[GLINT_TILE_SAMPLES]; ///< it is the refracted one of its sample, not the mirrored
+    uint8_t way[GLINT_TILE_SAMPLES]; ///< a glint_way
 } glint_sent;
 
 static inline bool glint_batch_has_sample(const glint_batch *batch, uint32_t ray)
@@ -77,6 +87,16 @@ static inline double glint_batch_light_of(const glint_batch *batch, const glint_
         return glint_batch_found(batch, c, batch->sample[ray]);
     return plan->environment ? batch->shown[c][ray] : plan->background[c];
 }
+/// Returns whether ray `ray` shows the eye the background through surfaces and lowers the coverage of its pixel. False in frames that do
+/// not need coverage.
+static inline bool glint_batch_uncovers(const glint_batch *batch, const glint_plan *plan, uint32_t ray)
+{
+    const uint32_t i = batch->sample[ray];
+    if (!glint_tile_wants_coverage(plan) || !batch->rays->sight[ray])
+        return false;
+    return !glint_batch_has_sample(batch, ray) ||
+           !(glint_has_lane(batch->tile.at.hits, i) || (plan->visible_light_count && glint_tile_sees_light(&batch->tile, i)));
+}
 /// Where light goes on from the samples of `tile` in batch->wanted: mirrored and refracted. `tile` is the batch's own, or
 /// one that the eye sees.
 void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame);
@@ -84,13 +104,13 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
 /// its media only in frames with transparent materials.
 void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                            glint_ray *ray);
-/// Weighs the mirrored and the refracted ray of sample `i`, after glint_batch_find_ways: both come with the weight of the ray that came.
-/// What lets nothing through gives the latter 0.
+/// Weighs the rays that go on from sample `i`, after glint_batch_find_ways: each comes with the weight of the ray that came. A ray that the
+/// material does not send gets 0.
 void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       double mirrored[3], double through[3]);
-/// These rays, weighed. Where batch->total is set both go the same way.
+                       double weight[GLINT_WAYS][3]);
+/// These rays, weighed; the last one only in frames with translucent surfaces. Where batch->total is set the first two go the same way.
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       glint_ray *mirror, glint_ray *through);
+                       glint_ray rays[GLINT_WAYS]);
 /// The same of many samples: makes `rays` of those that are sent, from ray 0 on, but for their weights and slopes. Those from a tile
 /// that the eye sees get their term, too.
 void glint_batch_send(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,

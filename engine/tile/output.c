@@ -169,6 +169,14 @@ static void store_object_id(const glint_tile *tile, const glint_tile_frame *fram
     glint_tile_store_pass(tile, frame, GLINT_PASS_OBJECT_ID, id);
 }
 
+/// Returns the opacity of the surface of sample i, which is 1 unless the material is translucent.
+static double opacity_of(const glint_tile *tile, const glint_plan *plan, uint32_t i)
+{
+    glint_bounce_material room;
+    return plan->clears ? 1 - glint_tile_bouncing(tile, plan, i, &room)->clear : 1;
+}
+
+/// Stores diffuse reflectances. Those of translucent materials are divided by the opacity again; at an opacity of 0 they are 0.
 static void store_albedo(const glint_tile *tile, const glint_tile_frame *frame)
 {
     float albedo[3][GLINT_TILE_SAMPLES];
@@ -176,8 +184,9 @@ static void store_albedo(const glint_tile *tile, const glint_tile_frame *frame)
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const bool hit = glint_has_lane(tile->at.hits, i);
         const double *kd = hit ? glint_tile_diffuse(tile, frame->plan, i, room) : NULL;
+        const double opacity = hit ? opacity_of(tile, frame->plan, i) : 0;
         for (int c = 0; c < 3; c++)
-            albedo[c][i] = hit ? (float)kd[c] : 0;
+            albedo[c][i] = opacity > 0 ? (float)(kd[c] / opacity) : 0;
     }
     glint_tile_store_pass(tile, frame, GLINT_PASS_ALBEDO, albedo[0]);
 }
@@ -213,7 +222,7 @@ void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k)
 
 static float coverage_at(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
-    return (float)(tile->film.covered[i] / plan->desc.samples);
+    return (float)(fmax(tile->film.covered[i], 0) / plan->desc.samples);
 }
 
 static void store_coverage(const glint_tile *tile, const glint_tile_frame *frame)

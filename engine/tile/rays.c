@@ -23,6 +23,8 @@ void glint_rays_put(glint_rays *rays, const glint_plan *plan, uint32_t i, const 
     rays->pixel[i] = ray->pixel;
     rays->point[i] = ray->point;
     rays->depth[i] = ray->depth;
+    rays->passes[i] = ray->passes;
+    rays->sight[i] = ray->sight;
     rays->scatters[i] = ray->scatters;
     rays->term[i] = ray->term;
     rays->active[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);

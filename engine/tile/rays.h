@@ -11,11 +11,13 @@ typedef struct glint_ray {
     uint32_t pixel; ///< its sample's place in the tile
     uint32_t point; ///< of a path of indirect light: the point where it began
     uint32_t depth; ///< mirrors and refractions on its path so far
+    uint32_t passes; ///< translucent surfaces that its path went straight through
     uint32_t scatters; ///< matt surfaces
     double way; ///< from the eye to where it starts, along its path; in frames with programs
     double least; ///< the weight below which a path of indirect light ends
     uint16_t term; ///< where its light goes
     bool inward;
+    bool sight; ///< true if its path has no reflection: the eye looks through surfaces along it
     glint_media media; ///< in frames with transparent materials
 } glint_ray;
 
@@ -27,9 +29,10 @@ typedef struct glint_rays {
     _Alignas(64) uint32_t leaving[GLINT_TILE_SAMPLES];
     double way[GLINT_TILE_SAMPLES], least[GLINT_TILE_SAMPLES];
     uint32_t pixel[GLINT_TILE_SAMPLES], point[GLINT_TILE_SAMPLES];
-    uint32_t depth[GLINT_TILE_SAMPLES], scatters[GLINT_TILE_SAMPLES];
+    uint32_t depth[GLINT_TILE_SAMPLES], passes[GLINT_TILE_SAMPLES], scatters[GLINT_TILE_SAMPLES];
     uint16_t term[GLINT_TILE_SAMPLES];
     uint32_t group_count;
+    bool sight[GLINT_TILE_SAMPLES];
     uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS]; ///< lanes without a ray hold anything
     glint_media media[GLINT_TILE_SAMPLES];
     struct glint_ray_slope *slopes; ///< in frames with derivatives: of each ray, one a derivative; else NULL or anything

@@ -83,12 +83,12 @@ bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
     uint32_t last = GLINT_MISS; // most lanes show what the lane before shows
     if (tile->at.only) {
         const glint_bounce_material *only = &materials[frame->geometry.prims[*tile->at.only].material];
-        return only->mirrors || only->transmits;
+        return glint_sends_on(only);
     }
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
             const uint32_t material = tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)];
-            if (material != last && (materials[material].mirrors || materials[material].transmits))
+            if (material != last && glint_sends_on(&materials[material]))
                 return true;
             last = material;
         }

@@ -136,7 +136,8 @@ typedef struct glint_tile_film {
     _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
     _Alignas(64) float terms[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
     _Alignas(64) float beauty[3][GLINT_TILE_SAMPLES];
-    uint32_t covered[GLINT_TILE_SAMPLES]; ///< samples that hit something, where the plan needs coverage
+    double covered[GLINT_TILE_SAMPLES]; ///< how many samples hit something, less the shares of them that reach the background through
+        ///< surfaces; may be below 0. Only if the plan needs coverage
 } glint_tile_film;
 
 /// A worker's memory for one tile.
@@ -561,11 +562,11 @@ void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const gl
 /// What is there without lights, at the first call of a sample, and what `count` lights of the plan from `from` on add, of which
 /// it is known where they reach. The points are found.
 void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
-/// Of light through transparent objects: before the first step of its rays; ray `ray` crosses a surface, at which `transmission` and
+/// Of light through transparent objects: before the first step of its rays; ray `ray` crosses a surface, at which `share` and
 /// `left` are what its colour in channel c is multiplied by; it arrives, at sample i; a light in `slot` shines on samples so.
 void glint_tile_begin_tints(const glint_tile *tile, const glint_plan *plan);
 void glint_tile_derive_tint(const glint_tile *tile, const glint_plan *plan, uint32_t material, uint32_t ray, int c,
-                            double color, double transmission, double left);
+                            double color, double share, double left);
 void glint_tile_put_tint(const glint_tile *tile, const glint_plan *plan, uint32_t i, uint32_t ray,
                          const double (*color)[GLINT_TILE_SAMPLES]);
 void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,

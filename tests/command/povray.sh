@@ -51,7 +51,7 @@ done
 for light in spot fade area; do
     compare phong $light perspective
 done
-for surfaces in mirror glass absorbing inside fresnel solids combined open rings faceted smooth stretched prism nested checker sky; do
+for surfaces in mirror glass absorbing inside fresnel solids combined open rings faceted smooth stretched prism nested checker sky translucent; do
     compare phong point perspective $surfaces
 done
 compare phong point orthographic

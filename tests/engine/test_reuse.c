@@ -83,7 +83,8 @@ static const field material_fields[] = {
     M(ambient, COLOR, 0, 1),      M(diffuse, COLOR, 0, 1),     M(specular, COLOR, 0, 1),
     M(shininess, NUMBER, 0, 300), M(has_mirror, FLAG, 0, 1),   M(mirror, COLOR, 0, 1),
     M(transmission, COLOR, 0, 1), M(ior, NUMBER, 0.5, 2),      M(fresnel, FLAG, 0, 1),
-    M(absorption, COLOR, 0, 1),   M(opacity, NUMBER, 0, 1),    M(program, FIXED, 0, 0),   M(name, FIXED, 0, 0),
+    M(absorption, COLOR, 0, 1),   M(opacity, NUMBER, 0, 1),    M(opacity_mode, CHOICE, 0, 3),
+    M(program, FIXED, 0, 0),      M(name, FIXED, 0, 0),
 #undef M
 };
 

@@ -65,7 +65,7 @@ local FIELDS = {
   polygon_light = { "vertices", "two_sided", "radiance", "visible" },
   sphere_light = { "position", "radius", "intensity", "visible" },
   material = { "model", "diffuse", "specular", "shininess", "ambient", "mirror", "transmission", "ior", "fresnel", "roughness", "absorption",
-    "distribution", "normalized", "matched", "f0", "bump", "opacity" },
+    "distribution", "normalized", "matched", "f0", "bump", "opacity", "opacity_mode" },
   camera = { "eye", "at", "direction", "up", "fov", "projection", "height", "pixel_offset", "aperture", "focus", "blades", "blade_rotation",
     "shutter", "shutter_times" },
   ambient_occlusion = { "distance" },

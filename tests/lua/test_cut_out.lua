@@ -1,4 +1,4 @@
--- Opacity: surfaces that are not there where it is below one half, against the same scenes with and without them.
+-- Opacity that cuts: surfaces that are not there where it is below one half, against the same scenes with and without them.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
@@ -101,7 +101,7 @@ function tests.what_is_not_there_changes_nothing()
     check(differing(render(scene_of(shape, view)), render(scene_of(nil, view)), "beauty") == 0, "%s, orthographic", name)
   end
   for _, fields in ipairs { { visibility = "scan" }, { precision = "float" } } do
-    local a = render(scene_of(shapes(glint.material { opacity = 0.4 }).sheet), fields)
+    local a = render(scene_of(shapes(glint.material { opacity = 0.4, opacity_mode = "cut" }).sheet), fields)
     check(differing(a, render(scene_of(nil), { precision = fields.precision }), "beauty") == 0, "%s", next(fields))
   end
 end
@@ -165,7 +165,7 @@ end
 function tests.a_number_is_the_same_everywhere()
   local plain = render(scene_of())
   for opacity, gone in pairs { [0] = true, [0.49] = true, [0.5] = false, [1] = false } do
-    local pane = shapes(glint.material { opacity = opacity }).quad
+    local pane = shapes(glint.material { opacity = opacity, opacity_mode = "cut" }).quad
     local count = differing(render(scene_of(pane)), plain, "depth")
     check((count == 0) == gone, "%g: %d pixels", opacity, count)
   end

@@ -573,7 +573,6 @@ function tests.errors_are_told()
   moved.camera.fov = 10 * x
   raises("sphere_light #1: position", render, moved, "d:x")
   raises("scene.depth_cue.far: no derivative goes through here", function() moved.depth_cue = { far = x } end)
-  raises("material.opacity: no derivative goes through here", glint.material, { opacity = x })
   raises("a + b: number or vector expected, got a number made of glint.variable; glint.value(x) is the number alone",
     function() return x + glint.vector(1, 2, 3) end)
   raises("no derivative goes through here", glint.translate, { x, 0, 0 })

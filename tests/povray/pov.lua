@@ -15,6 +15,8 @@
 --   transmission pigment { rgb 0 transmit t } diffuse 0, interior { ior n }: t times what the refracted ray brings; where it
 --                is totally reflected, all that the mirrored ray brings, and no `reflection` beside it. Shadows: t at each
 --                surface, and no bending.
+--   opacity      pigment { rgb C transmit 1 - o }: (1 - o) times what is straight behind is added to o times ambient and diffuse light;
+--                highlights and mirrors are not weighed there. Shadows: 1 - o at each surface
 --   absorption   interior { fade_power 1001 fade_distance 1 fade_color 1 - a }: exp(-a way). Only what is refracted
 --                is absorbed there: a highlight on the inside of the far surface comes to the eye whole. Here that is absorbed
 --                as all light on that way; so what absorbs has no highlight in the test
@@ -134,6 +136,7 @@ for i, sphere in ipairs(w.spheres) do
   local finish = highlight(s) .. (s.mirror and (" reflection { rgb %.17g }"):format(s.mirror) or "")
   if s.fresnel then finish = finish .. " reflection { rgb 0, rgb 1 fresnel on } conserve_energy" end
   if s.checker then pigment = ("checker rgb %s, rgb %s"):format(vector(sphere[3]), vector(s.checker)) end
+  if s.opacity then pigment = pigment .. (" transmit %.17g"):format(1 - s.opacity) end
   if s.transmission then
     ambient, diffuse, pigment = 0, 0, ("rgb 0 transmit %.17g"):format(s.transmission)
     local a = s.absorption

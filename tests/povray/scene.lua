@@ -4,7 +4,7 @@ local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },
   light = { "point", choices = { "point", "directional", "spot", "fade", "area" } },
   surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "inside", "fresnel", "solids", "open",
-     "rings", "combined", "faceted", "smooth", "stretched", "prism", "nested", "checker", "sky", "lens" } },
+     "rings", "combined", "faceted", "smooth", "stretched", "prism", "nested", "checker", "sky", "lens", "translucent" } },
   sky = { "", doc = "the PNG file of the sky" },
   projection = { "perspective", choices = { "perspective", "orthographic" } },
 }

@@ -98,6 +98,9 @@ return {
     plain = {},
     checker = { [2] = { checker = { 0.1, 0.2, 0.3 } }, [3] = { checker = { 0.1, 0.1, 0.1 } }, [4] = { checker = { 0.9, 0.9, 0.8 } } },
     sky = { [2] = { mirror = 0.5 }, [5] = { lift = 0.5, transmission = 0.8, ior = 1.5 } },
+    translucent = { -- POV-Ray's highlights stay whole
+      [2] = { opacity = 0.6, specular = 0 }, [3] = { opacity = 0.3, specular = 0 }, [5] = { lift = 0.5, opacity = 0.45, specular = 0 },
+    },
     mirror = { [2] = { mirror = 0.5 }, [4] = { mirror = 0.3 } },
     glass = { [5] = { lift = 0.5, transmission = 0.8, ior = 1.5 }, [3] = { lift = 0.5, transmission = 0.6, ior = 1.2, mirror = 0.1 } },
     combined = { [5] = { transmission = 0.8, ior = 1.5, specular = 0 } },

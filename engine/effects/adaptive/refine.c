@@ -79,14 +79,14 @@ void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame
     }
 }
 
-/// The base has one sample: what it covers, it covers whole.
+/// The base has one sample, which stands for all.
 static void take_coverage(glint_tile *tile, const glint_tile_frame *frame)
 {
     float alpha[GLINT_TILE_SAMPLES] = { 0 };
     glint_tile_take_plane(tile, frame, frame->base->plane[GLINT_PASS_ALPHA][0], alpha);
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
         if (!glint_has_lane(tile->active, i))
-            tile->film.covered[i] = alpha[i] > 0 ? (uint32_t)frame->plan->desc.samples : 0;
+            tile->film.covered[i] = (double)alpha[i] * frame->plan->desc.samples;
 }
 
 /// What is of the base for all pixels.

@@ -1,14 +1,16 @@
 /// What lies beyond the first surface of a tile: mirrored and refracted rays, and what they find.
 ///
-/// Rays wait in levels of at most one tile's samples. A batch is all that waits in the highest level, and where a surface
-/// sends on two rays, the weaker goes a level up and the stronger stays: so a level never holds more than the batch that
-/// filled it, and a ray of level n has at most 2^-n of the first one's weight wherever mirror + transmission is at most 1.
-/// That bounds the memory, however long the chains are. The order of a pixel's rays, and so of its sums, depends on
-/// nothing but that pixel.
+/// Rays wait in levels, each with space for the samples of one tile. A batch is all the rays of the highest level. Where a surface sends
+/// on several rays, the strongest stays in the batch's level, the second goes one level up and the third two levels: a level never
+/// holds more rays than the batch that filled it. That bounds the memory, however long the chains are. The order of a
+/// pixel's rays, and so of its sums, depends on nothing but that pixel.
 ///
-/// Where both rays of a surface were followed for ever, their number would double with each. Beyond GLINT_BOUNCE_SPLITS
-/// surfaces one, drawn by lot as they weigh, stands for both with the weight of the two: no light is lost, and work no longer
-/// doubles. The lot is made of the ray's own bits, so that it falls the same everywhere.
+/// If all rays of every surface were followed, their number would double at each surface. Beyond GLINT_BOUNCE_SPLITS surfaces only
+/// one ray is followed. It is drawn with probability as the weights, and takes the weight of all: no light is lost, and work no
+/// longer doubles. The lot is made of the ray's own bits, so that it falls the same everywhere.
+///
+/// max_depth does not count translucent surfaces that a ray goes straight through. These are its passes, of which a ray may have
+/// GLINT_PASSES_MAX.
 ///
 /// A ray too weak to be seen is not followed: all that a sample loses so is at most GLINT_BOUNCE_LOSS of linear light, by
 /// the plan's bound of what any ray can bring. That is 1/318 of the smallest step between two 8-bit sRGB codes.
@@ -20,12 +22,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+/// One level, and GLINT_WAYS - 1 more for each surface that may send on several rays.
+#define LEVELS ((GLINT_WAYS - 1) * GLINT_BOUNCE_SPLITS + 1)
+
 struct glint_bounce {
     glint_batch batch;
-    glint_rays room[GLINT_BOUNCE_LEVELS];
-    glint_rays *levels[GLINT_BOUNCE_LEVELS]; ///< each in some room, or the batch's own: what is taken changes places with it
-    uint32_t counts[GLINT_BOUNCE_LEVELS];
-    glint_sent sent[2]; ///< what a batch sends into its own level, and into the one above
+    glint_rays room[LEVELS];
+    glint_rays *levels[LEVELS]; ///< each in some room, or the batch's own: what is taken changes places with it
+    uint32_t counts[LEVELS];
+    glint_sent sent[GLINT_WAYS]; ///< the rays that a batch sends to its own level, and to the levels above
     double budget[GLINT_TILE_SAMPLES]; ///< light that each sample may still lose
     glint_ray_slope *slopes; ///< what those of all levels and of the batch's own rays are in; NULL until a frame has derivatives
 };
@@ -39,7 +44,7 @@ static void *create(const glint_plan *plan)
         return NULL;
     memset(&bounce->batch, 0, sizeof bounce->batch);
     bounce->slopes = NULL;
-    for (int i = 0; i < GLINT_BOUNCE_LEVELS; i++) {
+    for (int i = 0; i < LEVELS; i++) {
         bounce->room[i].slopes = NULL;
         bounce->levels[i] = &bounce->room[i];
         bounce->counts[i] = 0;
@@ -65,15 +70,35 @@ static bool fit(void *memory, const glint_plan *plan)
     if (!plan->derivatives)
         return true;
     if (!bounce->slopes)
-        bounce->slopes = malloc((GLINT_BOUNCE_LEVELS + 1) * each * sizeof *bounce->slopes); // pages are the system's until used
-    for (size_t i = 0; bounce->slopes && i < GLINT_BOUNCE_LEVELS; i++)
+        bounce->slopes = malloc((LEVELS + 1) * each * sizeof *bounce->slopes); // pages are the system's until used
+    for (size_t i = 0; bounce->slopes && i < LEVELS; i++)
         bounce->room[i].slopes = bounce->slopes + i * each;
     if (bounce->slopes)
-        bounce->batch.own.slopes = bounce->slopes + GLINT_BOUNCE_LEVELS * each;
+        bounce->batch.own.slopes = bounce->slopes + LEVELS * each;
     return bounce->slopes && glint_tile_fit_stage(&bounce->batch.tile, plan, GLINT_STAGE_DERIVATIVE);
 }
 
 // ---- From a surface on ----
+
+/// Returns the depth of the ray that found sample i; 0 for a ray of the eye.
+static uint32_t depth_at(const struct glint_bounce *bounce, const glint_tile *tile, uint32_t i)
+{
+    return tile == &bounce->batch.tile ? bounce->batch.rays->depth[bounce->batch.ray_of[i]] : 0;
+}
+
+/// Returns how many translucent surfaces that ray went straight through.
+static uint32_t passes_at(const struct glint_bounce *bounce, const glint_tile *tile, uint32_t i)
+{
+    return tile == &bounce->batch.tile ? bounce->batch.rays->passes[bounce->batch.ray_of[i]] : 0;
+}
+
+/// Returns whether the surface of sample i sends on a ray, and the chain has not reached its end.
+static bool goes_on(const struct glint_bounce *bounce, const glint_tile *tile, const glint_plan *plan, uint32_t i)
+{
+    const glint_bounce_material *m = &plan->bouncing[tile->surface.material[i]];
+    return ((m->mirrors || m->transmits) && depth_at(bounce, tile, i) < plan->desc.max_depth) ||
+           (m->clears && passes_at(bounce, tile, i) < GLINT_PASSES_MAX);
+}
 
 /// The hits of `tile` whose materials send rays on, and whose chain is not at its end.
 static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame)
@@ -84,9 +109,7 @@ static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const gl
         bounce->batch.wanted[g] = 0;
         for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const glint_bounce_material *m = &plan->bouncing[tile->surface.material[i]];
-            const uint32_t depth = tile == &bounce->batch.tile ? bounce->batch.rays->depth[bounce->batch.ray_of[i]] : 0;
-            if ((m->mirrors || m->transmits) && depth < plan->desc.max_depth)
+            if (goes_on(bounce, tile, plan, i))
                 bounce->batch.wanted[g] |= (uint16_t)(left & -left);
         }
         any = any || bounce->batch.wanted[g];
@@ -94,11 +117,11 @@ static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const gl
     return any;
 }
 
-/// The two rays of a sample.
-typedef struct two_rays {
-    double weight[2][3]; ///< mirrored, refracted
-    glint_ray_slope slopes[2][GLINT_DERIVATIVES_MAX]; ///< in frames with derivatives
-} two_rays;
+/// The rays of a sample.
+typedef struct parting {
+    double weight[GLINT_WAYS][3];
+    glint_ray_slope slopes[GLINT_WAYS][GLINT_DERIVATIVES_MAX]; ///< in frames with derivatives
+} parting;
 
 static double total_weight(const double weight[3]) { return (weight[0] + weight[1]) + weight[2]; }
 
@@ -117,21 +140,19 @@ static bool matters(const glint_plan *plan, const double weight[3], double *budg
     return false;
 }
 
-/// Sends one of the rays of sample i to level `base`, which is empty, or to the one above.
+/// Sends one of the rays of sample i to level `base`, which is empty, or to one above.
 static void push(struct glint_bounce *bounce, const glint_plan *plan, uint32_t base, uint32_t above, uint32_t i,
-                 const two_rays *two, bool through)
+                 const parting *rays_of, glint_way way)
 {
     glint_sent *sent = &bounce->sent[above];
-    if (base + above >= GLINT_BOUNCE_LEVELS)
-        return;
     glint_rays *rays = bounce->levels[base + above];
     const uint32_t n = sent->count++;
     sent->sample[n] = (uint16_t)i;
-    sent->through[n] = through;
+    sent->way[n] = (uint8_t)way;
     for (int c = 0; c < 3; c++)
-        rays->weight[c][n] = two->weight[through][c];
+        rays->weight[c][n] = rays_of->weight[way][c];
     if (plan->derivatives)
-        memcpy(rays->slopes + n * plan->derivatives->count, two->slopes[through],
+        memcpy(rays->slopes + n * plan->derivatives->count, rays_of->slopes[way],
                plan->derivatives->count * sizeof *rays->slopes);
 }
 
@@ -150,55 +171,84 @@ static double lot_of(const glint_batch *batch, glint_precision precision, uint32
     return (double)(z >> 11) * 0x1p-53;
 }
 
-/// Gives one of two rays the weight of both.
-static void take_weight(const glint_plan *plan, two_rays *two, int one)
+/// Adds the weight of ray `other` to ray `one`.
+static void take_weight(const glint_plan *plan, parting *rays, int one, int other)
 {
     for (int c = 0; c < 3; c++) {
-        two->weight[one][c] = glint_weight(two->weight[one][c] + two->weight[!one][c]);
-        two->weight[!one][c] = 0;
+        rays->weight[one][c] = glint_weight(rays->weight[one][c] + rays->weight[other][c]);
+        rays->weight[other][c] = 0;
         for (size_t k = 0; plan->derivatives && k < plan->derivatives->count; k++)
-            two->slopes[one][k].weight[c] += two->slopes[!one][k].weight[c];
+            rays->slopes[one][k].weight[c] += rays->slopes[other][k].weight[c];
     }
 }
 
-/// Sends on the mirrored and the refracted ray of sample i, the stronger one to level `base`, the weaker one to that above.
+/// Draws one of the rays with probability as their weights; it takes the weight of all. lot: 0 .. 1.
+static void draw(const glint_plan *plan, parting *rays, double lot)
+{
+    const double mirrored = total_weight(rays->weight[0]), refracted = total_weight(rays->weight[1]),
+                 straight = total_weight(rays->weight[2]), at = lot * (mirrored + refracted + straight);
+    const bool mirror = at < mirrored || !(refracted + straight > 0);
+    const bool refraction = refracted > 0 && (at < mirrored + refracted || !(straight > 0));
+    const int drawn = mirror ? GLINT_WAY_MIRRORED : refraction ? GLINT_WAY_REFRACTED : GLINT_WAY_STRAIGHT;
+    for (int way = 0; way < GLINT_WAYS; way++)
+        if (way != drawn)
+            take_weight(plan, rays, drawn, way);
+}
+
+/// Sends on the rays of a sample that matter, the strongest to level `base`, the others to the levels above.
+static void push_all(struct glint_bounce *bounce, const glint_plan *plan, uint32_t base, uint32_t i, const parting *rays,
+                     double *budget)
+{
+    double total[GLINT_WAYS];
+    for (int way = 0; way < GLINT_WAYS; way++)
+        total[way] = matters(plan, rays->weight[way], budget) ? total_weight(rays->weight[way]) : 0;
+    for (int way = 0; way < GLINT_WAYS; way++) {
+        uint32_t stronger = 0;
+        for (int other = 0; other < GLINT_WAYS; other++)
+            stronger += total[other] > total[way] || (total[other] == total[way] && other < way);
+        if (total[way] > 0)
+            push(bounce, plan, base, stronger, i, rays, (glint_way)way);
+    }
+}
+
+/// Sends on the rays of sample i.
 static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                     uint32_t base)
 {
     const glint_plan *plan = frame->plan;
     const glint_batch *batch = &bounce->batch;
     const bool first = tile != &batch->tile;
-    const uint32_t ray = first ? 0 : batch->ray_of[i], depth = first ? 1 : batch->rays->depth[ray] + 1;
-    double *budget = &bounce->budget[first ? i : batch->rays->pixel[ray]];
-    two_rays two;
+    const uint32_t ray = first ? 0 : batch->ray_of[i], depth = depth_at(bounce, tile, i),
+                   surfaces = depth + passes_at(bounce, tile, i) + 1;
+    parting rays;
     for (int c = 0; c < 3; c++)
-        two.weight[0][c] = two.weight[1][c] = first ? 1 : batch->rays->weight[c][ray];
-    glint_batch_weigh(batch, tile, frame, i, two.weight[0], two.weight[1]);
+        for (int way = 0; way < GLINT_WAYS; way++)
+            rays.weight[way][c] = first ? 1 : batch->rays->weight[c][ray];
+    glint_batch_weigh(batch, tile, frame, i, rays.weight);
     if (plan->derivatives)
-        glint_derive_split(batch, tile, frame, i, two.slopes[0], two.slopes[1]);
-    const double mirrored = total_weight(two.weight[0]), refracted = total_weight(two.weight[1]);
+        glint_derive_split(batch, tile, frame, i, rays.slopes);
+    if (!(depth < plan->desc.max_depth)) // only the straight ray is left
+        memset(rays.weight, 0, GLINT_WAY_STRAIGHT * sizeof *rays.weight);
     if (!first && glint_has_lane(batch->total, i)) // both go the same way
-        take_weight(plan, &two, 0);
-    else if (!first && depth > GLINT_BOUNCE_SPLITS) // one, by lot as they weigh
-        take_weight(plan, &two,
-                    refracted > 0 &&
-                        !(lot_of(batch, plan->desc.precision, i, depth) * (mirrored + refracted) < mirrored));
-    const bool mirrors = matters(plan, two.weight[0], budget), transmits = matters(plan, two.weight[1], budget);
-    const bool weaker_mirror = mirrors && transmits && total_weight(two.weight[0]) < total_weight(two.weight[1]);
-    if (mirrors)
-        push(bounce, plan, base, weaker_mirror, i, &two, false);
-    if (transmits)
-        push(bounce, plan, base, mirrors && !weaker_mirror, i, &two, true);
+        take_weight(plan, &rays, GLINT_WAY_MIRRORED, GLINT_WAY_REFRACTED);
+    if (!first && surfaces > GLINT_BOUNCE_SPLITS)
+        draw(plan, &rays, lot_of(batch, plan->desc.precision, i, surfaces));
+    push_all(bounce, plan, base, i, &rays, &bounce->budget[first ? i : batch->rays->pixel[ray]]);
 }
 
-static void begin_sending(struct glint_bounce *bounce) { bounce->sent[0].count = bounce->sent[1].count = 0; }
+static void begin_sending(struct glint_bounce *bounce)
+{
+    for (int above = 0; above < GLINT_WAYS; above++)
+        bounce->sent[above].count = 0;
+}
 
 static void end_sending(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame,
                         uint32_t base)
 {
-    for (uint32_t above = 0; above < 2 && base + above < GLINT_BOUNCE_LEVELS; above++) {
+    for (uint32_t above = 0; above < GLINT_WAYS && base + above < LEVELS; above++) {
         bounce->counts[base + above] = bounce->sent[above].count;
-        glint_batch_send(&bounce->batch, tile, frame, &bounce->sent[above], bounce->levels[base + above]);
+        if (bounce->sent[above].count)
+            glint_batch_send(&bounce->batch, tile, frame, &bounce->sent[above], bounce->levels[base + above]);
     }
 }
 
@@ -257,6 +307,11 @@ static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile
             double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]];
             const uint32_t pixel = rays->pixel[i];
             double weight[3];
+            if (glint_batch_uncovers(batch, plan, i)) {
+                to->film.covered[pixel] -= ((rays->weight[0][i] + rays->weight[1][i]) + rays->weight[2][i]) / 3;
+                if (plan->desc.alpha)
+                    continue;
+            }
             for (int c = 0; c < 3; c++) {
                 weight[c] = rays->weight[c][i];
                 sum[c][pixel] += weight[c] * glint_batch_light_of(batch, plan, c, i);
@@ -293,14 +348,13 @@ static void follow(glint_tile *tile, const glint_tile_frame *frame)
     for (int i = 0; i < GLINT_TILE_SAMPLES; i++)
         bounce->budget[i] = GLINT_BOUNCE_LOSS;
     spawn_first(bounce, tile, frame);
-    for (uint32_t level = 1;;) {
+    for (uint32_t level = GLINT_WAYS - 1;;) { // the highest that rays may be in
         while (level > 0 && bounce->counts[level] == 0)
             level--;
         if (bounce->counts[level] == 0 || glint_tile_cancelled(frame))
             break;
         run_batch(bounce, tile, frame, level);
-        if (level + 1 < GLINT_BOUNCE_LEVELS)
-            level++;
+        level = level + GLINT_WAYS - 1 < LEVELS ? level + GLINT_WAYS - 1 : LEVELS - 1;
     }
     glint_batch_end(&bounce->batch, tile);
 }
@@ -321,7 +375,8 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
 
 static bool called(const glint_plan *plan)
 {
-    return plan->geometry->table.prim_count > 0 && (plan->mirrors || plan->transmits) && plan->desc.max_depth > 0;
+    return plan->geometry->table.prim_count > 0 &&
+           (plan->clears || ((plan->mirrors || plan->transmits) && plan->desc.max_depth > 0));
 }
 
 /// What materials send on.
@@ -336,7 +391,7 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
 
 const glint_stage glint_stage_bounce = {
     .name = "bounce",
-    .doc = "mirrored and refracted rays, and what they find",
+    .doc = "mirrored and refracted rays, those that go through translucent surfaces, and what they find",
     .called = called,
     .own = own_key,
     .reads = GLINT_READS_OWN(BOUNCE),

@@ -22,9 +22,12 @@ static const double *mirror_of(const glint_material_desc *desc)
     return desc->has_mirror ? desc->mirror : desc->fresnel ? white : black;
 }
 
-static void bounce_material_init(glint_bounce_material *out, const glint_material_desc *desc)
+static void bounce_material_init(glint_bounce_material *out, const glint_plan *plan, size_t index)
 {
+    const glint_material_desc *desc = glint_plan_material(plan, index);
     *out = (glint_bounce_material) { .ior = desc->ior, .fresnel = desc->fresnel };
+    out->clear = plan->translucent ? plan->translucent[index].clear : 0;
+    out->clears = plan->translucent && plan->translucent[index].blends;
     bounded(out->mirror, mirror_of(desc));
     bounded(out->transmission, desc->transmission);
     bounded(out->absorption, desc->absorption);
@@ -36,13 +39,17 @@ static void bounce_material_init(glint_bounce_material *out, const glint_materia
     out->transmits = glint_material_transmits(desc);
 }
 
+/// Returns a bound of a translucent material as if it were opaque. A ray finds o times the light of the surface and 1 - o times the light
+/// beyond, at most the larger of the two. So the bound holds however many translucent surfaces a ray crosses.
+static double opaque(const glint_bounce_material *m, double bound) { return bound / (1 - m->clear); }
+
 /// A bound of what a material sends on of the light its rays bring, where they are not totally reflected.
 static double gain(const glint_bounce_material *m)
 {
     double most = 0;
     for (int c = 0; c < 3; c++)
         most = fmax(most, m->fresnel ? fmax(m->mirror[c], m->transmission[c]) : m->mirror[c] + m->transmission[c]);
-    return most;
+    return opaque(m, most);
 }
 
 /// The same of any ray: total reflection dims none.
@@ -61,6 +68,12 @@ static double most_of(const glint_plan *plan, uint32_t i, glint_field field)
 static double most_diffuse(const glint_plan *plan, uint32_t i)
 {
     return most_of(plan, i, GLINT_FIELD_DIFFUSE) * brightest_of(glint_plan_diffuse(plan, i));
+}
+
+/// Returns the same for material number i of a plan.
+static double as_opaque(const glint_plan *plan, uint32_t i, double bound)
+{
+    return plan->bouncing ? opaque(&plan->bouncing[i], bound) : bound;
 }
 
 /// A bound of the light that surfaces of a material themselves give to any ray.
@@ -86,7 +99,7 @@ static double surface_light(const glint_plan *plan, uint32_t i)
         if (far > 0)
             sum += near * far;
     }
-    return sum;
+    return as_opaque(plan, i, sum);
 }
 
 /// The same of all surfaces, of lights that are seen, and of the background.
@@ -126,7 +139,7 @@ static void bound_light(glint_plan *plan)
     double most = 0, depth = plan->desc.max_depth + plan->indirect.bounces;
     for (uint32_t i = 0; i < plan->material_count; i++)
         most = fmax(most, (plan->bouncing ? gain_anywhere(&plan->bouncing[i]) : 0) +
-                              (plan->indirect.samples ? most_diffuse(plan, i) : 0));
+                              (plan->indirect.samples ? as_opaque(plan, i, most_diffuse(plan, i)) : 0));
     plan->brightest = brightest_surface(plan) * geometric(most, depth);
     if (plan->bouncing && !plan->indirect.samples && most <= 1)
         plan->brightest = fmin(plan->brightest, brightest_chain(plan, depth));
@@ -150,8 +163,8 @@ glint_status glint_plan_bounce(glint_plan *plan, glint_error *error)
     double splitting = 0;
     bool any = false;
     for (size_t i = 0; i < list->count; i++) {
-        const glint_material_desc *desc = &((const glint_material *)list->items[i])->desc;
-        any = any || glint_material_mirrors(desc) || glint_material_transmits(desc);
+        const glint_material_desc *desc = glint_plan_material(plan, i);
+        any = any || plan->translucent || glint_material_mirrors(desc) || glint_material_transmits(desc);
     }
     if (!any) {
         if (plan->indirect.samples)
@@ -163,11 +176,12 @@ glint_status glint_plan_bounce(glint_plan *plan, glint_error *error)
         return glint_fail_nomem(error);
     for (size_t i = 0; i < list->count; i++) {
         glint_bounce_material *m = &plan->bouncing[i];
-        bounce_material_init(m, &((const glint_material *)list->items[i])->desc);
+        bounce_material_init(m, plan, i);
         plan->mirrors = plan->mirrors || m->mirrors;
         plan->transmits = plan->transmits || m->transmits;
+        plan->clears = plan->clears || m->clears;
         plan->absorbs = plan->absorbs || (m->transmits && brightest_of(m->absorption) > 0);
-        if (m->mirrors && m->transmits)
+        if (m->mirrors + m->transmits + m->clears > 1)
             splitting = fmax(splitting, gain(m));
     }
     bound_light(plan);
@@ -180,6 +194,8 @@ glint_status glint_plan_bounce(glint_plan *plan, glint_error *error)
 glint_key glint_transmission_key(const glint_bounce_material *m, glint_key key)
 {
     GLINT_KEY_ADD(key, m->transmission);
+    if (m->clear > 0)
+        GLINT_KEY_ADD(key, m->clear);
     GLINT_KEY_ADD(key, m->absorption);
     return key;
 }

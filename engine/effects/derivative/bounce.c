@@ -90,7 +90,7 @@ static glint_dual share_of(const glint_tile *tile, const glint_plan *plan, size_
 
 /// Like glint_batch_split, for one derivative.
 static void split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
-                  glint_ray_slope *mirror, glint_ray_slope *through)
+                  glint_ray_slope slopes[GLINT_WAYS][GLINT_DERIVATIVES_MAX])
 {
     const uint32_t material = tile->surface.material[i];
     glint_bounce_material room;
@@ -99,6 +99,7 @@ static void split(const glint_batch *batch, const glint_tile *tile, const glint_
     const bool total = glint_has_lane(batch->total, i);
     const turning t = find_turning(batch, tile, frame, index, i);
     const glint_dual one = dual(1, 0), twice = dual_scale(t.cosine, 2);
+    const glint_dual clear = dual(m->clear, slope->clear), opacity = dual_sub(one, clear), straight[] = { clear, clear, clear };
     glint_dual beyond = one, reflectance = one, mirrored[3], sent[3];
     if (!total) {
         refract(&t, &beyond, &reflectance);
@@ -108,19 +109,20 @@ static void split(const glint_batch *batch, const glint_tile *tile, const glint_
         mirrored[c] = share_of(tile, frame->plan, index, i, GLINT_FIELD_MIRROR, c, m->mirror[c], slope->mirror[c]);
         sent[c] = share_of(tile, frame->plan, index, i, GLINT_FIELD_TRANSMISSION, c, m->transmission[c], slope->transmission[c]);
         if (total) // see total_share of tile/batch.c
-            sent[c] = m->transmits && mirrored[c].value < 1 ? dual_sub(one, mirrored[c]) : dual(0, 0);
+            sent[c] = m->transmits && mirrored[c].value < opacity.value ? dual_sub(opacity, mirrored[c]) : dual(0, 0);
     }
     const glint_dual part = m->fresnel ? reflectance : one, rest = m->fresnel ? dual_sub(one, reflectance) : one;
-    *mirror = slope_of(&t, one, twice, mirrored, part);
-    *through = total ? slope_of(&t, one, twice, sent, rest)
-                     : slope_of(&t, t.ratio, dual_sub(dual_mul(t.ratio, t.cosine), beyond), sent, rest);
+    const glint_dual bend = total ? twice : dual_sub(dual_mul(t.ratio, t.cosine), beyond);
+    slopes[GLINT_WAY_MIRRORED][index] = slope_of(&t, one, twice, mirrored, part);
+    slopes[GLINT_WAY_REFRACTED][index] = slope_of(&t, total ? one : t.ratio, bend, sent, rest);
+    slopes[GLINT_WAY_STRAIGHT][index] = slope_of(&t, one, dual(0, 0), straight, one);
 }
 
 void glint_derive_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                        glint_ray_slope *mirror, glint_ray_slope *through)
+                        glint_ray_slope slopes[GLINT_WAYS][GLINT_DERIVATIVES_MAX])
 {
     for (size_t k = 0; k < frame->plan->derivatives->count; k++)
-        split(batch, tile, frame, k, i, &mirror[k], &through[k]);
+        split(batch, tile, frame, k, i, slopes);
 }
 
 // ---- Light of the rays -----------------------------------------------------------------------------------------------------
@@ -180,7 +182,8 @@ void glint_derive_collect(const glint_batch *batch, const glint_plan *plan, glin
             const bool sampled = glint_batch_has_sample(batch, ray);
             const uint32_t i = batch->sample[ray];
             const bool own = sampled && glint_derivatives_weigh(all) && glint_has_lane(batch->tile.at.hits, i);
-            for (int c = 0; c < 3; c++) {
+            const bool seen = !plan->desc.alpha || !glint_batch_uncovers(batch, plan, ray);
+            for (int c = 0; c < 3 && seen; c++) {
                 const double weight = rays->weight[c][ray];
                 const double light = own ? work->light[c][i] : glint_batch_light_of(batch, plan, c, ray);
                 if (glint_derivatives_read_light(to, plan))

@@ -19,7 +19,8 @@ static bool varies(const glint_plan *plan, const glint_plan_derivatives *all, co
         return false;
     bool any = moves(plan, d) || d->fades || glint_any_slope(d->background) || (d->weighs && plan->runs[GLINT_STAGE_BOUNCE]);
     for (size_t i = 0; i < plan->geometry->materials.count; i++)
-        any = any || d->materials[i].varies || (plan->tints && glint_any_slope(d->bounces[i].transmission));
+        any = any || d->materials[i].varies || d->bounces[i].clear != 0 ||
+              (plan->tints && glint_any_slope(d->bounces[i].transmission));
     for (size_t i = 0; i < all->light_count; i++)
         any = any || d->lights[i].varies;
     return any;
@@ -58,7 +59,7 @@ static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan
 {
     bool absorbs = false;
     for (size_t i = 0; i < plan->geometry->materials.count; i++) {
-        const glint_material_desc *desc = &((const glint_material *)plan->geometry->materials.items[i])->desc;
+        const glint_material_desc *desc = glint_plan_material(plan, i);
         if (glint_any_slope(d->bounces[i].mirror) && !glint_material_mirrors(desc))
             return "material.mirror: 0 sends no ray on, and has no derivative; above 0 it has";
         if (glint_any_slope(d->bounces[i].transmission) && !glint_material_transmits(desc))
@@ -71,7 +72,11 @@ static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan
     if (d->bends && is_any_painted(plan))
         return "material: what moves or bends has no derivative where materials have patterns or bumps, or shaders that read uv or "
                "footprint; where all have plain numbers it has";
-    if (plan->tints && plan->patterns && plan->patterns->plane[GLINT_FIELD_TRANSMISSION] >= 0 && d->moves)
+    const int *plane = plan->patterns ? plan->patterns->plane : NULL;
+    if (plan->tints && plane && plane[GLINT_FIELD_CLEAR] >= 0 && d->moves)
+        return "material.opacity: light through what a pattern blends has no derivative by what moves; lights with shadows = "
+               "false have";
+    if (plan->tints && plane && plane[GLINT_FIELD_TRANSMISSION] >= 0 && d->moves)
         return "material.transmission: light through what a pattern colours has no derivative by what moves; lights with shadows "
                "= false have";
     if (plan->environment && d->bends && plan->runs[GLINT_STAGE_BOUNCE])

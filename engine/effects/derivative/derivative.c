@@ -323,11 +323,12 @@ void glint_tile_begin_tints(const glint_tile *tile, const glint_plan *plan)
 }
 
 void glint_tile_derive_tint(const glint_tile *tile, const glint_plan *plan, uint32_t material, uint32_t ray, int c,
-                            double color, double transmission, double left)
+                            double color, double share, double left)
 {
     for (size_t k = 0; k < plan->derivatives->count; k++) {
         double *slope = &glint_derivative_of(tile)->ray_tint[k][c][ray];
-        *slope = (*slope * transmission + color * plan->derivatives->of[k].bounces[material].transmission[c]) * left;
+        const glint_derivative_bounce *bounce = &plan->derivatives->of[k].bounces[material];
+        *slope = (*slope * share + color * (bounce->transmission[c] + bounce->clear)) * left;
     }
 }
 

@@ -23,7 +23,7 @@ typedef struct slope_field {
 static const slope_field material_fields[] = {
     MATERIAL(diffuse, 3),   MATERIAL(ambient, 3), MATERIAL(specular, 3), MATERIAL(shininess, 1),
     MATERIAL(roughness, 1), MATERIAL(f0, 3),      MATERIAL(mirror, 3),   MATERIAL(transmission, 3),
-    MATERIAL(ior, 1),       MATERIAL(absorption, 3), { NULL, 0, 0, 0 },
+    MATERIAL(ior, 1),       MATERIAL(absorption, 3), MATERIAL(opacity, 1), { NULL, 0, 0, 0 },
 };
 static const slope_field light_fields[] = {
     LIGHT(color, 3, ALL),
@@ -87,8 +87,8 @@ static void add(void *desc, const slope_field *field, const double slope[3])
 static int find_program_field(const char *name)
 {
     for (int field = 0; field < GLINT_FIELD_COUNT; field++)
-        if ((field < GLINT_FIELD_PLANES || field == GLINT_FIELD_SHADER) && field != GLINT_FIELD_REST && name &&
-            strcmp(name, glint_field_name(field)) == 0)
+        if ((field < GLINT_FIELD_PLANES || field == GLINT_FIELD_SHADER) && field != GLINT_FIELD_REST && field != GLINT_FIELD_CLEAR &&
+            name && strcmp(name, glint_field_name(field)) == 0)
             return field;
     return GLINT_FIELD_COUNT;
 }
@@ -110,6 +110,10 @@ static glint_status add_program(const glint_plan *plan, const glint_derivative *
         return glint_fail(error, GLINT_ERR_INVALID,
                           "derivative '%s': material.%s: the slope is a program's, but not of the one that gives the field", d->name,
                           s->field);
+    if (plan->translucent && plan->translucent[i].blends && field != GLINT_FIELD_SHININESS && field != GLINT_FIELD_ROUGHNESS)
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "derivative '%s': material.%s: a pattern of a translucent material has no derivative; one of an opaque "
+                          "material has", d->name, s->field);
     plan->patterns->of[i].repaints = plan->patterns->of[i].repaints || field < GLINT_FIELD_PLANES;
     if (plan->patterns->row_count < s->program->code.row_count)
         plan->patterns->row_count = s->program->code.row_count;

@@ -149,6 +149,7 @@ static void fill_bounce(glint_derivative_bounce *out, const glint_material_desc 
         memcpy(out->transmission, slope->transmission, sizeof out->transmission);
     for (int c = 0; c < 3 && transmits; c++)
         out->absorption[c] = slope->absorption[c];
+    out->clear = -slope->opacity;
     out->ior = transmits || (desc->fresnel && glint_material_mirrors(desc)) ? slope->ior : 0;
 }
 
@@ -305,13 +306,13 @@ static void fill(const glint_plan *plan, const glint_scene *scene, const glint_s
     glint_dual ambient[3];
     total_ambient(scene, slopes, ambient);
     for (size_t i = 0; i < list->count; i++) {
-        const glint_material_desc *desc = &((const glint_material *)list->items[i])->desc;
+        const glint_material_desc *desc = glint_plan_material(plan, i);
         const glint_derivative_bounce *bounce = &out->bounces[i];
         fill_material(&out->materials[i], desc, &slopes->materials[i], plan->materials[i].planes, ambient);
         fill_bounce(&out->bounces[i], desc, &slopes->materials[i]);
         take_programs(&out->programs[i], i, out);
         out->bends = out->bends || bounce->ior != 0;
-        out->weighs = out->weighs || bounce->ior != 0 || glint_any_slope(bounce->mirror) ||
+        out->weighs = out->weighs || bounce->ior != 0 || bounce->clear != 0 || glint_any_slope(bounce->mirror) ||
                       glint_any_slope(bounce->transmission) || glint_any_slope(bounce->absorption);
     }
     for (size_t i = 0; i < scene->lights.count; i++) {
@@ -358,6 +359,8 @@ static glint_status make_one(const glint_plan *plan, const glint_scene *scene, c
         return glint_fail_nomem(error);
     for (size_t i = 0; i < d->slope_count && !status; i++)
         status = glint_derivative_add(plan, scene, d, &d->slopes[i], slopes, error);
+    if (!status)
+        status = glint_derivative_weigh(plan, d, slopes, error);
     if (status)
         return status;
     snprintf(out->name, sizeof out->name, "%s", d->name);

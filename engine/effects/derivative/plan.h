@@ -8,9 +8,10 @@
 #include "engine/program/program.h"
 #include "engine/stages/stages.h"
 
-/// Slopes of a material's mirror, transmission and absorption.
+/// Slopes of a material's mirror, transmission, absorption and translucency.
 typedef struct glint_derivative_bounce {
     double mirror[3], transmission[3], absorption[3], ior; ///< 0 for numbers that are not read
+    double clear; ///< slope of the share that goes straight on
 } glint_derivative_bounce;
 
 /// Derivatives of a material's programs; owned references.

@@ -2,7 +2,7 @@
 /// cosine, and the mean of what they find, times kd, is what the point gives on.
 ///
 /// Paths do not branch. Where one meets a surface it takes the light that the lights send there, and goes on in one of the
-/// directions the surface sends light on to: scattered, mirrored or refracted, chosen with probability as the shares, and
+/// directions the surface sends light on to: scattered, mirrored, refracted or straight on, chosen with probability as the shares, and
 /// weighed by one over it. So the memory is a batch and three sets of rays, however long paths are. What a path finds depends on
 /// its pixel, on the numbers of its sample and of its turns, and on the seed: where a lane chooses the point of an area light,
 /// paths stay in that of their point.
@@ -23,7 +23,9 @@
 #define GOLDEN 0x1.9e3779b97f4a8p-1 ///< multiples of it, less their whole part, fill 0 .. 1 evenly from the first on
 #define STRENGTH_MAX 1e150
 
-typedef enum turn { TURN_NONE, TURN_SCATTERED, TURN_MIRRORED, TURN_REFRACTED } turn;
+typedef enum turn { TURN_NONE, TURN_SCATTERED, TURN_MIRRORED, TURN_REFRACTED, TURN_STRAIGHT, TURNS } turn;
+
+#define CHOICES (TURNS - TURN_SCATTERED)
 
 static void *create(const glint_plan *plan)
 {
@@ -77,6 +79,15 @@ static void take_lights(struct glint_indirect *indirect, const glint_plan *plan,
 
 // ---- Where they go on ----
 
+/// Returns whether the surface of sample i may also mirror, refract or let through a path, and the path has not reached its end.
+static bool goes_on(const glint_batch *batch, const glint_plan *plan, uint32_t i)
+{
+    const glint_bounce_material *m = &plan->bouncing[batch->tile.surface.material[i]];
+    const uint32_t ray = batch->ray_of[i];
+    return ((m->mirrors || m->transmits) && batch->rays->depth[ray] < plan->desc.max_depth) ||
+           (m->clears && batch->rays->passes[ray] < GLINT_PASSES_MAX);
+}
+
 void glint_indirect_find_ways(struct glint_indirect *indirect, const glint_tile_frame *frame)
 {
     glint_batch *batch = &indirect->batch;
@@ -86,8 +97,7 @@ void glint_indirect_find_ways(struct glint_indirect *indirect, const glint_tile_
         batch->wanted[g] = 0;
         for (unsigned left = plan->bouncing ? batch->tile.at.hits[g] : 0; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const glint_bounce_material *m = &plan->bouncing[batch->tile.surface.material[i]];
-            if ((m->mirrors || m->transmits) && batch->rays->depth[batch->ray_of[i]] < plan->desc.max_depth)
+            if (goes_on(batch, plan, i))
                 batch->wanted[g] |= (uint16_t)(left & -left);
         }
         any |= batch->wanted[g];
@@ -96,16 +106,25 @@ void glint_indirect_find_ways(struct glint_indirect *indirect, const glint_tile_
         glint_batch_find_ways(batch, &batch->tile, frame);
 }
 
-/// Which of three ways a path takes, as they share its light out.
+/// Draws the turn that a path takes, with probability as the shares of its light.
 static int choose_way(const struct glint_indirect *indirect, uint64_t number, const glint_rays *rays, uint32_t ray,
-                      const double share[3], double all)
+                      const double share[CHOICES], double all)
 {
-    const int likely = share[0] > 0 ? 0 : share[1] > 0 ? 1 : 2;
-    double number_of[2];
+    int likely = 0, last = CHOICES - 1;
+    double number_of[2], sum = 0;
+    while (likely < last && !(share[likely] > 0))
+        likely++;
     if (!(share[likely] < all))
         return likely;
-    draw(indirect, rays->point[ray], number, 2 * (rays->scatters[ray] + rays->depth[ray]) + 1, number_of);
-    return number_of[0] * all < share[0] ? 0 : number_of[0] * all < share[0] + share[1] || !(share[2] > 0) ? 1 : 2;
+    draw(indirect, rays->point[ray], number, 2 * (rays->scatters[ray] + rays->depth[ray] + rays->passes[ray]) + 1, number_of);
+    while (last > 0 && !(share[last] > 0))
+        last--;
+    for (int k = 0; k < last; k++) {
+        sum += share[k];
+        if (number_of[0] * all < sum)
+            return k;
+    }
+    return last;
 }
 
 /// Chooses how the path of sample i goes on, and starts it there unless it is scattered.
@@ -115,18 +134,20 @@ static turn choose(struct glint_indirect *indirect, const glint_tile_frame *fram
     glint_batch *batch = &indirect->batch;
     const glint_rays *rays = batch->rays;
     const uint32_t ray = batch->ray_of[i];
-    double share[3] = { 0 }, least = 0, room[3];
+    double share[CHOICES] = { 0 }, least = 0, room[3];
     const double *diffuse = glint_tile_diffuse(&batch->tile, frame->plan, i, room);
-    glint_ray split[2];
+    glint_ray split[GLINT_WAYS];
     if (rays->scatters[ray] < frame->plan->indirect.bounces)
         for (int c = 0; c < 3; c++)
             share[0] += diffuse[c] * rays->weight[c][ray];
     if (glint_has_lane(batch->wanted, i)) {
-        glint_batch_split(batch, &batch->tile, frame, i, &split[0], &split[1]);
-        share[1] = 3 * mean(split[0].weight);
-        share[2] = 3 * mean(split[1].weight);
+        const bool ends = !(rays->depth[ray] < frame->plan->desc.max_depth); // only scattered or straight rays are left
+        glint_batch_split(batch, &batch->tile, frame, i, split);
+        share[1] = ends ? 0 : 3 * mean(split[GLINT_WAY_MIRRORED].weight);
+        share[2] = ends ? 0 : 3 * mean(split[GLINT_WAY_REFRACTED].weight);
+        share[3] = frame->plan->clears ? 3 * mean(split[GLINT_WAY_STRAIGHT].weight) : 0;
     }
-    const double all = (share[0] + share[1]) + share[2];
+    const double all = ((share[0] + share[1]) + share[2]) + share[3];
     if (!(all > 0))
         return TURN_NONE;
     const int chosen = choose_way(indirect, number, rays, ray, share, all);
@@ -181,7 +202,7 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
             if (chosen == TURN_SCATTERED) {
                 const uint64_t k = glint_indirect_point_of(indirect, next.point, number);
                 const glint_sequence_seed seed = glint_sequence_seed_of(
-                    glint_indirect_seed_of(indirect, next.point, k, 2 * (next.scatters + next.depth)));
+                    glint_indirect_seed_of(indirect, next.point, k, 2 * (next.scatters + next.depth + next.passes)));
                 glint_indirect_note(&indirect->next_draws, i, k, &seed, 0);
                 indirect->scattered[g] |= (uint16_t)(left & -left);
                 next.inward = glint_has_lane(tile->hit.back, i);
@@ -343,7 +364,7 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
     const uint32_t paths = glint_indirect_find_points(indirect, tile, frame, seen, from);
     glint_batch_begin(batch, tile, frame, GLINT_WALK_INDIRECT);
     batch->ordered = from != NULL; // whose rays may share pixels
-    batch->distances = frame->plan->indirect.is_sky && !frame->plan->transmits;
+    batch->distances = frame->plan->indirect.is_sky && !frame->plan->transmits && !frame->plan->clears;
     for (uint32_t path = 0; path < paths && !glint_tile_cancelled(frame); path++) {
         const uint64_t number = (uint64_t)tile->sample * frame->plan->indirect.samples + path;
         batch->tile.sample = (uint32_t)number;

@@ -1,6 +1,6 @@
 /// Ambient occlusion: from each point some rays over directions as dense as their cosine, and the mean of what is open of the
 /// sky, 1 where a ray leaves the scene, times the ambient light. What closes it is any surface within the distance that the
-/// scene says, but for what transmits: there rays go on refracted, weaker by what the surface takes.
+/// scene says, but for what transmits or is translucent: there rays go on, weaker by what the surface takes.
 #include "engine/effects/indirect/paths.h"
 #include "engine/effects/pattern/pattern.h"
 #include "engine/effects/light_groups/light_groups.h"
@@ -25,12 +25,27 @@ static void open_far(glint_batch *batch, const glint_plan *plan)
 /// What programs give of the share that goes on.
 static void find_shares(glint_tile *tile, const glint_tile_frame *frame)
 {
-    const uint32_t shares = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION;
+    const uint32_t shares = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION | 1u << GLINT_FIELD_CLEAR;
     if (glint_tile_fields_shown(tile, frame->plan) & shares)
         glint_tile_find_patterns(tile, frame);
 }
 
-/// The rays that go on beyond what transmits. Returns whether there are any.
+/// Returns the ray that goes on from sample i: the refracted one or, at a translucent surface, the straight one with the weight of both.
+static glint_ray ray_beyond(const glint_batch *batch, const glint_tile_frame *frame, uint32_t i)
+{
+    const bool ends = !(batch->rays->depth[batch->ray_of[i]] < frame->plan->desc.max_depth);
+    glint_ray split[GLINT_WAYS];
+    glint_batch_split(batch, &batch->tile, frame, i, split);
+    const glint_ray *refracted = &split[GLINT_WAY_REFRACTED], *straight = &split[GLINT_WAY_STRAIGHT];
+    if (!frame->plan->clears || !(straight->weight[0] > 0))
+        return *refracted;
+    glint_ray ray = *straight;
+    for (int c = 0; c < 3 && !ends; c++)
+        ray.weight[c] += refracted->weight[c];
+    return ray;
+}
+
+/// Sends on the rays at surfaces that let light through. Returns whether there are any.
 static bool go_through(struct glint_indirect *indirect, const glint_tile_frame *frame, uint32_t step)
 {
     glint_batch *batch = &indirect->batch;
@@ -43,10 +58,10 @@ static bool go_through(struct glint_indirect *indirect, const glint_tile_frame *
     for (uint32_t g = 0; g < tile->group_count; g++) {
         for (unsigned left = batch->wanted[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            glint_ray mirror, through;
-            if (!frame->plan->bouncing[tile->surface.material[i]].transmits)
+            const glint_bounce_material *m = &frame->plan->bouncing[tile->surface.material[i]];
+            if (!m->transmits && !m->clears)
                 continue;
-            glint_batch_split(batch, tile, frame, i, &mirror, &through);
+            const glint_ray through = ray_beyond(batch, frame, i);
             if (fmax(through.weight[0], fmax(through.weight[1], through.weight[2])) > through.least)
                 glint_rays_put(rays, frame->plan, i, &through);
         }
@@ -69,5 +84,5 @@ bool glint_indirect_open_sky(struct glint_indirect *indirect, const glint_tile_f
     for (uint32_t i = 0; frame->plan->light_groups && i < batch->rays->group_count * GLINT_GROUP; i++)
         for (int c = 0; c < 3 && glint_has_lane(missed, i); c++) // weights are of ambient light
             glint_groups_add_ambient(to, frame->plan, batch->rays->pixel[i], c, batch->rays->weight[c][i]);
-    return any && frame->plan->transmits && go_through(indirect, frame, step);
+    return any && (frame->plan->transmits || frame->plan->clears) && go_through(indirect, frame, step);
 }

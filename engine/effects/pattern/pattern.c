@@ -490,14 +490,16 @@ const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const g
 {
     const uint32_t material = tile->surface.material[i];
     const glint_bounce_material *m = &plan->bouncing[material];
-    const uint32_t colors = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION;
+    const uint32_t shares = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION | 1u << GLINT_FIELD_CLEAR;
     double color[3];
-    if (!plan->patterns || !(plan->patterns->of[material].made & colors))
+    if (!plan->patterns || !(plan->patterns->of[material].made & shares))
         return m;
     *room = *m;
     vec_copy(room->mirror, glint_color_at(tile->at.planes, plan, GLINT_FIELD_MIRROR, material, i, m->mirror, color));
     vec_copy(room->transmission,
              glint_color_at(tile->at.planes, plan, GLINT_FIELD_TRANSMISSION, material, i, m->transmission, color));
+    if (plan->patterns->of[material].made >> GLINT_FIELD_CLEAR & 1)
+        room->clear = (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_CLEAR, 0)[i];
     return room;
 }
 

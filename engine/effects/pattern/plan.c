@@ -14,7 +14,7 @@
 const char *glint_field_name(int field)
 {
     static const char *const names[] = { "diffuse",   "ambient",   "ambient", "specular", "mirror", "transmission",
-                                         "shininess", "roughness", "bump",    "opacity",  "model",  "background" };
+                                         "shininess", "roughness", "opacity", "bump",     "opacity", "model",       "background" };
     return names[field];
 }
 
@@ -109,16 +109,26 @@ static glint_status find_slope(glint_plan_patterns *patterns, glint_plan_pattern
     return status;
 }
 
-static void add_material(glint_plan_patterns *patterns, glint_plan_pattern *pattern, const glint_material_desc *desc,
-                         bool indirect)
+/// Returns the program of a field of material number i. NULL: none.
+static const glint_program *program_of(const glint_plan *plan, size_t i, int field)
 {
+    if (field == GLINT_FIELD_CLEAR)
+        return plan->translucent ? plan->translucent[i].program : NULL;
+    return glint_pattern_program_of(&glint_plan_material(plan, i)->program, field);
+}
+
+static void add_material(const glint_plan *plan, size_t i, bool indirect)
+{
+    glint_plan_patterns *patterns = plan->patterns;
+    glint_plan_pattern *pattern = &patterns->of[i];
+    const glint_material_desc *desc = glint_plan_material(plan, i);
     pattern->desc = *desc;
     glint_material_desc_resolve(&pattern->desc);
     pattern->ambient_follows = !desc->has_ambient && !desc->program.ambient;
     for (int c = 0; c < 3; c++)
         pattern->desc.diffuse[c] = desc->program.diffuse ? 1 : fmin(desc->diffuse[c], STRENGTH_MAX);
     for (int field = 0; field < GLINT_FIELD_COUNT; field++) {
-        const glint_program *program = glint_pattern_program_of(&desc->program, field);
+        const glint_program *program = program_of(plan, i, field);
         if (!program || !is_read(desc, field))
             continue;
         pattern->program[field] = glint_program_retain((glint_program *)program);
@@ -130,7 +140,7 @@ static void add_material(glint_plan_patterns *patterns, glint_plan_pattern *patt
         if (field < GLINT_FIELD_PLANES || field == GLINT_FIELD_OPACITY)
             patterns->reads |= program->inputs;
     }
-    pattern->cut = pattern->program[GLINT_FIELD_OPACITY] || desc->opacity < 0.5;
+    pattern->cut = glint_material_is_cut(desc);
     patterns->cut_outs = patterns->cut_outs || pattern->cut;
     pattern->made = made_by(pattern, indirect);
     if (pattern->any)
@@ -333,12 +343,12 @@ static glint_status find_places(glint_plan_patterns *patterns, const glint_geome
 
 // ---- All of a plan ----
 
-static bool has_any(const glint_material_desc *desc)
+static bool has_any(const glint_plan *plan, size_t i)
 {
     for (int field = 0; field < GLINT_FIELD_COUNT; field++)
-        if (glint_pattern_program_of(&desc->program, field))
+        if (program_of(plan, i, field))
             return true;
-    return desc->opacity < 0.5;
+    return glint_material_is_cut(glint_plan_material(plan, i));
 }
 
 glint_status glint_plan_find_patterns(glint_plan *plan, bool indirect, glint_error *error)
@@ -346,7 +356,7 @@ glint_status glint_plan_find_patterns(glint_plan *plan, bool indirect, glint_err
     const glint_list *list = &plan->geometry->materials;
     bool any = false;
     for (size_t i = 0; i < list->count && !any; i++)
-        any = has_any(&((const glint_material *)list->items[i])->desc);
+        any = has_any(plan, i);
     if (!any)
         return GLINT_OK;
     glint_plan_patterns *patterns = plan->patterns = glint_alloc(1, sizeof *patterns);
@@ -354,7 +364,7 @@ glint_status glint_plan_find_patterns(glint_plan *plan, bool indirect, glint_err
         return glint_fail_nomem(error);
     patterns->material_count = (uint32_t)list->count;
     for (size_t i = 0; i < list->count; i++) {
-        add_material(patterns, &patterns->of[i], &((const glint_material *)list->items[i])->desc, indirect);
+        add_material(plan, i, indirect);
         glint_status status = find_slope(patterns, &patterns->of[i], error);
         if (status)
             return status;

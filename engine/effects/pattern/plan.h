@@ -16,9 +16,10 @@ typedef enum glint_field {
     GLINT_FIELD_TRANSMISSION,
     GLINT_FIELD_SHININESS,
     GLINT_FIELD_ROUGHNESS,
+    GLINT_FIELD_CLEAR, ///< of a translucent material: 1 - opacity
     GLINT_FIELD_PLANES, ///< number of fields with planes
     GLINT_FIELD_BUMP = GLINT_FIELD_PLANES,
-    GLINT_FIELD_OPACITY,
+    GLINT_FIELD_OPACITY, ///< of a material that cuts
     GLINT_FIELD_SHADER,
     GLINT_FIELD_COUNT,
     GLINT_FIELD_BACKGROUND = GLINT_FIELD_COUNT ///< belongs to the scene, not to a material

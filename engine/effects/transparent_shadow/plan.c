@@ -9,13 +9,15 @@
 
 // ---- Balls ----
 
+static bool lets_through(const glint_bounce_material *m) { return m->transmits || m->clears; }
+
 static bool transmits(const glint_plan *plan, const glint_geometry_table *table, const glint_prim *prim)
 {
     if (prim->kind != GLINT_PRIM_COMBINED)
-        return plan->bouncing[prim->material].transmits;
+        return lets_through(&plan->bouncing[prim->material]);
     const glint_combined *combined = &table->combined[prim->item];
     for (uint32_t i = 0; i < combined->count; i++)
-        if (plan->bouncing[table->prims[table->prim_count + combined->first + i].material].transmits)
+        if (lets_through(&plan->bouncing[table->prims[table->prim_count + combined->first + i].material]))
             return true;
     return false;
 }

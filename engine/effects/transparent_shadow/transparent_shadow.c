@@ -1,5 +1,5 @@
 /// Light through transparent objects. Points that a light does not reach freely are tested again: a ray towards the light
-/// is followed straight through whatever transmits, and takes its colour at each surface. No light is bent. What
+/// is followed straight through whatever transmits or is translucent, and takes its colour at each surface. No light is bent. What
 /// absorbs takes its part of the whole distance: where the light stands in it, or the point, or both.
 ///
 /// What parts a point from a light for good is decided by `occlude` alone: where the ray meets nothing that transmits, the
@@ -44,7 +44,7 @@ struct glint_transparent_shadow {
     _Alignas(64) float attenuation[3][GLINT_TILE_SAMPLES]; ///< the light's, times the colour, for each channel
     uint16_t reached[GLINT_TILE_GROUPS];
     uint16_t tinted[GLINT_TILE_GROUPS]; ///< points whose rays to the light are followed
-    float *planes; ///< of what programs give; NULL: the plan has none for transmission
+    float *planes; ///< of what programs give; NULL: the plan has none for transmission and opacity
 };
 
 static void *create(const glint_plan *plan)
@@ -252,6 +252,15 @@ static void arrive(struct glint_transparent_shadow *transparent_shadow, const gl
         transparent_shadow->color[c][ray] *= left_of(plan, medium, c, way);
 }
 
+/// Returns the share of light that goes straight on through the surface in place i.
+static double clear_at(const struct glint_transparent_shadow *transparent_shadow, const glint_plan *plan, uint32_t material,
+                       uint32_t i)
+{
+    if (!plan->patterns || !(plan->patterns->of[material].made >> GLINT_FIELD_CLEAR & 1))
+        return plan->bouncing[material].clear;
+    return (double)glint_plane_of(transparent_shadow->planes, plan, GLINT_FIELD_CLEAR, 0)[i];
+}
+
 /// Takes the colour of one surface, and of the distance up to it, with the ray in place i. Returns whether any light is left.
 static bool cross(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
                   const glint_tile_frame *frame, uint32_t i)
@@ -259,23 +268,27 @@ static bool cross(struct glint_transparent_shadow *transparent_shadow, const gli
     const glint_plan *plan = frame->plan;
     const uint32_t material = transparent_shadow->material[i], ray = transparent_shadow->ray_of[i],
                    inside = frame->geometry.prims[transparent_shadow->prim[i]].medium;
-    const bool back = glint_has_lane(transparent_shadow->back, i);
+    const bool back = glint_has_lane(transparent_shadow->back, i), fills = plan->bouncing[material].transmits;
+    const double clear = clear_at(transparent_shadow, plan, material, i);
     bool any = false;
     double room[3], left[3] = { 1, 1, 1 };
     const double *transmission = glint_color_at(transparent_shadow->planes, plan, GLINT_FIELD_TRANSMISSION, material, i,
                                                 plan->bouncing[material].transmission, room);
     if (plan->absorbs) {
-        const uint32_t medium = glint_media_before(&transparent_shadow->media[ray], inside, back);
+        const glint_media *media = &transparent_shadow->media[ray];
+        const uint32_t medium = fills ? glint_media_before(media, inside, back) : glint_media_top(media);
         const double length = glint_real_at(transparent_shadow->t, plan->desc.precision, i) *
                               direction_length(transparent_shadow, plan->desc.precision, i);
         for (int c = 0; c < 3; c++)
             left[c] = left_of(plan, medium, c, length);
-        glint_media_cross(&transparent_shadow->media[ray], inside, back);
+        if (fills)
+            glint_media_cross(&transparent_shadow->media[ray], inside, back);
     }
     for (int c = 0; c < 3; c++) {
+        const double share = transmission[c] + clear;
         if (plan->derivatives)
-            glint_tile_derive_tint(tile, plan, material, ray, c, transparent_shadow->color[c][ray], transmission[c], left[c]);
-        transparent_shadow->color[c][ray] *= transmission[c] * left[c];
+            glint_tile_derive_tint(tile, plan, material, ray, c, transparent_shadow->color[c][ray], share, left[c]);
+        transparent_shadow->color[c][ray] *= share * left[c];
         any = any || transparent_shadow->color[c][ray] > 0;
     }
     transparent_shadow->crossed[ray] = true;
@@ -382,7 +395,7 @@ static void cast(struct glint_transparent_shadow *transparent_shadow, glint_tile
     stages->surface(&surfaces);
 }
 
-/// What programs give of the surfaces that are met: their transmission, and where they have holes.
+/// What programs give of the surfaces that are met: their transmission and opacity, and where they have holes.
 static void find_transmission(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile,
                               const glint_tile_frame *frame)
 {
@@ -393,7 +406,7 @@ static void find_transmission(struct glint_transparent_shadow *transparent_shado
                                     .material = transparent_shadow->material,
                                     .tile = tile,
                                     .planes = transparent_shadow->planes,
-                                    .fields = 1u << GLINT_FIELD_TRANSMISSION };
+                                    .fields = 1u << GLINT_FIELD_TRANSMISSION | 1u << GLINT_FIELD_CLEAR };
     for (int c = 0; c < 3; c++) {
         points.point[c] = transparent_shadow->point[c];
         points.normal[c] = transparent_shadow->normal[c];
@@ -403,6 +416,11 @@ static void find_transmission(struct glint_transparent_shadow *transparent_shado
         glint_pattern_run(tile->pattern, frame, &points, &tile->counts);
     if (glint_plan_cuts(frame->plan))
         glint_tile_find_holes(tile, frame, &points, transparent_shadow->holes);
+}
+
+static bool lets_through(const glint_plan *plan, uint32_t material)
+{
+    return plan->bouncing[material].transmits || plan->bouncing[material].clears;
 }
 
 /// One surface further with every ray; those that go on are packed.
@@ -424,7 +442,7 @@ static void step(struct glint_transparent_shadow *transparent_shadow, glint_tile
                 if (transparent_shadow->crossed[ray])
                     arrive(transparent_shadow, frame->plan, light, i);
             } else if ((transparent_shadow->holes[g] & bit) ||
-                       (frame->plan->bouncing[transparent_shadow->material[i]].transmits &&
+                       (lets_through(frame->plan, transparent_shadow->material[i]) &&
                         cross(transparent_shadow, tile, frame, i))) {
                 aim(transparent_shadow, precision, light->directional,
                     (const double(*)[GLINT_TILE_SAMPLES])transparent_shadow->point, i, transparent_shadow->prim[i],
@@ -538,9 +556,10 @@ static void add_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     uint32_t from = 0, rays = 0;
     if (!choose_points(tile, frame, index, slot, count) && !plan->dims)
         return;
-    own_of(tile)->planes = plan->patterns && plan->patterns->plane[GLINT_FIELD_TRANSMISSION] >= 0
-                                           ? glint_pattern_planes(tile->pattern, GLINT_WALK_SHADOW)
-                                           : NULL;
+    const int *plane = plan->patterns ? plan->patterns->plane : NULL;
+    own_of(tile)->planes = plane && (plane[GLINT_FIELD_TRANSMISSION] >= 0 || plane[GLINT_FIELD_CLEAR] >= 0)
+                               ? glint_pattern_planes(tile->pattern, GLINT_WALK_SHADOW)
+                               : NULL;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const uint32_t more = rays_from(tile, plan, slot, count, g);
         if (rays + more > GLINT_TILE_SAMPLES) {
