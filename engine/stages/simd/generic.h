@@ -1,5 +1,6 @@
 /// The vector vocabulary in the vector extensions of GCC and clang, for any processor that is little-endian: ARM's NEON
-/// (with the few intrinsics of simd/neon.h), RISC-V's V, x86's SSE2. What the words mean: simd/avx512.h.
+/// (with the few intrinsics of simd/neon.h), WebAssembly's (with those of simd/wasm.h), RISC-V's V, x86's SSE2. What the words mean:
+/// simd/avx512.h.
 #ifndef GLINT_SIMD_H
 #define GLINT_SIMD_H
 
@@ -23,6 +24,8 @@ typedef float glint_f32x2 __attribute__((vector_size(8)));
 
 #ifdef __aarch64__
 #include "engine/stages/simd/neon.h"
+#elif defined __wasm_simd128__
+#include "engine/stages/simd/wasm.h"
 #else
 static inline unsigned fm_bits(fm m)
 {
@@ -69,6 +72,33 @@ static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
 static inline vq q_mul(vq a, vq b) { return (a & UINT32_MAX) * (b & UINT32_MAX); }
 #endif
 
+#ifndef __wasm_simd128__
+static inline vf f_sqrt(vf x) { return (vf) { sqrtf(x[0]), sqrtf(x[1]), sqrtf(x[2]), sqrtf(x[3]) }; }
+static inline vf f_select(fm m, vf a, vf b) { return (vf)(((fm)a & m) | ((fm)b & ~m)); }
+static inline vf f_min(vf a, vf b) { return f_select(a < b, a, b); }
+static inline vf f_max(vf a, vf b) { return f_select(a > b, a, b); }
+static inline vf f_abs(vf x) { return (vf)((fm)x & INT32_MAX); }
+static inline vd d_sqrt(vd x) { return (vd) { sqrt(x[0]), sqrt(x[1]) }; }
+static inline vd d_select(dm m, vd a, vd b)
+{
+#ifdef __SSE2__ // GCC 12 stops at a choice whose mask comes from several branches, for which SSE2 alone has no instruction
+    __asm__("" : "+x"(m));
+#endif
+    return (vd)(((dm)a & m) | ((dm)b & ~m));
+}
+static inline vd d_min(vd a, vd b) { return d_select(a < b, a, b); }
+static inline vd d_max(vd a, vd b) { return d_select(a > b, a, b); }
+static inline vd d_abs(vd x) { return (vd)((dm)x & INT64_MAX); }
+static inline vd d_floor(vd x) { return (vd) { floor(x[0]), floor(x[1]) }; }
+static inline vd d_ceil(vd x) { return (vd) { ceil(x[0]), ceil(x[1]) }; }
+
+static inline void d_store_f(float *p, vd x)
+{
+    const glint_f32x2 rounded = __builtin_convertvector(x, glint_f32x2);
+    memcpy(p, &rounded, sizeof rounded);
+}
+#endif
+
 static inline vf f_set(float x) { return (vf) { x, x, x, x }; }
 static inline vf f_load(const float *p) { return *(const vf *)p; }
 static inline vf f_load_any(const float *p)
@@ -78,13 +108,9 @@ static inline vf f_load_any(const float *p)
     return x;
 }
 static inline void f_store(float *p, vf x) { *(vf *)p = x; }
-static inline vf f_sqrt(vf x) { return (vf) { sqrtf(x[0]), sqrtf(x[1]), sqrtf(x[2]), sqrtf(x[3]) }; }
 static inline fm f_lt(vf a, vf b) { return a < b; }
 static inline fm f_le(vf a, vf b) { return a <= b; }
 static inline fm f_eq(vf a, vf b) { return a == b; }
-static inline vf f_select(fm m, vf a, vf b) { return (vf)(((fm)a & m) | ((fm)b & ~m)); }
-static inline vf f_min(vf a, vf b) { return f_select(a < b, a, b); }
-static inline vf f_max(vf a, vf b) { return f_select(a > b, a, b); }
 static inline float f_max_all(vf x)
 {
     const float low = x[0] > x[2] ? x[0] : x[2], high = x[1] > x[3] ? x[1] : x[3];
@@ -95,7 +121,6 @@ static inline float f_min_all(vf x)
     const float low = x[0] < x[2] ? x[0] : x[2], high = x[1] < x[3] ? x[1] : x[3];
     return low < high ? low : high;
 }
-static inline vf f_abs(vf x) { return (vf)((fm)x & INT32_MAX); }
 static inline fm fm_and(fm a, fm b) { return a & b; }
 static inline fm fm_or(fm a, fm b) { return a | b; }
 static inline fm fm_andnot(fm a, fm b) { return a & ~b; }
@@ -140,29 +165,13 @@ static inline vd d_pick(const double *table, const uint32_t *index)
 {
     return (vd) { table[index[0]], table[index[1]] };
 }
-static inline vd d_sqrt(vd x) { return (vd) { sqrt(x[0]), sqrt(x[1]) }; }
 static inline dm d_lt(vd a, vd b) { return a < b; }
 static inline dm d_le(vd a, vd b) { return a <= b; }
 static inline dm d_eq(vd a, vd b) { return a == b; }
-static inline vd d_select(dm m, vd a, vd b)
-{
-#ifdef __SSE2__ // GCC 12 stops at a choice whose mask comes from several branches, for which SSE2 alone has no instruction
-    __asm__("" : "+x"(m));
-#endif
-    return (vd)(((dm)a & m) | ((dm)b & ~m));
-}
-static inline vd d_min(vd a, vd b) { return d_select(a < b, a, b); }
-static inline vd d_max(vd a, vd b) { return d_select(a > b, a, b); }
 static inline dm dm_and(dm a, dm b) { return a & b; }
 static inline dm dm_or(dm a, dm b) { return a | b; }
 static inline dm dm_andnot(dm a, dm b) { return a & ~b; }
 static inline dm dm_from_bits(unsigned bits) { return (dm) { -(int64_t)(bits & 1), -(int64_t)(bits >> 1 & 1) }; }
-
-static inline void d_store_f(float *p, vd x)
-{
-    const glint_f32x2 rounded = __builtin_convertvector(x, glint_f32x2);
-    memcpy(p, &rounded, sizeof rounded);
-}
 
 static inline vd d_exponent(vd x)
 {
@@ -170,10 +179,7 @@ static inline vd d_exponent(vd x)
 }
 static inline vd d_mantissa(vd x) { return (vd)(((glint_u64x2)x & 0x000fffffffffffff) | 0x3ff0000000000000); }
 
-static inline vd d_abs(vd x) { return (vd)((dm)x & INT64_MAX); }
 static inline vd d_copysign(vd size, vd sign) { return (vd)(((dm)size & INT64_MAX) | ((dm)sign & INT64_MIN)); }
-static inline vd d_floor(vd x) { return (vd) { floor(x[0]), floor(x[1]) }; }
-static inline vd d_ceil(vd x) { return (vd) { ceil(x[0]), ceil(x[1]) }; }
 
 static inline vq d_bits(vd x) { return (vq)x; }
 static inline vd d_of_bits(vq x) { return (vd)x; }
