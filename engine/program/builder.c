@@ -180,7 +180,7 @@ void glint_fold(glint_op op, const glint_texture *texture, const double *operand
         at.out[k] = code.outputs[k] = (uint16_t)k;
         args.result[k] = lanes[k];
     }
-    glint_stages_ref.program(&args);
+    glint_stages_built[0]->program(&args); // any has these bits
     for (uint32_t k = 0; k < info->results; k++)
         results[k] = lanes[k][0];
 }

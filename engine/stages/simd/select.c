@@ -5,7 +5,9 @@
 #include <string.h>
 
 const glint_stages *const glint_stages_built[] = {
+#ifndef __wasm__ // no page can ask for it, and each one would load it
     &glint_stages_ref,
+#endif
 #ifdef GLINT_KERNEL_generic
     &glint_stages_generic,
 #endif
