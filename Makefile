@@ -212,12 +212,12 @@ $(CARRIED): $(BUILD)/%.h: %
 	@{ echo '// The bytes of $<.'; od -An -v -tu1 $< | sed 's/[0-9][0-9]*/&,/g'; } > $@
 $(BINDINGS_OBJ): | $(CARRIED)
 
-# The modules glint.* as C, for a module that has no files: { name, bytes, size } each.
+# The modules glint.* as C, for a module that has no files: { name, bytes, size } each. Comments become empty lines.
 LIBRARY := $(sort $(wildcard scripts/lib/glint/*.lua))
 $(BUILD)/bindings/web/library.h: $(LIBRARY)
 	@mkdir -p $(@D)
 	@{ for file in $^; do name=$$(basename $$file .lua); echo "static const unsigned char LIBRARY_$$name[] = {"; \
-	       od -An -v -tu1 $$file | sed 's/[0-9][0-9]*/&,/g'; echo '};'; done; \
+	       sed 's/^ *--.*//' $$file | od -An -v -tu1 | sed 's/[0-9][0-9]*/&,/g'; echo '};'; done; \
 	   echo 'static const module LIBRARY[] = {'; \
 	   for file in $^; do name=$$(basename $$file .lua); echo "{ \"glint.$$name\", LIBRARY_$$name, sizeof LIBRARY_$$name },"; done; \
 	   echo '};'; } > $@
@@ -622,7 +622,7 @@ WEB_OBJECTS := build-web
 WEB_MAKE    := PKG_CONFIG_LIBDIR=$(CURDIR)/$(WEB_OBJECTS)/libraries/lib/pkgconfig $(MAKE) --no-print-directory BUILD=$(WEB_OBJECTS) \
                  PORTABLE=1 CC="$(EM) emcc" AR="$(EM) emar" CFLAGS=-O2 CPPFLAGS=-msimd128 KERNEL_CFLAGS="-O3 -fno-slp-vectorize"
 # Memory grows as far as a page may have it. The stack is that of a thread of a pool, and of Lua.
-WEB_LINK    := -O2 -msimd128 --no-entry -sMODULARIZE=1 -sEXPORT_NAME=createGlint -sENVIRONMENT=worker -sALLOW_MEMORY_GROWTH=1 \
+WEB_LINK    := -Oz -msimd128 --no-entry -sMODULARIZE=1 -sEXPORT_NAME=createGlint -sENVIRONMENT=worker -sALLOW_MEMORY_GROWTH=1 \
                  -sMAXIMUM_MEMORY=2GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=2MB -sFORCE_FILESYSTEM=1 \
                  -sEXPORTED_FUNCTIONS=_malloc,_free -sEXPORTED_RUNTIME_METHODS=FS,UTF8ToString,stringToUTF8,lengthBytesUTF8
 
@@ -636,10 +636,9 @@ web-module:
 	+@$(WEB_MAKE) WEB=$(BUILD)/web web-files
 
 WEB ?= $(BUILD)/web
-web-files: $(addprefix $(WEB)/,glint.wasm glint.mjs worker.mjs package.json LICENSE)
+web-files: $(WEB)/glint.wasm $(BUILD)/worker.mjs
 
 ifneq ($(WASM),)
-# The loader that emscripten writes and the worker around it are one file.
 $(BUILD)/glint.js: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
 	$(Q)$(CC) $(WEB_LINK) $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) -o $@
@@ -648,29 +647,17 @@ $(WEB)/glint.wasm: $(BUILD)/glint.js
 	@mkdir -p $(@D)
 	@cp $(BUILD)/glint.wasm $@
 
-$(WEB)/worker.mjs: $(BUILD)/glint.js bindings/web/worker.mjs
-	@mkdir -p $(@D)
+# The loader that emscripten writes and the worker around it are one file.
+$(BUILD)/worker.mjs: $(BUILD)/glint.js bindings/web/worker.mjs
 	@cat $^ > $@
-
-$(WEB)/glint.mjs: bindings/web/glint.mjs
-	@mkdir -p $(@D)
-	@cp $< $@
-
-$(WEB)/package.json: bindings/web/package.json engine/glint.h
-	@mkdir -p $(@D)
-	@sed -e 's/@version@/$(VERSION)/' $< > $@
-
-$(WEB)/LICENSE: LICENSE
-	@mkdir -p $(@D)
-	@cp $< $@
 endif
 
 # The pages. npm brings the editor, the bundler and the tools of tests, as package-lock.json has them.
 NPM         := $(BUILD)/npm
 PAGES_SRC   := $(wildcard bindings/web/pages/*.js bindings/web/pages/*.mjs)
-ESBUILD     := $(NPM)/node_modules/.bin/esbuild --bundle --format=esm --minify --log-level=warning
 COURSE      := $(wildcard scripts/course/*.lua)
-WEB_PAGES   := $(addprefix $(WEB)/,glint-figure.js playground.js publish.js glint.wasm.gz site.css index.html figure.html course.html \
+WEB_PAGES   := $(addprefix $(WEB)/,glint.mjs worker.mjs package.json LICENSE glint-figure.js playground.js publish.js glint.wasm.gz site.css index.html \
+                  figure.html course.html \
                   examples/index.json examples/moving_light.png $(patsubst scripts/%,%,$(COURSE) $(COURSE:.lua=.png)))
 
 web-pages: $(WEB_PAGES)
@@ -683,17 +670,27 @@ $(NPM)/node_modules: $(addprefix bindings/web/pages/,package.json package-lock.j
 	@touch $@
 
 # esbuild finds packages beside the sources.
-$(NPM)/sources: $(PAGES_SRC) $(WEB)/glint.mjs $(WEB)/worker.mjs | $(NPM)/node_modules
-	@cp $(PAGES_SRC) $(WEB)/glint.mjs $(NPM) && cp $(WEB)/worker.mjs $(NPM)/worker.txt
+$(NPM)/sources: $(PAGES_SRC) bindings/web/glint.mjs $(WEB_OBJECTS)/worker.mjs | $(NPM)/node_modules
+	@cp $^ $(NPM)
 	@touch $@
 
-$(WEB)/playground.js: $(NPM)/sources
-	$(call say,BUNDLE)
-	$(Q)cd $(NPM) && $(CURDIR)/$(ESBUILD) playground.js --external:./glint.mjs --external:./glint-figure.js --outfile=$(CURDIR)/$@
+$(NPM)/worker.txt: $(WEB)/worker.mjs
+	@cp $< $@
 
-$(WEB)/publish.js: $(NPM)/sources
+$(WEB)/glint.mjs: BUNDLE := --bundle --external:node:*
+$(WEB)/worker.mjs: BUNDLE :=
+$(WEB)/playground.js: BUNDLE := --bundle --external:./glint.mjs --external:./glint-figure.js
+$(WEB)/publish.js: BUNDLE := --bundle --external:node:* --loader:.txt=text
+$(WEB)/publish.js: $(NPM)/worker.txt
+$(addprefix $(WEB)/,glint.mjs worker.mjs playground.js publish.js): $(WEB)/%: $(NPM)/sources
 	$(call say,BUNDLE)
-	$(Q)cd $(NPM) && $(CURDIR)/$(ESBUILD) publish.js --loader:.txt=text --external:node:* --outfile=$(CURDIR)/$@
+	$(Q)cd $(NPM) && node_modules/.bin/esbuild $* $(BUNDLE) --format=esm --minify --log-level=warning --outfile=$(CURDIR)/$@
+
+$(WEB)/package.json: bindings/web/package.json engine/glint.h
+	@sed -e 's/@version@/$(VERSION)/' $< > $@
+
+$(WEB)/LICENSE: LICENSE
+	@cp $< $@
 
 $(WEB)/glint.wasm.gz: $(WEB)/glint.wasm
 	@gzip -9 -n <$< >$@
@@ -702,7 +699,7 @@ $(addprefix $(WEB)/,glint-figure.js site.css index.html figure.html course.html)
 	@mkdir -p $(@D)
 	@cp $< $@
 
-$(WEB)/examples/index.json: $(NPM)/sources $(WEB)/glint.wasm $(wildcard scripts/*.lua)
+$(WEB)/examples/index.json: $(WEB)/glint.mjs $(WEB)/worker.mjs $(WEB)/glint.wasm bindings/web/pages/examples.mjs $(wildcard scripts/*.lua)
 	$(Q)mkdir -p $(@D) && node bindings/web/pages/examples.mjs $(WEB) scripts
 
 $(WEB)/examples/moving_light.png: scripts/moving_light.lua $(BUILD)/glint

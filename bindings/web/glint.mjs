@@ -7,6 +7,8 @@
 //
 // The manual is bindings/README.md, "In a browser".
 
+import { encode } from "fast-png"
+
 const isNode = !!globalThis.process?.versions?.node
 const GRACE_S = 1 // beyond the script's time, for code of the script that no hook of Lua interrupts
 
@@ -27,105 +29,6 @@ const spellAll = values => Object.fromEntries(Object.entries(values ?? {}).map((
 
 const aborted = signal => signal.reason ?? new DOMException("The operation was aborted.", "AbortError")
 
-// ---- PNG ----
-
-const crcTable = Uint32Array.from({ length: 256 }, (_, n) => {
-  for (let k = 0; k < 8; k++) n = n & 1 ? 0xedb88320 ^ n >>> 1 : n >>> 1
-  return n
-})
-
-function chunk(type, data) {
-  const out = new Uint8Array(12 + data.length), view = new DataView(out.buffer)
-  view.setUint32(0, data.length)
-  for (let i = 0; i < 4; i++) out[4 + i] = type.charCodeAt(i)
-  out.set(data, 8)
-  let crc = -1
-  for (let i = 4; i < 8 + data.length; i++) crc = crcTable[(crc ^ out[i]) & 255] ^ crc >>> 8
-  view.setUint32(8 + data.length, ~crc)
-  return out
-}
-
-// [extra bits, base] of the codes of lengths and distances of deflate.
-function bases(first, perBit, count) {
-  const list = []
-  let base = first
-  for (let code = 0; code < count; code++) {
-    const extra = Math.max(0, Math.floor(code / perBit) - 1)
-    list.push([extra, base])
-    base += 1 << extra
-  }
-  return list
-}
-const LENGTHS = [...bases(3, 4, 28), [0, 258]], DISTANCES = bases(1, 2, 30)
-
-// The bytes as a zlib stream of one block of fixed codes.
-function deflate(data) {
-  const out = new Uint8Array(data.length + (data.length >> 3) + 64), heads = new Int32Array(1 << 15).fill(-1)
-  let size = 2, bits = 0, held = 0
-  out[0] = 0x78, out[1] = 1
-  const put = (value, count) => {
-    bits |= value << held
-    held += count
-    for (; held >= 8; held -= 8, bits >>>= 8) out[size++] = bits
-  }
-  const putCode = (value, count) => { // codes begin with their highest bit
-    let turned = 0
-    for (let i = 0; i < count; i++) turned |= (value >> i & 1) << count - 1 - i
-    put(turned, count)
-  }
-  const putLiteral = n => n < 144 ? putCode(0x30 + n, 8) : n < 256 ? putCode(0x190 + n - 144, 9) : n < 280 ? putCode(n - 256, 7) : putCode(0xc0 + n - 280, 8)
-  const putMatch = (length, distance) => {
-    let l = LENGTHS.length - 1, d = DISTANCES.length - 1
-    while (LENGTHS[l][1] > length) l--
-    while (DISTANCES[d][1] > distance) d--
-    putLiteral(257 + l)
-    put(length - LENGTHS[l][1], LENGTHS[l][0])
-    putCode(d, 5)
-    put(distance - DISTANCES[d][1], DISTANCES[d][0])
-  }
-  put(3, 3) // the last block, fixed codes
-  for (let i = 0; i < data.length;) {
-    const hash = (data[i] << 10 ^ data[i + 1] << 5 ^ data[i + 2] ^ data[i + 3] << 7) & 0x7fff, from = heads[hash]
-    heads[hash] = i
-    let length = 0
-    if (from >= 0 && i - from <= 32768) while (length < 258 && i + length < data.length && data[from + length] === data[i + length]) length++
-    if (length >= 4) putMatch(length, i - from)
-    else putLiteral(data[i])
-    i += length >= 4 ? length : 1
-  }
-  putCode(0, 7)
-  put(0, 7) // to the end of the byte
-  let a = 1, b = 0
-  for (let i = 0; i < data.length; i++) a = (a + data[i]) % 65521, b = (b + a) % 65521
-  out.set([b >> 8, b, a >> 8, a], size)
-  return out.subarray(0, size + 4)
-}
-
-// A file of RGBA codes; alpha goes where the picture has none.
-function encodePng(width, height, rgba) {
-  let channels = 3
-  for (let i = 3; i < rgba.length && channels === 3; i += 4) if (rgba[i] !== 255) channels = 4
-  const stride = width * channels, rows = new Uint8Array(height * (stride + 1))
-  for (let y = 0; y < height; y++) {
-    const at = y * (stride + 1) + 1
-    rows[at - 1] = y ? 2 : 0 // the difference from the row above
-    for (let x = 0; x < width; x++)
-      for (let c = 0; c < channels; c++) {
-        const from = 4 * (y * width + x) + c
-        rows[at + channels * x + c] = rgba[from] - (y ? rgba[from - 4 * width] : 0)
-      }
-  }
-  const head = new Uint8Array(13), view = new DataView(head.buffer)
-  view.setUint32(0, width)
-  view.setUint32(4, height)
-  head.set([8, channels === 4 ? 6 : 2], 8)
-  const parts = [Uint8Array.of(137, 80, 78, 71, 13, 10, 26, 10), chunk("IHDR", head), chunk("IDAT", deflate(rows)), chunk("IEND", new Uint8Array(0))]
-  const out = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0))
-  let at = 0
-  for (const part of parts) out.set(part, at), at += part.length
-  return out
-}
-
 /** A rendered frame. */
 class Image {
   #planes
@@ -139,8 +42,12 @@ class Image {
     if (!(name in this.#planes)) throw new GlintError(`plane: '${name}' was not rendered; passes: ["${name}"] asks for it`)
     return this.#planes[name]
   }
-  /** The picture as a file, in bytes. */
-  png() { return encodePng(this.width, this.height, this.rgba) }
+  /** The picture as a file, in bytes; without an alpha channel where no pixel is transparent. */
+  png() {
+    const { width, height, rgba } = this
+    const isOpaque = rgba.every((value, i) => i % 4 < 3 || value === 255)
+    return encode(isOpaque ? { width, height, data: rgba.filter((_, i) => i % 4 < 3), channels: 3 } : { width, height, data: rgba })
+  }
   /** For a canvas: context.putImageData(image.data(), 0, 0). */
   data() { return new ImageData(this.rgba, this.width, this.height) }
 }
