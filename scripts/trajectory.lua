@@ -41,7 +41,8 @@ if is_own then
 end
 local reader = require((is_own or file:lower():find "%.xyz$") and "glint.xyz" or "glint.lammps")
 local film = reader.film(file)
-local guard = setmetatable({}, { __gc = function() return is_own and os.remove(file) end }) -- at the end
+-- Removes the file at the end. A script in a browser has no finalizers, and its files go with the page.
+local _, guard = pcall(setmetatable, {}, { __gc = function() return is_own and os.remove(file) end })
 
 local scene = glint.scene { ambient = 0.3, background = "white",
   glint.directional_light { direction = { 1, 2, -2.4 }, intensity = 0.72 } }

@@ -44,14 +44,16 @@ const sameBits = (a, b) => a.length === b.length && Buffer.compare(Buffer.from(a
 function pictures(file, pattern) {
   return fs.readFileSync(file, "utf8").split("\n").flatMap(line => {
     const found = pattern.exec(line)
-    return found ? [[found[1].replaceAll('"', ""), found[2], (found[3] ?? "").trim().split(/ +/).filter(word => word !== "")]] : []
+    const words = found?.[3].replaceAll('"', "").replaceAll("$out", OUT).split(/ +/).filter(word => word !== "")
+    return found ? [[found[1], found[2], words]] : []
   })
 }
 const steps = ["ambient", "diffuse", "specular", "all"].map(step => [`workshop_${step}`, "workshop", ["--set", `step=${step}`]])
 const golden = [...steps, ...pictures("tests/command/golden.sh", /^picture (\w+) scripts\/(\w+)\.lua(.*)$/)]
-// Scenes of the dialect have files, libraries and a debugger of their own; the others read or write files on a disk.
-const notHere = new Set(["gr_room", "gr_scene", "nff", "photometric", "scan", "trajectory", "fit"])
-const gallery = pictures("tests/command/gallery.sh", /^picture ((\w+))(.*)$/).map(([name, script, options]) => [name, script, options])
+const notHere = new Set(["gr_room", "gr_scene"]) // the dialect is the command's
+const gallery = pictures("tests/command/gallery.sh", /^picture ((\w+))(.*)$/)
+const flake = `${OUT}/flake.nff`
+execFileSync(GLINT, ["scripts/sphereflake.lua", "--set", "size=3", "--set", `nff=${flake}`, "-o", "none", "--quiet"])
 
 // The options of the command as those of open and render.
 function readOptions(words) {
@@ -68,7 +70,7 @@ function readOptions(words) {
 
 async function comparePicture(name, script, words, size, codes) {
   const { set, options } = readOptions([...size, ...words])
-  const job = await glint.open(fs.readFileSync(`scripts/${script}.lua`, "utf8"), { name: `${script}.lua`, files: data, set, seconds: 60 })
+  const job = await glint.open(fs.readFileSync(`scripts/${script}.lua`, "utf8"), { name: `${script}.lua`, files: { ...data, [flake]: fs.readFileSync(flake) }, set, seconds: 60 })
   const image = await job.render({ ...options, passes: ["beauty", "depth"] })
   native(`scripts/${script}.lua`, [...size, ...words, "--passes", "depth"], `${OUT}/${name}.pfm`)
   const file = fs.readdirSync(OUT).find(other => other.startsWith(`${name}`) && /^(_\d+)?\.pfm$/.test(other.slice(name.length)))

@@ -9,6 +9,7 @@ const [web, scripts] = process.argv.slice(2)
 const { load } = await import(pathToFileURL(resolve(web, "glint.mjs")))
 const glint = await load()
 
+const BUILD_S = 300 // the machine that builds may be busy
 const data = readdirSync(join(scripts, "data")).map(name => `data/${name}`)
 const out = join(web, "examples")
 
@@ -25,7 +26,7 @@ for (const name of readdirSync(scripts).filter(file => file.endsWith(".lua") && 
   const files = data.filter(file => text.includes(file) || text.includes(file.replace(/\.[^.]*$/, ".")))
   const given = Object.fromEntries(files.map(file => [file, new Uint8Array(readFileSync(join(scripts, file)))]))
   try {
-    const job = await glint.open(text, { name, files: given })
+    const job = await glint.open(text, { name, files: given, seconds: BUILD_S })
     await job.render({ width: 32, height: 18, samples: 1 })
     job.close()
   } catch (error) {
