@@ -68,6 +68,8 @@ typedef struct cli_options {
     const char *label, *title, *colorbar; ///< of sheet, the title of publish, too; NULL: not given
     const char *controls; ///< of publish; NULL: all parameters
     bool shows_source; ///< of publish
+    bool is_live; ///< --live
+    const char *live_script; ///< of --live; NULL: the script itself
     int64_t columns, difference; ///< of sheet; 0: not given
     double gain, label_size; ///< of sheet; 0: not given
     bool transparent; ///< of sheet
@@ -112,7 +114,7 @@ struct cli_option {
     bool repeats; ///< it may be given several times
     const char *group; ///< heading in --help of this and the options after it
 };
-#define CLI_OPTION_COUNT 68
+#define CLI_OPTION_COUNT 69
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
 /// Returns the placeholder of the option's value in --help, or its choices; "" when it takes no value.
@@ -255,6 +257,9 @@ int cli_cost(cli_options *options, cli_output *output, glintL_run *run);
 int cli_watch(cli_options *options, cli_output *output, glintL_run *run);
 /// glint publish. publish.c of bindings/publish.
 int cli_publish(cli_options *options, cli_output *output, glintL_run *run);
+/// Makes what --live adds to a page: a live figure of the script, with all that it needs, as HTML for the caller to free. Runs the script
+/// for one frame with the parameters of `request`. NULL: *code and the message say why.
+char *cli_live(const cli_options *options, const glintL_request *request, int *code, char message[GLINTL_MESSAGE_SIZE]);
 /// glint relight. relight.c of bindings/relight.
 int cli_relight(cli_options *options, cli_output *output, glintL_run *run);
 int cli_completion(const cli_options *options, cli_output *output); ///< its shell is options->script

@@ -72,8 +72,11 @@ int cli_sheet(const cli_options *options, cli_output *output)
     cli_file_list list;
     glint_overlay_desc bar;
     int code = GLINTL_EXIT_USAGE;
+    char *live = NULL;
     if (!options->output)
         return refuse(output, code, "sheet", "-o NAME.png or -o NAME.html expected");
+    if (options->is_live && !options->live_script)
+        return refuse(output, code, "sheet", "--live=SCRIPT expected, the script of the pictures");
     if (options->colorbar && !read_colorbar(options->colorbar, &bar, message))
         return refuse(output, code, "sheet", message);
     if (cli_list_files(options, &options->request.selection, &list, message)) {
@@ -88,8 +91,11 @@ int cli_sheet(const cli_options *options, cli_output *output)
         sheet.colorbar = options->colorbar ? &bar : NULL;
         sheet.dpi = dpi_of(options);
         sheet.mixes = options->request.force;
-        code = glintL_sheet_make(&sheet, message);
+        sheet.live = live = options->is_live ? cli_live(options, &options->request, &code, message) : NULL;
+        if (live || !options->is_live)
+            code = glintL_sheet_make(&sheet, message);
     }
+    free(live);
     if (code)
         refuse(output, code, "sheet", message);
     else

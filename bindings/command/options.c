@@ -249,6 +249,14 @@ static bool read_untrusted(cli_options *options, const cli_option *option, char 
     return true;
 }
 
+static bool read_live(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option, (void)message;
+    options->is_live = true;
+    options->live_script = text;
+    return true;
+}
+
 // ---- The table ----
 
 #define AT(member) .at = offsetof(cli_options, member)
@@ -327,6 +335,8 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "controls", 0, "LIST", CLI_PUBLISH, read_text, .help = "parameters that get a control; default all", AT(controls),
       .group = "publish" },
     { "source", 0, NULL, CLI_PUBLISH, read_flag, .help = "the page shows the script", AT(shows_source) },
+    { "live", 0, "[SCRIPT]", CLI_RENDER | CLI_COST | CLI_SHEET, read_live,
+      .help = "pages have a live figure of the script to try" },
     { "http", 0, "[PORT]", CLI_WATCH, read_port, .help = "also serve a page", .group = "watch" },
     { "terminal", 0, "kitty|sixel|blocks|text", CLI_WATCH, read_word, .help = "how to draw", AT(terminal) },
     { "dialect", 0, "gr", SHOWN | CLI_REPRODUCE, read_word, .help = "what the script is written in", AT(dialect),

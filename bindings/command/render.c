@@ -26,12 +26,26 @@ bool cli_finish_frames(glintL_run *run, bool good)
     return good;
 }
 
+static bool run_all(cli_options *options, cli_output *output, glintL_run *run, bool *reported)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    int code = 0;
+    char *live = options->is_live ? cli_live(options, &run->request, &code, message) : NULL;
+    if (options->is_live && !live)
+        return glintL_run_fail(run, code, 0, "%s", message);
+    run->live = live;
+    const bool good = options->sweep_count ? cli_run_points(options, output, run, reported) : run_once(options, run);
+    run->live = NULL;
+    free(live);
+    return good;
+}
+
 int cli_render(cli_options *options, cli_output *output, glintL_run *run)
 {
     if (!output->quiet)
         output->progress = cli_progress_create(output->color);
     bool reported = false;
-    bool good = options->sweep_count ? cli_run_points(options, output, run, &reported) : run_once(options, run);
+    bool good = run_all(options, output, run, &reported);
     if (!cli_finish_frames(run, good))
         glintL_films_keep(run);
     if (run->interrupted) {

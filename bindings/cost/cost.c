@@ -207,6 +207,7 @@ static void close_study(cost_study *study)
     for (int i = 0; i < study->left_out_count; i++)
         free(study->left_out[i]);
     free(study->left_out);
+    free(study->live);
     free(study->cases);
     free(study->rows);
     free(study->truth.object);
@@ -283,9 +284,19 @@ static bool check_options(const cli_options *options, glintL_run *run)
     char message[GLINTL_MESSAGE_SIZE];
     if (options->knobs && !cost_knobs_check(options->knobs, message))
         return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--knobs: %s", message);
+    if (options->is_live && !options->report)
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--live: --report DIR expected, whose page has the live figure");
     if (options->report && !cost_report_check(options->report, message))
         return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--report: %s", message);
     return true;
+}
+
+static bool add_live(cost_study *study)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    int code = 0;
+    study->live = cli_live(study->options, &study->run->request, &code, message);
+    return study->live || glintL_run_fail(study->run, code, 0, "%s", message);
 }
 
 int cli_cost(cli_options *options, cli_output *output, glintL_run *run)
@@ -296,7 +307,7 @@ int cli_cost(cli_options *options, cli_output *output, glintL_run *run)
         study = open_study(options, output, run, moments);
     else
         cost_moments_close(moments);
-    if (study && !run->exit_code) {
+    if (study && !run->exit_code && (!options->is_live || add_live(study))) {
         say_frame(study);
         if (!output->quiet)
             output->progress = cli_progress_create(output->color);

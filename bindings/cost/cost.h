@@ -247,6 +247,7 @@ typedef struct cost_study {
     glint_picture_error reference_error; ///< of that mean, by how far the parts are from it
     cost_decisions truth; ///< of the base, in double
     bool is_complete; ///< not interrupted
+    char *live; ///< of --live, HTML for the page; owned; NULL: none
 
     char **left_out; ///< owned lines: what the budget or the scene left out
     int left_out_count;

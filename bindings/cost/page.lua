@@ -101,6 +101,7 @@ function the.page(study)
   for i, row in ipairs(study.rows) do rows[i] = row_of(row) end
   local parts = { SCRIPT = the.html(study.script), LEAD = lead_of(study), REFERENCE = reference_of(study),
     PLOT = the.plot(study) or "", ROWS = table.concat(rows), LEFT_OUT = left_out_of(study),
-    PICTURES = pictures_of(study), ADVICE = the.html(study.advice) }
+    PICTURES = pictures_of(study), ADVICE = the.html(study.advice),
+    LIVE = study.live and "<h2>Try it</h2>\n" .. study.live or "" }
   return (study.page:gsub("@(%u[%u_]*)@", parts))
 end

@@ -63,6 +63,8 @@ static void push_report(lua_State *L, const void *context)
     cost_push_study(L, study);
     set_bytes(L, "page", PAGE, sizeof PAGE);
     set_bytes(L, "style", STYLE, sizeof STYLE);
+    lua_pushstring(L, study->live);
+    lua_setfield(L, -2, "live");
     lua_pushboolean(L, is_light(study));
     lua_setfield(L, -2, "is_light");
     lua_newtable(L);

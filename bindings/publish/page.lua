@@ -1,4 +1,5 @@
 -- The page of glint publish: page.html with its @NAMES@ filled in. It needs no network and no server.
+-- The pages of --live have its figure.
 local the = ...
 
 local function html(text)
@@ -59,16 +60,35 @@ local function check_controls(page)
   end
 end
 
-function the.publish(page)
+local FIGURE <const> = [[
+<glint-figure @ATTRIBUTES@ style="max-width: @WIDTH@px">
+<img src="data:image/png;base64,@POSTER@" width="@WIDTH@" height="@HEIGHT@" alt="@TITLE@">
+</glint-figure>
+<script type="application/json" id="glint-job">@JOB@</script>
+<script type="application/octet-stream" id="glint-wasm">@WASM@</script>
+<script type="module">@ENGINE@</script>
+]]
+
+local function fill(template, values)
+  return (template:gsub("@(%u+)@", function(name) return values[name] and tostring(values[name]) end))
+end
+
+-- The picture with its controls, and all that it needs.
+function the.live(page)
   check_controls(page)
   local files, same = files_of(page)
-  local values = {
-    VERSION = page.version, TITLE = html(page.title), WIDTH = page.width, HEIGHT = page.height,
-    ATTRIBUTES = attributes_of(page), POSTER = the.base64(page.poster), WASM = the.base64(page.wasm),
-    ENGINE = page.engine, SOURCE = page.shows_source and listing(page.source) or "",
+  return fill(FIGURE, {
+    TITLE = html(page.title), WIDTH = page.width, HEIGHT = page.height, ATTRIBUTES = attributes_of(page),
+    POSTER = the.base64(page.poster), WASM = the.base64(page.wasm), ENGINE = page.engine,
     JOB = embedded {
       name = page.script, text = page.source, files = files, same = same, values = values_of(page.params),
     },
-  }
-  return (page.template:gsub("@(%u+)@", function(name) return values[name] and tostring(values[name]) end))
+  })
+end
+
+function the.publish(page)
+  return fill(page.template, {
+    VERSION = page.version, TITLE = html(page.title), WIDTH = page.width, FIGURE = the.live(page),
+    SOURCE = page.shows_source and listing(page.source) or "",
+  })
 end

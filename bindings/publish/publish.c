@@ -1,5 +1,5 @@
 // glint publish SCRIPT -o PAGE: one page with the engine, the script, the files it reads, its controls and a picture of the
-// frame, which stands there until the engine has started.
+// frame, which stands there until the engine has started. --live puts the same figure into pages of other commands.
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -27,6 +27,7 @@ static const glintL_carried MODULE = { "@page.lua", PAGE_LUA, sizeof PAGE_LUA };
 
 typedef struct publication {
     const cli_options *options;
+    const char *who; // for messages: publish or --live
     glintL_run *run;
     cli_script script;
     struct {
@@ -51,7 +52,7 @@ static void add_file(publication *p, const char *path, const char *name)
     if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) // the script itself reports what is not there
         return;
     if (p->file_count == FILES_MAX) {
-        glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0, "publish: the script reads more than %d files", FILES_MAX);
+        glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0, "%s: the script reads more than %d files", p->who, FILES_MAX);
         return;
     }
     p->files[p->file_count].path = strdup(path);
@@ -119,7 +120,7 @@ static bool render(publication *p)
     if (!cli_run_script(&p->script, p->options, run) || !glintL_call_settle(run) || !glintL_run_collect(run, true))
         return false;
     if (!p->image)
-        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "publish: the script has no frame %" PRId64,
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%s: the script has no frame %" PRId64, p->who,
                                p->options->frame);
     glint_write_desc desc = { .path = "poster.png", .pass = GLINT_PASS_BEAUTY, .tone = p->render.desc.tone };
     desc.tone.bits = 8;
@@ -175,8 +176,9 @@ static bool read_engine(publication *p)
     p->engine = p->wasm ? read_part(p, "publish.js", &p->engine_size) : NULL;
     return p->engine ||
            glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0,
-                           "publish: the engine for pages is not there (glint.wasm.gz, publish.js). Build it with "
-                           "`make web`, then run build/glint, or install again");
+                           "%s: the engine for pages is not there (glint.wasm.gz, publish.js). Build it with "
+                           "`make web`, then run build/glint, or install again",
+                           p->who);
 }
 
 // ---- The page ----
@@ -239,19 +241,33 @@ static void push_page(lua_State *L, const void *context)
     lua_setfield(L, -2, "files");
 }
 
-static int write_page(lua_State *L)
+typedef struct making {
+    const publication *of;
+    const char *what; // of page.lua: publish or live
+    glintL_made_text text;
+} making;
+
+static int make_text(lua_State *L)
 {
-    const publication *p = lua_touserdata(L, 1);
+    making *job = lua_touserdata(L, 1);
     char message[GLINTL_MESSAGE_SIZE];
-    glintL_made_text made;
-    glint_error error = { .message = "" };
     if (glintL_push_unknown_set(L))
         return lua_error(L);
     glintL_push_params(L);
-    const bool is_made = glintL_make_text(&MODULE, 1, "publish", push_page, p, &made, message);
-    const bool is_written = is_made && glintL_write_text(p->options->output, made.text, made.size, &error) == GLINT_OK;
-    glintL_drop_text(&made);
-    return is_written ? 0 : luaL_error(L, "%s", is_made ? error.message : message);
+    const bool is_made = glintL_make_text(&MODULE, 1, job->what, push_page, job->of, &job->text, message);
+    return is_made ? 0 : luaL_error(L, "%s", message);
+}
+
+// Runs the script and makes the page, or only its figure. The text is to be dropped in any case.
+static bool make(publication *p, making *job)
+{
+    if (!read_engine(p) || !render(p))
+        return false;
+    lua_State *L = p->script.state;
+    lua_settop(L, 0);
+    lua_pushcfunction(L, make_text);
+    lua_pushlightuserdata(L, job);
+    return lua_pcall(L, 1, 0, 0) == LUA_OK || glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0, "%s", lua_tostring(L, -1));
 }
 
 static void destroy(publication *p)
@@ -269,24 +285,50 @@ static void destroy(publication *p)
 
 int cli_publish(cli_options *options, cli_output *output, glintL_run *run)
 {
-    publication p = { .options = options, .run = run };
+    publication p = { .options = options, .who = "publish", .run = run };
+    making page = { .of = &p, .what = "publish" };
+    glint_error error;
     const char *ending = options->output ? strrchr(options->output, '.') : NULL;
     if (!ending || strcmp(ending, ".html") != 0) {
         cli_report_error(output, 0, GLINTL_EXIT_USAGE, "publish: -o PAGE.html expected");
         return GLINTL_EXIT_USAGE;
     }
-    if (read_engine(&p) && render(&p)) {
-        lua_State *L = p.script.state;
-        lua_settop(L, 0);
-        lua_pushcfunction(L, write_page);
-        lua_pushlightuserdata(L, &p);
-        if (lua_pcall(L, 1, 0, 0) != LUA_OK)
-            glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%s", lua_tostring(L, -1));
-    }
+    if (make(&p, &page) && glintL_write_text(options->output, page.text.text, page.text.size, &error) != GLINT_OK)
+        glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%s", error.message);
+    glintL_drop_text(&page.text);
     destroy(&p);
     if (run->exit_code)
         cli_report_error(output, 0, run->exit_code, run->message);
     else
         cli_reporter(output).figure(output, "page", options->output, 1);
     return run->exit_code;
+}
+
+char *cli_live(const cli_options *options, const glintL_request *request, int *code, char message[GLINTL_MESSAGE_SIZE])
+{
+    cli_options own = *options;
+    publication p = { .options = &own, .who = "--live", .run = glintL_run_create() };
+    making figure = { .of = &p, .what = "live" };
+    char *text = NULL;
+    *code = GLINTL_EXIT_FAILED;
+    snprintf(message, GLINTL_MESSAGE_SIZE, "--live: out of memory");
+    if (!p.run)
+        return NULL;
+    if (options->live_script)
+        own.script = options->live_script;
+    p.run->is_command = true;
+    snprintf(p.run->script, sizeof p.run->script, "%s", cli_base_name(own.script));
+    p.run->request.sets = request->sets;
+    p.run->request.set_count = request->set_count;
+    if (make(&p, &figure))
+        text = strdup(figure.text.text);
+    if (p.run->exit_code) {
+        *code = p.run->exit_code;
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s", p.run->message);
+    }
+    glintL_drop_text(&figure.text);
+    destroy(&p);
+    p.run->request.sets = NULL;
+    glintL_run_destroy(p.run);
+    return text;
 }

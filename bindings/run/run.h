@@ -296,6 +296,7 @@ struct glintL_run {
     double since_ms; ///< when the last call returned
     bool in_frame; ///< a frame function runs
     bool no_sheets; ///< frames alone are wanted
+    const char *live; ///< HTML of a live figure for the pages of sheets; NULL: none
 
     bool has_light; ///< a picture was seen that is not black
     bool has_aperture, has_focus; ///< a frame's camera has a lens; says what is in focus, or the lens's form

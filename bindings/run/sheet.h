@@ -24,6 +24,7 @@ typedef struct glintL_sheet {
     bool transparent; ///< without paper
     const glint_overlay_desc *colorbar; ///< of all pictures; NULL: none
     bool mixes; ///< files of different makings are welcome
+    const char *live; ///< HTML of a live figure for the page; NULL: none
 } glintL_sheet;
 
 /// Checks what can be checked before there are files. False: the message says what is wrong.

@@ -27,5 +27,6 @@ function the.sheet(sheet)
   return (sheet.page:gsub("@(%u+)@", { VERSION = sheet.version, TITLE = title,
     HEADING = sheet.title and "<h1>" .. title .. "</h1>\n" or "", DIFFERENCE = ("%d"):format(sheet.difference),
     GAIN = ("%g"):format(sheet.gain), GRID = sheet.axes and "true" or "false", AXES = table.concat(axes),
-    LABELS = table.concat(labels), PICTURES = "\0" }))
+    LABELS = table.concat(labels),
+    LIVE = sheet.live and "<h2>Try it</h2>\n" .. sheet.live or "", PICTURES = "\0" }))
 end

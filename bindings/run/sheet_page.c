@@ -47,6 +47,8 @@ static void push_content(lua_State *L, const void *context)
     lua_setfield(L, -2, "version");
     lua_pushstring(L, sheet->title);
     lua_setfield(L, -2, "title");
+    lua_pushstring(L, sheet->live);
+    lua_setfield(L, -2, "live");
     lua_pushinteger(L, sheet->difference);
     lua_setfield(L, -2, "difference");
     lua_pushnumber(L, sheet->gain > 0 ? sheet->gain : 8);

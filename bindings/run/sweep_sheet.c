@@ -314,6 +314,7 @@ static int draw_protected(lua_State *L)
     if (what->first > 1 && (!given || run->point_count > 1))
         number_output(output, what->first);
     glintL_sheet sheet = read_sheet(L, 3, &l, job->frames, output);
+    sheet.live = run->live;
     if (sheet.dpi == 0) // that of its pictures
         sheet.dpi = dpi_of(run, job);
     draw(run, what, &sheet, &l);

@@ -47,4 +47,39 @@ exits 2 "an option of other commands" publish scene.lua -o wrong.html --samples 
 GLINT_WEB=$work/nowhere exits 2 "no engine for pages" publish scene.lua -o wrong.html
 says "no engine for pages" 'make web'
 check "nothing is left of a refused page" test ! -e wrong.html
+
+# ---- The same figure in other pages ----
+
+has_figure() { # PAGE
+    has "$1" '<h2>Try it</h2>'
+    has "$1" "\"data/shade.txt\":\"$(base64 <data/shade.txt)\""
+    has "$1" "$(base64 <web/glint.wasm.gz)"
+    check "$1 has one figure" test "$(grep -c '^<glint-figure ' "$1")" -eq 1
+}
+cat >sweep.lua <<'LUA'
+local glint = require "glint"
+local P = glint.params { size = { 1, min = 0, max = 2 } }
+local file <close> = assert(io.open "data/shade.txt")
+local ball = glint.sphere { center = { 0, 0, 0 }, radius = P.size }
+return glint.sweep { width = 8, height = 6, output = "ball.png", over = { { ball, "radius", { 0.5, 1 } } }, sheet = { output = "sheet.html" },
+  scene = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }, ambient = file:read "n", ball } }
+LUA
+exits 0 "a sweep with its sheet" sweep.lua --live --set size=1.5
+has_figure sheet.html
+has sheet.html '"values":{"size":1.5}'
+exits 0 "a sheet of finished frames" sheet ball_0001.png ball_0002.png -o finished.html --live=sweep.lua
+has_figure finished.html
+exits 0 "the report of a study" cost scene.lua --report study --quick --knobs samples --live
+has_figure study/index.html
+exits 0 "pages without --live" sheet ball_0001.png ball_0002.png -o plain.html
+check "they have no figure" test "$(grep -c glint-figure plain.html)" -eq 0
+
+exits 2 "a sheet without its script" sheet ball_0001.png ball_0002.png -o wrong.html --live
+says "a sheet without its script" '--live=SCRIPT expected'
+exits 2 "a script that is not there" sheet ball_0001.png ball_0002.png -o wrong.html --live=missing.lua
+exits 2 "a study without a page" cost scene.lua --live
+says "a study without a page" '--report DIR expected'
+GLINT_WEB=$work/nowhere exits 2 "no engine for a figure" sweep.lua --live --set size=1.2
+says "no engine for a figure" '--live: the engine for pages is not there'
+check "nothing is left of these" test ! -e wrong.html
 totals

@@ -231,28 +231,48 @@ async function phone() {
 
 // ---- A published page, from a disk ----
 
+const run = (...words) => execFileSync(glint, words, { cwd: work, stdio: "pipe", env: { ...process.env, GLINT_FONT: "bitmap", GLINT_WEB: web, LUA_PATH: "./?.lua" } })
+
+// The 8-bit values of a figure, and of the picture that the command makes of the script.
+const codesShown = figure => figure.locator("canvas").evaluate(shown => [...shown.getContext("2d").getImageData(0, 0, shown.width, shown.height).data])
+function codesExpected(page, script, ...words) {
+  run(script, "--size", "320x180", "-f", "1", "--force", "--quiet", "-o", "expected_####.png", ...words)
+  return codesOf(page, join(work, "expected_0001.png"))
+}
+
 async function published() {
-  const script = join(work, "tricky.lua")
-  writeFileSync(script, TRICKY)
+  writeFileSync(join(work, "tricky.lua"), TRICKY)
   writeFileSync(join(work, "shade.lua"), "return 0.25 -- a module beside the script\n")
   const path = join(work, "page.html")
-  const run = (...words) => execFileSync(glint, words, { cwd: work, env: { ...process.env, GLINT_FONT: "bitmap", GLINT_WEB: web, LUA_PATH: "./?.lua" } })
   run("publish", "tricky.lua", "-o", "page.html", "--size", "320x180", "--title", "Lamps & <tags>", "--source", "--set", "height=9")
   check(statSync(path).size <= 2.5e6, `the published page has ${statSync(path).size} bytes`)
   const page = await open(`file://${path}`)
   const one = page.locator("glint-figure")
   await one.locator("canvas").waitFor({ state: "visible" })
-  const codes = () => one.locator("canvas").evaluate(shown => [...shown.getContext("2d").getImageData(0, 0, shown.width, shown.height).data])
-  const expected = (...words) => {
-    run("tricky.lua", "--size", "320x180", "--force", "--quiet", "-o", "expected.png", ...words)
-    return codesOf(page, join(work, "expected.png"))
-  }
-  check(same(await codes(), await expected("--set", "height=9")), "published: the picture, with the values of --set")
+  check(same(await codesShown(one), await codesExpected(page, "tricky.lua", "--set", "height=9")), "published: the picture, with the values of --set")
   check(await page.title() === "Lamps & <tags>" && await page.locator("details").count() === 1, "published: title and script")
   await one.getByLabel("height").focus()
   await rendered(one, () => page.keyboard.press("Home"))
-  check(same(await codes(), await expected("--set", "height=4")), "published: the slider's picture")
+  check(same(await codesShown(one), await codesExpected(page, "tricky.lua", "--set", "height=4")), "published: the slider's picture")
   await close(page, "published")
+}
+
+// The pages of other commands with --live have the same figure.
+async function live() {
+  writeFileSync(join(work, "sweep.lua"), SWEEP)
+  run("sweep.lua", "-o", "swept.png", "--live")
+  run("cost", "sweep.lua", "--report", "study", "--quick", "--knobs", "samples", "--live")
+  for (const name of ["sheet.html", "study/index.html"]) {
+    const page = await open(`file://${join(work, name)}`)
+    const one = page.locator("glint-figure")
+    await one.scrollIntoViewIfNeeded()
+    await one.locator("canvas").waitFor({ state: "visible" })
+    await one.getByLabel("height").focus()
+    await rendered(one, () => page.keyboard.press("Home"))
+    check(same(await codesShown(one), await codesExpected(page, "sweep.lua", "--set", "height=4")), `${name}: the slider's picture`)
+    await page.screenshot({ path: join(work, `live-${name.replace("/", "-")}.png`), fullPage: true })
+    await close(page, name)
+  }
 }
 
 const TRICKY = `local glint = require "glint"
@@ -260,6 +280,14 @@ local P = glint.params { height = { 8, min = 4, max = 12, doc = "</script><b>&" 
 return glint.animation { width = 64, height = 36, scene = glint.scene {
   camera = glint.camera { eye = { 0, 2, 8 }, at = { 0, 0, 0 } }, ambient = require "shade",
   glint.point_light { position = { 3, P.height, 5 } }, glint.sphere { center = { 0, 0, 0 }, radius = 1.5 } } }
+`
+
+const SWEEP = `local glint = require "glint"
+local P = glint.params { height = { 8, min = 4, max = 12 } }
+local red = glint.material { diffuse = { 0.8, 0.2, 0.2 }, specular = 0.6 }
+return glint.sweep { width = 320, height = 180, over = { { red, "shininess", { 8, 64 } } }, sheet = { output = "sheet.html" }, scene = glint.scene {
+  camera = glint.camera { eye = { 0, 2, 8 }, at = { 0, 0, 0 } }, ambient = 0.1,
+  glint.point_light { position = { 3, P.height, 5 } }, glint.sphere { center = { 0, 0, 0 }, radius = 1.5, material = red } } }
 `
 
 const same = (a, b) => a.length === b.length && a.every((value, i) => value === b[i])
@@ -278,7 +306,8 @@ function codesOf(page, path) {
   }, readFileSync(path).toString("base64"))
 }
 
-for (const test of [playground, sharing, figure, course, published, phone]) {
+for (const test of [playground, sharing, figure, course, published, live, phone]) {
+  if (!test.name.includes(process.env.T ?? "")) continue
   try {
     await test()
   } catch (error) {
