@@ -70,7 +70,7 @@ function readOptions(words) {
 
 async function comparePicture(name, script, words, size, codes) {
   const { set, options } = readOptions([...size, ...words])
-  const job = await glint.open(fs.readFileSync(`scripts/${script}.lua`, "utf8"), { name: `${script}.lua`, files: { ...data, [flake]: fs.readFileSync(flake) }, set, seconds: 60 })
+  const job = await glint.open(fs.readFileSync(`scripts/${script}.lua`, "utf8"), { name: `${script}.lua`, files: { ...data, [flake]: fs.readFileSync(flake) }, set, seconds: 300 })
   const image = await job.render({ ...options, passes: ["beauty", "depth"] })
   native(`scripts/${script}.lua`, [...size, ...words, "--passes", "depth"], `${OUT}/${name}.pfm`)
   const file = fs.readdirSync(OUT).find(other => other.startsWith(`${name}`) && /^(_\d+)?\.pfm$/.test(other.slice(name.length)))

@@ -20,7 +20,8 @@ function titleOf(text) {
 }
 
 const index = []
-for (const name of readdirSync(scripts).filter(file => file.endsWith(".lua") && !file.startsWith("gr_")).sort()) {
+const isExample = file => file.endsWith(".lua") && !file.startsWith("gr_") && file !== "furnace.lua" // which computes for longer than a page waits
+for (const name of readdirSync(scripts).filter(isExample).sort()) {
   const text = readFileSync(join(scripts, name), "utf8")
   // A file is read by its name, or by the name of another file that is read (an .mtl).
   const files = data.filter(file => text.includes(file) || text.includes(file.replace(/\.[^.]*$/, ".")))

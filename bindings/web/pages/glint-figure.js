@@ -32,7 +32,7 @@ export function useEngine(promise) {
 }
 
 const style = `
-  :host { display: block; color-scheme: light dark; font: 0.9375rem/1.4 system-ui, sans-serif; max-width: 100%; }
+  :host { display: block; font: 0.9375rem/1.4 system-ui, sans-serif; max-width: 100%; }
   [hidden] { display: none !important; }
   figure { margin: 0; }
   .picture { position: relative; }
@@ -44,7 +44,7 @@ const style = `
   label > input[type=range], label > select, label > input[type=text] { grid-column: 1 / -1; width: 100%; box-sizing: border-box;
     min-height: 1.75rem; margin: 0; font: inherit; }
   .note { font-variant-numeric: tabular-nums; color: color-mix(in srgb, currentColor 75%, transparent); }
-  .bar { display: flex; flex-wrap: wrap; gap: 0.5rem 0.75rem; align-items: center; }
+  .bar { display: flex; flex-wrap: wrap; gap: 0.5rem 0.75rem; align-items: center; margin: 0.5rem 0; }
   .bar input { flex: 1 1 8rem; }
   button { font: inherit; padding: 0.25rem 0.8rem; min-height: 2rem; }
 `
