@@ -132,7 +132,7 @@ static bool has(lua_State *L, const char *type, const void *object, const void *
 static bool shows_through(lua_State *L, const glint_material *material)
 {
     const glint_material_desc *desc = material ? glint_material_get(material) : NULL;
-    return desc && (desc->fresnel || desc->program.opacity || desc->opacity < 0.5 ||
+    return desc && (desc->fresnel || desc->program.opacity || desc->opacity < 1 ||
                     has(L, GLINTL_MATERIAL, material, desc, 0, "transmission") ||
                     has(L, GLINTL_MATERIAL, material, desc, 0, "mirror"));
 }

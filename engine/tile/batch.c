@@ -485,16 +485,13 @@ static void cross(const glint_tile *tile, const glint_tile_frame *frame, uint32_
         glint_media_cross(media, medium_of(tile, frame, i), glint_has_lane(tile->hit.back, i));
 }
 
-/// Computes the unit direction of a ray that goes on from sample i. A straight ray keeps the bits of a secondary ray's direction, which is
-/// unit; a ray of the eye is normalised.
-static void direction_of(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                         glint_way way, double out[3])
+/// Computes the unit direction of the straight ray of sample i. It has the bits of a secondary ray's direction, which is unit; a ray of the
+/// eye is normalised.
+static void straight_direction(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double out[3])
 {
-    const glint_precision precision = frame->plan->desc.precision;
-    const double(*turned)[GLINT_TILE_SAMPLES] = crosses(batch, i, way) ? batch->refracted : batch->reflected;
     for (int c = 0; c < 3; c++)
-        out[c] = way == GLINT_WAY_STRAIGHT ? glint_tile_direction(tile, precision, c, i) : glint_real_at(turned[c], precision, i);
-    if (way == GLINT_WAY_STRAIGHT && tile != &batch->tile)
+        out[c] = glint_tile_direction(tile, frame->plan->desc.precision, c, i);
+    if (tile != &batch->tile)
         vec_normalize(out, out);
 }
 
@@ -511,7 +508,10 @@ void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const g
     for (int way = 0; way < ways; way++) {
         const bool through = crosses(batch, i, (glint_way)way);
         vec_copy(rays[way].weight, weight[way]);
-        direction_of(batch, tile, frame, i, (glint_way)way, rays[way].direction);
+        for (int c = 0; c < 3; c++)
+            rays[way].direction[c] = glint_real_at(through ? batch->refracted[c] : batch->reflected[c], frame->plan->desc.precision, i);
+        if (way == GLINT_WAY_STRAIGHT)
+            straight_direction(batch, tile, frame, i, rays[way].direction);
         rays[way].depth += way != GLINT_WAY_STRAIGHT;
         rays[way].passes += way == GLINT_WAY_STRAIGHT;
         rays[way].inward = glint_has_lane(tile->hit.back, i) != through;
@@ -533,7 +533,10 @@ static void direct(const glint_batch *batch, const glint_tile *tile, const glint
         const glint_way way = (glint_way)sent->way[n];
         const bool through = crosses(batch, i, way), back = glint_has_lane(tile->hit.back, i);
         double direction[3];
-        direction_of(batch, tile, frame, i, way, direction);
+        for (int c = 0; c < 3; c++)
+            direction[c] = glint_real_at(through ? batch->refracted[c] : batch->reflected[c], precision, i);
+        if (way == GLINT_WAY_STRAIGHT)
+            straight_direction(batch, tile, frame, i, direction);
         for (int c = 0; c < 3; c++)
             glint_real_put(rays->direction[c], precision, n, direction[c]);
         rays->inward[n / GLINT_GROUP] |= (uint16_t)((back != through) << n % GLINT_GROUP);
@@ -542,6 +545,19 @@ static void direct(const glint_batch *batch, const glint_tile *tile, const glint
         rays->media[n] = *media_of(batch, tile, frame, i);
         if (through)
             cross(tile, frame, i, &rays->media[n]);
+    }
+}
+
+/// Notes which rays went straight through a surface, which does not add to their depth, and along which the eye looks.
+static void note_passes(const glint_batch *batch, const glint_tile *tile, const glint_sent *sent, glint_rays *rays)
+{
+    const glint_rays *from = tile == &batch->tile ? batch->rays : NULL;
+    for (uint32_t n = 0; n < sent->count; n++) {
+        const uint32_t i = sent->sample[n], ray = from ? batch->ray_of[i] : 0;
+        const bool straight = sent->way[n] == GLINT_WAY_STRAIGHT;
+        rays->depth[n] -= straight;
+        rays->passes[n] = (from ? from->passes[ray] : 0) + straight;
+        rays->sight[n] = (from ? from->sight[ray] : true) && crosses(batch, i, (glint_way)sent->way[n]);
     }
 }
 
@@ -556,14 +572,14 @@ static void hand_on(const glint_batch *batch, const glint_tile *tile, const glin
         const uint32_t i = sent->sample[n], ray = from ? batch->ray_of[i] : 0;
         rays->leaving[n] = tile->at.prim[i];
         rays->pixel[n] = from ? from->pixel[ray] : i;
-        const bool straight = sent->way[n] == GLINT_WAY_STRAIGHT;
-        rays->depth[n] = (from ? from->depth[ray] : 0) + !straight;
-        rays->passes[n] = (from ? from->passes[ray] : 0) + straight;
-        rays->sight[n] = (from ? from->sight[ray] : true) && crosses(batch, i, (glint_way)sent->way[n]);
-        rays->term[n] = from                                       ? from->term[ray]
+        rays->depth[n] = from ? from->depth[ray] + 1 : 1;
+        rays->term[n] = from                                 ? from->term[ray]
                         : sent->way[n] == GLINT_WAY_MIRRORED ? GLINT_TERM_MIRROR
                                                              : GLINT_TERM_TRANSMISSION;
     }
+    memset(rays->passes, 0, sent->count * sizeof *rays->passes);
+    if (frame->plan->clears || glint_tile_wants_coverage(frame->plan))
+        note_passes(batch, tile, sent, rays);
     memset(rays->point, 0, sent->count * sizeof *rays->point);
     memset(rays->scatters, 0, sent->count * sizeof *rays->scatters);
     memset(rays->least, 0, sent->count * sizeof *rays->least);

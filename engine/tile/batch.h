@@ -87,15 +87,14 @@ static inline double glint_batch_light_of(const glint_batch *batch, const glint_
         return glint_batch_found(batch, c, batch->sample[ray]);
     return plan->environment ? batch->shown[c][ray] : plan->background[c];
 }
-/// Returns whether ray `ray` shows the eye the background through surfaces and lowers the coverage of its pixel. False in frames that do
-/// not need coverage.
+/// Returns whether ray `ray` shows the eye the background through surfaces, and lowers the coverage of its pixel. Only for frames that need
+/// coverage.
 static inline bool glint_batch_uncovers(const glint_batch *batch, const glint_plan *plan, uint32_t ray)
 {
     const uint32_t i = batch->sample[ray];
-    if (!glint_tile_wants_coverage(plan) || !batch->rays->sight[ray])
-        return false;
-    return !glint_batch_has_sample(batch, ray) ||
-           !(glint_has_lane(batch->tile.at.hits, i) || (plan->visible_light_count && glint_tile_sees_light(&batch->tile, i)));
+    const bool seen = glint_batch_has_sample(batch, ray) &&
+                      (glint_has_lane(batch->tile.at.hits, i) || (plan->visible_light_count && glint_tile_sees_light(&batch->tile, i)));
+    return batch->rays->sight[ray] && !seen;
 }
 /// Where light goes on from the samples of `tile` in batch->wanted: mirrored and refracted. `tile` is the batch's own, or
 /// one that the eye sees.

@@ -32,7 +32,7 @@ typedef struct glint_rays {
     uint32_t depth[GLINT_TILE_SAMPLES], passes[GLINT_TILE_SAMPLES], scatters[GLINT_TILE_SAMPLES];
     uint16_t term[GLINT_TILE_SAMPLES];
     uint32_t group_count;
-    bool sight[GLINT_TILE_SAMPLES];
+    bool sight[GLINT_TILE_SAMPLES]; ///< only in frames that need coverage or have translucent surfaces
     uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS]; ///< lanes without a ray hold anything
     glint_media media[GLINT_TILE_SAMPLES];
     struct glint_ray_slope *slopes; ///< in frames with derivatives: of each ray, one a derivative; else NULL or anything

@@ -69,6 +69,8 @@ scene 'objects = { glint.sphere { center = { 0, 0, 0 }, radius = 20 } }'
 silent "with the eye inside, too, it is a room"
 scene "$inside" 'lamp.position = { 0, 1, 0 }; objects[1].material = glint.material { opacity = glint.pattern(function(p) return p.x end) }'
 silent "a sphere with holes lets light out"
+scene "$inside" 'lamp.position = { 0, 1, 0 }; objects[1].material = glint.material { opacity = 0.6 }'
+silent "a translucent sphere does, too"
 scene "$inside" 'function frame(t, n) lamp.position = { 0, n == 3 and 1 or 9, 0 } end'
 warns "in a frame of many" "frame 3: a point_light 'lamp'"
 

@@ -199,15 +199,17 @@ static void draw(const glint_plan *plan, parting *rays, double lot)
 static void push_all(struct glint_bounce *bounce, const glint_plan *plan, uint32_t base, uint32_t i, const parting *rays,
                      double *budget)
 {
+    const int ways = plan->clears ? GLINT_WAYS : GLINT_WAY_STRAIGHT;
     double total[GLINT_WAYS];
-    for (int way = 0; way < GLINT_WAYS; way++)
+    for (int way = 0; way < ways; way++)
         total[way] = matters(plan, rays->weight[way], budget) ? total_weight(rays->weight[way]) : 0;
-    for (int way = 0; way < GLINT_WAYS; way++) {
+    for (int way = 0; way < ways; way++) {
         uint32_t stronger = 0;
-        for (int other = 0; other < GLINT_WAYS; other++)
+        if (!(total[way] > 0))
+            continue;
+        for (int other = 0; other < ways; other++)
             stronger += total[other] > total[way] || (total[other] == total[way] && other < way);
-        if (total[way] > 0)
-            push(bounce, plan, base, stronger, i, rays, (glint_way)way);
+        push(bounce, plan, base, stronger, i, rays, (glint_way)way);
     }
 }
 
@@ -301,13 +303,14 @@ static void take_level(struct glint_bounce *bounce, uint32_t level, glint_tile_c
 static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to)
 {
     const glint_rays *rays = batch->rays;
+    const bool covers = glint_tile_wants_coverage(plan);
     for (uint32_t g = 0; g < rays->group_count; g++)
         for (unsigned left = rays->active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]];
             const uint32_t pixel = rays->pixel[i];
             double weight[3];
-            if (glint_batch_uncovers(batch, plan, i)) {
+            if (covers && glint_batch_uncovers(batch, plan, i)) {
                 to->film.covered[pixel] -= ((rays->weight[0][i] + rays->weight[1][i]) + rays->weight[2][i]) / 3;
                 if (plan->desc.alpha)
                     continue;
