@@ -171,22 +171,61 @@ static int columns_of(const glintL_sheet *sheet, const glintL_axes *axes)
     return (int)ceil(sqrt((double)sheet->count));
 }
 
-// Names the columns and rows of a grid; a single axis may run over several rows.
-static void set_titles(const glintL_axes *axes, glint_sheet_desc *desc, char down[256])
+// How many axes of a grid lie across: those whose values together are the columns. A single axis may run over several
+// rows. 0: no columns would belong to one value each.
+static size_t count_across(const glintL_axes *axes, size_t columns)
+{
+    size_t product = 1;
+    if (axes->count == 1)
+        return 1;
+    for (size_t a = 0; a < axes->count; a++) {
+        product *= axes->axis[a].count;
+        if (product == columns)
+            return a + 1;
+    }
+    return 0;
+}
+
+static bool check_columns(const glintL_sheet *sheet, const glintL_axes *axes, char *message)
+{
+    size_t used = 0, product = 1;
+    char counts[200] = "";
+    if (!axes->is_grid || count_across(axes, (size_t)columns_of(sheet, axes)))
+        return true;
+    for (size_t a = 0; a < axes->count && used < sizeof counts; a++) {
+        product *= axes->axis[a].count;
+        used += (size_t)snprintf(counts + used, sizeof counts - used, "%s%zu (%s)", a ? " x " : "", axes->axis[a].count,
+                                 axes->axis[a].name);
+    }
+    snprintf(message, GLINTL_MESSAGE_SIZE,
+             "columns: %zu or %zu expected, so that a column of the %s pictures has one value of %s, got %lld",
+             axes->axis[0].count, product, counts, axes->axis[0].name, (long long)sheet->columns);
+    return false;
+}
+
+static void list_names(const glintL_axes *axes, size_t from, size_t to, char out[256])
 {
     size_t used = 0;
-    down[0] = '\0';
-    if (!axes->is_grid || (axes->count > 1 && (size_t)desc->columns != axes->axis[0].count))
+    out[0] = '\0';
+    for (size_t a = from; a < to && used < 256; a++)
+        used += (size_t)snprintf(out + used, 256 - used, "%s%s", a > from ? ", " : "", axes->axis[a].name);
+}
+
+// Names the columns and rows of a grid.
+static void set_titles(const glintL_axes *axes, glint_sheet_desc *desc, char across[256], char down[256])
+{
+    const size_t count = axes->is_grid ? count_across(axes, (size_t)desc->columns) : 0;
+    if (!count)
         return;
-    desc->across = axes->axis[0].name;
-    for (size_t a = 1; a < axes->count && used < 256; a++)
-        used += (size_t)snprintf(down + used, 256 - used, "%s%s", a > 1 ? ", " : "", axes->axis[a].name);
+    list_names(axes, 0, count, across);
+    list_names(axes, count, axes->count, down);
+    desc->across = across;
     desc->down = *down ? down : NULL;
 }
 
 static int draw_picture(const glintL_sheet *sheet, const glintL_axes *axes, char *const *labels, char *message)
 {
-    char down[256];
+    char across[256], down[256];
     glint_error error;
     glint_sheet_cell *cells = calloc(sheet->count, sizeof *cells);
     if (!cells) {
@@ -203,7 +242,7 @@ static int draw_picture(const glintL_sheet *sheet, const glintL_axes *axes, char
     desc.dpi = sheet->dpi;
     desc.transparent = sheet->transparent;
     desc.colorbar = sheet->colorbar;
-    set_titles(axes, &desc, down);
+    set_titles(axes, &desc, across, down);
     glint_status status = glint_sheet_write(&desc, sheet->path, &error);
     free(cells);
     if (status)
@@ -218,7 +257,7 @@ int glintL_sheet_make(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZ
     if (!glintL_sheet_check(sheet, message))
         return code;
     if (glintL_axes_find(sheet, &axes, &code, message)) {
-        char **labels = make_labels(sheet, &axes, message);
+        char **labels = check_columns(sheet, &axes, message) ? make_labels(sheet, &axes, message) : NULL;
         code = GLINTL_EXIT_USAGE;
         if (labels)
             code = ends_in(sheet->path, ".html") ? glintL_sheet_page(sheet, &axes, labels, message)

@@ -98,7 +98,11 @@ before=$(sha256sum <grid/0002.png)
 exits 2 "a frame's name for the sheet" sheet grid/0001.png grid/0002.png -o grid/../grid/0002.png
 says "is refused" '-o: a file that is none of the pictures expected'
 [ "$before" = "$(sha256sum <grid/0002.png)" ] && pass || fail "a frame was overwritten"
-exits 0 "columns" sheet grid/000*.png -o columns.png --columns 2
+for columns in 1 2 4 5; do
+    exits 2 "$columns columns of 3 x 2 pictures" sheet grid/000*.png -o wrong.png --columns $columns
+    says "would have no axis" "columns: 3 or 6 expected, so that a column of the 3 .shininess. x 2 .specular. pictures has one value of shininess, got $columns"
+done
+exits 0 "columns" sheet grid/000*.png -o columns.png --columns 6
 exits 3 "make another sheet" compare again.png columns.png
 exits 0 "a title and no labels" sheet grid/000*.png -o titled.png --title "Glanz ä" --label none
 exits 0 "labels by a template" sheet grid/000*.png -o label.png --label 'n = {shininess}, {file} {frame}'
