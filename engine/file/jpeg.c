@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 bool glint_is_jpeg(const uint8_t *data, size_t size)
 {
@@ -39,18 +40,75 @@ static void take_message(j_common_ptr info, int level)
         fail(info);
 }
 
+// ---- Turned pictures ----
+
+/// A number of `bytes` bytes of an Exif block, whose byte order is "II" or "MM".
+static unsigned exif_number(const uint8_t *at, int bytes, bool is_little)
+{
+    unsigned number = 0;
+    for (int i = 0; i < bytes; i++)
+        number = number << 8 | at[is_little ? bytes - 1 - i : i];
+    return number;
+}
+
+/// How a camera was held: the Exif tag Orientation, 1 .. 8; 1 where there is none.
+static unsigned find_orientation(const struct jpeg_decompress_struct *info)
+{
+    static const unsigned tag = 0x112;
+    for (const struct jpeg_marker_struct *m = info->marker_list; m; m = m->next) {
+        const uint8_t *block = m->data + 6;
+        if (m->data_length < 14 || memcmp(m->data, "Exif\0", 6) != 0)
+            continue;
+        const bool is_little = block[0] == 'I';
+        const size_t size = m->data_length - 6, first = exif_number(block + 4, 4, is_little);
+        const size_t count = first + 2 <= size ? exif_number(block + first, 2, is_little) : 0;
+        for (size_t i = 0; i < count && first + 2 + 12 * (i + 1) <= size; i++) {
+            const uint8_t *entry = block + first + 2 + 12 * i;
+            const unsigned value = exif_number(entry + 8, 2, is_little);
+            if (exif_number(entry, 2, is_little) == tag && value >= 1 && value <= 8)
+                return value;
+        }
+    }
+    return 1;
+}
+
+/// Turns a picture as its orientation says: 2 .. 4 mirror it across, both ways and up and down; 5 .. 8 swap its sides, too.
+static bool turn(glint_png *picture, unsigned orientation)
+{
+    const size_t width = (size_t)picture->width, height = (size_t)picture->height, bytes = (size_t)picture->channels;
+    const bool swaps = orientation >= 5, is_left = strchr("2367", '0' + (int)orientation), is_down = strchr("3478", '0' + (int)orientation);
+    uint8_t *codes = malloc(width * height * bytes);
+    if (!codes)
+        return false;
+    for (size_t y = 0; y < height; y++)
+        for (size_t x = 0; x < width; x++) {
+            const size_t across = swaps ? (is_left ? height - 1 - y : y) : is_left ? width - 1 - x : x;
+            const size_t down = swaps ? (is_down ? width - 1 - x : x) : is_down ? height - 1 - y : y;
+            memcpy(codes + (down * (swaps ? height : width) + across) * bytes, (const uint8_t *)picture->codes + (y * width + x) * bytes,
+                   bytes);
+        }
+    free(picture->codes);
+    picture->codes = codes;
+    picture->width = (int)(swaps ? height : width);
+    picture->height = (int)(swaps ? width : height);
+    return true;
+}
+
+// ---- The picture ----
+
 static glint_status read_rows(struct jpeg_decompress_struct *info, failing *f, size_t most, glint_png *picture,
                               glint_error *error)
 {
     if (setjmp(f->back))
         return glint_fail(error, GLINT_ERR_FORMAT, "not a whole JPEG: %.160s", f->message);
+    jpeg_save_markers(info, JPEG_APP0 + 1, 0xffff);
     jpeg_read_header(info, TRUE);
     if ((size_t)info->image_width * info->image_height > most)
         return glint_fail(error, GLINT_ERR_FORMAT, "a picture of at most %zu pixels expected, got %u x %u", most,
                           info->image_width, info->image_height);
     if (info->num_components != 1 && info->num_components != 3)
-        return glint_fail(error, GLINT_ERR_FORMAT, "a JPEG of 1 or 3 components expected, got %d",
-                          info->num_components);
+        return glint_fail(error, GLINT_ERR_FORMAT, "a JPEG in grey, or in red, green and blue, expected, got %s",
+                          info->num_components == 4 ? "CMYK" : "other colours");
     info->out_color_space = info->num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
     info->dct_method = JDCT_ISLOW;
     jpeg_start_decompress(info);
@@ -66,8 +124,9 @@ static glint_status read_rows(struct jpeg_decompress_struct *info, failing *f, s
         JSAMPROW to = (JSAMPROW)picture->codes + row * info->output_scanline;
         jpeg_read_scanlines(info, &to, 1);
     }
+    const unsigned orientation = find_orientation(info);
     jpeg_finish_decompress(info);
-    return GLINT_OK;
+    return orientation == 1 || turn(picture, orientation) ? GLINT_OK : glint_fail_nomem(error);
 }
 
 glint_status glint_jpeg_decode(const uint8_t *data, size_t size, size_t most, glint_png *out, glint_error *error)

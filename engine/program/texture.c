@@ -122,12 +122,34 @@ static bool fill(glint_texture *texture, const glint_png *png, bool linear)
 
 // ---- Reading ------------------------------------------------------------------------------------------------------
 
+/// The first bytes of other formats of pictures.
+static const struct {
+    size_t at;
+    const char *begin, *kind;
+} OTHERS[] = { { 0, "GIF8", "GIF" },       { 0, "BM", "BMP" },          { 0, "II*", "TIFF" },     { 0, "MM", "TIFF" },
+               { 8, "WEBP", "WebP" },      { 0, "DDS ", "DDS" },        { 0, "8BPS", "Photoshop" }, { 0, "v/1\1", "OpenEXR" },
+               { 0, "#?", "Radiance HDR" }, { 4, "jP  ", "JPEG 2000" },  { 4, "ftypavif", "AVIF" },  { 4, "ftyphei", "HEIF" },
+               { 0, "PF", "PFM" },         { 0, "<", "SVG or another XML" }, { 0, "qoif", "QOI" } };
+
+/// Refuses a picture of another format by its name.
+static glint_status refuse_other(const glint_bytes *bytes, glint_error *error)
+{
+    for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
+        const size_t length = strlen(OTHERS[i].begin);
+        if (bytes->size >= OTHERS[i].at + length && memcmp(bytes->data + OTHERS[i].at, OTHERS[i].begin, length) == 0)
+            return glint_fail(error, GLINT_ERR_FORMAT, "is %s; textures are .png or .jpg", OTHERS[i].kind);
+    }
+    return GLINT_OK;
+}
+
 static glint_status decode(const glint_bytes *bytes, glint_png *png, bool *linear, glint_error *error)
 {
     glint_png_head head;
     if (glint_is_jpeg(bytes->data, bytes->size))
         return glint_jpeg_decode(bytes->data, bytes->size, TEXELS_MAX, png, error);
-    glint_status status = glint_png_scan(bytes->data, bytes->size, &head, NULL, NULL, error);
+    glint_status status = refuse_other(bytes, error);
+    if (!status)
+        status = glint_png_scan(bytes->data, bytes->size, &head, NULL, NULL, error);
     if (status)
         return status;
     if ((size_t)head.width * (size_t)head.height > TEXELS_MAX)

@@ -344,6 +344,48 @@ local function bytes_of(hex)
   return (hex:gsub("%x%x", function(digits) return string.char(tonumber(digits, 16)) end))
 end
 
+-- 16 x 16 pixels in four parts: 0 and 85, below them 170 and 255.
+local PARTS <const> = "ffd8ffe000104a46494600010100000100010000ffdb0043000101010101010101010101010101010101010101010101010101010101010101010101" ..
+  "0101010101010101010101010101010101010101010101010101010101ffc0000b080010001001011100ffc400150001010000000000000000000000" ..
+  "0000000a0bffc40014100100000000000000000000000000000000ffda0008010100003f009ff9541541543fffd9"
+
+-- What the Exif tag Orientation says of the corners, from the stored ones 1 2 / 3 4.
+local TURNED <const> = { "1234", "2143", "4321", "3412", "1324", "3142", "4231", "2413" }
+
+-- A JPEG with an Exif block of one tag, in either byte order.
+local function turned(orientation, order)
+  local tiff = ((order == "<" and "II" or "MM") .. (order .. "I2I4I2I2I2I4I2I2I4"):pack(42, 8, 1, 0x112, 3, 1, orientation, 0, 0))
+  local block = "Exif\0\0" .. tiff
+  local text = bytes_of(PARTS)
+  return text:sub(1, 2) .. "\xff\xe1" .. (">I2"):pack(#block + 2) .. block .. text:sub(3)
+end
+
+function tests.pictures_that_are_turned()
+  local path = write("t.jpg", bytes_of(PARTS))
+  if not pcall(glint.texture, { file = path }) then return end -- without libjpeg
+  for orientation, corners in ipairs(TURNED) do
+    for _, order in ipairs { "<", ">" } do
+      local texture, got = glint.texture { file = write("t.jpg", turned(orientation, order)), transfer = "linear" }, ""
+      for _, uv in ipairs { { 0.2, 0.8 }, { 0.8, 0.8 }, { 0.2, 0.2 }, { 0.8, 0.2 } } do
+        got = got .. ("%d"):format(math.floor(texture:evaluate { uv = uv }.x * 3 + 1.5))
+      end
+      check(got == corners, "orientation %d, %s: %s expected, got %s", orientation, order, corners, got)
+    end
+  end
+  for _, wrong in ipairs { 0, 9, 65535 } do
+    check(glint.texture { file = write("t.jpg", turned(wrong, "<")) } ~= nil, "orientation %d is none", wrong)
+  end
+end
+
+function tests.other_pictures()
+  for text, kind in pairs { ["GIF89a"] = "GIF", ["BM\0\0"] = "BMP", ["II*\0"] = "TIFF", ["MM\0*"] = "TIFF", ["RIFF\0\0\0\0WEBP"] = "WebP",
+    ["#?RADIANCE\n"] = "Radiance HDR", ["v/1\1"] = "OpenEXR", ["\0\0\0\12jP  "] = "JPEG 2000", ["<svg>"] = "SVG or another XML" } do
+    local path = write("other.png", text .. ("\0"):rep(60))
+    local good, message = pcall(glint.texture, { file = path })
+    check(not good and message:find("other.png: is " .. kind .. "; textures are .png or .jpg", 1, true), "%s: %s", kind, message)
+  end
+end
+
 function tests.jpeg()
   local path = write("c.jpg", bytes_of(JPEG))
   local good, texture = pcall(glint.texture, { file = path })
