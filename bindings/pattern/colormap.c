@@ -6,6 +6,7 @@
 
 #define COLORMAP "glint.colormap" // the type of the userdata that hold the tables as textures
 #define ENTRIES 256
+#define MISSING_CODE 128 // of red, green and blue of missing values: grey
 
 const char *const glintL_colormaps[] = { "viridis", "magma", "cividis", "turbo", "coolwarm", NULL };
 _Static_assert(sizeof glintL_colormaps / sizeof *glintL_colormaps == GLINT_COLORMAP_COUNT + 1, "a name each");
@@ -123,12 +124,22 @@ static int close_texture(lua_State *L)
     return 0;
 }
 
-// The function; its upvalues are the texture and the ends of its range. The middles of the first and the last texel are
+// Whether the function is called with a missing value: a number that is none. Symbols of patterns are never missing.
+static bool is_missing(lua_State *L)
+{
+    return lua_gettop(L) == 1 && lua_type(L, 1) == LUA_TNUMBER && isnan(lua_tonumber(L, 1));
+}
+
+// The function; its upvalues are the texture, the ends of its range, whether it is logarithmic, and the colour of missing values. The middles of the first and the last texel are
 // these ends, and beyond them is what is there.
 static int color_of(lua_State *L)
 {
     glint_texture *const *texture = lua_touserdata(L, lua_upvalueindex(1));
     const double low = lua_tonumber(L, lua_upvalueindex(2)), high = lua_tonumber(L, lua_upvalueindex(3));
+    if (is_missing(L)) {
+        lua_pushvalue(L, lua_upvalueindex(5));
+        return 1;
+    }
     glintL_term in[3] = { [1] = glintL_number_term(0.5), [2] = glintL_number_term(0) }, out[4];
     if (lua_gettop(L) != 1)
         return glintL_error(L, "colormap: one number or symbol expected, got %d values", lua_gettop(L));
@@ -174,7 +185,11 @@ static int new_colormap(lua_State *L)
 {
     static const glintL_field field = { .name = "name", .kind = GLINTL_ENUM, .names = glintL_colormaps };
     unsigned which = 0;
-    lua_settop(L, 4);
+    const double grey = glint_srgb_decode(MISSING_CODE / 255.0);
+    double missing[3] = { grey, grey, grey };
+    lua_settop(L, 5);
+    if (!lua_isnil(L, 5))
+        glintL_read_color(L, 5, "colormap.missing", missing);
     const bool is_own = lua_istable(L, 1) || lua_isfunction(L, 1);
     if (!is_own)
         glintL_read_field(L, 1, "colormap", &field, &which);
@@ -189,7 +204,8 @@ static int new_colormap(lua_State *L)
     lua_pushnumber(L, low);
     lua_pushnumber(L, high);
     lua_pushboolean(L, is_log);
-    lua_pushcclosure(L, color_of, 4);
+    glintL_push_vector(L, missing);
+    lua_pushcclosure(L, color_of, 5);
     return 1;
 }
 

@@ -98,7 +98,9 @@ function tests.ranges()
   for _, beyond in ipairs { -1e300, -1, -1 / 0 } do check(plain(beyond)[1] == plain(0)[1], "below is the lowest") end
   for _, beyond in ipairs { 1.001, 7, 1 / 0 } do check(plain(beyond)[3] == plain(1)[3], "above is the highest") end
   local color = plain(0 / 0)
-  check(color[1] >= 0 and color[1] <= 1, "not a number has a colour, too, got %s", color[1])
+  for c = 1, 3 do near(color[c], 0.21586050011389926, 1e-15, "a missing value is #808080") end
+  local red = glint.colormap("viridis", -3, 5, "linear", "red")
+  check(red(0 / 0)[1] == 1 and red(0 / 0)[2] == 0 and red(5)[1] == plain(1)[1], "or a colour of one's own")
 end
 
 -- A material of the number, and of the pattern, show the same bits.
@@ -130,6 +132,7 @@ function tests.refused()
   raises("colormap.name: ", glint.colormap)
   raises("colormap.name: ", glint.colormap, 3)
   raises("colormap.high: another number than low (1.0) expected, got 1.0", glint.colormap, "turbo", 1)
+  raises("colormap.missing", glint.colormap, "viridis", 0, 1, nil, {})
   raises("colormap.low: finite number expected, got ", glint.colormap, "turbo", 0 / 0)
   raises("colormap.high: ", glint.colormap, "turbo", 0, "2")
   raises("colormap.high: another number than low", glint.colormap, "turbo", -1e308, 1e308)

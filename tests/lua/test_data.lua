@@ -365,6 +365,20 @@ function tests.colours_by_a_column()
     local ok, message = pcall(f, ...)
     check(not ok and tostring(message):find(want, 1, true), "<%s> expected, got %s", want, message)
   end
+  local gaps = write("gaps.xyz", '4\nProperties=species:S:1:pos:R:3:q:R:1\nC 0 0 0 nan\nO 5 0 0 -2\nC 9 0 0 6\nC 1 0 0 NaN\n')
+  for missing, want in pairs { [""] = { 0.21586050011389926, 0.21586050011389926 }, red = { 1, 0 } } do
+    set = particles.new { color_by = { column = "q", missing = missing ~= "" and missing or nil }, radius = 1 }
+    set:add_frame(xyz.frame(gaps))
+    low, high = set:range()
+    check(low == -2 and high == 6, "missing values have no part in the range")
+    spheres = set:spheres()
+    local grey = spheres.materials[257].diffuse
+    check(#spheres.materials == 257 and grey[1] == want[1] and grey[2] == want[2] and spheres.materials[257].name == "missing", "their colour")
+    scene = glint.scene { spheres, ambient = 1, camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }
+    near((scene:render { width = 3, height = 3 }:pixel(1, 1)), want[1], 1e-6, "is seen")
+  end
+  low, high = particles.range(xyz.frames(gaps), "q")
+  check(low == -2 and high == 6, "nor in that of all frames")
   raises('a finite number in the column "q" expected, got "nil"', set.add, particles.new { color_by = { column = "q" } }, "C", 0, 0, 0)
   raises("a column among species, x, y, z, q expected, got \"p\"", function()
     particles.new { color_by = { column = "p" } }:add_frame(xyz.frame(path))

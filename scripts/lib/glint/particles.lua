@@ -31,11 +31,11 @@ set.__index = set
 
 -- The option color_by; raises where something is wrong with it.
 local function check_colors(given)
-  local names = { column = "string", map = "string", low = "number", high = "number" }
+  local names = { column = "string", map = "string", low = "number", high = "number", missing = "string" }
   if type(given) ~= "table" then error("particles.color_by: { column = ... } expected, got " .. tostring(given), 3) end
   for name, value in pairs(given) do
     if not names[name] then
-      error(("particles.color_by.%s: no such option; column, map, low, high are"):format(name), 3)
+      error(("particles.color_by.%s: no such option; column, map, low, high, missing are"):format(name), 3)
     end
     if type(value) ~= names[name] or value ~= value then
       error(("particles.color_by.%s: %s expected, got %s"):format(name, names[name], tostring(value)), 3)
@@ -53,8 +53,9 @@ end
 --- The options: kinds, { [label] = { color, radius } } before the known ones (radius 0.5 by default; `material` may
 --- stand in place of color); scale, what the kinds' radii are multiplied by (default 1); radius, of every kind instead;
 --- material, fields for each material such as { specular = 0.3 }; format, "f64" (default) or "f32" for half the memory;
---- color_by, { column, map, low, high }: spheres have the colour of their value in a map of glint.colormap (default
---- viridis) from low to high (default: the lowest and highest value there is), in 256 steps; labels give the radii.
+--- color_by, { column, map, low, high, missing }: spheres have the colour of their value in a map of glint.colormap
+--- (default viridis) from low to high (default: the lowest and highest value there is), in 256 steps; a missing value
+--- (nan, NA, an empty field) has the colour `missing` (default grey, "#808080"); labels give the radii.
 ---@param options? table
 function particles.new(options)
   options = options or {}
@@ -78,6 +79,15 @@ function particles.new(options)
   }, set)
 end
 
+-- The words of files for a missing value, in small letters. NA has capitals: Na is an element.
+local MISSING = { nan = true, ["-nan"] = true, ["+nan"] = true, ["-1.#ind"] = true, ["1.#qnan"] = true, NA = true,
+  ["n/a"] = true, null = true, [""] = true }
+
+-- NaN for a missing value.
+local function value_of(value)
+  return type(value) == "string" and (MISSING[value] or MISSING[value:lower()]) and 0 / 0 or value
+end
+
 --- The lowest and the highest value of a column in all frames, for one range of colours over a film:
 --- low, high = particles.range(xyz.frames "melt.xyz", "c_pe").
 ---@param list function  iterates over frames, as a reader's frames(path) does
@@ -86,13 +96,14 @@ function particles.range(list, column)
   local low, high = math.huge, -math.huge
   for frame in list do
     for _, _, _, _, _, value in frame:atoms(column) do
-      if math.type(value) == nil or value - value ~= 0 then
+      value = value_of(value)
+      if math.type(value) == nil or math.abs(value) == math.huge then
         frame:fail(("a finite number in the column %q"):format(column), tostring(value))
       end
-      low, high = math.min(low, value), math.max(high, value)
+      if value == value then low, high = math.min(low, value), math.max(high, value) end
     end
   end
-  if low > high then error("particles.range: frames with atoms expected, got none", 2) end
+  if low > high then error("particles.range: frames with atoms that have values expected, got none", 2) end
   return low, high
 end
 
@@ -188,9 +199,13 @@ local function stretch(self, x, y, z, radius)
   if z + radius > high[3] then high[3] = z + radius end
 end
 
--- Notes the value that the sphere's colour stands for.
+-- Notes the value that the sphere's colour stands for; NaN is a missing one.
 local function put_value(self, value)
   self.pending_values[self.pending] = value
+  if value ~= value then
+    self.has_missing = true
+    return
+  end
   self.lowest, self.highest = math.min(self.lowest, value), math.max(self.highest, value)
 end
 
@@ -202,7 +217,8 @@ local function put(self, frame, label, x, y, z, radius, value, code)
   end
   radius = radius or kind.radius
   if radius <= 0 then return false, "a radius > 0", ("%.14g"):format(radius) end
-  if self.color_by and (math.type(value) == nil or value - value ~= 0) then
+  value = value_of(value)
+  if self.color_by and (math.type(value) == nil or math.abs(value) == math.huge) then
     return false, ("a finite number in the column %q"):format(self.color_by.column), tostring(value)
   end
   local numbers, at = self.numbers, 4 * self.pending
@@ -295,7 +311,7 @@ function set:range()
   local by = self.color_by
   if not by then error("particles.range: a set with color_by expected", 2) end
   local low, high = by.low or self.lowest, by.high or self.highest
-  if self.count == 0 then low, high = by.low or 0, by.high or 1 end
+  if low > high then low, high = by.low or 0, by.high or 1 end -- no values
   if low < high then return low, high end
   return low, low + 1 -- all values are one
 end
@@ -310,11 +326,15 @@ local function color(self, all)
     for field, value in pairs(self.options.material or {}) do fields[field] = value end
     all.materials[i] = glint.material(fields)
   end
+  local fields = { name = "missing", diffuse = self.color_by.missing or map(0 / 0) }
+  for field, value in pairs(self.options.material or {}) do fields[field] = value end
+  all.materials[STEPS + 1] = self.has_missing and glint.material(fields) or nil
   for n, chunk in ipairs(self.values) do
     local list = { (("d"):rep(#chunk // 8)):unpack(chunk) }
     list[#list] = nil -- where it ends
     for i, value in ipairs(list) do
-      list[i] = math.floor(math.max(0, math.min((value - low) * scale, STEPS - 1))) + 1
+      local is_missing = value ~= value
+      list[i] = is_missing and STEPS + 1 or math.floor(math.max(0, math.min((value - low) * scale, STEPS - 1))) + 1
     end
     index[n] = (("I4"):rep(#list)):pack(table.unpack(list))
   end
