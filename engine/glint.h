@@ -779,7 +779,9 @@ typedef enum glint_orientation { GLINT_VERTICAL, GLINT_HORIZONTAL } glint_orient
 /// The fields of an overlay; each kind reads those that name it, and those that name none.
 typedef struct glint_overlay_desc {
     glint_overlay_kind kind; ///< not changed by glint_overlay_set
-    char text[GLINT_OVERLAY_TEXT_SIZE]; ///< label, colour bar: UTF-8, lines divided by newlines; "": none
+    /// Label, colour bar: UTF-8, lines divided by newlines; "": none. Lines of a label without a position that are wider than
+    /// the picture are broken at blanks
+    char text[GLINT_OVERLAY_TEXT_SIZE];
     /// Where it is: shares of the room that it leaves within the margin, 0 left or top, 1 right or bottom. Default label
     /// {0, 0}, colour bar {1, 0.5}, axes {0, 1}
     double at[2];
@@ -809,14 +811,18 @@ typedef struct glint_overlay_desc {
     /// Then has_position, has_margin, has_length and has_background must be false
     bool has_box;
     double box[2][3]; ///< its lowest and highest corner in the world; finite; a side may be 0, which has no axis, not all three
-    bool has_values; ///< false: the numbers are places in the world
+    /// With has_box: the box is a cell from box[0], whose sides `sides` lie anyhow; box[1] is not read
+    bool has_sides;
+    double sides[3][3]; ///< finite; one may be 0, which has no axis, the others span a plane
+    bool has_values; ///< false: the numbers are places in the world, of a cell lengths along its sides
     double values[2][3]; ///< what the two corners stand for; finite, not the same where the box has a side; may fall
     char name[GLINT_NAME_SIZE]; ///< for messages; "": none
 } glint_overlay_desc;
 
 /// Every field of an overlay of this kind at its default.
 glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind);
-/// Makes an overlay of a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
+/// Makes an overlay of a copy of `desc`. Texts are drawn from left to right: letters that run from right to left are an error.
+/// GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
 glint_status glint_overlay_create(const glint_overlay_desc *desc, glint_overlay **out, glint_error *error);
 /// Replaces the description by a copy, of the same kind; on error nothing changes.
 glint_status glint_overlay_set(glint_overlay *overlay, const glint_overlay_desc *desc, glint_error *error);
@@ -1117,6 +1123,10 @@ glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_ren
                                        size_t count, glint_plan **out, glint_error *error);
 /// Frees the plan; images rendered from it stay. NULL: nothing.
 void glint_plan_destroy(glint_plan *plan);
+/// Calls `warns` for each overlay that a picture of the plan cannot show as it is: text outside of it, lines wider than it,
+/// letters that the font lacks. The message names the overlay. dpi: of the file, 0: not said.
+glint_status glint_plan_check_overlays(const glint_plan *plan, double dpi, void (*warns)(void *context, const char *message),
+                                       void *context, glint_error *error);
 /// The frame as planned: passes that others are made of are added. Belongs to the plan.
 const glint_render_desc *glint_plan_render_desc(const glint_plan *plan);
 /// The name of the frame's light pass number `index`, from 0; the plan's. NULL: it has not so many.

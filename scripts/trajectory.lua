@@ -57,10 +57,9 @@ local function show(_, n)
   shown[1] = set:spheres()
   local cell = frame.box or frame.cell
   if cell then
-    local corners = boxes.corners(cell)
     shown[2] = boxes.edges(cell)
-    axes = axes or scene:add(glint.axes { box = corners, color = "black" })
-    axes.box = corners
+    axes = axes or scene:add(glint.axes { box = cell, color = "black" })
+    axes.box = cell
   end
   for _, shape in ipairs(shown) do scene:add(shape) end
   return set

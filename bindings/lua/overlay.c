@@ -155,7 +155,7 @@ static void push_names(lua_State *L, const void *desc)
 }
 
 // {{x, y, z}, {x, y, z}}: what is at the lowest and at the highest corner of a box.
-static void read_corners(lua_State *L, int index, const char *path, double out[2][3])
+static void read_corners(lua_State *L, int index, const char *path, double (*out)[3])
 {
     if (!lua_istable(L, index) || lua_rawlen(L, index) != 2)
         glintL_refuse(L, index, path, "two corners {{x, y, z}, {x, y, z}}");
@@ -169,7 +169,7 @@ static void read_corners(lua_State *L, int index, const char *path, double out[2
     }
 }
 
-static void push_corners(lua_State *L, const double corners[2][3], const char *name)
+static void push_corners(lua_State *L, const double (*corners)[3], const char *name)
 {
     lua_createtable(L, 2, 0);
     for (int i = 0; i < 2; i++) {
@@ -179,9 +179,91 @@ static void push_corners(lua_State *L, const double corners[2][3], const char *n
     glintL_freeze(L, name);
 }
 
-static void read_box(lua_State *L, int index, const char *path, void *desc) { read_corners(L, index, path, ((desc_type *)desc)->box); }
+// Three numbers of a field of the table at `index`, {0, 0, 0} where it has none.
+static void read_side(lua_State *L, int index, const char *path, const char *name, double out[3])
+{
+    memset(out, 0, 3 * sizeof *out);
+    luaL_checkstack(L, 2, "side");
+    lua_pushstring(L, name);
+    if (lua_rawget(L, index) != LUA_TNIL) {
+        const char *whole = lua_pushfstring(L, "%s.%s", path, name);
+        glintL_read_three(L, lua_gettop(L) - 1, whole, "{x, y, z}", out);
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+}
 
-static void push_box(lua_State *L, const void *desc) { push_corners(L, ((const desc_type *)desc)->box, "box"); }
+static double read_tilt(lua_State *L, int index, const char *path, const char *name)
+{
+    lua_pushstring(L, name);
+    const double tilt = lua_rawget(L, index) == LUA_TNIL ? 0 : glintL_read_number(L, -1, path);
+    lua_pop(L, 1);
+    return tilt;
+}
+
+static bool has_key(lua_State *L, int index, const char *name)
+{
+    if (!lua_istable(L, index))
+        return false;
+    luaL_checkstack(L, 1, "key");
+    lua_pushstring(L, name);
+    const bool has = lua_rawget(L, index) != LUA_TNIL;
+    lua_pop(L, 1);
+    return has;
+}
+
+// A box as glint.box and the readers of atoms have it: { low, size, xy, xz, yz }. An upright one has two corners.
+static void read_sized(lua_State *L, int index, const char *path, desc_type *d)
+{
+    double size[3];
+    read_side(L, index, path, "low", d->box[0]);
+    read_side(L, index, path, "size", size);
+    const double xy = read_tilt(L, index, path, "xy"), xz = read_tilt(L, index, path, "xz"), yz = read_tilt(L, index, path, "yz");
+    const double sides[3][3] = { { size[0], 0, 0 }, { xy, size[1], 0 }, { xz, yz, size[2] } };
+    d->has_sides = xy != 0 || xz != 0 || yz != 0;
+    memcpy(d->sides, sides, sizeof sides);
+    for (int i = 0; i < 3; i++)
+        d->box[1][i] = d->box[0][i] + size[i];
+}
+
+// Two corners, a box { low, size, ... } or a cell { origin, a, b, c }. Axes of a cell are called a, b and c unless labels say otherwise.
+static void read_box(lua_State *L, int index, const char *path, void *desc)
+{
+    static const char *const usual[] = { "x", "y", "z" }, *const of_cell[] = { "a", "b", "c" };
+    desc_type *d = desc;
+    const bool had_sides = d->has_sides;
+    d->has_sides = has_key(L, index, "a");
+    if (d->has_sides) {
+        read_side(L, index, path, "origin", d->box[0]);
+        for (int i = 0; i < 3; i++)
+            read_side(L, index, path, of_cell[i], d->sides[i]);
+    } else if (has_key(L, index, "size")) {
+        read_sized(L, index, path, d);
+    } else {
+        read_corners(L, index, path, d->box);
+    }
+    for (int i = 0; i < 3 && d->has_sides != had_sides; i++)
+        if (strcmp(d->names[i], d->has_sides ? usual[i] : of_cell[i]) == 0)
+            strcpy(d->names[i], d->has_sides ? of_cell[i] : usual[i]);
+}
+
+static void push_box(lua_State *L, const void *desc)
+{
+    static const char *const names[] = { "a", "b", "c" };
+    const desc_type *d = desc;
+    if (!d->has_sides) {
+        push_corners(L, d->box, "box");
+        return;
+    }
+    lua_createtable(L, 0, 4);
+    glintL_push_vector(L, d->box[0]);
+    lua_setfield(L, -2, "origin");
+    for (int i = 0; i < 3; i++) {
+        glintL_push_vector(L, d->sides[i]);
+        lua_setfield(L, -2, names[i]);
+    }
+    glintL_freeze(L, "box");
+}
 
 static void read_values(lua_State *L, int index, const char *path, void *desc)
 {
@@ -278,8 +360,8 @@ static const glintL_field COLORBAR_FIELDS[] = {
 };
 
 static const glintL_field AXES_FIELDS[] = {
+    { .name = "box", .kind = GLINTL_CUSTOM, .set_offset = AT(has_box), .read = read_box, .push = push_box }, // names axes
     { .name = "labels", .kind = GLINTL_CUSTOM, .read = read_names, .push = push_names },
-    { .name = "box", .kind = GLINTL_CUSTOM, .set_offset = AT(has_box), .read = read_box, .push = push_box },
     { .name = "values", .kind = GLINTL_CUSTOM, .set_offset = AT(has_values), .read = read_values, .push = push_values },
     LENGTH,
     EVERY_OVERLAY,

@@ -645,8 +645,8 @@ function glint.colorbar(fields) end
 ---@class glint.axes_fields: glint.overlay_fields
 ---@field labels? string[]  names of x, y and z, at most 15 bytes each. Default {"x", "y", "z"}
 ---@field length? number  of an axis that lies in the picture, points. Default nil: 2.5 times `size`
----@field box? glint.vec3[]  {lowest corner, highest corner} in the world: axes with numbers along edges of it, in place of `at`, `position`, `margin`, `length` and `background`. Default nil
----@field values? glint.vec3[]  what the numbers are at those two corners. Default nil: places in the world
+---@field box? glint.vec3[]|table  {lowest corner, highest corner} in the world, a box { low, size, xy, xz, yz } or a cell { origin, a, b, c }: axes with numbers along edges of it, in place of `at`, `position`, `margin`, `length` and `background`. Default nil
+---@field values? glint.vec3[]  what the numbers are at those two corners. Default nil: places in the world, of a tilted cell lengths along its sides
 
 --- The directions x (red), y (green) and z (blue) as the camera has them. With a `box` three edges of it, those that bound what
 --- is seen of it, with marks, round numbers and their names; a direction that the eye looks along has none.
@@ -1046,8 +1046,9 @@ function glint.texture(fields) end
 ---@param low? number  what the first colour stands for. Default 0
 ---@param high? number  what the last one stands for, another number than low. Default 1
 ---@param scale? "linear"|"log"  "log": equal factors have equal steps of colour; low and high are above 0. Default "linear"
+---@param missing? glint.color  of a missing value, NaN. Default "#808080"
 ---@return fun(x: number): glint.vector
-function glint.colormap(map, low, high, scale) end
+function glint.colormap(map, low, high, scale, missing) end
 
 -- ---- Operations ----
 

@@ -206,6 +206,8 @@ static void warn_of_colormap(glintL_run *run, const glintL_work *work)
                              "output = \"name.png\"");
 }
 
+static void warn_of_overlay(void *run, const char *message) { glintL_run_warn(run, "%s", message); }
+
 glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error)
 {
     glint_image *image = NULL;
@@ -216,7 +218,9 @@ glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error 
     warn_of_caps(run, work->plan);
     warn_of_lens(run, work->plan);
     warn_of_colormap(run, work);
-    glint_status status = glint_render(run->renderer, work->plan, &image, &work->stats, error);
+    glint_status status = glint_plan_check_overlays(work->plan, work->render.dpi, warn_of_overlay, run, error);
+    if (status == GLINT_OK)
+        status = glint_render(run->renderer, work->plan, &image, &work->stats, error);
     if (run->reporter.rendering)
         run->reporter.rendering(run->reporter.context, run, false);
     if (status == GLINT_OK) {

@@ -1,4 +1,4 @@
-/// Axes at a box: of each direction one edge, with a mark, a number and so on where the camera has them, and its name.
+/// Axes at a box or a cell: of each direction one edge, with a mark, a number and so on where the camera has them, and its name.
 ///
 /// An overlay has no depth, so an edge is chosen that bounds what is seen of the box: one between a face turned to the eye and
 /// one turned away. Nothing within the box is seen beyond it, so the axis hides nothing, and its numbers stand outside.
@@ -57,6 +57,72 @@ static bool project(const box_axes *axes, const double p[3], double out[2])
     return depth >= axes->nearest && isfinite(out[0]) && isfinite(out[1]);
 }
 
+// ---- The box, or the cell ----
+
+/// A corner, at the low (0) or the high (1) end of each side.
+static void corner_of(const glint_overlay_desc *d, const int at[3], double out[3])
+{
+    for (int c = 0; c < 3; c++) {
+        out[c] = d->box[d->has_sides ? 0 : at[c]][c];
+        for (int i = 0; i < 3 && d->has_sides; i++)
+            out[c] += at[i] * d->sides[i][c];
+    }
+}
+
+static double length_of(const glint_overlay_desc *d, int direction)
+{
+    return d->has_sides ? sqrt(vec_dot(d->sides[direction], d->sides[direction])) : d->box[1][direction] - d->box[0][direction];
+}
+
+/// A side of a cell; of one that has no length the direction across the others.
+static void side_of(const glint_overlay_desc *d, int i, double out[3])
+{
+    vec_copy(out, d->sides[i]);
+    if (vec_max_abs(out) == 0)
+        vec_cross(out, d->sides[(i + 1) % 3], d->sides[(i + 2) % 3]);
+}
+
+/// The direction out of a cell at the high end of a side.
+static void find_outward(const glint_overlay_desc *d, int direction, double out[3])
+{
+    double along[3], u[3], v[3];
+    side_of(d, direction, along);
+    side_of(d, (direction + 1) % 3, u);
+    side_of(d, (direction + 2) % 3, v);
+    vec_cross(out, u, v);
+    vec_normalize(out, out);
+    if (vec_dot(out, along) < 0)
+        vec_scale(out, out, -1);
+}
+
+static bool is_face_seen(const box_axes *axes, int direction, int end)
+{
+    const glint_overlays_camera *c = &axes->layout->overlays->camera;
+    const int at[3] = { end * (direction == 0), end * (direction == 1), end * (direction == 2) };
+    double out[3], corner[3], eye[3];
+    find_outward(axes->layout->desc, direction, out);
+    corner_of(axes->layout->desc, at, corner);
+    vec_sub(eye, c->eye, corner);
+    const double sign = end ? 1 : -1;
+    return c->orthographic ? sign * vec_dot(out, c->view[2]) < -1e-9 : sign * vec_dot(out, eye) > 0;
+}
+
+/// Whether no other direction is as upright in the picture.
+static bool is_upright(const box_axes *axes, int direction)
+{
+    const glint_overlay_desc *d = axes->layout->desc;
+    const double *up = axes->layout->overlays->view[1];
+    double most = 0, own = 0;
+    if (!d->has_sides)
+        return fabs(up[direction]) >= vec_max_abs(up);
+    for (int i = 0; i < 3; i++) {
+        const double length = length_of(d, i), share = length > 0 ? fabs(vec_dot(up, d->sides[i])) / length : 0;
+        most = fmax(most, share);
+        own = i == direction ? share : own;
+    }
+    return own >= most;
+}
+
 static void point_at(const edge *e, double share, double out[3])
 {
     for (int c = 0; c < 3; c++)
@@ -67,6 +133,8 @@ static void point_at(const edge *e, double share, double out[3])
 static bool is_seen(const box_axes *axes, int direction, int end)
 {
     const glint_overlays_camera *c = &axes->layout->overlays->camera;
+    if (axes->layout->desc->has_sides)
+        return is_face_seen(axes, direction, end);
     const double out = end ? 1 : -1, place = axes->layout->desc->box[end][direction];
     return c->orthographic ? out * c->view[2][direction] < -1e-9 : out * (c->eye[direction] - place) > 0;
 }
@@ -90,20 +158,19 @@ static bool cut(const box_axes *axes, edge *e)
 /// decides.
 static double reach_of(const box_axes *axes, const edge *e, int direction)
 {
-    const double *up = axes->layout->overlays->view[1];
     const double left = -(e->at[0][0] + e->at[1][0]), down = e->at[0][1] + e->at[1][1];
-    return fabs(up[direction]) >= vec_max_abs(up) ? left + 1e-3 * down : down + 1e-3 * left;
+    return is_upright(axes, direction) ? left + 1e-3 * down : down + 1e-3 * left;
 }
 
 static edge edge_of(const box_axes *axes, int direction, int at_u, int at_v)
 {
-    const double(*box)[3] = axes->layout->desc->box;
-    const int u = (direction + 1) % 3, v = (direction + 2) % 3;
     edge e = { 0 };
     for (int k = 0; k < 2; k++) {
-        e.ends[k][direction] = box[k][direction];
-        e.ends[k][u] = box[at_u][u];
-        e.ends[k][v] = box[at_v][v];
+        int at[3];
+        at[direction] = k;
+        at[(direction + 1) % 3] = at_u;
+        at[(direction + 2) % 3] = at_v;
+        corner_of(axes->layout->desc, at, e.ends[k]);
     }
     return e;
 }
@@ -111,9 +178,8 @@ static edge edge_of(const box_axes *axes, int direction, int at_u, int at_v)
 /// The edge of a direction that is its axis; false: none bounds what is seen of the box.
 static bool find_edge(const box_axes *axes, int direction, edge *out)
 {
-    const double(*box)[3] = axes->layout->desc->box;
     bool found = false;
-    for (int i = 0; i < 4 && box[1][direction] > box[0][direction]; i++) {
+    for (int i = 0; i < 4 && length_of(axes->layout->desc, direction) > 0; i++) {
         const int at_u = i & 1, at_v = i >> 1;
         edge e = edge_of(axes, direction, at_u, at_v);
         if (is_seen(axes, (direction + 1) % 3, at_u) == is_seen(axes, (direction + 2) % 3, at_v) || !cut(axes, &e))
@@ -131,9 +197,11 @@ static bool find_side(const box_axes *axes, edge *e)
     const glint_overlays *o = axes->layout->overlays;
     const double way[2] = { e->at[1][0] - e->at[0][0], e->at[1][1] - e->at[0][1] };
     const double length = sqrt(way[0] * way[0] + way[1] * way[1]);
-    double middle[3], at[2];
+    double middle[3], low[3], high[3], at[2];
+    corner_of(axes->layout->desc, (const int[3]) { 0, 0, 0 }, low);
+    corner_of(axes->layout->desc, (const int[3]) { 1, 1, 1 }, high);
     for (int c = 0; c < 3; c++)
-        middle[c] = axes->layout->desc->box[0][c] / 2 + axes->layout->desc->box[1][c] / 2;
+        middle[c] = low[c] / 2 + high[c] / 2;
     if (!project(axes, middle, at)) {
         at[0] = o->width / 2.0;
         at[1] = o->height / 2.0;
@@ -207,12 +275,15 @@ static void draw_axis(box_axes *axes, int direction, const edge *e)
     const glint_layout *layout = axes->layout;
     const glint_overlay_desc *desc = layout->desc;
     const double(*values)[3] = desc->has_values ? desc->values : desc->box;
+    const bool is_measured = desc->has_sides && !desc->has_values;
+    const double first = is_measured ? 0 : values[0][direction];
+    const double last = is_measured ? length_of(desc, direction) : values[1][direction];
     const double half = fmax(LINE * layout->em / 2, 0.5), tick = TICK * layout->em, room = ROOM * layout->em;
     const double way[2] = { e->at[1][0] - e->at[0][0], e->at[1][1] - e->at[0][1] };
     double at[GLINT_OVERLAY_TICKS_MAX][2], steps = WANTED;
     glint_marks marks = { .count = 0 };
     do {
-        glint_marks_round(&marks, &layout->typeface, values[0][direction], values[1][direction], steps);
+        glint_marks_round(&marks, &layout->typeface, first, last, steps);
         steps *= 0.8;
     } while (!place_marks(axes, e, &marks, at) && steps > 0.5);
     glint_layout_line(layout, e->at[0], way, half, desc->color);
@@ -236,8 +307,7 @@ void glint_box_axes_draw(const glint_layout *layout)
     double farthest = 0;
     for (int i = 0; i < 8; i++) {
         double corner[3];
-        for (int c = 0; c < 3; c++)
-            corner[c] = layout->desc->box[i >> c & 1][c];
+        corner_of(layout->desc, (const int[3]) { i & 1, i >> 1 & 1, i >> 2 }, corner);
         farthest = fmax(farthest, depth_of(&axes, corner));
     }
     if (!layout->overlays->camera.orthographic)

@@ -111,24 +111,45 @@ void glint_layout_line(const glint_layout *layout, const double from[2], const d
     }
 }
 
+/// Breaks the lines of a label at blanks where they are wider than the picture, to fit within its margins. A word that is
+/// wider than that stays whole.
+static void wrap(glint_layout *layout, double margin)
+{
+    const int most = layout->overlays->width - 2 * layout->padding, room = most - 2 * (int)ceil(margin);
+    const glint_typeface *typeface = &layout->typeface;
+    for (char *line = layout->text; *line;) {
+        const size_t size = strcspn(line, "\n");
+        char *end = line + size, *fits = NULL;
+        bool is_wide = glint_typeface_width(typeface, line, size) > most;
+        for (char *blank = line; is_wide && (blank = memchr(blank, ' ', (size_t)(end - blank))) != NULL; blank++) {
+            if (fits && glint_typeface_width(typeface, line, (size_t)(blank - line)) > room)
+                break;
+            fits = blank;
+        }
+        if (fits && (fits > line))
+            *fits = '\n';
+        line = fits ? fits + 1 : end + (*end == '\n');
+    }
+}
+
 static void measure_label(glint_layout *layout)
 {
     int lines;
-    layout->width = glint_layout_measure(layout, layout->desc->text, &lines);
+    layout->width = glint_layout_measure(layout, layout->text, &lines);
     layout->height = (lines - 1) * layout->typeface.line + layout->typeface.height;
 }
 
 static void draw_label(const glint_layout *layout, int x, int y)
 {
     const glint_overlay_desc *desc = layout->desc;
-    glint_layout_text(layout, desc->text, x, y, layout->width, desc->has_position ? 0 : desc->at[0], desc->color);
+    glint_layout_text(layout, layout->text, x, y, layout->width, desc->has_position ? 0 : desc->at[0], desc->color);
 }
 
 /// Pixels of a length in points, no more than a side of a picture.
 static double pixels_of(double points, double dpi) { return fmin(points * (dpi > 0 ? dpi / 72 : 1), GLINT_SIDE_MAX); }
 
-static glint_layout begin(const glint_overlays *overlays, const glint_overlay_desc *desc, double dpi, glint_letters *letters,
-                          glint_stamps *stamps)
+glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_overlay_desc *desc, double dpi, glint_letters *letters,
+                                glint_stamps *stamps)
 {
     static const double lengths[] = { [GLINT_OVERLAY_COLORBAR] = 10, [GLINT_OVERLAY_AXES] = 2.5 };
     glint_layout layout = { .overlays = overlays, .desc = desc, .stamps = stamps };
@@ -136,30 +157,40 @@ static glint_layout begin(const glint_overlays *overlays, const glint_overlay_de
     layout.typeface = glint_typeface_open(letters, layout.em);
     if (desc->kind != GLINT_OVERLAY_LABEL)
         layout.length = desc->has_length ? pixels_of(desc->length, dpi) : lengths[desc->kind] * layout.em;
+    layout.padding = desc->has_background ? (int)ceil(PADDING * layout.em) : 0;
+    memcpy(layout.text, desc->text, sizeof layout.text);
     return layout;
+}
+
+void glint_layout_place(glint_layout *layout, double dpi)
+{
+    static void (*const measures[])(glint_layout *) = { measure_label, glint_colorbar_measure, glint_axes_measure };
+    const glint_overlay_desc *desc = layout->desc;
+    const double margin = desc->has_margin ? pixels_of(desc->margin, dpi) : layout->em / 2;
+    const int sides[2] = { layout->overlays->width, layout->overlays->height };
+    if (desc->kind == GLINT_OVERLAY_LABEL && !desc->has_position)
+        wrap(layout, margin);
+    measures[desc->kind](layout);
+    layout->size[0] = layout->width + 2 * layout->padding;
+    layout->size[1] = layout->height + 2 * layout->padding;
+    for (int i = 0; i < 2; i++)
+        layout->corner[i] = (int)floor(desc->has_position ? desc->position[i]
+                                                          : margin + (sides[i] - 2 * margin - layout->size[i]) * desc->at[i]);
 }
 
 static void draw(glint_layout *layout, double dpi)
 {
-    static void (*const measures[])(glint_layout *) = { measure_label, glint_colorbar_measure, glint_axes_measure };
     static void (*const draws[])(const glint_layout *, int, int) = { draw_label, glint_colorbar_draw, glint_axes_draw };
     const glint_overlay_desc *desc = layout->desc;
-    const double margin = desc->has_margin ? pixels_of(desc->margin, dpi) : layout->em / 2;
-    const int padding = desc->has_background ? (int)ceil(PADDING * layout->em) : 0;
-    const int sides[2] = { layout->overlays->width, layout->overlays->height };
-    int corner[2];
+    const int *corner = layout->corner, *size = layout->size;
     if (desc->kind == GLINT_OVERLAY_AXES && desc->has_box) {
         glint_box_axes_draw(layout);
         return;
     }
-    measures[desc->kind](layout);
-    const int size[2] = { layout->width + 2 * padding, layout->height + 2 * padding };
-    for (int i = 0; i < 2; i++)
-        corner[i] = (int)floor(desc->has_position ? desc->position[i]
-                                                  : margin + (sides[i] - 2 * margin - size[i]) * desc->at[i]);
+    glint_layout_place(layout, dpi);
     if (desc->has_background)
         glint_layout_fill(layout, corner[0], corner[1], size[0], size[1], desc->background, desc->opacity);
-    draws[desc->kind](layout, corner[0] + padding, corner[1] + padding);
+    draws[desc->kind](layout, corner[0] + layout->padding, corner[1] + layout->padding);
 }
 
 glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, glint_transfer transfer, int bits,
@@ -171,7 +202,7 @@ glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, gli
     if (status)
         return status;
     for (size_t i = 0; i < overlays->count; i++) {
-        glint_layout layout = begin(overlays, &overlays->of[i], dpi, letters, out);
+        glint_layout layout = glint_layout_begin(overlays, &overlays->of[i], dpi, letters, out);
         draw(&layout, dpi);
     }
     out->lost = out->lost || glint_letters_lost(letters);
@@ -186,7 +217,7 @@ void glint_colorbar_alone(const glint_overlay_desc *desc, glint_letters *letters
                           glint_stamps *stamps, int size[2])
 {
     const glint_overlays overlays = { .width = sides[0], .height = sides[1] };
-    glint_layout layout = begin(&overlays, desc, 0, letters, stamps);
+    glint_layout layout = glint_layout_begin(&overlays, desc, 0, letters, stamps);
     glint_colorbar_measure(&layout);
     size[0] = layout.width;
     size[1] = layout.height;

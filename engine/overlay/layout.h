@@ -13,7 +13,16 @@ typedef struct glint_layout {
     double em; ///< size of its letters, pixels
     double length; ///< of a colour bar or an axis, pixels
     int width, height; ///< of all that it draws, without what lies behind; pixels
+    int corner[2], size[2]; ///< of the overlay with its background, in the picture; pixels
+    int padding; ///< between the overlay and the edge of its background, pixels
+    char text[GLINT_OVERLAY_TEXT_SIZE]; ///< of a label, its lines broken
 } glint_layout;
+
+/// Begins an overlay. letters  borrowed; NULL: the bitmap font.
+glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_overlay_desc *desc, double dpi, glint_letters *letters,
+                                glint_stamps *stamps);
+/// Measures an overlay and says where it lies; not of axes at a box.
+void glint_layout_place(glint_layout *layout, double dpi);
 
 /// Width of the widest line, and how many there are.
 int glint_layout_measure(const glint_layout *layout, const char *text, int *lines);

@@ -1,6 +1,8 @@
 #include "engine/overlay/overlay.h"
 
 #include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/text/font.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -26,11 +28,32 @@ glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind)
     return desc;
 }
 
+/// Whether a letter runs from right to left: Hebrew, Arabic, Syriac, Thaana, N'Ko and their kin.
+static bool runs_left(uint32_t code)
+{
+    return (code >= 0x590 && code <= 0x8ff) || (code >= 0xfb1d && code <= 0xfdff) || (code >= 0xfe70 && code <= 0xfefc) ||
+           (code >= 0x10800 && code <= 0x10fff) || (code >= 0x1e800 && code <= 0x1efff);
+}
+
 static glint_status check_text(const char *name, const char *text, size_t size, glint_error *error)
 {
     if (memchr(text, '\0', size))
         return GLINT_OK;
     return glint_fail(error, GLINT_ERR_INVALID, "%s: at most %zu bytes expected", name, size - 1);
+}
+
+/// Checks a text that is drawn, letter by letter from left to right.
+static glint_status check_drawn(const char *name, const char *text, size_t size, glint_error *error)
+{
+    glint_status status = check_text(name, text, size, error);
+    for (const char *at = text, *letter = at; !status && *at; letter = at) {
+        const uint32_t code = glint_font_code(&at);
+        if (runs_left(code))
+            return glint_fail(error, GLINT_ERR_INVALID,
+                              "%s: letters that run from left to right expected, got '%.*s' (U+%04X), which runs from right to left",
+                              name, (int)(at - letter), letter, (unsigned)code);
+    }
+    return status;
 }
 
 static glint_status check_place(const glint_overlay_desc *desc, glint_error *error)
@@ -102,9 +125,33 @@ static glint_status check_span(const char *field, const double from[3], const do
                       to[i], 'x' + i);
 }
 
+/// Checks the corner, the sides and the numbers of a cell.
+static glint_status check_cell(const glint_overlay_desc *desc, glint_error *error)
+{
+    static const char *const names[] = { "box.a", "box.b", "box.c" };
+    double widest = 0;
+    glint_status status = check_unplaced(desc, error);
+    if (!status)
+        status = glint_check_vector("box.origin", desc->box[0], error);
+    for (int i = 0; i < 3 && !status; i++) {
+        double across[3];
+        status = glint_check_vector(names[i], desc->sides[i], error);
+        vec_cross(across, desc->sides[i], desc->sides[(i + 1) % 3]);
+        widest = fmax(widest, vec_max_abs(across));
+        if (!status && desc->has_values && desc->values[0][i] == desc->values[1][i] && vec_max_abs(desc->sides[i]) > 0)
+            status = glint_fail(error, GLINT_ERR_INVALID, "values: two numbers for the ends of %c expected, got %.15g twice", 'a' + i,
+                                desc->values[0][i]);
+    }
+    if (!status && !(widest > 0 && isfinite(widest)))
+        status = glint_fail(error, GLINT_ERR_INVALID, "box: sides a, b and c that span a plane at least expected");
+    return status;
+}
+
 static glint_status check_box(const glint_overlay_desc *desc, glint_error *error)
 {
     const double *low = desc->box[0], *high = desc->box[1];
+    if (desc->has_sides)
+        return check_cell(desc, error);
     glint_status status = check_unplaced(desc, error);
     bool has_side = false;
     if (!status)
@@ -135,9 +182,9 @@ static glint_status check(const glint_overlay_desc *desc, glint_error *error)
 {
     if ((unsigned)desc->kind > GLINT_OVERLAY_AXES)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: no such overlay");
-    glint_status status = check_text("text", desc->text, sizeof desc->text, error);
+    glint_status status = check_drawn("text", desc->text, sizeof desc->text, error);
     for (int i = 0; i < 3 && !status; i++)
-        status = check_text("names", desc->names[i], sizeof desc->names[i], error);
+        status = check_drawn("names", desc->names[i], sizeof desc->names[i], error);
     if (!status)
         status = check_text("name", desc->name, sizeof desc->name, error);
     if (!status)

@@ -5,6 +5,7 @@
 ///     layout.c     where each one lies, in stamps; colorbar.c, axes.c, box_axes.c: what they are made of
 ///     marks.c      the round numbers beside colour bars and axes
 ///     stamp.c      stamps on rows of codes
+///     faults.c     warnings about overlays that the picture cannot show
 #ifndef GLINT_OVERLAY_H
 #define GLINT_OVERLAY_H
 
@@ -62,6 +63,9 @@ typedef struct glint_stamps {
 /// dpi  pixels an inch; 0: not said.
 glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, glint_transfer transfer, int bits,
                                  glint_stamps *out, glint_error *error);
+/// Calls `warns` for overlays outside of the picture, lines wider than the picture and letters that the font lacks.
+glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, void (*warns)(void *context, const char *message),
+                                  void *context, glint_error *error);
 /// A colour bar by itself, on a sheet of `sides` pixels; its lengths are pixels.
 /// x, y    its upper left corner.
 /// stamps  out, added to: what it is drawn of; NULL: it is measured alone.

@@ -78,6 +78,8 @@ static glint_key box_key(const glint_overlays *overlays, const glint_overlay_des
     ADD(key, seen);
     ADD(key, c->view);
     ADD(key, d->box);
+    if (d->has_sides)
+        ADD(key, d->sides);
     return d->has_values ? ADD(key, d->values) : key;
 }
 

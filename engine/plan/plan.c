@@ -296,6 +296,14 @@ glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_ren
     return status;
 }
 
+glint_status glint_plan_check_overlays(const glint_plan *plan, double dpi, void (*warns)(void *context, const char *message),
+                                       void *context, glint_error *error)
+{
+    GLINT_REFUSE_NULL(plan, error);
+    GLINT_REFUSE_NULL(warns, error);
+    return plan->overlays ? glint_overlays_check(plan->overlays, dpi, warns, context, error) : GLINT_OK;
+}
+
 void glint_plan_destroy(glint_plan *plan)
 {
     if (!plan)

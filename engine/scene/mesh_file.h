@@ -148,7 +148,7 @@ glint_status glint_mesh_read_ply(glint_mesh_reader *reader);
 /// A number of a colour that is not there.
 #define GLINT_MESH_NO_COLOR (-1.0)
 /// Fills `colors`, for `count` vertices or faces, from numbers_of_colors. These are 0 .. 1, or codes 0 .. 255 where one is
-/// above 1 and all are whole, or one is far above 1. What has no colour is grey, as default materials are.
+/// above 1 and all are whole, or one is far above 1. Vertices and faces without a colour are grey, as default materials are.
 glint_status glint_mesh_take_colors(glint_mesh_reader *reader, size_t count);
 /// Makes the materials, and the index of each face among them, of the colours of a file that is read.
 glint_status glint_mesh_color_faces(glint_mesh_reader *reader);

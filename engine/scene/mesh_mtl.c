@@ -9,7 +9,7 @@
 
 // ---- The statements of a file ----
 
-/// What is passed over in a .mtl file: each of both kinds is one warning.
+/// The ignored lines and words of a .mtl file. Each of both kinds becomes one warning.
 typedef struct leavings {
     size_t bad; ///< lines that are not as they should be
     glint_error first_bad;
@@ -101,7 +101,7 @@ static const char *skip_option(const glint_mesh_text *text, const char *at, int 
     return glint_skip_blanks(at);
 }
 
-/// What the options of a map say.
+/// The values of a map's options.
 typedef struct map_options {
     glint_mesh_map place;
     double height; ///< -bm

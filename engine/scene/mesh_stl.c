@@ -151,7 +151,7 @@ static bool is_text(const char *bytes, size_t count)
     return facets || printable;
 }
 
-/// What is wrong with a file that is neither text nor as long as its number of triangles says.
+/// Refuses a file that is neither text nor as long as its number of triangles says.
 static glint_status refuse_size(glint_mesh_reader *r, const char *head, size_t got, uint32_t count)
 {
     bool printable = got > 0;

@@ -29,6 +29,14 @@ static const uint8_t *glyph_of(uint32_t code)
     return glyph_of(UNKNOWN);
 }
 
+bool glint_font_has(uint32_t code)
+{
+    for (size_t i = 0; i < sizeof font_ranges / sizeof *font_ranges; i++)
+        if (code >= font_ranges[i].first && code <= font_ranges[i].last)
+            return true;
+    return false;
+}
+
 uint32_t glint_font_code(const char **text)
 {
     const uint8_t *at = (const uint8_t *)*text;

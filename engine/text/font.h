@@ -2,6 +2,7 @@
 #ifndef GLINT_TEXT_FONT_H
 #define GLINT_TEXT_FONT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -14,6 +15,9 @@ const uint8_t *glint_font_next(const char **text);
 
 /// The code of the UTF-8 character at *text, which moves past it; U+FFFD for a byte that is none.
 uint32_t glint_font_code(const char **text);
+
+/// Whether there is a character.
+bool glint_font_has(uint32_t code);
 
 /// How many characters the first `size` bytes of `text` (to its end at most) are.
 size_t glint_font_count(const char *text, size_t size);

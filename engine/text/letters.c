@@ -144,6 +144,8 @@ glint_key glint_letters_key(const glint_letters *letters)
     return key;
 }
 
+bool glint_letters_has(const glint_letters *letters, uint32_t code) { return FT_Get_Char_Index(letters->face, code) != 0; }
+
 static void set_size(glint_letters *letters, double em)
 {
     if (letters->em != em && !FT_Set_Char_Size(letters->face, 0, (FT_F26Dot6)(em * 64 + 0.5), 72, 72))
@@ -289,6 +291,12 @@ void glint_letters_measure(glint_letters *letters, double em, int *above, int *b
 {
     (void)letters, (void)em;
     *above = *below = *line = 0;
+}
+
+bool glint_letters_has(const glint_letters *letters, uint32_t code)
+{
+    (void)letters, (void)code;
+    return false;
 }
 
 int glint_letters_width(glint_letters *letters, double em, const char *text, size_t size)

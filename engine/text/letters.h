@@ -26,6 +26,8 @@ const char *glint_letters_library(void);
 void glint_letters_measure(glint_letters *letters, double em, int *above, int *below, int *line);
 /// The width of the first `size` bytes of UTF-8 text, to its end at most; pixels.
 int glint_letters_width(glint_letters *letters, double em, const char *text, size_t size);
+/// Whether the font has a letter.
+bool glint_letters_has(const glint_letters *letters, uint32_t code);
 /// Draws the text into the mask, x its left end, y the row below the line that the letters stand on.
 void glint_letters_draw(glint_letters *letters, double em, const char *text, size_t size, int x, int y, glint_mask *mask);
 

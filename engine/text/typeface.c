@@ -29,6 +29,11 @@ int glint_typeface_width(const glint_typeface *typeface, const char *text, size_
     return (count < GLINT_SIDE_MAX ? (int)count : GLINT_SIDE_MAX) * GLINT_FONT_WIDTH * typeface->scale;
 }
 
+bool glint_typeface_has(const glint_typeface *typeface, uint32_t code)
+{
+    return typeface->letters ? glint_letters_has(typeface->letters, code) : glint_font_has(code);
+}
+
 static void cover(glint_mask *mask, int x, int y, int size)
 {
     for (int row = y < 0 ? 0 : y; row < y + size && row < mask->height; row++)

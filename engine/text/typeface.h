@@ -17,6 +17,8 @@ typedef struct glint_typeface {
 glint_typeface glint_typeface_open(glint_letters *letters, double em);
 /// The width of the first `size` bytes of UTF-8 text, to its end at most; pixels.
 int glint_typeface_width(const glint_typeface *typeface, const char *text, size_t size);
+/// Whether the font has a letter.
+bool glint_typeface_has(const glint_typeface *typeface, uint32_t code);
 /// Draws the text into the mask, with its upper left corner at x, y; what falls outside is cut off.
 void glint_typeface_draw(const glint_typeface *typeface, const char *text, size_t size, int x, int y, glint_mask *mask);
 

@@ -56,6 +56,25 @@ for job in 'scene' 'glint.sweep { scene = scene, over = { { scene.camera, "fov",
     warns "an open shutter: $job" 'camera.shutter: nothing moves while it is open; the frame function of a glint.animation moves things'
 done
 
+# ---- Text that does not show ----
+
+ball='glint.sphere { center = { 0, 0, 0 }, radius = 2 }'
+label() { scene "objects = { $ball, glint.label { $1 } }"; }
+label 'text = "t = 0", size = 5'
+silent "a label that fits"
+label 'text = "somewhere", position = { 500, 0 }'
+warns "a label outside" "label 'somewhere': it lies outside of the picture$"
+label 'text = "gone", position = { 0, -90 }, name = "title"'
+warns "a label by its name" "label 'title': it lies outside of the picture$"
+label 'text = "Donaudampfschifffahrt", size = 10'
+warns "a word that is wider than the picture" "label 'Donaudampfschifffahrt': 'Donaudampfschifffahrt' is [0-9]* pixels wide, the picture 32; a smaller size, or a wider picture, shows all of it$"
+label 'text = "ab", position = { 30, 0 }, size = 5'
+warns "a label that is cut" "label 'ab': it reaches [0-9]* pixels beyond the border of the picture$"
+label 'text = "x\u{10ffff}", size = 5'
+warns "a letter that the font lacks" "label 'x.*': the font has no letter '.*' (U+10FFFF), and a box stands for it; GLINT_FONT names the file of another font$"
+scene 'objects = { glint.sphere { center = { 0, 0, 0 }, radius = 2 }, glint.colorbar { map = "magma", low = 0, high = 1, position = { 900, 0 } } }'
+warns "a bar outside" "colorbar: it lies outside of the picture$"
+
 # ---- A light inside a closed sphere ----
 
 inside='objects = { glint.sphere { center = { 0, 0, 0 }, radius = 2, name = "ball" } }'
@@ -346,6 +365,7 @@ for script in "$root"/scripts/*.lua; do
     name=$(basename "$script") dialect='' size=64x36
     [[ $name != gr_* ]] || dialect=--dialect=gr
     [ "$name" != lobes.lua ] || size=64x25 # a wide picture, whose ends a narrower one cuts off
+    [ "$name" != labels.lua ] || size=320x180 # letters of 10 pixels fit
     run "$script" --size $size --samples 1 --warnings=error $dialect
     result $? "$name"
 done

@@ -180,6 +180,86 @@ function tests.pictures()
   end
 end
 
+-- ---- A cell, broken lines, letters ----
+
+-- The file of a scene with one overlay, 200 x 200 pixels, 50 a unit, (1, 0.75) in its middle.
+local function file_with(overlay, width)
+  local camera = glint.camera { eye = { 1, 0.75, 10 }, direction = { 0, 0, -1 }, projection = "orthographic", height = 4 }
+  local scene = glint.scene { camera = camera, overlay }
+  local path = os.tmpname() .. ".png"
+  assert(scene:render { width = width or 200, height = 200, output = "none" }:save(path))
+  local picture, bytes = glint.read_image(path), assert(io.open(path, "rb")):read "a"
+  os.remove(path)
+  return picture, bytes:match "IDAT.*"
+end
+
+-- How many of 21 points between two places of the world are bright in a picture, within a pixel.
+local function count_bright(picture, from, to)
+  local count = 0
+  for i = 0, 20 do
+    local x, y = from[1] + (to[1] - from[1]) * i / 20, from[2] + (to[2] - from[2]) * i / 20
+    local column, row, most = (x - 1) * 50 + 100, (0.75 - y) * 50 + 100, 0
+    for dx = -1, 0 do
+      for dy = -1, 0 do most = math.max(most, (picture:pixel(math.floor(column + 0.5) + dx, math.floor(row + 0.5) + dy))) end
+    end
+    count = count + (most > 0.05 and 1 or 0)
+  end
+  return count
+end
+
+function tests.axes_of_a_cell()
+  local cell = { origin = { 0, 0, 0 }, a = { 2, 0, 0 }, b = { 1, 1.5, 0 }, c = { 0, 0, 1 } }
+  local picture, bytes = file_with(glint.axes { box = cell })
+  check(count_bright(picture, { 0, 0 }, { 1, 1.5 }) == 21, "b lies along the cell's side")
+  check(count_bright(picture, { 0, 0 }, { 2, 0 }) == 21, "and a along its own")
+  local upright = file_with(glint.axes { box = { { 0, 0, 0 }, { 3, 1.5, 1 } } })
+  check(count_bright(upright, { 0, 0 }, { 1, 1.5 }) < 21, "of the box around it they do not")
+  local _, measured = file_with(glint.axes { box = cell, values = { { 0, 0, 0 }, { 2, math.sqrt(1 + 1.5 ^ 2), 1 } } })
+  check(bytes == measured, "numbers are lengths along the sides")
+  local _, sized = file_with(glint.axes { box = { low = { 0, 0, 0 }, size = { 2, 1.5, 1 }, xy = 1, xz = 0, yz = 0 } })
+  check(bytes == sized, "a box as readers give it")
+  local _, left = file_with(glint.axes { box = { origin = { 0, 0, 1 }, a = { 2, 0, 0 }, b = { 1, 1.5, 0 }, c = { 0, 0, -1 } } })
+  check(bytes == left, "a cell turned inside out")
+  local _, straight = file_with(glint.axes { box = { origin = { 0, 0, 0 }, a = { 2, 0, 0 }, b = { 0, 1, 0 }, c = { 0, 0, 1 } },
+    labels = { "x", "y", "z" } })
+  local _, corners = file_with(glint.axes { box = { { 0, 0, 0 }, { 2, 1, 1 } } })
+  check(straight == corners, "an upright cell is a box")
+  local _, low = file_with(glint.axes { box = { low = { 0, 0, 0 }, size = { 2, 1, 1 } } })
+  check(low == corners, "and an upright box with a size")
+  picture = file_with(glint.axes { box = { a = { 2, 0, 0 }, b = { 1, 1.5, 0 } } })
+  check(count_bright(picture, { 0, 0 }, { 1, 1.5 }) == 21, "a flat cell")
+  local axes = glint.axes { box = cell }
+  check(axes.labels[2] == "b" and axes.box.b[2] == 1.5 and axes.box.origin.x == 0, "it reads as it is")
+  axes.box = { { 0, 0, 0 }, { 1, 1, 1 } }
+  check(axes.labels[2] == "y" and axes.box[2].y == 1, "and becomes a box")
+  raises("axes.box: sides a, b and c that span a plane at least expected", glint.axes, { box = { a = { 1, 0, 0 }, b = { 2, 0, 0 } } })
+  raises("axes.box.b[2]: number expected, got nil", glint.axes, { box = { a = { 1, 0, 0 }, b = { 2 } } })
+end
+
+function tests.wide_lines_are_broken()
+  for _, at in ipairs { "top left", "bottom", "right" } do
+    local _, whole = file_with(glint.label { text = "alpha beta gamma", at = at, size = 13 }, 60)
+    local _, lines = file_with(glint.label { text = "alpha\nbeta\ngamma", at = at, size = 13 }, 60)
+    check(whole == lines, "at blanks, at %s", at)
+    _, whole = file_with(glint.label { text = "alpha beta", at = at, size = 13 })
+    _, lines = file_with(glint.label { text = "alpha\nbeta", at = at, size = 13 })
+    check(whole ~= lines, "and not where they fit")
+  end
+  local _, placed = file_with(glint.label { text = "alpha beta gamma", position = { 2, 2 }, size = 13 }, 60)
+  local _, lines = file_with(glint.label { text = "alpha\nbeta\ngamma", position = { 2, 2 }, size = 13 }, 60)
+  check(placed ~= lines, "a label with a position is as it is")
+end
+
+function tests.letters_that_run_left()
+  for letter, code in pairs { ["ש"] = "U+05E9", ["م"] = "U+0645", ["ܐ"] = "U+0710", ["ﷺ"] = "U+FDFA" } do
+    local want = ("letters that run from left to right expected, got '%s' (%s), which runs from right to left"):format(letter, code)
+    raises("label.text: " .. want, glint.label, { text = "t = 1 " .. letter })
+    raises("axes.names: " .. want, glint.axes, { labels = { letter, "y", "z" } })
+    raises("colorbar.text: " .. want, glint.colorbar, { map = "magma", low = 0, high = 1, title = letter })
+  end
+  check(glint.label { text = "αβ Ж 中 →" }.text == "αβ Ж 中 →", "others are drawn")
+end
+
 -- Whatever the size and the place, there is a picture.
 function tests.extremes()
   local scene = scene_of()

@@ -1,7 +1,7 @@
 -- The box of a simulation: { low, size, periodic, xy, xz, yz } as glint.lammps gives it; its sides are {size x, 0, 0},
 -- {xy, size y, 0} and {xz, yz, size z}. By hand { size = { 10, 10, 10 } } is enough: from 0, upright, periodic.
 --     scene:add(box.edges(frame.box))                 -- drawn as thin cylinders; of frame.cell of glint.xyz, too
---     scene:add(glint.axes { box = box.corners(frame.box) })      -- with numbers along three of its edges
+--     scene:add(glint.axes { box = frame.box or frame.cell })     -- with numbers along three of its edges
 local glint = require "glint"
 
 local box = {}
@@ -103,7 +103,7 @@ function box.edges(given, options)
   return glint.group(parts)
 end
 
---- The lowest and the highest corner of the upright box around a box or cell: what glint.axes { box = ... } takes.
+--- The lowest and the highest corner of the upright box around a box or cell.
 ---@param given table
 ---@return number[][]
 function box.corners(given)

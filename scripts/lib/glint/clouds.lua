@@ -107,7 +107,7 @@ local function unpack_lzf(packed, size)
   return table.concat(parts)
 end
 
--- Likewise of bytes that LZF packs: the numbers of the first field of all points, then those of the second ...
+-- Likewise of bytes that LZF packs. They hold the first field of all points, then the second field of all points ...
 local function packed_rows(source, layout)
   local function fail(what) error(("%s: %s"):format(source.path, what), 0) end
   if source.path == "-" then fail "a cloud of points as text expected, got a binary one" end

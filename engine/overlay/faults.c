@@ -1,0 +1,117 @@
+/// Warnings about overlays that a picture cannot show as they are.
+#include "engine/overlay/layout.h"
+
+#include "engine/text/font.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define SHOWN 40 ///< letters of a text that a message has, at most
+
+typedef struct check {
+    const glint_layout *layout;
+    void (*warns)(void *context, const char *message);
+    void *context;
+    char what[200]; ///< "label 'text'"
+} check;
+
+static void warn(const check *c, const char *message)
+{
+    char text[512];
+    snprintf(text, sizeof text, "%s: %s", c->what, message);
+    c->warns(c->context, text);
+}
+
+/// The kind of an overlay and its name, or the beginning of its text.
+static void describe(check *c)
+{
+    static const char *const kinds[] = { "label", "colorbar", "axes" };
+    const glint_overlay_desc *desc = c->layout->desc;
+    const char *name = desc->name[0] ? desc->name : desc->text, *end = name;
+    for (int i = 0; i < SHOWN && *end && *end != '\n'; i++)
+        glint_font_code(&end);
+    snprintf(c->what, sizeof c->what, *name ? "%s '%.*s%s'" : "%s", kinds[desc->kind], (int)(end - name), name, *end ? "..." : "");
+}
+
+/// Warns of the first letter of a text that the font does not have.
+static void check_letters(const check *c, const char *text)
+{
+    char message[200];
+    for (const char *at = text, *letter = at; *at; letter = at) {
+        const uint32_t code = glint_font_code(&at);
+        if (code == '\n' || glint_typeface_has(&c->layout->typeface, code))
+            continue;
+        snprintf(message, sizeof message,
+                 "the font has no letter '%.*s' (U+%04X), and a box stands for it; GLINT_FONT names the file of another font",
+                 (int)(at - letter), letter, (unsigned)code);
+        warn(c, message);
+        return;
+    }
+}
+
+/// The widest line of a label, after its lines are broken.
+static const char *find_widest(const glint_layout *layout, int *length)
+{
+    const char *found = layout->text;
+    int widest = -1;
+    for (const char *line = layout->text; *line;) {
+        const size_t size = strcspn(line, "\n");
+        const int width = glint_typeface_width(&layout->typeface, line, size);
+        if (width > widest) {
+            widest = width;
+            found = line;
+            *length = (int)size;
+        }
+        line += size + (line[size] == '\n');
+    }
+    return found;
+}
+
+static void check_place(const check *c)
+{
+    const glint_layout *l = c->layout;
+    const int sides[2] = { l->overlays->width, l->overlays->height };
+    char message[300];
+    int beyond = 0, length = 0;
+    for (int i = 0; i < 2; i++) {
+        if (l->corner[i] >= sides[i] || l->corner[i] + l->size[i] <= 0) {
+            warn(c, "it lies outside of the picture");
+            return;
+        }
+        const int before = -l->corner[i], behind = l->corner[i] + l->size[i] - sides[i];
+        beyond = before > beyond ? before : beyond;
+        beyond = behind > beyond ? behind : beyond;
+    }
+    if (l->desc->kind != GLINT_OVERLAY_LABEL || beyond <= l->em / 4) // the room around letters
+        return;
+    const char *line = find_widest(l, &length);
+    if (!l->desc->has_position && l->size[0] > sides[0])
+        snprintf(message, sizeof message, "'%.*s' is %d pixels wide, the picture %d; a smaller size, or a wider picture, shows all of it",
+                 length < 100 ? length : 100, line, l->size[0], sides[0]);
+    else
+        snprintf(message, sizeof message, "it reaches %d pixels beyond the border of the picture", beyond);
+    warn(c, message);
+}
+
+glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, void (*warns)(void *context, const char *message),
+                                  void *context, glint_error *error)
+{
+    glint_letters *letters;
+    glint_status status = glint_letters_open(&letters, error);
+    for (size_t i = 0; i < overlays->count && !status; i++) {
+        const glint_overlay_desc *desc = &overlays->of[i];
+        glint_layout layout = glint_layout_begin(overlays, desc, dpi, letters, NULL);
+        check c = { .layout = &layout, .warns = warns, .context = context };
+        describe(&c);
+        check_letters(&c, desc->text);
+        for (int k = 0; k < 3 && desc->kind == GLINT_OVERLAY_AXES; k++)
+            check_letters(&c, desc->names[k]);
+        if (desc->has_box)
+            continue;
+        glint_layout_place(&layout, dpi);
+        check_place(&c);
+    }
+    if (!status)
+        glint_letters_close(letters);
+    return status;
+}
