@@ -312,18 +312,31 @@ glint_status glint_renderer_take_image(glint_renderer *renderer, const glint_ren
     return status;
 }
 
+/// The last picture, when nobody else holds it: the tiles that are unchanged are then in their place already. NULL: it is held, or of
+/// another format.
+static glint_image *take_last(glint_renderer *renderer, const glint_plan *plan)
+{
+    glint_picture *last = &renderer->pictures[0];
+    for (int i = 0; i < GLINT_SPARE_IMAGES && last->image && !plan->base; i++)
+        if (renderer->spare[i] == last->image && has_format(last->image, &plan->desc) && atomic_load(&last->image->references) == 2) {
+            last->key = (glint_key) { 0 }; // it is about to change
+            return glint_image_retain(last->image);
+        }
+    return NULL;
+}
+
 glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
                                   glint_frame_stats *stats, glint_error *error)
 {
     const glint_render_desc *desc = &plan->desc;
-    glint_image *image = NULL;
     const glint_tone_table *table = NULL;
     glint_frame_stats counted;
     if (atomic_load(renderer->stop))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
     if (glint_picture_give(renderer, plan, out, stats))
         return GLINT_OK;
-    glint_status status = glint_renderer_take_image(renderer, desc, &image, error);
+    glint_image *image = take_last(renderer, plan);
+    glint_status status = image ? GLINT_OK : glint_renderer_take_image(renderer, desc, &image, error);
     if (!status && desc->codes)
         status = glint_tone_table_shared(&desc->tone, &table, error);
     if (!plan->base) {

@@ -175,7 +175,7 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
         glint_prefetch(cached->prim, GLINT_TILE_SAMPLES * sizeof *cached->prim);
     if (glint_splits_are_on(&reuse->splits) && glint_key_equal(cached->split, reuse->splits.key))
         glint_prefetch(cached->values, glint_splits_bytes(&reuse->splits));
-    if (frame->last && frame->last->codes) // of which the first row often differs: see glint_tile_has_codes_of
+    if (frame->last && frame->last != frame->image && frame->last->codes) // of which the first row often differs: see glint_tile_has_codes_of
         prefetch_last_codes(tile, frame->last);
 }
 
@@ -421,7 +421,8 @@ void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint
     for (uint32_t i = 0; sampled && i < frame->reuse->light_count && cached->shown_count > 0; i++)
         cached->lights[i].place = frame->plan->lights[i].place_key;
     glint_film_stamp stamp = stamp_of(tile, frame);
-    const glint_film_stamp *last = frame->last && frame->last->film ? &frame->last->film[tile->index] : NULL;
+    const bool has_last = frame->last && frame->last != frame->image && frame->last->film; // its codes are still there
+    const glint_film_stamp *last = has_last ? &frame->last->film[tile->index] : NULL;
     const bool moved = tile->counts.runs[GLINT_STAGE_LIGHT] != before.lights; // then codes seldom stay as they are
     if (last && last->codes && !moved && glint_tile_has_codes_of(tile, frame->image, frame->last))
         stamp.codes = last->codes;

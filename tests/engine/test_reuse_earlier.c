@@ -271,9 +271,45 @@ static void frames_in_any_order_with_little_memory(void **unused)
     }
 }
 
+static glint_image *render_held(stand *s)
+{
+    glint_plan *plan;
+    glint_image *image;
+    assert_int_equal(glint_plan_create(s->scene, &s->render, &plan, NULL), GLINT_OK);
+    assert_int_equal(glint_render(s->renderers[0], plan, &image, NULL, NULL), GLINT_OK);
+    glint_plan_destroy(plan);
+    return image;
+}
+
+/// A picture that nobody holds is drawn over; one that somebody holds stays as it is.
+static void a_picture_that_is_held(void **unused)
+{
+    (void)unused;
+    stand s;
+    float before[3], after[3];
+    make_stand(&s, 0);
+    glint_image *held = render_held(&s);
+    assert_int_equal(glint_image_pixel(held, GLINT_PASS_BEAUTY, 50, 40, before, NULL), GLINT_OK);
+    set_color(&s, 0.2);
+    glint_image *next = render_held(&s);
+    assert_int_equal(glint_image_pixel(held, GLINT_PASS_BEAUTY, 50, 40, after, NULL), GLINT_OK);
+    assert_memory_equal(before, after, sizeof before);
+    assert_int_equal(glint_image_pixel(next, GLINT_PASS_BEAUTY, 50, 40, after, NULL), GLINT_OK);
+    assert_memory_not_equal(before, after, sizeof before);
+    glint_image_release(held);
+    glint_image_release(next);
+    for (int frame = 0; frame < 6; frame++) { // over each other, the lamp and the colour in turn
+        set_color(&s, 0.1 * (frame / 2));
+        set_lamp(&s, 0, frame / 2 + frame % 2);
+        check(&s, frame);
+    }
+    free_stand(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_picture_that_is_held),
         cmocka_unit_test(a_lamp_that_goes_around),
         cmocka_unit_test(two_lamps_each_in_its_turn),
         cmocka_unit_test(cameras_in_turn),
