@@ -1139,7 +1139,8 @@ size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list);
 /// first generation.
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan);
 /// Estimates the work of rendering `plan` right after `before`, by their keys: a stage whose key differs counts 1, the stages
-/// `light` and `occlude` count 1 for each light or light sample that differs. Bit i of *stages is set where number i of
+/// `light` and `occlude` count 1 for each light or light sample that differs, `shade` counts a half where only highlights of
+/// materials differ. Bit i of *stages is set where number i of
 /// glint_plan_stages must run. 0: the two pictures are the same.
 double glint_plan_work_after(const glint_plan *plan, const glint_plan *before, uint32_t *stages);
 

@@ -12,6 +12,17 @@ static double changed_lights(const glint_plan *plan, const glint_plan *before, b
     return count;
 }
 
+/// Shading again what has highlights, or all: half, where nothing but highlights of materials differs.
+static double shade_work(const glint_plan *plan, const glint_plan *before)
+{
+    bool matte = plan->material_count == before->material_count && plan->matte_keys && before->matte_keys, highlights = false;
+    for (uint32_t i = 0; i < plan->material_count && matte; i++) {
+        matte = glint_key_equal(plan->matte_keys[i], before->matte_keys[i]);
+        highlights = highlights || !glint_key_equal(plan->material_keys[i], before->material_keys[i]);
+    }
+    return matte && highlights ? 0.5 : 1;
+}
+
 double glint_plan_work_after(const glint_plan *plan, const glint_plan *before, uint32_t *stages)
 {
     double work = 0;
@@ -23,6 +34,7 @@ double glint_plan_work_after(const glint_plan *plan, const glint_plan *before, u
             *stages |= 1u << i;
             work += id == GLINT_STAGE_LIGHT     ? changed_lights(plan, before, false)
                     : id == GLINT_STAGE_OCCLUDE ? changed_lights(plan, before, true)
+                    : id == GLINT_STAGE_SHADE   ? shade_work(plan, before)
                                                 : 1;
         }
         i++;

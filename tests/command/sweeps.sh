@@ -61,6 +61,11 @@ prints "and the order" 'order: red.shininess, lamp.position, fov$'
 "$GLINT" explain grid.lua --json >out
 prints "for programs, too" '"sweep":\{"axes":\[\{"name":"fov","stages":"camera, cast, .*"order":\["red.shininess","lamp.position","fov"\]\}'
 
+# Both paints run `shade`. A highlight is in fewer pixels than a colour.
+sed -e '/^  { S.camera/d' -e 's/{ S.red, "shininess".*/{ S.red, "diffuse", { 0.2, 0.8 } }, { S.red, "shininess", { 5, 50 } },/' \
+    -e '$a{ S.lamp, "position", { { -3, 9, 1 }, { 3, 9, 1 } } } } }' grid.lua >paint.lua
+check "highlights change more often than colours" test "$(order paint.lua -o none)" = "1 3 4 2 6 8 7 5 "
+
 # A value that cannot be: the frames before it are there, and the message has its number.
 sed 's/{ 5, 50, 500, 5000 }/{ 5, 50, -1 }/' grid.lua >wrong.lua
 exits 2 "a wrong value" wrong.lua -o 'wrong/%02d.png' -q
