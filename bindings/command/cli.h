@@ -142,6 +142,7 @@ void cli_open_dialect(lua_State *L, const cli_options *options);
 
 typedef struct cli_file_list {
     char **files; ///< owned
+    int64_t *numbers; ///< owned; of the frames: the number before each file's ending; -1: there is none
     size_t count;
 } cli_file_list;
 

@@ -100,17 +100,32 @@ static int64_t last_request(const glintL_selection *selection)
     return last;
 }
 
-static bool add_file(cli_file_list *out, const char *path, char *message)
+// The number that a file's name ends with, before its ending; -1: none.
+static int64_t number_of(const char *path)
+{
+    const char *name = cli_base_name(path), *ending = strrchr(name, '.');
+    const char *end = ending ? ending : name + strlen(name), *at = end;
+    while (at > name && at[-1] >= '0' && at[-1] <= '9')
+        at--;
+    const int64_t number = at < end ? strtoll(at, NULL, 10) : -1;
+    return number <= GLINTL_FRAMES_MAX ? number : -1;
+}
+
+static bool add_file(cli_file_list *out, const char *path, int64_t number, char *message)
 {
     char **grown = realloc(out->files, (out->count + 1) * sizeof *grown);
     if (grown)
         out->files = grown;
-    char *copy = grown ? strdup(path) : NULL;
+    int64_t *numbers = realloc(out->numbers, (out->count + 1) * sizeof *numbers);
+    if (numbers)
+        out->numbers = numbers;
+    char *copy = grown && numbers ? strdup(path) : NULL;
     if (!copy) {
         snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
         return false;
     }
-    grown[out->count++] = copy;
+    out->numbers[out->count] = number;
+    out->files[out->count++] = copy;
     return true;
 }
 
@@ -143,7 +158,8 @@ static bool is_among(const cli_file_list *list, const char *output, char *messag
 static bool add_words(const cli_options *options, cli_file_list *out, char *message)
 {
     for (int i = 0; i < options->argument_count; i++)
-        if (is_quoted_wildcard(options->arguments[i], message) || !add_file(out, options->arguments[i], message))
+        if (is_quoted_wildcard(options->arguments[i], message) ||
+            !add_file(out, options->arguments[i], number_of(options->arguments[i]), message))
             return false;
     if (out->count == 0)
         snprintf(message, GLINTL_MESSAGE_SIZE, "finished pictures expected, or a pattern such as 'frame_%%04d.png'");
@@ -159,7 +175,7 @@ static bool add_numbers(const char *pattern, const int64_t *numbers, size_t coun
     for (size_t i = 0; i < count && good; i++)
         if (glintL_selection_has(selection, numbers[i])) {
             good = glintL_name_file(&naming, numbers[i], "beauty", path);
-            good = good && add_file(out, path, message);
+            good = good && add_file(out, path, numbers[i], message);
         }
     if (good && out->count == 0)
         snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: there is no such frame", pattern);
@@ -205,4 +221,5 @@ void cli_free_list(cli_file_list *list)
     for (size_t i = 0; i < list->count; i++)
         free(list->files[i]);
     free(list->files);
+    free(list->numbers);
 }

@@ -181,11 +181,21 @@ static int write_picture(job *j, const char *file, int64_t number, char *message
     return 0;
 }
 
+// Whether the pictures have the numbers of their files: these ascend. Else they are counted from 1.
+static bool has_numbers(const cli_file_list *list)
+{
+    for (size_t i = 0; i < list->count; i++)
+        if (list->numbers[i] < 0 || (i > 0 && list->numbers[i] <= list->numbers[i - 1]))
+            return false;
+    return true;
+}
+
 static int write_all(job *j, char *message)
 {
+    const bool numbered = has_numbers(&j->files);
     int code = 0;
     for (size_t i = 0; i < j->files.count && !code && !j->run->interrupted; i++)
-        code = write_picture(j, j->files.files[i], (int64_t)i + 1, message);
+        code = write_picture(j, j->files.files[i], numbered ? j->files.numbers[i] : (int64_t)i + 1, message);
     if (code || j->run->interrupted || !j->naming.film)
         return code;
     if (glintL_films_finish(j->run))

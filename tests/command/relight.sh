@@ -124,6 +124,13 @@ check "is nearly the picture" "$GLINT" compare plain.png half.png --fail 0.02 --
 exits 0 "frames" scene.lua -q --set frames=3 --passes 'light:*' -o 'f/%04d.exr'
 exits 0 "numbered pictures" relight 'f/%04d.exr' -q --light key=2 -o 'g/%02d.png'
 check "three of them" test -f g/01.png -a -f g/03.png
+exits 0 "named ones" relight f/0002.exr f/0003.exr -q --light key=2 -o 'n/%02d.png'
+check "have the numbers of their files" test "$(cd n && echo *)" = "02.png 03.png"
+check "and their pictures" cmp g/02.png n/02.png
+exits 0 "selected ones" relight 'f/%04d.exr' -f 3 -q --light key=2 -o 'o/%02d.png'
+check "too" test "$(cd o && echo *)" = 03.png
+exits 0 "in another order" relight f/0003.exr f/0002.exr -q --light key=2 -o 'p/%02d.png'
+check "they are counted" cmp g/03.png p/01.png
 exits 0 "a film" relight 'f/%04d.exr' -q --light key=2 -o film.apng
 check "is there, and its frames are gone" test -f film.apng -a ! -e film.apng.frames
 exits 0 "its frames" scene.lua -q --set frames=3 --set strength=2 -o 'h/%02d.png'
