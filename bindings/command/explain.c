@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bindings/command/cli.h"
+#include "bindings/command/points.h"
 #include "bindings/run/order.h"
 
 static void print_frame(FILE *out, const glintL_run *run, const glint_render_desc *desc)
@@ -156,14 +156,44 @@ static void print_json(FILE *out, const glintL_run *run, bool programs)
     fputs("}\n", out);
 }
 
-int cli_explain(cli_options *options, cli_output *output, glintL_run *run)
+// Plans the frame of a script that is run for each value of --sweep, and finds its order. False: the script fails at some
+// value, which is reported, or the run has failed.
+static bool explain_points(cli_options *options, cli_output *output, glintL_run *run)
 {
     cli_script script;
+    cli_sweep_to(options, run, 1);
+    cli_run_script(&script, options, run);
+    const int64_t frames = script.has_jobs && script.frames == run->count ? script.frames : 0;
+    const int64_t point = frames ? (run->explain_frame - 1) / frames + 1 : 1;
+    cli_close_script(&script);
+    if (run->exit_code || run->interrupted || !frames)
+        return true;
+    if (point > cli_sweep_points(options)) {
+        run->count = frames * cli_sweep_points(options); // for the message
+        return true;
+    }
+    if (point > 1) {
+        run->count = run->point_first = frames * (point - 1);
+        cli_sweep_to(options, run, point);
+        cli_run_script(&script, options, run);
+        cli_close_script(&script);
+    }
+    return !run->explain_plan || cli_order_points(options, output, run);
+}
+
+int cli_explain(cli_options *options, cli_output *output, glintL_run *run)
+{
     run->mode = GLINTL_MODE_EXPLAIN;
     run->explain_frame = options->frame;
     glintL_selection_clear(&run->request.selection); // --frame is not a selection here
-    cli_run_script(&script, options, run);
-    cli_close_script(&script);
+    bool good = true;
+    if (options->sweep_count) {
+        good = explain_points(options, output, run);
+    } else {
+        cli_script script;
+        cli_run_script(&script, options, run);
+        cli_close_script(&script);
+    }
     if (!run->exit_code && !run->interrupted && !run->explain_plan)
         glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
                         "--frame: a frame of the script, 1 .. %" PRId64 ", expected, got '%" PRId64 "'", run->count,
@@ -180,5 +210,5 @@ int cli_explain(cli_options *options, cli_output *output, glintL_run *run)
         print_for_people(output->data, run);
     if (options->programs && !options->json)
         print_programs(output->data, run->explain_plan);
-    return GLINTL_EXIT_DONE;
+    return good ? GLINTL_EXIT_DONE : GLINTL_EXIT_USAGE;
 }

@@ -277,7 +277,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
       WITHIN(1, GLINTL_FRAMES_MAX) },
     { "shard", 0, "K/N", CLI_RENDER, read_shard, .help = "the K-th of N parts" },
     { "frame", 0, "N", LOOKED, read_frame, .help = "frame to look at" },
-    { "sweep", 0, "NAME=VALUES", CLI_RENDER, read_sweep,
+    { "sweep", 0, "NAME=VALUES", CLI_RENDER | CLI_EXPLAIN, read_sweep,
       .help = "the script for each value of a parameter: A:B:N, A:B:*N or V,V,V",
       .repeats = true },
     { "output", 'o', "PATTERN", CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE | CLI_JOIN | CLI_PUBLISH | CLI_RELIGHT, read_text,

@@ -287,6 +287,7 @@ static int add_sweeps(points *p)
     for (size_t i = 0; i < p->options->sweep_count; i++) {
         glintL_order_axis *axis = glintL_order_add(&p->order, p->options->sweeps[i].count);
         axis->may_fail = true;
+        snprintf(axis->name, sizeof axis->name, "%s", p->options->sweeps[i].name);
         axis->middle = 0; // its states are the fewest
     }
     return own;
@@ -316,26 +317,31 @@ static void list_job(points *p, const job *of)
     }
 }
 
+// Finds the order of the job at hand. False: the run has failed.
+static bool order_job(points *p, point *first, job *of)
+{
+    glintL_order *order = &p->order;
+    glintL_order_init(order);
+    take(p, find_open(p, 1) ? find_open(p, 1) : first);
+    if (!call(p, axes_protected))
+        return false;
+    of->frames = order->frames;
+    if (p->options->sweep_count > GLINTL_ORDER_AXES / 2) {
+        glintL_order_add(order, p->run->point_count);
+        return true;
+    }
+    const int own = add_sweeps(p);
+    if (p->most > 1 && !p->in_order && glintL_order_is_grid(order) && glintL_order_find(order, plan_frame, of))
+        p->together = changes_points_first(order, own) || p->together;
+    return of->good;
+}
+
 // Lists all jobs. False: the run has failed.
 static bool list_jobs(points *p, point *first)
 {
     job of = { .p = p, .good = true };
-    const bool searches = p->most > 1 && p->options->sweep_count <= GLINTL_ORDER_AXES / 2;
     for (p->job = 1; of.before < p->frames; p->job++, of.before += of.frames) {
-        glintL_order_init(&p->order);
-        first = find_open(p, 1) ? find_open(p, 1) : first;
-        take(p, first);
-        if (!call(p, axes_protected))
-            return false;
-        of.frames = p->order.frames;
-        if (p->options->sweep_count > GLINTL_ORDER_AXES / 2) {
-            glintL_order_add(&p->order, p->run->point_count);
-        } else {
-            const int own = add_sweeps(p);
-            if (searches && !p->in_order && glintL_order_is_grid(&p->order) && glintL_order_find(&p->order, plan_frame, &of))
-                p->together = changes_points_first(&p->order, own) || p->together;
-        }
-        if (!of.good)
+        if (!order_job(p, first, &of))
             return false;
         list_job(p, &of);
     }
@@ -465,31 +471,67 @@ static bool run_calls(points *p, point *first)
     return good;
 }
 
-bool cli_run_points(cli_options *options, cli_output *output, glintL_run *run, bool *reported)
+// Prepares the points and opens the first. NULL: out of memory, and the run has failed.
+static points *create(cli_options *options, cli_output *output, glintL_run *run, point **first)
 {
     points *p = calloc(1, sizeof *p);
     run->point_count = cli_sweep_points(options);
     unsigned char *failed = calloc((size_t)run->point_count, 1);
-    bool good = p && failed;
-    if (!good)
+    if (!p || !failed) {
+        free(p);
+        free(failed);
         glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    if (good) {
-        *p = (points) { .options = options, .output = output, .run = run, .failed = failed };
-        const size_t before = peak_bytes();
-        point *first = open_first(p);
-        p->most = most_together(p, peak_bytes() - before);
-        good = first && (first->script.has_jobs ? render_points(p, first) : run_calls(p, first));
-        take(p, NULL);
-        for (int i = 0; i < TOGETHER_MAX; i++) { // after a failure
-            p->open[i].has_frames = false;
-            close_point(p, &p->open[i]);
-        }
-        *reported = p->has_failed && !run->exit_code && !run->interrupted;
-        run->exit_code = *reported ? GLINTL_EXIT_USAGE : run->exit_code;
-        good = good && !p->has_failed;
-        free(p->list);
+        return NULL;
     }
-    free(failed);
+    *p = (points) { .options = options, .output = output, .run = run, .failed = failed };
+    const size_t before = peak_bytes();
+    *first = open_first(p);
+    p->most = most_together(p, peak_bytes() - before);
+    return p;
+}
+
+static void destroy(points *p)
+{
+    take(p, NULL);
+    for (int i = 0; i < TOGETHER_MAX; i++) { // after a failure
+        p->open[i].has_frames = false;
+        close_point(p, &p->open[i]);
+    }
+    free(p->list);
+    free(p->failed);
     free(p);
+}
+
+bool cli_run_points(cli_options *options, cli_output *output, glintL_run *run, bool *reported)
+{
+    point *first;
+    points *p = create(options, output, run, &first);
+    bool good = p && first && (first->script.has_jobs ? render_points(p, first) : run_calls(p, first));
+    if (!p)
+        return false;
+    *reported = p->has_failed && !run->exit_code && !run->interrupted;
+    run->exit_code = *reported ? GLINTL_EXIT_USAGE : run->exit_code;
+    good = good && !p->has_failed;
+    destroy(p);
+    return good;
+}
+
+bool cli_order_points(cli_options *options, cli_output *output, glintL_run *run)
+{
+    point *first;
+    points *p = create(options, output, run, &first);
+    if (!p)
+        return false;
+    const int64_t n = first ? (run->explain_frame - 1) % p->frames + 1 : 0;
+    job of = { .p = p, .good = first != NULL };
+    bool good = of.good;
+    for (p->job = 1; good && of.before < n; p->job++, of.before += of.frames)
+        good = order_job(p, first, &of);
+    free(run->explain_order);
+    run->explain_order = good ? malloc(sizeof p->order) : NULL;
+    if (run->explain_order)
+        *run->explain_order = p->order;
+    good = !p->has_failed;
+    destroy(p);
     return good;
 }

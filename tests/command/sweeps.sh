@@ -99,6 +99,18 @@ check "a swept place of the lamp waits for its frames" test "$(order film.lua --
 check "two parameters" test "$(order film.lua --sweep shininess=5,50 --sweep radius=2,4 -f 1-11:2 -o none | wc -w)" -eq 6
 check "two jobs in a list" test "$(order film.lua --set frames=4 --sweep shininess=5,50)" = "1 9 10 2 3 11 12 4 5 13 14 6 7 15 16 8 "
 
+"$GLINT" explain film.lua --sweep shininess=5,50 --frame 5 >out 2>err
+prints "explain plans a frame of the second value" '^film.lua, frame 5: '
+prints "and shows what a value costs" 'axes: frame runs light, occlude, shade; shininess runs shade; order: shininess, frame$'
+"$GLINT" explain film.lua --sweep shininess=5,50 --json >out
+prints "for programs, too" '"name":"shininess","stages":"shade"\}\],"order":\["shininess","frame"\]'
+"$GLINT" explain grid.lua --sweep unknown=1,2 >out 2>err && fail "an unknown parameter"
+says "an unknown parameter" 'unknown'
+"$GLINT" explain film.lua --sweep shininess=5,50 --frame 7 >out 2>err && fail "a frame after the last"
+says "a frame after the last" 'frame of the script, 1 .. 6, expected, got .7.'
+"$GLINT" explain film.lua --sweep shininess=5,-1 --frame 1 >out 2>err && fail "a wrong value"
+says "a wrong value" '--sweep shininess=-1: .*number >= 0 expected'
+
 # A value that makes the script fail fails alone.
 exits 2 "a wrong value" film.lua --sweep shininess=5,-1,50 -o 'some/%02d.png' -q
 says "is named" '^glint: error: --sweep shininess=-1: .*shininess: number >= 0 expected, got -1'
