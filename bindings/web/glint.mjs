@@ -158,7 +158,7 @@ class Job {
   constructor(host, set, opened) {
     this.#host = host
     this.#set = set
-    Object.assign(this, opened) // params, frames, width, height, warnings, printed
+    Object.assign(this, opened) // params, frames, fps, width, height, warnings, printed
   }
   /**
    * Renders a frame. `set` beats the values the job was opened with; `passes` have their numbers in image.plane(), which takes

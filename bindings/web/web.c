@@ -28,6 +28,7 @@ typedef struct web_job {
     int64_t calls; // of scene:render in the script; the frames of its jobs are numbered after them
     int64_t frames;
     double width, height; // of the first frame
+    double fps; // of the first animation; 24: calls of scene:render
     char *params, *plan; // JSON; owned
     glint_image *image; // of the last frame
     glintL_render render;
@@ -178,12 +179,14 @@ static bool run_script(int64_t frame)
     return cli_run_script(&job.script, &job.options, job.run);
 }
 
-// The size of the first frame of the list of jobs.
+// The size of the first frame of the list of jobs, and the rate of its frames.
 static void measure_job(lua_State *L)
 {
     lua_rawgeti(L, LUA_REGISTRYINDEX, job.script.jobs);
     lua_rawgeti(L, -1, 1);
-    glintL_render render = ((const glintL_job *)lua_touserdata(L, -1))->render;
+    const glintL_job *first = lua_touserdata(L, -1);
+    glintL_render render = first->render;
+    job.fps = first->fps;
     lua_pop(L, 2);
     glintL_run_apply(job.run, &render);
     job.width = render.desc.width;
@@ -301,6 +304,7 @@ EMSCRIPTEN_KEEPALIVE bool web_run(void)
     if (!run_script(0))
         return false;
     job.calls = job.run->count;
+    job.fps = 24;
     job.frames = job.calls + (job.script.has_jobs ? job.script.frames : 0);
     if (!keep_params())
         return false;
@@ -312,6 +316,7 @@ EMSCRIPTEN_KEEPALIVE bool web_run(void)
 EMSCRIPTEN_KEEPALIVE double web_frames(void) { return (double)job.frames; }
 EMSCRIPTEN_KEEPALIVE double web_width(void) { return job.width; }
 EMSCRIPTEN_KEEPALIVE double web_height(void) { return job.height; }
+EMSCRIPTEN_KEEPALIVE double web_fps(void) { return job.fps; }
 EMSCRIPTEN_KEEPALIVE const char *web_params(void) { return job.params; }
 EMSCRIPTEN_KEEPALIVE const char *web_warnings(void) { return job.warnings; }
 EMSCRIPTEN_KEEPALIVE const char *web_message(void) { return job.run && *job.run->message ? job.run->message : "out of memory"; }

@@ -45,7 +45,8 @@ function write(path, bytes) {
 }
 
 const describe = () => ({
-  params: JSON.parse(text("web_params")), frames: call("web_frames"), width: call("web_width"), height: call("web_height"),
+  params: JSON.parse(text("web_params")), frames: call("web_frames"), fps: call("web_fps"), width: call("web_width"),
+  height: call("web_height"),
   warnings: warnings(), printed,
 })
 

@@ -116,7 +116,7 @@ local scene = glint.scene {
   camera = glint.camera { eye = { 0, 2, 20 }, at = { 0, 0, 0 } }, ambient = 0.1, lamp,
   glint.sphere { center = { 0, 0, 0 }, radius = P.radius, material = red },
 }
-return glint.animation { scene = scene, width = 96, height = 64, frames = 12, cyclic = true, frame = function(t)
+return glint.animation { scene = scene, width = 96, height = 64, frames = 12, fps = 10, cyclic = true, frame = function(t)
   lamp.position = { 10 * glint.cos(2 * math.pi * t), 15, 10 * glint.sin(2 * math.pi * t) }
 end }
 `
@@ -125,7 +125,7 @@ const sameImages = (a, b) => sameBits(a.rgba, b.rgba) && sameBits(a.plane(), b.p
 
 await test("what a script says of itself", async () => {
   const job = await glint.open(ball, { name: "ball.lua", set: { radius: 3 } })
-  assert.deepEqual([job.frames, job.width, job.height], [12, 96, 64])
+  assert.deepEqual([job.frames, job.fps, job.width, job.height], [12, 10, 96, 64])
   assert.deepEqual(job.params, [
     { name: "kind", type: "string", default: "phong", value: "phong", choices: ["phong", "lambert"] },
     { name: "radius", type: "number", default: 4, value: 3, min: 1, max: 9, doc: "of the ball" },
@@ -158,7 +158,7 @@ await test("two workers render halves of a frame, the same bits", async () => {
 
 await test("calls of scene:render are frames", async () => {
   const job = await glint.open(ball.replace(/return glint.animation.*/s, "for n = 1, 3 do red.shininess = n; scene:render { width = 40, height = 30 } end"))
-  assert.deepEqual([job.frames, job.width, job.height], [3, 40, 30])
+  assert.deepEqual([job.frames, job.fps, job.width, job.height], [3, 24, 40, 30])
   const [first, last] = [await job.render(), await job.render({ frame: 3 })]
   assert(!sameBits(first.rgba, last.rgba))
   assert(sameBits((await job.render({ frame: 1 })).rgba, first.rgba))
