@@ -21,7 +21,7 @@ comma    := ,
 
 PREFIX   ?= /usr/local
 bindir   ?= $(PREFIX)/bin
-# Of a system's own packages Debian keeps the libraries of each architecture apart.
+# Debian installs the libraries of system packages in one folder per architecture.
 MULTIARCH := $(if $(filter /usr,$(PREFIX)),$(shell $(CC) -print-multiarch 2>/dev/null))
 libdir   ?= $(PREFIX)/lib$(if $(MULTIARCH),/$(MULTIARCH))
 incdir   ?= $(PREFIX)/include
@@ -39,8 +39,8 @@ WARN := -Wall -Wextra -Wpedantic
 WARN += -Wshadow
 WARN += -Wstrict-prototypes
 TARGET := $(shell $(CC) -dumpmachine)
-# Of Linux all; with PORTABLE=1 what POSIX has had since 2008 alone (and anonymous pages, which it has since 2024): what else is
-# used does not compile.
+# The default uses everything Linux offers. PORTABLE=1 uses only POSIX 2008 (and anonymous pages, which POSIX has since 2024):
+# any other system call does not compile.
 FEATURES := $(if $(and $(PORTABLE),$(findstring linux,$(TARGET))),-D_XOPEN_SOURCE=700 -DMAP_ANONYMOUS=0x20,-D_GNU_SOURCE)
 # THREADS= is for machines without threads: all work is the caller's. WebAssembly has none, and no code to be placed anywhere.
 WASM    := $(findstring wasm,$(TARGET))
@@ -48,7 +48,7 @@ THREADS ?= $(if $(WASM),,yes)
 PTHREAD := $(if $(THREADS),-pthread)
 STRICT := -std=c11 $(FEATURES) $(WARN) $(if $(WASM),,-fPIC) -fvisibility=hidden -ffp-contract=off -fno-math-errno
 
-# What linkers and other tools call by other names: ELF's here, Apple's there; tests/machines/systems.sh forges TARGET.
+# Names of linker options and tools that differ between ELF systems and Apple's. tests/machines/systems.sh fakes TARGET.
 LINUX  := $(findstring linux,$(TARGET))
 MACOS  := $(findstring darwin,$(TARGET))
 LINK_NEEDED  := $(if $(MACOS),-Wl$(comma)-dead_strip_dylibs,-Wl$(comma)--as-needed)
@@ -86,7 +86,7 @@ ifeq ($(call have,libsixel),yes)
   SIXEL_CFLAGS := -DGLINT_HAVE_SIXEL $(shell pkg-config --cflags libsixel)
   SIXEL_LIBS := $(shell pkg-config --libs libsixel)
 endif
-# Of OpenEXR its core in C alone.
+# Only the C core of OpenEXR is used.
 ifeq ($(call have,'OpenEXR >= 3.1'),yes)
   EXR_LIBS := $(filter -lOpenEXRCore%,$(shell pkg-config --libs OpenEXR))
   DEFINES += -DGLINT_HAVE_OPENEXR $(patsubst -I%,-isystem %,$(filter -I%OpenEXR,$(shell pkg-config --cflags-only-I OpenEXR)))
@@ -108,8 +108,8 @@ endif
 # WITHOUT=MESH leaves a part of the kernels out, see engine/stages/contract/with.h.
 DEFINES += $(WITHOUT:%=-DGLINT_WITH_%=0) $(if $(WITHOUT),-Wno-type-limits)
 
-# PORTABLE=1 takes here, too, what other machines have: generic kernels, POSIX in place of inotify, eventfd and the like, and no
-# --untrusted.
+# PORTABLE=1 builds on this machine what other machines get: generic kernels, POSIX instead of inotify, eventfd and the like,
+# and no --untrusted.
 DEFINES += $(if $(PORTABLE),-DGLINT_PORTABLE) $(if $(THREADS),,-DGLINT_NO_THREADS)
 
 # SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
@@ -147,7 +147,7 @@ ifeq ($(KERNELS),native)
   override KERNELS := generic $(if $(PORTABLE),,$(if $(and $(findstring __AVX512BW__,$(NATIVE)),$(findstring __AVX512DQ__,$(NATIVE)),$(findstring \
                         __AVX512VL__,$(NATIVE))),avx512,$(if $(and $(findstring __AVX2__,$(NATIVE)),$(findstring __FMA__,$(NATIVE))),avx2)))
 endif
-# The stages are compiled for each instruction set; those of geometry and light also for each precision.
+# The stages are compiled for each instruction set. The geometry and light stages are also compiled for each precision.
 STAGE_SRC    := $(filter-out engine/stages/ref/% engine/stages/simd/select.c,$(filter engine/stages/%,$(ENGINE_SRC)))
 STAGES_ONCE  := $(filter engine/stages/simd/% engine/stages/film/% engine/stages/program/% engine/stages/derivative/% %/shade/samples.c,$(STAGE_SRC))
 STAGES_TWICE := $(filter-out $(STAGES_ONCE),$(STAGE_SRC))
@@ -176,8 +176,8 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
 
-# Only stages are compiled for an instruction set; ref.c for none. Unrolling pays in these files alone.
-# Processors with AVX2 have instructions for masks too; select.c asks.
+# Only stages are compiled for an instruction set, except ref.c. Unrolling pays only in these files.
+# Processors with AVX2 also have BMI and POPCNT for masks; select.c checks for all of them.
 X86_BITS := -mbmi -mbmi2 -mpopcnt
 FLAGS_avx2   := $(X86_BITS) -mavx2 -mfma
 FLAGS_avx512 := -mavx512f -mavx512dq -mavx512vl -mavx512bw $(FLAGS_avx2)
@@ -293,7 +293,7 @@ $(BUILD)/tests/command/walls: tests/command/walls.c $(BUILD)/bindings/command/wa
 	$(Q)$(CC) $(COMPILE) $(LUA_CFLAGS) -MMD -MP $< $(BUILD)/bindings/command/walls.o $(LINK) $(LIBS) $(COMMAND_LIBS) -o $@
 
 $(HARD_OBJ): OWN := -D_GNU_SOURCE # arithmetic in _Float128
-# The hard cases: each hard_*.c is a program, the others are what they share. They use the public API alone.
+# The hard cases: each hard_*.c is a program; the other files are shared by them. They use only the public API.
 $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call say,CC)
@@ -312,7 +312,7 @@ check: ## every test; T=name runs those whose name has it
 check-run: tests
 	@T="$(T)" $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
 
-# What makes sense under a sanitizer: the C tests, the Lua tests and the command line; not what runs none of our programs.
+# Tests worth running under a sanitizer: C, Lua and the command line. Tests that run none of our programs are left out.
 SANITIZED := $(filter-out $(addprefix tests/,$(addprefix command/,povray.sh gallery.sh install.sh) machines/systems.sh),$(SCRIPTED))
 # What has threads: tiles, index, bands of rows, the writer, what is kept from frame to frame, the server of watch. With two of
 # the instruction sets: what threads share is the same in all.
@@ -563,7 +563,7 @@ check-without: ## a build without programs: patterns are errors with their line,
 	@$(MAKE) --no-print-directory $(BUILD)/without/PROGRAM/glint
 	@$(RUNNER) tests/command/without.sh
 
-# The bindings know nothing of what the engine leaves out.
+# The bindings do not depend on the parts that the engine leaves out.
 $(BUILD)/without/%/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	@$(MAKE) --no-print-directory -s BUILD=$(@D) WITHOUT=$* $(@D)/libglint.a
 	$(call say,LINK)
@@ -621,7 +621,7 @@ EM          := env NODE_PATH=/usr/share/nodejs
 WEB_OBJECTS := build-web
 WEB_MAKE    := PKG_CONFIG_LIBDIR=$(CURDIR)/$(WEB_OBJECTS)/libraries/lib/pkgconfig $(MAKE) --no-print-directory BUILD=$(WEB_OBJECTS) \
                  PORTABLE=1 CC="$(EM) emcc" AR="$(EM) emar" CFLAGS=-O2 CPPFLAGS=-msimd128 KERNEL_CFLAGS="-O3 -fno-slp-vectorize"
-# Memory grows as far as a page may have it. The stack is that of a thread of a pool, and of Lua.
+# Memory grows up to the browser's limit for a page. The stack is large enough for a pool thread and for Lua.
 WEB_LINK    := -Oz -msimd128 --no-entry -sMODULARIZE=1 -sEXPORT_NAME=createGlint -sENVIRONMENT=worker -sALLOW_MEMORY_GROWTH=1 \
                  -sMAXIMUM_MEMORY=2GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=2MB -sFORCE_FILESYSTEM=1 \
                  -sEXPORTED_FUNCTIONS=_malloc,_free -sEXPORTED_RUNTIME_METHODS=FS,UTF8ToString,stringToUTF8,lengthBytesUTF8
@@ -724,7 +724,7 @@ site: web ## build/site: the pages of make web with the manual, the gallery and 
 	$(Q)node $(NPM)/site.mjs $(CURDIR) $(WEB) $(BUILD)/site
 	@cp bindings/web/pages/search.js $(BUILD)/site
 
-# What is installed: mode, from, to.
+# The installed files: mode, source, destination.
 define INSTALLED
 755 $(BUILD)/glint $(bindir)/glint
 755 $(BUILD)/glint.so $(luadir)/glint.so
@@ -759,7 +759,7 @@ $(BUILD)/completion/%: $(BUILD)/glint
 	@mkdir -p $(@D)
 	@$(BUILD)/glint completion $* > $@
 
-# What debuggers need is nine tenths of the command and the archive; STRIP=: leaves it there.
+# Debug information is nine tenths of the command and the archive. STRIP=: keeps it.
 STRIP ?= strip
 # put MODE FROM TO; of install(1) what all systems have.
 PUT   := put() { echo "  INSTALL	$$3"; mkdir -p "$$(dirname "$$3")" && install -m "$$1" "$$2" "$$3"; }
