@@ -208,7 +208,7 @@ static void push_all(struct glint_bounce *bounce, const glint_plan *plan, uint32
         if (!(total[way] > 0))
             continue;
         for (int other = 0; other < ways; other++)
-            stronger += total[other] > total[way] || (total[other] == total[way] && other < way);
+            stronger += total[other] > total[way] || (other < way && total[other] == total[way]);
         push(bounce, plan, base, stronger, i, rays, (glint_way)way);
     }
 }
