@@ -1221,6 +1221,17 @@ typedef struct glint_frame_stats {
     double stage_ms[GLINT_STAGE_MAX]; ///< summed over workers; 0 unless the renderer times stages
     /// Share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
     double stage_reused[GLINT_STAGE_MAX];
+/// Numbers of a pattern that no field takes: NaN and numbers below 0 are taken as 0, numbers above 2^100 as 2^100.
+typedef enum glint_odd_kind { GLINT_ODD_NAN, GLINT_ODD_NEGATIVE, GLINT_ODD_HUGE, GLINT_ODD_COUNT } glint_odd_kind;
+
+/// How often a frame's patterns gave such a number, and where.
+typedef struct glint_odd {
+    uint64_t count; ///< points; of the background, directions
+    const char *field; ///< of one of them: static string, "diffuse"; "background" of the scene; NULL: there is none
+    char material[GLINT_NAME_SIZE]; ///< name of its material; may be empty
+    double point[3]; ///< in the world; of the background, the direction
+} glint_odd;
+
     glint_ray_counts rays; ///< as cast; reused stages cast none
     uint64_t hits_kept, hits_anew; ///< tiles whose hits were at hand and whose points were needed: those that read them, and those
         ///< that found them again, because that is the quicker way there or to see whether it is
@@ -1232,10 +1243,7 @@ typedef struct glint_frame_stats {
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes
     uint64_t shifted; ///< pixels beside an edge of a shape or shadow that a derivative's parameter moves, or within a soft
         ///< shadow: what the edge's way adds to a difference is not in the derivative. 0 without derivatives
-    uint64_t odd; ///< times that a pattern was run and gave NaN, a number below 0 or one above 2^100; and of one of them:
-    const char *odd_field; ///< static string: "diffuse"; "background" of the scene; NULL: there is none
-    char odd_material[GLINT_NAME_SIZE]; ///< name of the material; may be empty
-    double odd_point[3]; ///< in the world; of the background, the direction
+    glint_odd odd[GLINT_ODD_COUNT]; ///< what patterns gave and fields cannot take
 } glint_frame_stats;
 
 /// Renders one frame. *out holds the passes and codes the plan's glint_render_desc names. `stats` may be NULL.

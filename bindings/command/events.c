@@ -156,15 +156,18 @@ static void print_frame_line(cli_output *output, const glintL_record *record)
     fprintf(stderr, ": %s%s%.1f ms\n", file ? file : "", file ? ", " : "", ms);
 }
 
-static void warn_odd(const cli_output *output, int64_t index, const glint_frame_stats *stats)
+static void warn_odd(const cli_output *output, int64_t index, const glint_odd *odd, glint_odd_kind kind)
 {
-    const bool named = stats->odd_material[0], background = strcmp(stats->odd_field, "background") == 0;
-    glintL_run_warn(output->run,
-                    "frame %" PRId64 ": %s%s%s%s.%s: the pattern is NaN, below 0 or above 2^100 at %" PRIu64
-                    " %s, such as (%.6g, %.6g, %.6g); NaN and less are taken as 0",
-                    index, background ? "scene" : "material", named ? " '" : "", stats->odd_material,
-                    named ? "'" : "", stats->odd_field, stats->odd, background ? "directions" : "points",
-                    stats->odd_point[0], stats->odd_point[1], stats->odd_point[2]);
+    static const char *const is[] = { "NaN", "below 0", "above 2^100" };
+    static const char *const cures[] = {
+        "it is taken as 0 there; look for 0 / 0, or the root or logarithm of a number below 0",
+        "it is taken as 0 there; glint.max(0, x) says so", "it is taken as 2^100 there; look for a division by 0"
+    };
+    const bool background = strcmp(odd->field, "background") == 0, named = odd->material[0];
+    glintL_run_warn(output->run, "frame %" PRId64 ": %s%s%s%s.%s: the pattern is %s at %" PRIu64 " %s, such as (%.6g, %.6g, %.6g); %s",
+                    index, background ? "scene" : "material", named ? " '" : "", odd->material, named ? "'" : "", odd->field,
+                    is[kind], odd->count, background ? "directions" : "points", odd->point[0], odd->point[1], odd->point[2],
+                    cures[kind]);
 }
 
 static void report_frame(void *context, const glintL_run *run, const glintL_record *record)
@@ -176,8 +179,9 @@ static void report_frame(void *context, const glintL_run *run, const glintL_reco
         print_frame_json(output, record);
     else if (!output->quiet && (!output->progress || record->repeat))
         print_frame_line(output, record);
-    if (record->stats.odd > 0 && !record->kept)
-        warn_odd(output, record->index, &record->stats);
+    for (int kind = 0; kind < GLINT_ODD_COUNT; kind++)
+        if (record->stats.odd[kind].count > 0 && !record->kept)
+            warn_odd(output, record->index, &record->stats.odd[kind], (glint_odd_kind)kind);
     if (record->stats.nonfinite > 0 && !record->kept)
         glintL_run_warn(output->run,
                         "frame %" PRId64 ": %" PRIu64 " pixels are not finite; they are written as 0 or white",

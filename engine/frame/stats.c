@@ -35,18 +35,18 @@ static void add_counts(glint_tile_counts *to, const glint_tile_counts *more)
         to->way_ns[way] += more->way_ns[way];
     }
     glint_work_add(&to->work, &more->work);
-    glint_odd_pattern_add(&to->odd, &more->odd);
+    glint_odd_patterns_add(&to->odd, &more->odd);
 }
 
-static void name_odd(const glint_odd_pattern *odd, const glint_plan *plan, glint_frame_stats *out)
+static void name_odd(const glint_odd_pattern *odd, const glint_plan *plan, glint_odd *out)
 {
     if (!odd->count)
         return;
-    out->odd = odd->count;
-    out->odd_field = glint_field_name(odd->field);
+    out->count = odd->count;
+    out->field = glint_field_name(odd->field);
     if (odd->field != GLINT_FIELD_BACKGROUND)
-        memcpy(out->odd_material, plan->patterns->of[odd->material].desc.name, sizeof out->odd_material);
-    memcpy(out->odd_point, odd->point, sizeof out->odd_point);
+        memcpy(out->material, plan->patterns->of[odd->material].desc.name, sizeof out->material);
+    memcpy(out->point, odd->point, sizeof out->point);
 }
 
 static void list_stages(const glint_tile_counts *sum, const glint_plan *plan, bool timed, glint_frame_stats *out)
@@ -88,7 +88,8 @@ void glint_renderer_collect(const glint_renderer *renderer, const glint_plan *pl
                                  .pixels = (uint64_t)extent->width * (uint64_t)extent->height,
                                  .clipped = sum.clipped,
                                  .nonfinite = sum.nonfinite };
-    name_odd(&sum.odd, plan, out);
+    for (int kind = 0; kind < GLINT_ODD_COUNT; kind++)
+        name_odd(&sum.odd.of[kind], plan, &out->odd[kind]);
     list_stages(&sum, plan, renderer->time_stages, out);
 }
 
@@ -137,14 +138,12 @@ static void add_hits(glint_frame_stats *to, const glint_frame_stats *more)
     to->hits_anew += more->hits_anew;
 }
 
-static void add_odd(glint_frame_stats *to, const glint_frame_stats *more)
+static void add_odd(glint_odd *to, const glint_odd *more)
 {
-    if (!to->odd && more->odd) {
-        to->odd_field = more->odd_field;
-        memcpy(to->odd_material, more->odd_material, sizeof to->odd_material);
-        memcpy(to->odd_point, more->odd_point, sizeof to->odd_point);
-    }
-    to->odd += more->odd;
+    const uint64_t count = to->count + more->count;
+    if (!to->count)
+        *to = *more;
+    to->count = count;
 }
 
 void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more, double share)
@@ -158,7 +157,8 @@ void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more,
     to->rays.indirect += more->rays.indirect;
     glint_work_add(&to->work, &more->work);
     add_hits(to, more);
-    add_odd(to, more);
+    for (int kind = 0; kind < GLINT_ODD_COUNT; kind++)
+        add_odd(&to->odd[kind], &more->odd[kind]);
     for (int i = 0; i < to->stage_count; i++)
         for (int k = 0; k < more->stage_count; k++) {
             if (to->stage_name[i] != more->stage_name[k] || to->stage_name[i] == glint_stage_table[GLINT_STAGE_TONE]->name)

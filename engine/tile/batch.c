@@ -51,7 +51,7 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
     to->counts.shadow += batch->tile.counts.shadow;
     glint_work_add(&to->counts.work, &batch->tile.counts.work);
     to->counts.runs[GLINT_STAGE_VERTEX] += batch->tile.counts.runs[GLINT_STAGE_VERTEX];
-    glint_odd_pattern_add(&to->counts.odd, &batch->tile.counts.odd);
+    glint_odd_patterns_add(&to->counts.odd, &batch->tile.counts.odd);
 }
 
 // ---- What the rays find ----

@@ -20,15 +20,31 @@ typedef struct glint_odd_pattern {
     double point[3];
 } glint_odd_pattern;
 
+/// The same of each glint_odd_kind.
+typedef struct glint_odd_patterns {
+    glint_odd_pattern of[GLINT_ODD_COUNT];
+} glint_odd_patterns;
+
 /// Adds some to others.
 void glint_odd_pattern_add(glint_odd_pattern *to, const glint_odd_pattern *more);
+void glint_odd_patterns_add(glint_odd_patterns *to, const glint_odd_patterns *more);
+/// Adds a point at which the outputs of a pattern, `step` numbers from one to the next, are not all fit to be taken.
+void glint_odd_patterns_note(glint_odd_patterns *to, const glint_odd_pattern *one, const double *outputs, size_t step, uint32_t count);
+/// Of all kinds.
+static inline uint64_t glint_odd_patterns_count(const glint_odd_patterns *odd)
+{
+    uint64_t count = 0;
+    for (int kind = 0; kind < GLINT_ODD_COUNT; kind++)
+        count += odd->of[kind].count;
+    return count;
+}
 
 /// What one worker counted in one frame.
 typedef struct glint_tile_counts {
     uint64_t ns[GLINT_STAGE_COUNT], tile_ns;
     uint64_t primary, shadow, mirror, refraction, indirect, clipped, nonfinite;
     glint_work work;
-    glint_odd_pattern odd;
+    glint_odd_patterns odd;
     uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls made, and results taken from the last frame
     uint64_t ways[2]; ///< tiles whose hits are known and whose points are needed: those that read the hits; that find them anew
     uint64_t compared; ///< of these, the ones that have gone both ways

@@ -35,3 +35,31 @@ exits 0 "print is there again" prints_again.lua --size 4x4 -o none
 check "print is there again" grep -qx after out
 
 totals
+# Numbers of a pattern that cannot be taken: each kind has a message.
+scene odd 'local f = function(p) return { glint.sqrt(p.x), 1, 1 } end'
+exits 0 "NaN" odd.lua --size 16x16 -o none
+says "NaN" "frame 1: material\.ambient: the pattern is NaN at [0-9]+ points, such as .*; it is taken as 0 there; look for 0 / 0"
+[ "$(grep -c 'the pattern is' err)" -eq 1 ]
+result $? "one warning"
+scene odd 'local f = function(p) return { 1, 1, p.x } end'
+exits 0 "negative" odd.lua --size 16x16 -o none
+says "negative" "material\.ambient: the pattern is below 0 at .*; it is taken as 0 there; glint\.max\(0, x\) says so"
+[ "$(grep -c 'the pattern is' err)" -eq 1 ]
+result $? "one warning"
+scene odd 'local f = function(p) return 1e300 * (p.x * p.x + 1) end'
+exits 0 "huge" odd.lua --size 16x16 -o none
+says "huge" "material\.ambient: the pattern is above 2\^100 at .*; it is taken as 2\^100 there"
+scene odd 'local f = function(p) return glint.select(glint.less(p.x, 0), -1, glint.sqrt(-p.x)) end'
+exits 0 "two kinds" odd.lua --size 16x16 -o none
+[ "$(grep -c 'the pattern is' err)" -eq 2 ]
+result $? "two kinds, two messages"
+
+# What glint makes itself is in range, and nobody is blamed.
+for f in 'glint.checker(4 * p, 4 * s.footprint)' 'glint.checker(p)' 'glint.stripe(7 * p.x, 7 * s.footprint)' 'glint.stripe(p.x)' \
+    '(glint.cell(9 * p))' 'glint.hash(9 * p)' 'glint.parity(3 * p)' 'glint.brick(5 * p, 0.1, 5 * s.footprint)' 'glint.brick(5 * p, 0.1)' 'glint.colormap("turbo")(9 * p.x)' \
+    'glint.smoothstep(0, 1, p.x)' 'glint.clamp(p.x, 0, 1)'; do
+    scene own "local f = function(p, s) return $f end"
+    exits 0 "$f" own.lua --size 96x96 -o none --samples 4
+    if grep -q 'the pattern is' err; then fail "$f: $(cat err)"; else pass; fi
+done
+

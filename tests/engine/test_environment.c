@@ -143,7 +143,7 @@ static void test_counts(void **state)
     render(&w, 0, 0);
     const uint64_t missing = w.stats.work.environment;
     assert_true(missing > WIDTH * HEIGHT / 2 && missing < WIDTH * HEIGHT);
-    assert_true(share_reused(&w.stats, "environment") == 0 && w.stats.odd == 0);
+    assert_true(share_reused(&w.stats, "environment") == 0 && w.stats.odd[GLINT_ODD_NEGATIVE].count == 0);
     glint_material_desc mirror = *glint_material_get(w.material);
     mirror.has_mirror = true;
     mirror.mirror[0] = mirror.mirror[1] = mirror.mirror[2] = 0.5;
@@ -186,10 +186,12 @@ static void test_odd(void **state)
     (void)state;
     world w = new_world(true);
     OK(set_background(&w, gradient(0, 1)));
-    assert_true(render(&w, 0, HEIGHT - 1) == 0 && w.stats.odd > 0);
-    assert_string_equal(w.stats.odd_field, "background");
-    assert_string_equal(w.stats.odd_material, "");
-    const double *d = w.stats.odd_point;
+    const glint_odd *odd = &w.stats.odd[GLINT_ODD_NEGATIVE];
+    assert_true(render(&w, 0, HEIGHT - 1) == 0 && odd->count > 0);
+    assert_true(w.stats.odd[GLINT_ODD_NAN].count == 0 && w.stats.odd[GLINT_ODD_HUGE].count == 0);
+    assert_string_equal(odd->field, "background");
+    assert_string_equal(odd->material, "");
+    const double *d = odd->point;
     assert_true(d[1] < 0 && d[2] < 0 && d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < 1 + 1e-12);
     release_world(&w);
 }
@@ -223,7 +225,7 @@ static void test_numbers(void **state)
     assert_true(glint_scene_get(w.scene)->background[2] == 0.25 && render(&w, 0, 0) == 0.25);
     OK(set_background(&w, constant(GLINT_PROGRAM_PATTERN, -0.25)));
     assert_non_null(glint_scene_get(w.scene)->background_program);
-    assert_true(render(&w, 0, 0) == 0 && w.stats.odd == w.stats.work.environment && w.stats.odd > 0);
+    assert_true(render(&w, 0, 0) == 0 && w.stats.odd[GLINT_ODD_NEGATIVE].count == w.stats.work.environment && w.stats.work.environment > 0);
     release_world(&w);
 }
 
@@ -240,8 +242,8 @@ static void test_material_numbers(void **state)
     desc.program.diffuse = constant(GLINT_PROGRAM_PATTERN, -1);
     OK(glint_material_set(w.material, &desc, &error));
     glint_program_release(desc.program.diffuse);
-    assert_true(render(&w, WIDTH / 2, HEIGHT / 2) == 0 && w.stats.odd > 0);
-    assert_string_equal(w.stats.odd_field, "diffuse");
+    assert_true(render(&w, WIDTH / 2, HEIGHT / 2) == 0 && w.stats.odd[GLINT_ODD_NEGATIVE].count > 0);
+    assert_string_equal(w.stats.odd[GLINT_ODD_NEGATIVE].field, "diffuse");
     desc = plain;
     desc.program.opacity = constant(GLINT_PROGRAM_PATTERN, -1); // a hole
     OK(glint_material_set(w.material, &desc, &error));

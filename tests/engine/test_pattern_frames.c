@@ -717,10 +717,12 @@ static void test_odd(void **state)
         black += albedo[0] == 0;
     }
     assert_int_equal(black, 64 * 48 / 2);
-    assert_int_equal(stats.odd, 64 * 48 / 2);
-    assert_string_equal(stats.odd_field, "diffuse");
-    assert_string_equal(stats.odd_material, "root");
-    assert_true(stats.odd_point[0] < -1 && stats.odd_point[1] == 0);
+    const glint_odd *odd = &stats.odd[GLINT_ODD_NAN];
+    assert_int_equal(odd->count, 64 * 48 / 2);
+    assert_string_equal(odd->field, "diffuse");
+    assert_string_equal(odd->material, "root");
+    assert_true(odd->point[0] < -1 && odd->point[1] == 0);
+    assert_true(stats.odd[GLINT_ODD_NEGATIVE].count == 0 && stats.odd[GLINT_ODD_HUGE].count == 0);
     glint_image_release(image);
     glint_renderer_destroy(renderer);
     glint_material_release(material);

@@ -135,7 +135,7 @@ static void note_odd(glint_tile *tile, const struct glint_environment *environme
             one.count |= !(environment->shown[c][at] >= 0 && environment->shown[c][at] <= GLINT_REFLECTANCE_MAX);
         for (int c = 0; c < 3; c++)
             one.point[c] = environment->inputs.row[GLINT_INPUT_P_X + c][at];
-        glint_odd_pattern_add(&tile->counts.odd, &one);
+        glint_odd_patterns_note(&tile->counts.odd, &one, &environment->shown[0][at], GLINT_PROGRAM_LANES, channels);
     }
 }
 

@@ -158,14 +158,6 @@ static bool choose_outputs(const glint_tile_frame *frame, const glint_pattern_ba
     return true;
 }
 
-static bool any_odd(const glint_pattern_batch *batch)
-{
-    unsigned any = 0;
-    for (uint32_t k = 0; k < batch->count; k++)
-        any |= batch->called.odd[k];
-    return any;
-}
-
 /// Runs the second part of a field's program. Returns false if it gave an invalid reflectance.
 static bool run_field(glint_tile *tile, const glint_tile_frame *frame, glint_pattern_batch *batch,
                       const glint_split_field *of, const glint_program_code *code, const kept_sample *from)
@@ -176,7 +168,7 @@ static bool run_field(glint_tile *tile, const glint_tile_frame *frame, glint_pat
     batch->args.rows = tile->pattern->rows;
     batch->args.same = 0;
     frame->stages->program(&batch->args);
-    return !any_odd(batch);
+    return !glint_pattern_any_odd(batch);
 }
 
 /// Runs the second parts of a batch's programs and computes the derived planes. Returns false if one gave an invalid reflectance,
@@ -208,12 +200,12 @@ static bool keep_batch(glint_tile *tile, const glint_tile_frame *frame, const gl
                        glint_pattern_batch *batch, const kept_sample *to)
 {
     const glint_split_material *split = &frame->reuse->splits.of[batch->entries[0].material];
-    const uint64_t odd = tile->counts.odd.count;
+    const uint64_t odd = glint_odd_patterns_count(&tile->counts.odd);
     glint_pattern_points rest = *points;
     rest.fields = GLINT_FIELDS_PLANES & ~split->again;
     glint_pattern_gather(&tile->pattern->inputs, frame, points, batch->own->reads, batch->entries, batch->count);
     glint_pattern_run_batch(tile->pattern, frame, &rest, batch, &tile->counts);
-    bool good = tile->counts.odd.count == odd; // later frames must report it, too
+    bool good = glint_odd_patterns_count(&tile->counts.odd) == odd; // later frames must report it, too
     for (int field = 0; field < GLINT_FIELD_PLANES && good; field++)
         if (split->of[field].split)
             good = keep_first(tile->pattern, frame, batch, &split->of[field], batch->own->program[field], to);
@@ -223,7 +215,7 @@ static bool keep_batch(glint_tile *tile, const glint_tile_frame *frame, const gl
 /// Runs all listed programs, and adds to the counts. known: the values of the first parts are cached.
 static bool run_split(glint_tile *tile, const glint_tile_frame *frame, const kept_sample *at, bool known)
 {
-    const glint_odd_pattern odd = tile->counts.odd;
+    const glint_odd_patterns odd = tile->counts.odd;
     const uint64_t patterns = tile->counts.work.patterns;
     const glint_pattern_points points = glint_pattern_points_of(tile);
     glint_pattern_batch batch = { .count = 0 };

@@ -6,6 +6,7 @@
 #include "engine/effects/cut_out/cut_out.h"
 #include "engine/effects/pattern/work.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -298,16 +299,49 @@ void glint_odd_pattern_add(glint_odd_pattern *to, const glint_odd_pattern *more)
     to->count = count;
 }
 
-void glint_pattern_note_odd(const glint_pattern_batch *batch, const glint_tile_frame *frame,
-                            const glint_pattern_points *points, int field, glint_tile_counts *counts)
+void glint_odd_patterns_add(glint_odd_patterns *to, const glint_odd_patterns *more)
 {
+    for (int kind = 0; kind < GLINT_ODD_COUNT; kind++)
+        glint_odd_pattern_add(&to->of[kind], &more->of[kind]);
+}
+
+void glint_odd_patterns_note(glint_odd_patterns *to, const glint_odd_pattern *one, const double *outputs, size_t step, uint32_t count)
+{
+    bool is_nan = false, is_negative = false;
+    for (uint32_t k = 0; k < count; k++) {
+        is_nan = is_nan || isnan(outputs[k * step]);
+        is_negative = is_negative || outputs[k * step] < 0;
+    }
+    glint_odd_pattern_add(&to->of[is_nan ? GLINT_ODD_NAN : is_negative ? GLINT_ODD_NEGATIVE : GLINT_ODD_HUGE], one);
+}
+
+bool glint_pattern_any_odd(const glint_pattern_batch *batch)
+{
+    unsigned any = 0;
+    for (uint32_t k = 0; k < batch->count; k++)
+        any |= batch->called.odd[k];
+    return any;
+}
+
+/// Records the points where the last call, of `code`, gave an invalid reflectance. Planes do not distinguish NaN from a negative number, so
+/// the program is run again for its outputs.
+static void note_odd(struct glint_pattern *pattern, const glint_pattern_batch *batch, const glint_tile_frame *frame,
+                     const glint_pattern_points *points, int field, const glint_program_code *code, glint_tile_counts *counts)
+{
+    double output[GLINT_PROGRAM_OUTPUTS_MAX][GLINT_PROGRAM_LANES];
+    glint_program_args args = { .group_count = batch->count, .wanted = batch->called.wanted };
+    if (!glint_pattern_any_odd(batch))
+        return;
+    for (uint32_t k = 0; k < code->output_count; k++)
+        args.result[k] = output[k];
+    glint_pattern_call(pattern, frame, code, 0, &args);
     for (uint32_t k = 0; k < batch->count; k++)
         for (unsigned left = batch->called.odd[k]; left; left &= left - 1) {
-            const uint32_t i = batch->entries[k].group * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const uint32_t lane = (uint32_t)__builtin_ctz(left), i = batch->entries[k].group * GLINT_GROUP + lane;
             glint_odd_pattern one = { .count = 1, .material = batch->entries[k].material, .field = field };
             for (int c = 0; c < 3; c++)
                 one.point[c] = glint_real_at(points->point[c], frame->plan->desc.precision, i);
-            glint_odd_pattern_add(&counts->odd, &one);
+            glint_odd_patterns_note(&counts->odd, &one, &output[0][k * GLINT_GROUP + lane], GLINT_PROGRAM_LANES, code->output_count);
         }
 }
 
@@ -347,7 +381,7 @@ void glint_pattern_run_batch(struct glint_pattern *pattern, const glint_tile_fra
             const glint_program_code *code =
                 glint_pattern_point_planes(batch, frame, points, field, &own->program[field]->code, &room);
             glint_pattern_call(pattern, frame, code, 0, &batch->args);
-            glint_pattern_note_odd(batch, frame, points, field, counts);
+            note_odd(pattern, batch, frame, points, field, code, counts);
         }
         glint_pattern_finish(batch, points, frame->plan, field);
     }

@@ -62,9 +62,8 @@ const glint_program_code *glint_pattern_point_planes(glint_pattern_batch *batch,
 /// Computes the planes derived from a field, after the field's program has run.
 void glint_pattern_finish(const glint_pattern_batch *batch, const glint_pattern_points *points, const glint_plan *plan,
                           int field);
-/// Records the lanes where the last call gave an invalid reflectance.
-void glint_pattern_note_odd(const glint_pattern_batch *batch, const glint_tile_frame *frame,
-                            const glint_pattern_points *points, int field, glint_tile_counts *counts);
+/// Returns whether the last call gave an invalid reflectance.
+bool glint_pattern_any_odd(const glint_pattern_batch *batch);
 /// Returns the points of a tile.
 glint_pattern_points glint_pattern_points_of(const glint_tile *tile);
 /// Lists the lanes of the requested materials.
