@@ -497,6 +497,13 @@ typedef struct glint_camera_desc {
     double at[3], direction[3]; ///< finite; `at` is not the eye, `direction` not zero; default the origin, {0, 0, -1}
     double up[3]; ///< default {0,1,0}; not zero. Parallel to the view: the world axis least aligned with it is taken
     double fov_y_rad; ///< vertical field of view of a perspective camera, in (0, pi); default 40 degrees
+    /// Focal lengths of a perspective camera in pixels, across and down, > 0, in place of `fov_y_rad`; 0, the default: not given. fy 0: fx
+    double fx, fy;
+    /// The principal point, where the view's direction is seen: pixels from the left edge and from the upper edge of the picture, whose
+    /// first pixel has its centre at 0.5; finite. Default its middle
+    bool has_cx, has_cy;
+    double cx, cy;
+    double w, h; ///< size of the picture that fx to cy are for; in another they are scaled with its sides. 0, the default: every picture
     double height; ///< vertical extent of an orthographic camera, world units, > 0; default 10
     double pixel_offset; ///< where in a pixel a single sample lies, 0 .. 1; default 0.5, its centre
     /// How long the shutter is open, as a share of the time from one frame to the next, 0 .. 1; default 0, an instant. Of use to
@@ -525,6 +532,9 @@ glint_status glint_camera_create(const glint_camera_desc *desc, glint_camera **o
 glint_status glint_camera_set(glint_camera *camera, const glint_camera_desc *desc, glint_error *error);
 /// The description; borrowed, valid until the camera is set or released.
 const glint_camera_desc *glint_camera_get(const glint_camera *camera);
+/// What a picture of that many pixels shows at distance 1 along the view: from window[0] to window[1] to the right, and from
+/// window[2] to window[3] up, world units. Of an orthographic camera the same at every distance.
+void glint_camera_window(const glint_camera_desc *desc, double width, double height, double window[4]);
 /// Takes another reference; returns its argument.
 glint_camera *glint_camera_retain(glint_camera *camera);
 /// Gives a reference back; the last one frees the camera. NULL: nothing.

@@ -1,12 +1,17 @@
 // glint.camera
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "bindings/value/glintL.h"
 
+#define SQUARE 1e-3 // how far a matrix may be from a rotation: what is written with four digits
+
 // A camera looks at a point or along a direction: the one it does not use reads nil.
 typedef struct desc_type {
     glint_camera_desc camera;
-    bool has_at;
+    bool has_eye, has_at;
+    bool has_matrix; // of the table that is read
     glintL_distance focus;
 } desc_type;
 _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
@@ -15,12 +20,121 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 static const char *const PROJECTIONS[] = { "perspective", "orthographic", NULL };
 
+// ---- The matrix: of a point of the world the coordinates x to the right, y down, z away from the eye ----
+
+static double dot(const double a[3], const double b[3]) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+// Reads the row on top, of four numbers, and pops it.
+static void take_row(lua_State *L, const char *path, double rotation[3], double *shift)
+{
+    char element[96];
+    if (!lua_istable(L, -1) || lua_rawlen(L, -1) != 4)
+        glintL_refuse(L, -1, path, "row of four numbers");
+    for (int k = 0; k < 4; k++) {
+        snprintf(element, sizeof element, "%.80s[%d]", path, k + 1);
+        lua_rawgeti(L, -1, k + 1);
+        *(k < 3 ? &rotation[k] : shift) = glintL_read_number(L, -1, element);
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+}
+
+static void check_rotation(lua_State *L, const char *path, double row[3][3])
+{
+    double third[3];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k <= i; k++)
+            if (!(fabs(dot(row[i], row[k]) - (i == k)) < SQUARE))
+                glintL_error(L, "%s: a rotation expected, whose rows are unit and at right angles, got %f for row %d by row %d", path,
+                             dot(row[i], row[k]), i + 1, k + 1);
+    cross(row[0], row[1], third);
+    if (dot(third, row[2]) < 0)
+        glintL_error(L, "%s: a rotation expected, got one with a mirror; its rows are x to the right, y down, z away from the eye", path);
+}
+
+static void read_matrix(lua_State *L, int index, const char *path, void *desc)
+{
+    desc_type *d = desc;
+    double row[4][3], shift[4] = { 0, 0, 0, 1 };
+    char element[96];
+    index = lua_absindex(L, index);
+    luaL_checkstack(L, 6, "matrix");
+    const size_t rows = lua_istable(L, index) ? lua_rawlen(L, index) : 0;
+    if (rows != 3 && rows != 4)
+        glintL_refuse(L, index, path, "3 or 4 rows of four numbers");
+    for (size_t i = 0; i < rows; i++) {
+        snprintf(element, sizeof element, "%.50s[%zu]", path, i + 1);
+        lua_rawgeti(L, index, (lua_Integer)i + 1);
+        take_row(L, element, row[i], &shift[i]);
+    }
+    if (rows == 4 && !(row[3][0] == 0 && row[3][1] == 0 && row[3][2] == 0 && shift[3] == 1))
+        glintL_error(L, "%s[4]: { 0, 0, 0, 1 } expected", path);
+    check_rotation(L, path, row);
+    for (int c = 0; c < 3; c++) {
+        d->camera.eye[c] = -((row[0][c] * shift[0] + row[1][c] * shift[1]) + row[2][c] * shift[2]);
+        d->camera.direction[c] = row[2][c];
+        d->camera.up[c] = -row[1][c];
+    }
+    d->has_eye = d->has_matrix = d->camera.has_direction = true;
+    d->has_at = false;
+}
+
+static void normalize(double v[3])
+{
+    const double length = sqrt(dot(v, v));
+    for (int c = 0; c < 3; c++)
+        v[c] /= length;
+}
+
+// nil where the view is along `up`, and its sides are the engine's choice.
+static void push_matrix(lua_State *L, const void *desc)
+{
+    const glint_camera_desc *camera = &((const desc_type *)desc)->camera;
+    double row[3][3];
+    for (int c = 0; c < 3; c++)
+        row[2][c] = camera->has_direction ? camera->direction[c] : camera->at[c] - camera->eye[c];
+    normalize(row[2]);
+    cross(row[2], camera->up, row[0]);
+    if (!(dot(row[0], row[0]) > 1e-24 * dot(camera->up, camera->up))) {
+        lua_pushnil(L);
+        return;
+    }
+    normalize(row[0]);
+    cross(row[2], row[0], row[1]);
+    lua_createtable(L, 3, 0);
+    for (int i = 0; i < 3; i++) {
+        lua_createtable(L, 4, 0);
+        for (int c = 0; c < 3; c++) {
+            lua_pushnumber(L, row[i][c]);
+            lua_rawseti(L, -2, c + 1);
+        }
+        lua_pushnumber(L, -dot(row[i], camera->eye));
+        lua_rawseti(L, -2, 4);
+        lua_rawseti(L, -2, i + 1);
+    }
+}
+
+// ---- The fields ----
+
 static const glintL_field FIELDS[] = {
-    { .name = "eye", .kind = GLINTL_VECTOR, .offset = AT(eye), .required = true, .slopes = true },
+    { .name = "matrix", .kind = GLINTL_CUSTOM, .read = read_matrix, .push = push_matrix },
+    { .name = "eye", .kind = GLINTL_VECTOR, .offset = AT(eye), .set_offset = offsetof(desc_type, has_eye), .slopes = true },
     { .name = "at", .kind = GLINTL_VECTOR, .offset = AT(at), .set_offset = offsetof(desc_type, has_at), .slopes = true },
     { .name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .set_offset = AT(has_direction), .slopes = true },
     { .name = "up", .kind = GLINTL_VECTOR, .offset = AT(up), .slopes = true },
     { .name = "fov", .kind = GLINTL_DEGREES, .offset = AT(fov_y_rad), .slopes = true },
+    { .name = "fx", .kind = GLINTL_NUMBER, .offset = AT(fx) },
+    { .name = "fy", .kind = GLINTL_NUMBER, .offset = AT(fy) },
+    { .name = "cx", .kind = GLINTL_NUMBER, .offset = AT(cx), .set_offset = AT(has_cx) },
+    { .name = "cy", .kind = GLINTL_NUMBER, .offset = AT(cy), .set_offset = AT(has_cy) },
+    { .name = "w", .kind = GLINTL_NUMBER, .offset = AT(w) },
+    { .name = "h", .kind = GLINTL_NUMBER, .offset = AT(h) },
     { .name = "projection", .kind = GLINTL_ENUM, .offset = AT(projection), .names = PROJECTIONS },
     { .name = "height", .kind = GLINTL_NUMBER, .offset = AT(height), .slopes = true },
     { .name = "pixel_offset", .kind = GLINTL_NUMBER, .offset = AT(pixel_offset) },
@@ -46,6 +160,7 @@ static void get(const void *object, void *desc)
 {
     desc_type *d = desc;
     d->camera = *glint_camera_get(object);
+    d->has_eye = true;
     d->has_at = !d->camera.has_direction;
     d->focus = (glintL_distance) { .number = d->camera.focus, .has_point = d->camera.has_focus_point };
     memcpy(d->focus.point, d->camera.focus_point, sizeof d->focus.point);
@@ -71,7 +186,7 @@ static void *retain(void *object) { return glint_camera_retain(object); }
 
 static void release(void *object) { glint_camera_release(object); }
 
-// The one of at and direction set last is the one used.
+// Of at and direction, and of fov and fx, the one set last is used.
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
     desc_type *d = desc;
@@ -79,7 +194,9 @@ static void assigned(lua_State *L, const glintL_field *field, void *desc)
         d->camera.has_direction = false;
     else if (field->offset == AT(direction) && d->camera.has_direction)
         d->has_at = false;
-    if (!d->has_at && !d->camera.has_direction)
+    else if (field->offset == AT(fov_y_rad))
+        d->camera.fx = d->camera.fy = 0;
+    if (!d->has_eye || (!d->has_at && !d->camera.has_direction))
         glintL_error(L, "camera.%s: {x, y, z} expected, got nil", field->name);
 }
 
@@ -95,6 +212,7 @@ static const glintL_class CLASS = {
 
 static int new_camera(lua_State *L)
 {
+    static const char *const placed[] = { "eye", "at", "direction", "up" };
     desc_type desc = { .camera = glint_camera_desc_default(), .has_at = false };
     glint_camera *camera = NULL;
     glint_error error;
@@ -102,6 +220,14 @@ static int new_camera(lua_State *L)
     glintL_box *box = glintL_new_box(L, GLINTL_CAMERA);
     desc.camera.has_direction = false;
     glintL_read_table(L, 1, "camera", FIELDS, &desc, false);
+    for (int i = 0; i < 4 && desc.has_matrix; i++) {
+        lua_pushstring(L, placed[i]);
+        if (lua_rawget(L, 1) != LUA_TNIL)
+            glintL_error(L, "camera: matrix or %s expected, got both", placed[i]);
+        lua_pop(L, 1);
+    }
+    if (!desc.has_eye)
+        glintL_error(L, "camera.eye: {x, y, z} expected, got nil");
     if (desc.has_at == desc.camera.has_direction)
         glintL_error(L, "camera: at or direction expected, got %s", desc.has_at ? "both" : "neither");
     const glint_camera_desc read = described(&desc);

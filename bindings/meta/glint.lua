@@ -250,11 +250,18 @@ function glint.sphere_light(fields) end
 -- ---- Camera ----
 
 ---@class glint.camera_fields
----@field eye glint.vec3  world units
+---@field eye? glint.vec3  world units; needed where there is no `matrix`
 ---@field at? glint.vec3  a point to look at; other than `eye`. Give either this or `direction`; the last set counts
 ---@field direction? glint.vec3  a direction to look in; not zero. nil while `at` is used
 ---@field up? glint.vec3  not zero; when parallel to the view, the world axis least aligned is taken. Default {0, 1, 0}
 ---@field fov? number  vertical field of view of a perspective camera, degrees, between 0 and 180. Default 40
+---@field matrix? number[][]  instead of eye, direction and up: R and t of OpenCV, 3 or 4 rows of four numbers. They take a point of the world to x right, y down, z away from the eye; R is a rotation
+---@field fx? number  focal length in pixels, > 0, instead of `fov`; the last set counts. Default 0: by `fov`
+---@field fy? number  the same downwards. Default 0: fx
+---@field cx? number  column of the principal point, pixels from the left edge, where the first pixel's centre is at 0.5 (OpenCV's own count has it at 0: add 0.5). Default nil: the middle
+---@field cy? number  its row, from the upper edge. Default nil: the middle
+---@field w? number  width of the picture that fx, fy, cx and cy are for, pixels; in another size they are scaled. Default 0: every picture
+---@field h? number  its height; with `w`
 ---@field projection? "perspective"|"orthographic"  Default "perspective"
 ---@field height? number  vertical extent of an orthographic camera, world units, > 0. Default 10
 ---@field pixel_offset? number  where in its pixel a single sample lies, 0 .. 1. Default 0.5, the centre

@@ -43,37 +43,34 @@ static bool normalize(double v[3])
     return length > 0 && isfinite(length);
 }
 
-// The view's axes, the sides as long as half a picture is wide and high at distance 1. False: up is along the view.
-static bool find_axes(const glint_camera_desc *camera, double aspect, double forward[3], double right[3], double up[3])
+// The view's axes, unit. False: up is along the view.
+static bool find_axes(const glint_camera_desc *camera, double forward[3], double right[3], double up[3])
 {
-    const double high = camera->projection == GLINT_PERSPECTIVE ? tan(camera->fov_y_rad / 2) : camera->height / 2;
     for (int i = 0; i < 3; i++)
         forward[i] = camera->has_direction ? camera->direction[i] : camera->at[i] - camera->eye[i];
     cross(forward, camera->up, right);
     if (!normalize(forward) || !normalize(right))
         return false;
     cross(right, forward, up);
-    for (int i = 0; i < 3; i++) {
-        right[i] *= high * aspect;
-        up[i] *= high;
-    }
     return true;
 }
 
 // The hit of the ray nearest to the picture's middle, of a grid of them. False: none hits.
-static bool find_hit(const glint_scene *scene, const glint_camera_desc *camera, double aspect, glint_hit *hit)
+static bool find_hit(const glint_scene *scene, const glint_camera_desc *camera, const glint_render_desc *desc, glint_hit *hit)
 {
-    double forward[3], right[3], up[3], best = HUGE_VAL;
-    if (!find_axes(camera, aspect, forward, right, up))
+    double forward[3], right[3], up[3], window[4], best = HUGE_VAL;
+    if (!find_axes(camera, forward, right, up))
         return true; // not known
+    glint_camera_window(camera, desc->width, desc->height, window);
     for (int i = 0; i < RAYS_ACROSS * RAYS_DOWN; i++) {
         const double sx = 2 * (i % RAYS_ACROSS + 0.5) / RAYS_ACROSS - 1,
                      sy = 2 * (i / RAYS_ACROSS + 0.5) / RAYS_DOWN - 1;
+        const double x = window[0] + (sx + 1) / 2 * (window[1] - window[0]), y = window[2] + (sy + 1) / 2 * (window[3] - window[2]);
         double origin[3], direction[3];
         glint_hit found;
         bool is_hit = false;
         for (int c = 0; c < 3; c++) {
-            const double aside = sx * right[c] + sy * up[c];
+            const double aside = x * right[c] + y * up[c];
             const bool parallel = camera->projection != GLINT_PERSPECTIVE;
             origin[c] = camera->eye[c] + (parallel ? aside : 0);
             direction[c] = forward[c] + (parallel ? 0 : aside);
@@ -103,7 +100,6 @@ static bool is_inside(const glint_camera_desc *camera, const glint_hit *hit)
 static void explain(const glint_scene *scene, const glintL_work *work, char *out, size_t room)
 {
     const glint_camera *camera = glint_scene_get(scene)->camera;
-    const double aspect = work->render.desc.width / work->render.desc.height;
     glint_hit hit = { .shape = NULL };
     if (work->stats.nonfinite > 0)
         snprintf(out, room, "%llu pixels are not finite; lights, reflectances or lengths are too large for that",
@@ -118,7 +114,7 @@ static void explain(const glint_scene *scene, const glintL_work *work, char *out
                 ? "no light of the scene is brighter than 0, and its ambient is 0; set intensity = 1, or ambient = 0.1"
                 : "the scene has no light, and its ambient is 0; add glint.point_light { position = { 5, 9, 5 } }, or "
                   "ambient = 0.1");
-    else if (!camera || !find_hit(scene, glint_camera_get(camera), aspect, &hit))
+    else if (!camera || !find_hit(scene, glint_camera_get(camera), &work->render.desc, &hit))
         snprintf(out, room, "the camera looks past all shapes; point its `at` to one of them, or move its eye away");
     else if (hit.shape && is_inside(glint_camera_get(camera), &hit))
         snprintf(out, room,

@@ -71,7 +71,7 @@ static void add_plane(view *v, int i, const double side[3], double sign, double 
 // False: the camera looks along its `up`, where its sides are the engine's choice.
 static bool make_view(const glint_camera_desc *camera, const glint_render_desc *desc, view *v)
 {
-    double right[3], up[3], aspect = desc->width / desc->height;
+    double right[3], up[3], window[4];
     memcpy(v->eye, camera->eye, sizeof v->eye);
     for (int i = 0; i < 3; i++)
         v->forward[i] = camera->has_direction ? camera->direction[i] : camera->at[i] - camera->eye[i];
@@ -83,9 +83,9 @@ static bool make_view(const glint_camera_desc *camera, const glint_render_desc *
         return false;
     cross(right, v->forward, up);
     v->is_perspective = camera->projection == GLINT_PERSPECTIVE;
-    double high = v->is_perspective ? tan(camera->fov_y_rad / 2) : camera->height / 2, wide = high * aspect;
+    glint_camera_window(camera, desc->width, desc->height, window);
     for (int i = 0; i < 4; i++)
-        add_plane(v, i, i < 2 ? right : up, i % 2 ? 1 : -1, i < 2 ? wide : high);
+        add_plane(v, i, i < 2 ? right : up, i % 2 ? 1 : -1, i % 2 ? -window[i - 1] : window[i + 1]);
     for (int c = 0; c < 3; c++)
         v->out[4][c] = -v->forward[c];
     v->limit[4] = dot(v->out[4], v->eye);

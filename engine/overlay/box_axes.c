@@ -52,8 +52,8 @@ static bool project(const box_axes *axes, const double p[3], double out[2])
     vec_sub(d, p, o->camera.eye);
     for (int i = 0; i < 2; i++)
         s[i] = vec_dot(d, view[i]) / vec_dot(view[i], view[i]) / (o->camera.orthographic ? 1 : depth);
-    out[0] = (o->width + s[0]) / 2 + shift;
-    out[1] = (o->height - s[1]) / 2 + shift;
+    out[0] = (o->camera.span[0] + s[0]) / 2 + shift;
+    out[1] = (o->camera.span[1] - s[1]) / 2 + shift;
     return depth >= axes->nearest && isfinite(out[0]) && isfinite(out[1]);
 }
 

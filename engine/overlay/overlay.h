@@ -15,12 +15,13 @@
 
 #include <stdatomic.h>
 
-/// The camera of one frame: a sample at sx, sy, from -width to width and from -height to height, sees
+/// The camera of one frame: a sample at x, y of the picture has sx = 2 x - span[0], sy = span[1] - 2 y and sees
 /// eye + t (view[2] + sx view[0] + sy view[1]), or where it is orthographic eye + sx view[0] + sy view[1] + t view[2].
 typedef struct glint_overlays_camera {
     bool orthographic;
     double eye[3];
     double view[3][3]; ///< to the right and up, half a pixel; away from the eye, unit
+    double span[2]; ///< see glint_plan_camera
     double pixel_offset; ///< where in a pixel its sample lies, 0 .. 1
 } glint_overlays_camera;
 

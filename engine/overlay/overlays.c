@@ -77,6 +77,8 @@ static glint_key box_key(const glint_overlays *overlays, const glint_overlay_des
     const double seen[] = { c->orthographic, c->eye[0], c->eye[1], c->eye[2], c->pixel_offset };
     ADD(key, seen);
     ADD(key, c->view);
+    if (c->span[0] != overlays->width || c->span[1] != overlays->height)
+        ADD(key, c->span);
     ADD(key, d->box);
     if (d->has_sides)
         ADD(key, d->sides);

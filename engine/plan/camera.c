@@ -27,6 +27,30 @@ static void view_axes(const glint_camera_desc *desc, double forward[3], double r
     vec_cross(up, right, forward);
 }
 
+/// Half the size of a pixel at distance 1, and glint_plan_camera.span.
+static void find_pixels(const glint_camera_desc *desc, double width, double height, double half[2], double span[2])
+{
+    const double wide = desc->w > 0 ? width / desc->w : 1, high = desc->h > 0 ? height / desc->h : 1;
+    const double half_height = desc->projection == GLINT_ORTHOGRAPHIC ? 0.5 * desc->height : glint_tan_half(desc->fov_y_rad);
+    half[0] = half[1] = half_height / height;
+    if (desc->fx > 0) {
+        half[0] = 0.5 / (wide * desc->fx);
+        half[1] = 0.5 / (high * (desc->fy > 0 ? desc->fy : desc->fx));
+    }
+    span[0] = desc->has_cx ? 2 * (wide * desc->cx) : width;
+    span[1] = desc->has_cy ? 2 * (high * desc->cy) : height;
+}
+
+void glint_camera_window(const glint_camera_desc *desc, double width, double height, double window[4])
+{
+    double half[2], span[2];
+    find_pixels(desc, width, height, half, span);
+    window[0] = -span[0] * half[0];
+    window[1] = (2 * width - span[0]) * half[0];
+    window[2] = (span[1] - 2 * height) * half[1];
+    window[3] = span[1] * half[1];
+}
+
 void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render)
 {
     double right[3], up[3];
@@ -34,9 +58,10 @@ void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *des
                                  .pixel_offset = desc->pixel_offset };
     vec_copy(out->eye, desc->eye);
     view_axes(desc, out->forward, right, up);
-    const double half_height = out->orthographic ? 0.5 * desc->height : glint_tan_half(desc->fov_y_rad);
-    vec_scale(out->right, right, half_height / render->height);
-    vec_scale(out->up, up, half_height / render->height);
+    double half[2];
+    find_pixels(desc, render->width, render->height, half, out->span);
+    vec_scale(out->right, right, half[0]);
+    vec_scale(out->up, up, half[1]);
 }
 
 void glint_plan_sample_offset(const glint_plan *plan, uint32_t k, double out[2])

@@ -19,6 +19,8 @@ static glint_key view_key(const glint_plan *plan, glint_key key)
     GLINT_KEY_ADD(key, c->forward);
     GLINT_KEY_ADD(key, c->right);
     GLINT_KEY_ADD(key, c->up);
+    if (c->span[0] != plan->desc.width || c->span[1] != plan->desc.height)
+        GLINT_KEY_ADD(key, c->span);
     if (plan->lens) {
         const double lens[] = { c->aperture, c->focus, c->blades, c->blade_rotation };
         GLINT_KEY_ADD(key, lens);

@@ -185,6 +185,7 @@ static glint_status take_overlays(glint_plan *plan, const glint_scene *scene, gl
 {
     const glint_plan_camera *c = &plan->camera;
     glint_overlays_camera camera = { .orthographic = c->orthographic, .pixel_offset = c->pixel_offset };
+    memcpy(camera.span, c->span, sizeof camera.span);
     vec_copy(camera.eye, c->eye);
     vec_copy(camera.view[0], c->right);
     vec_copy(camera.view[1], c->up);

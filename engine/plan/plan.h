@@ -25,6 +25,7 @@ typedef struct glint_plan_camera {
     bool orthographic;
     double eye[3], forward[3]; ///< forward is unit
     double right[3], up[3]; ///< from a pixel's centre to its edge
+    double span[2]; ///< twice the way from the picture's left and upper edges to where `forward` is seen, pixels
     double pixel_offset;
     double aperture, focus; ///< of the lens; 0: there is none, and of the following nothing is read
     uint32_t blades; ///< 0: it is round

@@ -10,14 +10,15 @@ static double loosened(double radius, double distance) { return radius * (1 + 1e
 
 static double length_of(const double v[3]) { return sqrt(vec_dot(v, v)); }
 
-/// The sides of a tile: half pixels from the picture's middle, to the right (x) and up (y).
+/// The sides of a tile: half pixels from where `forward` is seen, to the right (x) and up (y).
 static void find_edges(const glint_plan *plan, uint32_t column, uint32_t row, double x[2], double y[2])
 {
     const double width = plan->desc.width, height = plan->desc.height;
-    x[0] = 2.0 * column * GLINT_TILE_WIDTH - width;
-    x[1] = 2.0 * fmin((column + 1.0) * GLINT_TILE_WIDTH, width) - width;
-    y[0] = height - 2 * fmin((row + 1.0) * GLINT_TILE_HEIGHT, height);
-    y[1] = height - 2.0 * row * GLINT_TILE_HEIGHT;
+    const double *span = plan->camera.span;
+    x[0] = 2.0 * column * GLINT_TILE_WIDTH - span[0];
+    x[1] = 2.0 * fmin((column + 1.0) * GLINT_TILE_WIDTH, width) - span[0];
+    y[0] = span[1] - 2 * fmin((row + 1.0) * GLINT_TILE_HEIGHT, height);
+    y[1] = span[1] - 2.0 * row * GLINT_TILE_HEIGHT;
 }
 
 // ---- What a tile shows ----

@@ -37,6 +37,25 @@ static glint_status check_view(const glint_camera_desc *desc, glint_error *error
     return status;
 }
 
+/// fx .. h.
+static glint_status check_pixels(const glint_camera_desc *desc, glint_error *error)
+{
+    const double numbers[] = { desc->fx, desc->fy, desc->w, desc->h };
+    static const char *const names[] = { "fx", "fy", "w", "h" };
+    for (int i = 0; i < 4; i++)
+        if (!(numbers[i] >= 0 && isfinite(numbers[i])))
+            return glint_fail(error, GLINT_ERR_INVALID, "%s: pixels > 0 expected, got %.15g", names[i], numbers[i]);
+    if (desc->fy > 0 && !(desc->fx > 0))
+        return glint_fail(error, GLINT_ERR_INVALID, "fx: pixels > 0 expected with fy, got 0");
+    if (desc->fx > 0 && desc->projection == GLINT_ORTHOGRAPHIC)
+        return glint_fail(error, GLINT_ERR_INVALID, "fx: a perspective camera expected; an orthographic one has a height");
+    if ((desc->w > 0) != (desc->h > 0))
+        return glint_fail(error, GLINT_ERR_INVALID, "w: w and h expected, got one of them");
+    if ((desc->has_cx && !isfinite(desc->cx)) || (desc->has_cy && !isfinite(desc->cy)))
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: finite number expected", isfinite(desc->cx) ? "cy" : "cx");
+    return GLINT_OK;
+}
+
 static glint_status check_lens(const glint_camera_desc *desc, glint_error *error)
 {
     glint_status status = GLINT_OK;
@@ -72,6 +91,8 @@ static glint_status check(const glint_camera_desc *desc, glint_error *error)
                             desc->fov_y_rad * 180 / PI);
     if (!status && !(desc->height > 0 && isfinite(desc->height)))
         status = glint_fail(error, GLINT_ERR_INVALID, "height: number > 0 expected, got %.15g", desc->height);
+    if (!status)
+        status = check_pixels(desc, error);
     if (!status)
         status = glint_check_range("pixel_offset", desc->pixel_offset, 0, 1, "number 0 .. 1", error);
     if (!status)

@@ -45,8 +45,9 @@ void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
                                   .groups_across = tile->groups_across,
                                   .x0 = tile->x0,
                                   .y0 = tile->y0,
-                                  .width = plan->desc.width,
-                                  .height = plan->desc.height,
+                                  .width = camera->span[0],
+                                  .height = camera->span[1],
+                                  .beyond = { plan->desc.width - camera->span[0], plan->desc.height - camera->span[1] },
                                   .orthographic = camera->orthographic,
                                   .lens = plan->lens ? &tile->lens : NULL };
     tile->sample = k;

@@ -104,6 +104,8 @@ static const field camera_fields[] = {
 #define C(...) FIELD(glint_camera_desc, __VA_ARGS__)
     C(projection, CHOICE, 0, 2),   C(eye, VECTOR, -2, 8), C(has_direction, FLAG, 0, 1), C(at, VECTOR, -1, 1),
     C(direction, VECTOR, -1, 1),   C(up, VECTOR, -1, 1),  C(fov_y_rad, NUMBER, 0.3, 2), C(height, NUMBER, 1, 10),
+    C(fx, NUMBER, 10, 60), C(fy, NUMBER, 10, 60), C(has_cx, FLAG, 0, 1), C(has_cy, FLAG, 0, 1), C(cx, NUMBER, -20, 90),
+    C(cy, NUMBER, -20, 90), C(w, NUMBER, 20, 90), C(h, NUMBER, 20, 90),
     C(pixel_offset, NUMBER, 0, 1), C(shutter, FIXED, 0, 0), C(shutter_times, FIXED, 0, 0),
     C(aperture, NUMBER, 0, 0.4), C(focus, NUMBER, 0, 12), C(has_focus_point, FLAG, 0, 1),
     C(focus_point, VECTOR, -1, 1), C(blades, WHOLE, 0, 7), C(blade_rotation_rad, NUMBER, 0, 6), C(name, FIXED, 0, 0),
@@ -425,6 +427,7 @@ static void make_world(world *w)
     make_skies();
     glint_camera_desc c = glint_camera_desc_default();
     c.eye[1] = 2;
+    c.w = c.h = 40; // which have to be set together
     assert_int_equal(glint_camera_create(&c, &w->camera, NULL), GLINT_OK);
     assert_int_equal(glint_scene_create(&w->scene, NULL), GLINT_OK);
     glint_scene_desc s = {

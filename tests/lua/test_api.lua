@@ -370,7 +370,7 @@ function tests.camera()
   end
   raises('camera.projection: "perspective" or "orthographic" expected, got string "fisheye"',
     function() c.projection = "fisheye" end)
-  raises("camera.x: no such field", function() return c.x end)
+  raises("camera.wobble: no such field", function() return c.wobble end)
 end
 
 -- ---- Running them ----

@@ -42,9 +42,11 @@ static void find_axes(const glint_plan *plan, const glint_camera_desc *desc, con
     dual_cross(up, right, forward);
 }
 
-/// Returns half a pixel, in units of the axes; see plan/camera.c.
-static glint_dual find_size(const glint_plan *plan, const glint_camera_desc *desc, const glint_camera_desc *slope)
+/// Returns half a pixel, in units of the axes; see plan/camera.c. axis: the plan's right or up.
+static glint_dual find_size(const glint_plan *plan, const glint_camera_desc *desc, const glint_camera_desc *slope, const double axis[3])
 {
+    if (desc->fx > 0)
+        return dual(sqrt(vec_dot(axis, axis)), 0);
     const double tangent = glint_tan(desc->fov_y_rad / 2);
     const glint_dual half = plan->camera.orthographic
                                 ? dual(0.5 * desc->height, 0.5 * slope->height)
@@ -69,7 +71,7 @@ static glint_dual find_nearness(const glint_camera_desc *desc, const glint_camer
 void glint_derivative_fill_view(glint_derivative_view *out, const glint_plan *plan, const glint_camera_desc *desc,
                                 const glint_camera_desc *slope)
 {
-    const glint_dual size = find_size(plan, desc, slope);
+    const glint_dual wide = find_size(plan, desc, slope, plan->camera.right), high = find_size(plan, desc, slope, plan->camera.up);
     glint_dual eye[3], forward[3], up[3], right[3];
     duals(eye, desc->eye, slope->eye);
     duals(forward, desc->has_direction ? desc->direction : desc->at, desc->has_direction ? slope->direction : slope->at);
@@ -80,8 +82,8 @@ void glint_derivative_fill_view(glint_derivative_view *out, const glint_plan *pl
     put_slopes(out->eye, eye);
     put_slopes(out->forward, forward);
     for (int c = 0; c < 3; c++) {
-        out->right[c] = dual_mul(right[c], size).slope;
-        out->up[c] = dual_mul(up[c], size).slope;
+        out->right[c] = dual_mul(right[c], wide).slope;
+        out->up[c] = dual_mul(up[c], high).slope;
     }
     if (plan->lens) {
         put_slopes(out->lens[0], right);

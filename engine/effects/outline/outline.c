@@ -18,7 +18,7 @@ static point point_at(const outliner *o, int x, int y)
 {
     const glint_plan_camera *camera = &o->plan->camera;
     const glint_image *image = o->image;
-    const double sx = 2 * (x + o->offset[0]) - image->width, sy = image->height - 2 * (y + o->offset[1]);
+    const double sx = 2 * (x + o->offset[0]) - camera->span[0], sy = camera->span[1] - 2 * (y + o->offset[1]);
     point p = { .at = (size_t)y * (size_t)image->width + (size_t)x };
     double aside[3], direction[3];
     p.depth = (double)image->plane[GLINT_PASS_DEPTH][0][p.at];

@@ -80,8 +80,8 @@ static inline void cover_corner(const picture *screen, const seen_corner *corner
 {
     const double per_z = screen->camera->orthographic ? 1 : 1 / corner->z, x = corner->s * per_z, y = corner->t * per_z;
     const double slack = 64 * screen->rounding * (corner->size * per_z);
-    cover(s, x, slack * (screen->unit[0] + fabs(x)) + 0x1p-40 * (screen->width + fabs(x)));
-    cover(t, y, slack * (screen->unit[1] + fabs(y)) + 0x1p-40 * (screen->height + fabs(y)));
+    cover(s, x, slack * (screen->unit[0] + fabs(x)) + 0x1p-40 * (fabs(screen->camera->span[0]) + fabs(x)));
+    cover(t, y, slack * (screen->unit[1] + fabs(y)) + 0x1p-40 * (fabs(screen->camera->span[1]) + fabs(y)));
 }
 
 /// Adds the way to where an edge comes to the eye's plane: it goes to infinity on the screen.
@@ -166,9 +166,10 @@ static inline extent project(const picture *screen, const glint_prim *prim)
         corner[j] = see_corner(screen, prim->corner[j]);
     if (!cover_triangle(screen, corner, &s, &t))
         return none;
-    if (!pixels_of((s.low + screen->width) / 2 - screen->high[0], (s.high + screen->width) / 2 - screen->low[0],
+    const double *span = screen->camera->span;
+    if (!pixels_of((s.low + span[0]) / 2 - screen->high[0], (s.high + span[0]) / 2 - screen->low[0],
                    screen->width, &out.x0, &out.x1) ||
-        !pixels_of((screen->height - t.high) / 2 - screen->high[1], (screen->height - t.low) / 2 - screen->low[1],
+        !pixels_of((span[1] - t.high) / 2 - screen->high[1], (span[1] - t.low) / 2 - screen->low[1],
                    screen->height, &out.y0, &out.y1))
         return none;
     out.depth = depth_of(screen, corner);

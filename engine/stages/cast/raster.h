@@ -47,7 +47,8 @@ static int R(raster_edges)(const glint_camera_args *camera, double p[3][3], doub
                            double along_t[3], double rounding, double limit[3])
 {
     double sum = 0, size = 0, way = 1;
-    const double reach = (fabs(camera->width) + fabs(camera->height)) + 2;
+    const double beyond = fabs(camera->beyond[0]) + fabs(camera->beyond[1]);
+    const double reach = (fabs(camera->width) + fabs(camera->height)) + 2 * beyond + 2;
     for (int j = 0; j < 3; j++) {
         size = fmax(size, (fabs(p[j][0]) + fabs(p[j][1])) + fabs(p[j][2]));
         way = fmax(way, reach * ((fabs(camera->right[j]) + fabs(camera->up[j])) + fabs(camera->forward[j])));

@@ -18,7 +18,8 @@ typedef struct glint_camera_args {
     uint32_t group_count, groups_across; ///< group g is column g % groups_across, row g / groups_across
     double x0, y0; ///< the tile's first pixel
     double offset[2]; ///< where in the pixel this sample lies, 0 .. 1
-    double width, height; ///< of the image
+    double width, height; ///< of the image, were it as wide and high on both sides of where `forward` is seen
+    double beyond[2]; ///< that it is wider and higher than so
     bool orthographic;
     double eye[3], forward[3], right[3], up[3]; ///< right and up are scaled to half a pixel
     const glint_lens *lens; ///< NULL: all rays of a perspective camera start at the eye

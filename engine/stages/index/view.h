@@ -24,7 +24,8 @@ static glint_camera_args R(whole_picture)(const glint_camera_args *camera)
 {
     const double across = 4.0 * camera->groups_across;
     const double down = 4.0 * (camera->group_count / camera->groups_across);
-    const double right = fmax(camera->width, camera->x0 + across), bottom = fmax(camera->height, camera->y0 + down);
+    const double right = fmax(camera->width + camera->beyond[0], camera->x0 + across);
+    const double bottom = fmax(camera->height + camera->beyond[1], camera->y0 + down);
     glint_camera_args whole = *camera;
     whole.x0 = fmin(camera->x0, 0);
     whole.y0 = fmin(camera->y0, 0);
