@@ -1221,16 +1221,6 @@ typedef struct glint_work {
     uint64_t overlaps; ///< pairs of a point and a sphere or plane whose cover of a light was looked at, for caps
 } glint_work;
 
-/// What a frame took.
-typedef struct glint_frame_stats {
-    double build_ms; ///< wall time of building the spatial index; next to 0 when it was there
-    double render_ms; ///< wall time of the stages up to the film
-    double tone_ms; ///< wall time of making codes
-    int stage_count; ///< the plan's stages, in its order
-    const char *stage_name[GLINT_STAGE_MAX]; ///< static strings
-    double stage_ms[GLINT_STAGE_MAX]; ///< summed over workers; 0 unless the renderer times stages
-    /// Share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
-    double stage_reused[GLINT_STAGE_MAX];
 /// Numbers of a pattern that no field takes: NaN and numbers below 0 are taken as 0, numbers above 2^100 as 2^100.
 typedef enum glint_odd_kind { GLINT_ODD_NAN, GLINT_ODD_NEGATIVE, GLINT_ODD_HUGE, GLINT_ODD_COUNT } glint_odd_kind;
 
@@ -1242,6 +1232,16 @@ typedef struct glint_odd {
     double point[3]; ///< in the world; of the background, the direction
 } glint_odd;
 
+/// What a frame took.
+typedef struct glint_frame_stats {
+    double build_ms; ///< wall time of building the spatial index; next to 0 when it was there
+    double render_ms; ///< wall time of the stages up to the film
+    double tone_ms; ///< wall time of making codes
+    int stage_count; ///< the plan's stages, in its order
+    const char *stage_name[GLINT_STAGE_MAX]; ///< static strings
+    double stage_ms[GLINT_STAGE_MAX]; ///< summed over workers; 0 unless the renderer times stages
+    /// Share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
+    double stage_reused[GLINT_STAGE_MAX];
     glint_ray_counts rays; ///< as cast; reused stages cast none
     uint64_t hits_kept, hits_anew; ///< tiles whose hits were at hand and whose points were needed: those that read them, and those
         ///< that found them again, because that is the quicker way there or to see whether it is
@@ -1278,6 +1278,25 @@ const char *glint_image_light_pass(const glint_image *image, size_t index);
 /// Whether codes are there and all are 0, but for alpha; without codes, whether no value of beauty is above 0. Looks no
 /// further than the first that is. False where there is neither.
 bool glint_image_is_black(const glint_image *image);
+/// Stops of glint_tone_desc that the frame's codes have, or would have.
+double glint_image_exposure(const glint_image *image);
+
+/// How bright pictures are; begins as { 0 }.
+typedef struct glint_brightness {
+    double most; ///< greatest finite value of a channel, before exposure; 0: none is above 0
+    uint64_t pictures; ///< how many were added
+    uint64_t values; ///< three a pixel
+    uint64_t clipped; ///< finite values that are above 1 after exposure
+} glint_brightness;
+
+/// Adds an image's linear beauty to *sum, clipped after `exposure` stops. GLINT_ERR_INVALID: it has no linear beauty.
+glint_status glint_image_brightness(const glint_image *image, double exposure, glint_brightness *sum, glint_error *error);
+/// Widens range[0] .. range[1] to the finite values of the pass: of depth its nearest and farthest, of a derivative the largest slope of
+/// a channel either way. Begins as +inf, -inf. GLINT_ERR_INVALID: the image has not that pass, or it is neither.
+glint_status glint_image_range(const glint_image *image, glint_pass pass, double range[2], glint_error *error);
+/// The greatest exposure, in whole hundredths of a stop within GLINT_EXPOSURE_MAX, that leaves light of `most` at or below 1; 0 of
+/// no light. The same on every machine.
+double glint_exposure_for(double most);
 /// Reads one pixel of a kept pass; (0, 0) is the top left. One-channel passes give the same number three times.
 glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3],
                                glint_error *error);
@@ -1311,6 +1330,9 @@ typedef struct glint_write_desc {
     /// .png of depth and derivatives: 1 + a glint_colormap, whose colours show the number in place of a grey; 0: grey. Of depth the
     /// background stays black, of a derivative the mean of its three components is shown
     int colormap;
+    /// .png of depth and derivatives: the numbers that are shown by the ends of the grey or the map, evenly between; finite. Equal (default):
+    /// the picture's own, see README
+    double range[2];
     const glint_text *text; ///< .png and .exr
     size_t text_count; ///< 0: no texts
 } glint_write_desc;

@@ -3,6 +3,7 @@
 -- Files, all linear, in the folder `photometric` (--set folder=...):
 --     light_001.png ...    the scene under light 1, 2 ...: 16 bits, code = light * 65535; .pfm with --set exact=true
 --     lights.csv           file, x, y, z (unit, from the scene to the light; x right, y up, z to the camera), intensity
+--                          (the light's times 2^exposure, as the codes have it)
 --     mask.png             1 where an object is, 0 elsewhere (16 bits)
 --     normal.png           normal * 0.5 + 0.5 in the same axes (16 bits), and normal.pfm: exact, 0 where nothing is
 --     depth.png            nearest / distance (16 bits), and depth.pfm: the distance from the eye, inf where nothing is
@@ -15,13 +16,15 @@
 -- material:
 --     001.png 002.png ...       16 bits, linear; filenames.txt has their names, a line each
 --     light_directions.txt      x y z, a light a line, in the axes above
---     light_intensities.txt     its red, green and blue
+--     light_intensities.txt     its red, green and blue, times 2^exposure
 --     Normal_gt.mat, .npy, .png the truth, 0 where nothing is; depth_gt.npy
 --     mask.png                  255 where the object is, 0 elsewhere; one channel
 -- and objects.txt beside them, with the folders' names.
 --     glint scripts/photometric.lua --set layout=diligent --set objects=balls,solids --set materials=matt,gold
 -- --size makes pictures of any shape. -o 'set/%03d.png' names the pictures, and the other files are put beside them;
 -- the picture after that of the last light is the scene in white ambient light.
+-- Bright materials (gold, glossy) go beyond white: --exposure auto finds one exposure for the whole set, with which
+-- nothing is clipped, and --exposure -1.5 sets it. The intensities follow.
 -- A run that was interrupted goes on from there, and --shard cuts the job for several machines.
 -- For a scene of your own put its shapes among `OBJECTS`; a camera along -z keeps the axes.
 local glint = require "glint"
@@ -144,12 +147,15 @@ local function painter(fields)
   end
 end
 
+-- What --exposure multiplies the codes of pictures by. Light itself, in files of numbers, is as it is.
+local function gain(truth, file) return file:find "%.png$" and glint.pow(2, truth.exposure) or 1 end
+
 local function write_glint()
-  local rows = { "file,x,y,z,intensity\n" }
+  local lights, rows = {}, { "file,x,y,z,intensity\n" }
   local function path(name) return folder .. "/" .. name end
   local truth = render(OBJECTS.balls(painter(MATERIALS.matt)), function(k, x, y, z, lamp)
     local file = given and given ~= "none" and given_name(k) or ("light_%03d.%s"):format(k, P.exact and "pfm" or "png")
-    rows[#rows + 1] = ("%s,%.17g,%.17g,%.17g,%.17g\n"):format(file, x, y, z, lamp.intensity)
+    lights[k] = { file, x, y, z, lamp.intensity }
     return path(file)
   end)
   if not truth or given == "none" then return end
@@ -158,23 +164,31 @@ local function write_glint()
     assert(truth:save(path(pass .. ".png"), { bits = 16, pass = pass }))
     assert(truth:save(path(pass .. ".pfm"), { pass = pass }))
   end
+  for k, light in ipairs(lights) do
+    local file, x, y, z, intensity = table.unpack(light)
+    rows[k + 1] = ("%s,%.17g,%.17g,%.17g,%.17g\n"):format(file, x, y, z, intensity * gain(truth, file))
+  end
   write(path "lights.csv", rows)
 end
 
 local function write_diligent(object, material)
   local name = object.name .. "_" .. material.name
   local place = ("%s/%s/"):format(folder, name)
-  local names, directions, intensities = {}, {}, {}
+  local names, directions, colors, intensities = {}, {}, {}, {}
   local truth = render(object.make(painter(material.make)), function(k, x, y, z, lamp)
     local color = {}
     for c = 1, 3 do color[c] = 1 - P.vary * glint.hash(k, c, 0) end
     lamp.color = color
     names[k] = ("%03d.png\n"):format(k)
     directions[k] = ("%.17g %.17g %.17g\n"):format(x, y, z)
-    intensities[k] = ("%.17g %.17g %.17g\n"):format(color[1], color[2], color[3])
+    colors[k] = color
     return place .. ("%03d.png"):format(k)
   end)
   if not truth then return name, false end
+  local times = gain(truth, names[1]:sub(1, -2))
+  for k, color in ipairs(colors) do
+    intensities[k] = ("%.17g %.17g %.17g\n"):format(color[1] * times, color[2] * times, color[3] * times)
+  end
   local width, height = truth.width, truth.height
   local mask, normals = png.grey(width, height), {}
   for y = 0, height - 1 do

@@ -83,6 +83,9 @@ typedef struct cli_options {
     double budget_s; ///< of cost; 0: none
     const char *report, *knobs; ///< of cost; NULL: none, all
     char width[16], height[16]; ///< of --size
+    bool finds_exposure; ///< --exposure auto
+    bool finds_range; ///< --colormap MAP:auto
+    char exposure[16], colormap[64]; ///< which these have found
     int64_t start, end, jump; ///< -s -e -j; 0: not given
     bool has_frames;
     int http_port; ///< of watch; 0: any free one, -1: no page
@@ -233,6 +236,15 @@ const char *cli_base_name(const char *path);
 void cli_close_script(cli_script *script);
 /// The state that a signal stops; NULL: none. signals.c
 void cli_set_state(lua_State *L);
+
+// ---- measure.c ----
+
+/// Has the run render every frame, look at it and write none; *request is how it was.
+void cli_begin_measuring(const cli_options *options, cli_output *output, glintL_run *run, glintL_request *request);
+/// After a script that ended well when `good`: the run is as before that one, with what was found. False: the run has failed.
+bool cli_end_measuring(cli_options *options, cli_output *output, glintL_run *run, const glintL_request *request, bool good);
+/// Has the script in `L` print nothing.
+void cli_hush_script(lua_State *L);
 
 // ---- describe.c ----
 

@@ -245,11 +245,21 @@ static bool check_input(const cli_options *options, char *message)
 {
     if (!options->script || strcmp(options->script, "-") != 0 ||
         (options->command & (CLI_RENDER | CLI_EXPLAIN) && !options->sweep_count && !options->dialect &&
-         !options->untrusted_s))
+         !options->untrusted_s && !options->finds_exposure && !options->finds_range))
         return true;
     snprintf(message, MESSAGE,
-             "-: a file expected; a script from standard input is for render and explain, without --sweep, --dialect and "
-             "--untrusted");
+             "-: a file expected; a script from standard input is for render and explain, without --sweep, --dialect, "
+             "--untrusted and auto");
+    return false;
+}
+
+// What looks at all pictures first is for those who render them.
+static bool check_auto(const cli_options *options, char *message)
+{
+    if ((!options->finds_exposure && !options->finds_range) || options->command == CLI_RENDER || options->help)
+        return true;
+    snprintf(message, MESSAGE, "--%s: auto is for glint render, which looks at all pictures first; %s expected",
+             options->finds_exposure ? "exposure" : "colormap", options->finds_exposure ? "a number of stops" : "NAME:LOW:HIGH");
     return false;
 }
 
@@ -289,7 +299,7 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
         snprintf(message, MESSAGE, "--sweep: at most %d points together expected", GLINTL_FRAMES_MAX);
         return false;
     }
-    return cli_check_dialect(options, message);
+    return check_auto(options, message) && cli_check_dialect(options, message);
 }
 
 // Adds the swept parameters to those that are set, and -s -e -j as a range. --help shows the defaults of the swept parameters.

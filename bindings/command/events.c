@@ -268,8 +268,9 @@ void cli_report_error(cli_output *output, int64_t index, int exit_code, const ch
 
 void cli_warn_clipped(glintL_run *run)
 {
+    glintL_warn_of_clipping(run);
     double clipped = run->pixels ? (double)run->clipped / (double)run->pixels : 0;
-    if (clipped > CLIPPED_HINT)
+    if (clipped > CLIPPED_HINT && run->brightness.clipped == 0)
         glintL_run_warn(run,
                         "%.0f %% of the pixels are brighter than white; dimmer lights, --exposure -1 or --tone filmic "
                         "keep what is lost there",

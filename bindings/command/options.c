@@ -16,9 +16,9 @@
 
 // Which fields of scene:render{} relight has options of: what becomes of light.
 enum {
-    RELIGHTS_samples, RELIGHTS_seed = 0, RELIGHTS_precision = 0, RELIGHTS_colormap = 0, RELIGHTS_alpha = 0, RELIGHTS_outline = 0,
+    RELIGHTS_samples, RELIGHTS_seed = 0, RELIGHTS_precision = 0, RELIGHTS_alpha = 0, RELIGHTS_outline = 0,
     RELIGHTS_visibility = 0, RELIGHTS_bits = CLI_RELIGHT, RELIGHTS_transfer = CLI_RELIGHT, RELIGHTS_rounding = CLI_RELIGHT,
-    RELIGHTS_tone = CLI_RELIGHT, RELIGHTS_encode = CLI_RELIGHT, RELIGHTS_exposure = CLI_RELIGHT
+    RELIGHTS_tone = CLI_RELIGHT, RELIGHTS_encode = CLI_RELIGHT
 };
 
 // ---- Readers ----
@@ -137,6 +137,23 @@ static bool read_render(cli_options *options, const cli_option *option, char *te
     const char *value = text ? text : "true";
     options->request.render_text[field] = value;
     return glintL_render_set_text(&scratch, field, value, message);
+}
+
+// --exposure takes "auto", too.
+static bool read_exposure(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    options->finds_exposure = strcmp(text, "auto") == 0;
+    return options->finds_exposure || read_render(options, option, text, message);
+}
+
+// --colormap NAME:auto takes the range of all pictures.
+static bool read_colormap(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    char *colon = strchr(text, ':');
+    options->finds_range = colon && strcmp(colon, ":auto") == 0;
+    if (options->finds_range)
+        *colon = '\0'; // the name ends there
+    return read_render(options, option, text, message);
 }
 
 static bool read_size(cli_options *options, const cli_option *option, char *text, char *message)
@@ -313,6 +330,12 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     GLINTL_RENDER_LIST(FIELD, OPTION) { "adaptive", 0, "X", SHOWN, read_render,
                                         .help = "all samples only where neighbours differ by more",
                                         .suggest = "0.3 0.1 0.03 0.01" },
+    { "colormap", 0, "MAP", SHOWN, read_colormap,
+      .help = "of depth and d:NAME in their .png: viridis, magma, cividis, turbo, coolwarm, none; MAP:LOW:HIGH sets the range, MAP:auto "
+              "finds one for all",
+      .suggest = "none viridis magma cividis turbo coolwarm viridis:auto" },
+    { "exposure", 0, "STOPS", SHOWN | CLI_RELIGHT, read_exposure,
+      .help = "stops brighter or darker; auto: one for all, nothing clipped", .suggest = "auto -2 -1 1 2" },
     { "threads", 't', "N", SHOWN | CLI_REPRODUCE | CLI_PUBLISH, read_int, .help = "worker threads", AT(request.threads),
       WITHIN(1, 1024), .group = "machine" },
     { "no-reuse", 0, NULL, CLI_RENDER | CLI_WATCH, read_flag, .help = "keep nothing from frame to frame",

@@ -15,6 +15,20 @@ static bool run_once(const cli_options *options, glintL_run *run)
     return good;
 }
 
+static bool run_script(cli_options *options, cli_output *output, glintL_run *run, bool *reported)
+{
+    return options->sweep_count ? cli_run_points(options, output, run, reported) : run_once(options, run);
+}
+
+// --exposure auto, --colormap MAP:auto: runs the script once to find what the request then has.
+static bool measure(cli_options *options, cli_output *output, glintL_run *run, bool *reported)
+{
+    glintL_request request;
+    cli_begin_measuring(options, output, run, &request);
+    const bool good = run_script(options, output, run, reported);
+    return cli_end_measuring(options, output, run, &request, good);
+}
+
 bool cli_finish_frames(glintL_run *run, bool good)
 {
     good = glintL_run_collect(run, true) && good; // what was handed over is finished in any case
@@ -34,7 +48,7 @@ static bool run_all(cli_options *options, cli_output *output, glintL_run *run, b
     if (options->is_live && !live)
         return glintL_run_fail(run, code, 0, "%s", message);
     run->live = live;
-    const bool good = options->sweep_count ? cli_run_points(options, output, run, reported) : run_once(options, run);
+    const bool good = run_script(options, output, run, reported);
     run->live = NULL;
     free(live);
     return good;
@@ -45,7 +59,8 @@ int cli_render(cli_options *options, cli_output *output, glintL_run *run)
     if (!output->quiet)
         output->progress = cli_progress_create(output->color);
     bool reported = false;
-    bool good = run_all(options, output, run, &reported);
+    bool good = !(options->finds_exposure || options->finds_range) || measure(options, output, run, &reported);
+    good = good && run_all(options, output, run, &reported);
     if (!cli_finish_frames(run, good))
         glintL_films_keep(run);
     if (run->interrupted) {

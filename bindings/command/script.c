@@ -194,6 +194,8 @@ static int run_protected(lua_State *L)
     lua_settop(L, 0);
     open_libraries(L, work);
     cli_set_state(L);
+    if (work->run->measures)
+        cli_hush_script(L);
     if (work->run->reporter.prepare)
         work->run->reporter.prepare(work->run->reporter.context, L);
     cli_open_dialect(L, work->options);

@@ -186,7 +186,7 @@ static void *retain(void *object) { return glint_camera_retain(object); }
 
 static void release(void *object) { glint_camera_release(object); }
 
-// Of at and direction, and of fov and fx, the one set last is used.
+// The last one set of at and direction is used, and the last one of fov and fx.
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
     desc_type *d = desc;

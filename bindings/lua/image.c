@@ -39,10 +39,17 @@ static int get_passes(lua_State *L)
     return 1;
 }
 
+static int get_exposure(lua_State *L)
+{
+    lua_pushnumber(L, glint_image_exposure(glintL_check_object(L, 1, GLINTL_IMAGE)));
+    return 1;
+}
+
 static const luaL_Reg GETTERS[] = {
     { "width", get_width },
     { "height", get_height },
     { "passes", get_passes },
+    { "exposure", get_exposure },
     { NULL, NULL },
 };
 
@@ -131,6 +138,23 @@ static int pixel(lua_State *L)
     return channels;
 }
 
+// The name of a map, "viridis:1:9" with its range, or nil, at the top; pops it.
+static void take_colormap(lua_State *L, glint_write_desc *desc)
+{
+    static const glintL_field name = { .name = "colormap", .kind = GLINTL_ENUM, .names = glintL_pass_colormaps };
+    char message[GLINTL_MESSAGE_SIZE];
+    const char *text = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : NULL, *colon = text ? strchr(text, ':') : NULL;
+    if (colon)
+        lua_pushlstring(L, text, (size_t)(colon - text));
+    else
+        lua_pushvalue(L, -1);
+    if (!lua_isnil(L, -1))
+        glintL_read_field(L, -1, "save", &name, &desc->colormap);
+    if (colon && !glintL_read_range(colon, desc->range, message))
+        glintL_error(L, "save.colormap: %s", message);
+    lua_pop(L, 2);
+}
+
 static void read_options(lua_State *L, glint_write_desc *desc)
 {
     static const char *const transfers[] = { "srgb", "linear", "none", NULL };
@@ -157,10 +181,7 @@ static void read_options(lua_State *L, glint_write_desc *desc)
         { .name = "exposure", .kind = GLINTL_NUMBER, .offset = offsetof(options, desc.tone.exposure) },
         { .name = "encode", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.encode), .names = encodes },
         { .name = "dpi", .kind = GLINTL_NUMBER, .offset = offsetof(options, desc.dpi) },
-        { .name = "colormap",
-          .kind = GLINTL_ENUM,
-          .offset = offsetof(options, desc.colormap),
-          .names = glintL_pass_colormaps },
+        { .name = "colormap", .kind = GLINTL_OTHER },
         { .name = "pass", .kind = GLINTL_OTHER },
         { .name = NULL },
     };
@@ -169,6 +190,9 @@ static void read_options(lua_State *L, glint_write_desc *desc)
     if (read.bits != 8 && read.bits != 16)
         glintL_error(L, "save.bits: 8 or 16 expected, got %f", read.bits);
     read.desc.tone.bits = (int)read.bits;
+    lua_pushliteral(L, "colormap");
+    lua_rawget(L, 3);
+    take_colormap(L, &read.desc);
     lua_pushliteral(L, "pass");
     lua_rawget(L, 3);
     read.desc.pass = check_pass(L, -1, "save.pass");
@@ -201,6 +225,7 @@ static const char *check_path(lua_State *L)
 static int save(lua_State *L)
 {
     glint_error error;
+    glintL_run *run = glintL_get_run(L);
     glintL_check_object(L, 1, GLINTL_IMAGE);
     glint_write_desc desc = { .path = check_path(L), .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
     if (!lua_isnoneornil(L, 3))
@@ -212,6 +237,10 @@ static int save(lua_State *L)
         return 2;
     }
     glintL_check_status(L, "save", &error, status);
+    if (desc.pass == GLINT_PASS_BEAUTY && !run->measures && !glintL_name_is_linear(desc.path))
+        glintL_look_at_brightness(run, glintL_check_object(L, 1, GLINTL_IMAGE), &desc.tone);
+    if (!run->measures && !glintL_places_note(run, "save", desc.path, run->count))
+        return glintL_error(L, "save: %s", run->message);
     lua_pushboolean(L, true);
     return 1;
 }

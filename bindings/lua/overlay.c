@@ -278,17 +278,17 @@ static const char *const ORIENTATIONS[] = { "vertical", "horizontal", NULL };
 
 #define HEX(color, shift) ("0123456789abcdef"[(color) >> (shift) & 15])
 
-// The name of a map, or a list of colours. A function is not called here: it may close the bar.
+// The name of a map, a list of colours, or a function where a bar is made: that of a bar that is there might close it.
 static void read_map(lua_State *L, int index, const char *path, void *desc)
 {
     static const glintL_field name = { .name = "map", .kind = GLINTL_ENUM, .names = glintL_colormaps };
     desc_type *d = desc;
     uint8_t rgb[256][3];
     unsigned which;
-    d->has_colors = lua_istable(L, index);
+    d->has_colors = lua_istable(L, index) || lua_isfunction(L, index);
+    if (lua_isfunction(L, index) && !lua_istable(L, 1))
+        glintL_error(L, "%s: the name of a map or a list of colours expected, got function; give it to glint.colorbar { ... }", path);
     if (!d->has_colors) {
-        if (lua_isfunction(L, index))
-            glintL_error(L, "%s: the name of a map or a list of colours expected, got function; list the colours that it gives", path);
         glintL_read_field(L, index, "colorbar", &name, &which);
         d->map = (glint_colormap)which;
         return;

@@ -630,7 +630,7 @@ function label:close() end
 function glint.label(fields) end
 
 ---@class glint.colorbar_fields: glint.overlay_fields
----@field map "viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|glint.color[]  as of glint.colormap
+---@field map "viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|glint.color[]|fun(share: number): glint.color  as of glint.colormap; a function is called when the bar is made, and reads as the list of its colours
 ---@field low number  what its first colour stands for
 ---@field high number  and its last; not the same
 ---@field title? string  above it; as the text of a label. Default ""
@@ -781,7 +781,7 @@ function glint.scene(fields) end
 ---@field alpha? boolean  transparent background, behind glass and translucent surfaces too: a .png is RGBA, and passes hold light times coverage. Default false
 ---@field outline? "none"|"black"|"white"  lines drawn into the .png where the pass "outline" is 1. Default "none"
 ---@field encode? "fast"|"small"  of a .png; the pixels are the same. Default "fast"
----@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"  of the .png of depth and d:NAME. Default "none": grey
+---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  of the .png of depth and d:NAME. "viridis:1:9" has 1 and 9 at its ends, evenly between. Default "none": grey, and the picture's own range
 ---@field dpi? number  pixels an inch where a .png is printed, 0 .. 1e6. Default 0: not said
 ---@field output? string  file name, .png, .pfm, .npy or .exr (all passes in one file); %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
 ---@field passes? glint.pass[]|string  files beside the beauty: a list, or "ambient,depth"; "all": every one but d:NAME. Default none
@@ -794,7 +794,7 @@ function glint.scene(fields) end
 ---@field tone? "clamp"|"reinhard"|"filmic"  Default "clamp"
 ---@field exposure? number  stops, -32 .. 32. Default 0
 ---@field encode? "fast"|"small"  Default "fast"
----@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"  of depth and d:NAME. Default "none": grey
+---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  of depth and d:NAME. "viridis:1:9" has 1 and 9 at its ends, evenly between. Default "none": grey, and the picture's own range
 ---@field dpi? number  pixels an inch of a .png, 0 .. 1e6. Default 0: not said
 ---@field pass? glint.pass  Default "beauty"
 
@@ -802,6 +802,7 @@ function glint.scene(fields) end
 ---@field width integer  pixels; only read
 ---@field height integer  pixels; only read
 ---@field passes glint.pass[]  those that can be read; only read
+---@field exposure number  stops, of its codes, as the script or --exposure says; only read
 local image = {}
 
 --- One pixel, linear. (0, 0) is the top left.

@@ -66,12 +66,31 @@ static void put_color(const double color[3], uint8_t out[3])
         out[c] = (uint8_t)(255 * color[c] + 0.5);
 }
 
+// What the function gives for 0 .. 1.
+static void read_function(lua_State *L, int index, const char *what, uint8_t rgb[ENTRIES][3])
+{
+    char path[96];
+    snprintf(path, sizeof path, "%.60s: the function's result", what);
+    for (int i = 0; i < ENTRIES; i++) {
+        double color[3];
+        lua_pushvalue(L, index);
+        lua_pushnumber(L, i / (ENTRIES - 1.0));
+        lua_call(L, 1, 1);
+        take_color(L, path, color);
+        put_color(color, rgb[i]);
+    }
+}
+
 // Between two colours codes are mixed, as in other programs' maps.
 void glintL_read_colors(lua_State *L, int index, const char *what, uint8_t rgb[ENTRIES][3])
 {
     char path[96];
     index = lua_absindex(L, index);
     luaL_checkstack(L, 4, "colours");
+    if (lua_isfunction(L, index)) {
+        read_function(L, index, what, rgb);
+        return;
+    }
     const size_t count = glintL_check_list(L, index, what, false);
     if (count < 2)
         glintL_error(L, "%s: a list of at least two colours expected, got %d", what, (int)count);
@@ -91,26 +110,10 @@ void glintL_read_colors(lua_State *L, int index, const char *what, uint8_t rgb[E
     }
 }
 
-// What the function at 1 gives for 0 .. 1.
-static void read_function(lua_State *L, uint8_t rgb[ENTRIES][3])
-{
-    for (int i = 0; i < ENTRIES; i++) {
-        double color[3];
-        lua_pushvalue(L, 1);
-        lua_pushnumber(L, i / (ENTRIES - 1.0));
-        lua_call(L, 1, 1);
-        take_color(L, "colormap: the function's result", color);
-        put_color(color, rgb[i]);
-    }
-}
-
 static void push_own_texture(lua_State *L)
 {
     uint8_t rgb[ENTRIES][3];
-    if (lua_isfunction(L, 1))
-        read_function(L, rgb);
-    else
-        glintL_read_colors(L, 1, "colormap", rgb);
+    glintL_read_colors(L, 1, "colormap", rgb);
     push_new_texture(L, rgb);
 }
 

@@ -121,6 +121,8 @@ static bool is_kept(glintL_run *run, glintL_work *work, bool open)
 static bool render_call(glintL_run *run, glintL_work *work, bool open)
 {
     glint_error error;
+    if (run->measures)
+        return glintL_work_measure(run, work);
     bool kept = is_kept(run, work, open);
     glintL_naming naming = naming_of(run, &work->render, true);
     if (glintL_work_name(work, &naming, &error))
@@ -189,7 +191,7 @@ static int render_selected(lua_State *L, glintL_run *run, const glint_scene *sce
     work->build_ms = build_ms;
     if (glint_camera_get(glint_scene_get(scene)->camera)->shutter > 0)
         glintL_warn_of_shutter(run);
-    bool open = is_open(run, render);
+    bool open = !run->measures && is_open(run, render);
     bool good = render_call(run, work, open);
     if (good)
         glintL_look_for_black(run, scene, work);

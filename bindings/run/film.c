@@ -71,7 +71,7 @@ bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *re
                       char message[GLINTL_MESSAGE_SIZE])
 {
     glintL_film_kind kind = glintL_film_kind_of(path, run->request.apng);
-    if (strcmp(path, "none") == 0)
+    if (strcmp(path, "none") == 0 || run->measures)
         return true;
     if (run->request.apng && kind != GLINTL_FILM_APNG) {
         snprintf(message, GLINTL_MESSAGE_SIZE, "--apng: an output in .png expected, got '%.200s'", path);

@@ -135,6 +135,7 @@ static void begin_plain(glintL_run *run)
     run->exit_code = 0;
     run->count = run->call_count = run->earlier = 0;
     run->todo = run->done = run->kept = 0;
+    run->brightness = (glint_brightness) { 0 };
 }
 
 // The command line's selection, when there is one, else the script's. False: the message is written.

@@ -67,13 +67,13 @@ static void warn(glintL_run *run, const char *path, int64_t first, int64_t index
 
 // Whether the file had another picture: *first is the frame that it was written for. False for want of memory, too, when the run
 // has failed.
-static bool replaces(glintL_run *run, const glintL_file *file, int64_t index, int64_t *first)
+static bool replaces(glintL_run *run, const char *name, uint64_t picture, int64_t index, int64_t *first)
 {
-    if (glintL_name_is_special(file->path))
+    if (glintL_name_is_special(name))
         return false;
     if (2 * run->place_count >= run->place_room && !grow(run))
         return glintL_run_fail(run, GLINTL_EXIT_FAILED, index, "out of memory");
-    uint64_t path = hash_path(file->path), picture = hash_picture(file, index);
+    const uint64_t path = hash_path(name);
     glintL_place *place = find(run->places, run->place_room, path);
     *first = place->index;
     if (place->path)
@@ -88,11 +88,21 @@ bool glintL_places_add(glintL_run *run, const glintL_work *work)
     bool warned = false;
     for (int i = 0; i < work->file_count && !run->exit_code; i++) {
         int64_t first = 0;
-        if (!replaces(run, &work->files[i], work->index, &first) || warned)
+        const glintL_file *file = &work->files[i];
+        if (!replaces(run, file->path, hash_picture(file, work->index), work->index, &first) || warned)
             continue;
         warn(run, work->files[i].path, first, work->index);
         warned = true;
     }
+    return run->exit_code == 0;
+}
+
+bool glintL_places_note(glintL_run *run, const char *what, const char *path, int64_t number)
+{
+    int64_t first = 0;
+    if (replaces(run, path, (uint64_t)number, number, &first))
+        glintL_run_warn(run, "%s: '%.300s' was written before in this run, and that picture is lost; give each file a name of its own", what,
+                        path);
     return run->exit_code == 0;
 }
 

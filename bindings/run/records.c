@@ -74,6 +74,7 @@ void glintL_run_reset(glintL_run *run)
     run->count = run->call_count = run->selected_calls = 0;
     run->total = run->todo = run->done = run->kept = 0;
     run->clipped = run->pixels = run->nonfinite = 0;
+    run->brightness = (glint_brightness) { 0 };
     run->earlier = run->failed_index = 0;
     run->is_stopped = run->in_frame = run->was_shrunk = run->has_light = run->told_of_view = false;
     run->black[0] = '\0';

@@ -18,12 +18,11 @@
     OPTION(rounding, ENUM, CHOICE, desc.tone.rounding, 0, 0, roundings, "", "of codes")                                 \
     OPTION(tone, ENUM, CHOICE, desc.tone.curve, 0, 0, glintL_tone_curves, "", "curve of bright light")                  \
     OPTION(encode, ENUM, CHOICE, encode, 0, 0, encodes, "", "fast to write or small on disk")                           \
-    OPTION(colormap, ENUM, CHOICE, colormap, 0, 0, glintL_pass_colormaps, "", "of depth and d:NAME in their .png")        \
+    FIELD(colormap, ENUM, COLORS, colormap, 0, 0, glintL_pass_colormaps)                                                \
     FIELD(dpi, NUMBER, REAL, dpi, 0, 1e6, NULL)                                                                         \
     FIELD(output, STRING, OUTPUT, output, 0, 0, NULL)                                                                   \
     FIELD(passes, STRING, PASSES, file_passes, 0, 0, NULL)                                                              \
-    OPTION(exposure, NUMBER, REAL, desc.tone.exposure, -GLINT_EXPOSURE_MAX, GLINT_EXPOSURE_MAX, NULL, "STOPS",          \
-           "stops brighter or darker")                                                                                  \
+    FIELD(exposure, NUMBER, REAL, desc.tone.exposure, -GLINT_EXPOSURE_MAX, GLINT_EXPOSURE_MAX, NULL)                    \
     OPTION(alpha, BOOLEAN, FLAG, desc.alpha, 0, 0, NULL, NULL, "transparent background")                                \
     OPTION(outline, ENUM, CHOICE, desc.outline, 0, 0, outlines, "", "lines where objects end or have an edge")          \
     OPTION(visibility, ENUM, CHOICE, desc.visibility, 0, 0, visibilities, "",                                           \

@@ -15,6 +15,7 @@ typedef enum sort {
     WHOLE, // a double of the engine's, min .. max
     REAL, // likewise, not only whole
     CHOICE, // an enum
+    COLORS, // a colour map and its range
     BITS,
     FLAG, // a bool
     OUTPUT,
@@ -97,6 +98,7 @@ static void describe(const detail *what, char out[256])
         snprintf(out, 256, "true or false");
         break;
     case CHOICE:
+    case COLORS:
         for (const char *const *name = what->names; *name; name++)
             used += (size_t)snprintf(out + used, 256 - used, "%s\"%s\"",
                                      name == what->names ? "" : (name[1] ? ", " : " or "), *name);
@@ -149,6 +151,20 @@ static bool set_choice(glintL_render *render, const detail *what, const char *te
         }
     }
     return false;
+}
+
+// "viridis", "viridis:1:9". False: `message` is written where the name is good.
+static bool set_colors(glintL_render *render, const detail *what, const char *text, char message[GLINTL_MESSAGE_SIZE])
+{
+    char name[32];
+    const size_t length = strcspn(text, ":");
+    glintL_render read = *render;
+    *message = '\0';
+    snprintf(name, sizeof name, "%.*s", length < sizeof name ? (int)length : (int)sizeof name - 1, text);
+    if (!set_choice(&read, what, name) || !glintL_read_range(text + length, read.range, message))
+        return false;
+    *render = read;
+    return true;
 }
 
 // NULL: none is near.
@@ -297,10 +313,12 @@ static bool set_word(glintL_render *render, const detail *what, const char *text
         good = set_region(render->desc.region, text);
     else if (what->sort == PASSES)
         return read_passes(text, render, message);
-    if (good)
-        return true;
+    else if (what->sort == COLORS)
+        good = set_colors(render, what, text, message);
+    if (good || (what->sort == COLORS && *message))
+        return good;
     describe(what, allowed);
-    const char *near = what->sort == CHOICE ? nearest_choice(what, text) : NULL;
+    const char *near = what->names ? nearest_choice(what, text) : NULL;
     snprintf(message, GLINTL_MESSAGE_SIZE, "%s expected, got '%.200s'%s%s%s", allowed, text, near ? "; did you mean '" : "",
              near ? near : "", near ? "'?" : "");
     return false;
@@ -469,6 +487,9 @@ bool glintL_render_spell(const glintL_render *render, int field, char out[64])
         memcpy(&value, at, sizeof value);
         snprintf(out, 64, "%s", what->names[value]);
         return true;
+    case COLORS:
+        glintL_spell_colormap(render->colormap, render->range, out);
+        return true;
     case REGION:
         snprintf(out, 64, "%.0f,%.0f,%.0f,%.0f", render->desc.region[0], render->desc.region[1],
                  render->desc.region[2], render->desc.region[3]);
@@ -482,6 +503,7 @@ void glintL_render_push(lua_State *L, int field, const glintL_render *render)
 {
     const detail *what = &details[field];
     const char *at = (const char *)render + what->offset;
+    char spelt[64];
     double number;
     unsigned value;
     switch (what->sort) {
@@ -502,6 +524,10 @@ void glintL_render_push(lua_State *L, int field, const glintL_render *render)
     case CHOICE:
         memcpy(&value, at, sizeof value);
         lua_pushstring(L, what->names[value]);
+        break;
+    case COLORS:
+        glintL_spell_colormap(render->colormap, render->range, spelt);
+        lua_pushstring(L, spelt);
         break;
     case PASSES:
         push_passes(L, render);

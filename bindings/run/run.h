@@ -16,6 +16,7 @@
 ///   walk.c            one frame of a list of jobs; job_frames.c a list frame by frame
 ///   jobs.c            frames of jobs; job_run.c :run; call.c scene:render
 ///   places.c          the files written so far
+///   brightness.c      clipped values, and what --exposure auto measures
 ///   kept_image.c      the picture of a file that was kept
 ///
 /// Nothing here raises a Lua error while it holds something: Lua code is called under lua_pcall only.
@@ -86,6 +87,13 @@ void glintL_render_read(lua_State *L, int index, const char *path, int field, gl
 void glintL_render_push(lua_State *L, int field, const glintL_render *render);
 /// The field as glintL_render_set_text reads it; false: a field that says nothing of the picture.
 bool glintL_render_spell(const glintL_render *render, int field, char out[64]);
+
+// ---- colormap_words.c ----
+
+/// Reads ":LOW:HIGH", or "" for the picture's own. False: `message` says what was expected.
+bool glintL_read_range(const char *text, double range[2], char message[GLINTL_MESSAGE_SIZE]);
+/// Writes "viridis", "viridis:1:9".
+void glintL_spell_colormap(int colormap, const double range[2], char out[64]);
 
 // ---- names.c ----
 
@@ -289,6 +297,9 @@ struct glintL_run {
     int64_t total, todo; ///< 0: unknown
     int64_t done, kept; ///< reported
     uint64_t clipped, pixels, nonfinite; ///< of the reported frames
+    bool finds_range; ///< the run also measures the pass that is scaled for viewing:
+    double range[2]; ///< of its numbers
+    glint_brightness brightness; ///< of pictures that are data; while the run measures, of all that would be written as codes
     int64_t point, point_count; ///< which value of --sweep, 1 .. point_count; 0 of 0: no sweep
     int64_t point_first; ///< frames numbered before this point
     int64_t earlier; ///< lists of jobs that were run before this one
@@ -297,6 +308,7 @@ struct glintL_run {
     bool in_frame; ///< a frame function runs
     bool no_sheets; ///< frames alone are wanted
     const char *live; ///< HTML of a live figure for the pages of sheets; NULL: none
+    bool measures; ///< every frame is rendered for run->brightness, whatever is there, and none is reported or written
 
     bool has_light; ///< a picture was seen that is not black
     bool has_aperture, has_focus; ///< a frame's camera has a lens; says what is in focus, or the lens's form
@@ -397,13 +409,28 @@ bool glintL_work_is_kept(glintL_run *run, const glintL_work *work);
 glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error);
 /// Reports a frame and hands its files to the writer. False: the run has failed.
 bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept);
+/// Renders a frame for a run that measures. False: the run has failed.
+bool glintL_work_measure(glintL_run *run, glintL_work *work);
 /// The whole of a frame: kept or rendered `repeat` times, and finished. False: the run has failed.
 bool glintL_work_run(glintL_run *run, glintL_work *work, bool force);
+
+// ---- brightness.c ----
+
+/// Whether codes are data and not for the eye: 16 bits in proportion to light.
+bool glintL_tone_is_data(const glint_tone_desc *tone);
+/// Adds a picture that is written with that tone to run->brightness, if its codes are data or the run measures. In plain Lua the first
+/// clipped picture is warned of at once.
+void glintL_look_at_brightness(glintL_run *run, const glint_image *image, const glint_tone_desc *tone);
+/// Of what is clipped in the run.
+void glintL_warn_of_clipping(glintL_run *run);
 
 // ---- places.c ----
 
 /// Notes the files of a frame, and warns when one of them had another picture in this run. False: the run has failed.
 bool glintL_places_add(glintL_run *run, const glintL_work *work);
+/// The same of a file that the script saves, or of a sheet. number: of the last frame before it; what is written after another frame is
+/// another picture.
+bool glintL_places_note(glintL_run *run, const char *what, const char *path, int64_t number);
 void glintL_places_forget(glintL_run *run);
 
 // ---- source.c ----

@@ -317,7 +317,8 @@ static int draw_protected(lua_State *L)
     sheet.live = run->live;
     if (sheet.dpi == 0) // that of its pictures
         sheet.dpi = dpi_of(run, job);
-    draw(run, what, &sheet, &l);
+    if (glintL_places_note(run, "sheet", output, what->first))
+        draw(run, what, &sheet, &l);
     return 0;
 }
 

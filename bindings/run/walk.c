@@ -36,6 +36,8 @@ void glintL_run_apply(glintL_run *run, glintL_render *render)
             glintL_render_set_text(render, field, run->request.render_text[field], message);
     if (run->preview_side > 0)
         shrink(run, &render->desc);
+    if (run->measures)
+        memset(render->desc.region, 0, sizeof render->desc.region);
 }
 
 void glintL_run_default_name(const glintL_run *run, char pattern[GLINTL_PATH_SIZE])

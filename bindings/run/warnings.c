@@ -4,7 +4,7 @@
 //   a light inside a closed sphere, an object outside the view, a smooth
 //   mesh of few faces                                                         warn_view.c
 //   pictures that are all black                                               warn_black.c, at the end
-//   a picture that is clipped                                                 events.c, at the end
+//   a picture that is clipped                                                 brightness.c, events.c, at the end
 //
 // --warnings=error makes the first of them end the run with 2.
 #include <ctype.h>

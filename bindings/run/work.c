@@ -35,9 +35,9 @@ glint_status glintL_work_create(const glint_scene *scene, const glintL_render *r
     work->render = *render;
     glint_render_desc *desc = &work->render.desc;
     desc->passes = writes || keep_image ? render->file_passes : 0;
-    if (keep_image || is_linear)
-        desc->passes |= 1u << GLINT_PASS_BEAUTY;
     desc->codes = writes ? !is_linear : !keep_image; // a run that writes nothing makes the codes all the same: to time it
+    if (keep_image || is_linear || (writes && glintL_tone_is_data(&desc->tone)))
+        desc->passes |= 1u << GLINT_PASS_BEAUTY;
     glint_status status = glintL_check_light_passes(scene, render, error);
     if (writes || keep_image)
         glintL_render_point(&work->render);
@@ -81,6 +81,7 @@ static glint_write_desc write_desc(const glintL_work *work, const glintL_file *f
     desc.encode = work->render.encode;
     desc.dpi = work->render.dpi;
     desc.colormap = work->render.colormap;
+    memcpy(desc.range, work->render.range, sizeof desc.range);
     return desc;
 }
 
@@ -208,6 +209,12 @@ static void warn_of_colormap(glintL_run *run, const glintL_work *work)
 
 static void warn_of_overlay(void *run, const char *message) { glintL_run_warn(run, "%s", message); }
 
+// Whether the picture's values count: it is written as codes, or would be without -o none.
+static bool is_looked_at(const glintL_run *run, const glintL_work *work)
+{
+    return work->render.desc.codes || (run->measures && strcmp(work->render.output, "none") == 0);
+}
+
 glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error)
 {
     glint_image *image = NULL;
@@ -226,6 +233,8 @@ glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error 
     if (status == GLINT_OK) {
         glint_image_release(work->image);
         work->image = image;
+        if (is_looked_at(run, work))
+            glintL_look_at_brightness(run, image, &work->render.desc.tone);
         if (run->reporter.image)
             run->reporter.image(run->reporter.context, run, work);
     }
@@ -296,8 +305,34 @@ static bool render_repeats(glintL_run *run, glintL_work *work)
     return true;
 }
 
+// Measures the pass that is scaled for viewing. Several passes may have nothing in common, and are an error.
+static bool measure_range(glintL_run *run, const glintL_work *work)
+{
+    glint_error error;
+    const glintL_render *render = &work->render;
+    const bool depth = render->file_passes >> GLINT_PASS_DEPTH & 1;
+    if (depth + render->derivative_count > 1)
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, work->index,
+                               "--colormap: auto is for one pass of depth and d:NAME, got %d; NAME:LOW:HIGH expected",
+                               depth + render->derivative_count);
+    if (depth + render->derivative_count == 1)
+        glint_image_range(work->image, depth ? GLINT_PASS_DEPTH : GLINT_PASS_DERIVATIVE, run->range, &error);
+    return true;
+}
+
+bool glintL_work_measure(glintL_run *run, glintL_work *work)
+{
+    glint_error error;
+    const glint_status status = glintL_work_render(run, work, &error);
+    if (status)
+        return glintL_run_fail(run, glintL_run_exit_code(status), work->index, "%s", error.message);
+    return !run->finds_range || measure_range(run, work);
+}
+
 bool glintL_work_run(glintL_run *run, glintL_work *work, bool force)
 {
+    if (run->measures)
+        return !is_looked_at(run, work) || glintL_work_measure(run, work);
     if (!force && run->request.repeat == 1 && glintL_work_is_kept(run, work))
         return glintL_work_finish(run, work, true);
     return render_repeats(run, work) && glintL_work_finish(run, work, false);

@@ -90,6 +90,9 @@ static void read_object(lua_State *L, int index, const char *path, const glintL_
         object = glintL_test_object(L, index, type);
         if (!object && lua_istable(L, index) && glintL_makes(L, name))
             glintL_error(L, "%s: %s expected, got table; write glint.%s { ... }", path, name, name);
+        if (!object && lua_type(L, index) == LUA_TSTRING && lua_rawlen(L, index) < 30 && strcmp(name, "material") == 0)
+            glintL_error(L, "%s: material expected, got string \"%s\"; write glint.material { diffuse = \"%s\" }", path,
+                         lua_tostring(L, index), lua_tostring(L, index));
         if (!object)
             glintL_refuse(L, index, path, name);
     }

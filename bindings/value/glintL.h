@@ -337,7 +337,8 @@ void glintL_open_params(lua_State *L);
 void glintL_open_animation(lua_State *L); ///< animation and sweep
 int luaopen_glint(lua_State *L);
 
-/// pattern/colormap.c: a list of colours, evenly from the first to the last, as 256 sRGB codes. Allocates nothing.
+/// pattern/colormap.c: a list of colours, evenly from the first to the last, or a function of 0 .. 1, which is called, as 256
+/// sRGB codes. Of a list it allocates nothing.
 void glintL_read_colors(lua_State *L, int index, const char *path, uint8_t rgb[256][3]);
 /// picture.c: glint.read_image.
 void glintL_open_picture(lua_State *L);
@@ -365,6 +366,7 @@ typedef struct glintL_render {
     char output[4096]; ///< "" = none given
     glint_encode encode;
     int colormap; ///< of the passes depth and d:NAME: 1 + a glint_colormap; 0: grey
+    double range[2]; ///< of these: see glint_write_desc
     double dpi; ///< pixels an inch; 0: not said
     uint32_t file_passes; ///< passes to write as files beside the beauty: bits 1u << GLINT_PASS_...
     char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< likewise: names of the passes d:NAME

@@ -25,6 +25,7 @@ typedef struct picture {
     float gain; ///< likewise
     double nearest; ///< of all depths
     double steepest; ///< of all slopes, either way
+    double range[2]; ///< of both: what the ends of the grey or the map stand for; equal: by `nearest` and `steepest`
     const uint32_t *map; ///< depth and slopes: colours, 0xrrggbb, from 0 to 1; NULL: greys
     const void *(*under)(const void *user, int y, void *scratch); ///< outlined: the rows below the lines
     const void *(*plain)(const void *user, int y, void *scratch); ///< with overlays: the rows below them
@@ -165,7 +166,11 @@ static void put_number(const picture *p, void *codes, size_t x, double value)
         put_linear(p, codes, 3 * x + c, p->map ? (color >> (16 - 8 * c) & 255) / 255.0 : value);
 }
 
-/// Nearest over distance: white at the nearest point, half as bright at twice its distance, and a horizon far away
+static bool has_range(const picture *p) { return p->range[0] != p->range[1]; }
+
+static double share_of(const picture *p, double value) { return (value - p->range[0]) / (p->range[1] - p->range[0]); }
+
+/// Nearest over distance, where there is no range: white at the nearest point, half as bright at twice its distance, and a horizon far away
 /// leaves the objects in front their contrast. The background, at infinity, is black.
 static const void *row_of_depth(const void *user, int y, void *scratch)
 {
@@ -173,8 +178,8 @@ static const void *row_of_depth(const void *user, int y, void *scratch)
     size_t width = (size_t)p->image->width;
     const float *depth = p->plane[0] + (size_t)y * width;
     for (size_t x = 0; x < width; x++) {
-        double value = depth[x] > 0 ? p->nearest / depth[x] : 1;
-        if (p->map && isinf(depth[x]))
+        double value = has_range(p) ? share_of(p, depth[x]) : depth[x] > 0 ? p->nearest / depth[x] : 1;
+        if ((p->map || has_range(p)) && isinf(depth[x]))
             for (size_t c = 0; c < 3; c++)
                 put_linear(p, scratch, 3 * x + c, 0);
         else
@@ -218,7 +223,7 @@ static const void *row_of_ids(const void *user, int y, void *scratch)
     return scratch;
 }
 
-/// Signed: grey at 0, black and white at the largest slope either way.
+/// Signed: grey at 0, black and white at the largest slope either way, where there is no range.
 static const void *row_of_slopes(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -226,11 +231,12 @@ static const void *row_of_slopes(const void *user, int y, void *scratch)
     for (size_t x = 0; x < width; x++) {
         double mean = 0;
         for (size_t c = 0; c < 3; c++) {
-            mean += p->plane[c][at + x] / 3.0;
-            put_linear(p, scratch, 3 * x + c, 0.5 + 0.5 * p->plane[c][at + x] / p->steepest);
+            const double slope = p->plane[c][at + x];
+            mean += slope / 3;
+            put_linear(p, scratch, 3 * x + c, has_range(p) ? share_of(p, slope) : 0.5 + 0.5 * slope / p->steepest);
         }
         if (p->map)
-            put_number(p, scratch, x, 0.5 + 0.5 * mean / p->steepest);
+            put_number(p, scratch, x, has_range(p) ? share_of(p, mean) : 0.5 + 0.5 * mean / p->steepest);
     }
     return scratch;
 }
@@ -321,6 +327,7 @@ static glint_status open_rows(const glint_image *image, const glint_write_desc *
     source->alpha = desc->pass == GLINT_PASS_BEAUTY && image->alpha;
     if (desc->colormap && (desc->pass == GLINT_PASS_DEPTH || (desc->pass >= GLINT_PASS_DERIVATIVE && desc->pass < GLINT_PASS_LIGHT)))
         p->map = glint_colormap_table((glint_colormap)(desc->colormap - 1));
+    memcpy(p->range, desc->range, sizeof p->range);
     if (!is_color(desc->pass))
         source->tone.transfer = p->map ? GLINT_TRANSFER_SRGB : GLINT_TRANSFER_LINEAR;
     if (desc->pass == GLINT_PASS_BEAUTY && image->codes && glint_tone_same(&image->code_tone, &desc->tone)) {
@@ -426,6 +433,8 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
     if (desc->colormap < 0 || desc->colormap > GLINT_COLORMAP_COUNT)
         return glint_fail(error, GLINT_ERR_INVALID, "colormap: 0 .. %d expected, got %d", GLINT_COLORMAP_COUNT,
                           desc->colormap);
+    if (!isfinite(desc->range[0]) || !isfinite(desc->range[1]))
+        return glint_fail(error, GLINT_ERR_INVALID, "range: finite numbers expected, got %g and %g", desc->range[0], desc->range[1]);
     if (kind == GLINT_FILE_PNG)
         return encode_png(image, desc, bands, out, reused, error);
     if (kind == GLINT_FILE_EXR)

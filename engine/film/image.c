@@ -158,6 +158,7 @@ glint_status glint_image_create_for(const glint_render_desc *desc, glint_image *
     if (status)
         return status;
     (*out)->outline = desc->outline;
+    (*out)->exposure = desc->tone.exposure;
     if (desc->derivative_count)
         (*out)->shadows = glint_alloc_large((size_t)desc->width * (size_t)desc->height, sizeof *(*out)->shadows);
     if (desc->derivative_count && !(*out)->shadows)
@@ -188,6 +189,7 @@ glint_status glint_image_crop(const glint_image *image, int x, int y, int width,
     const size_t first = (size_t)y * (size_t)image->width + (size_t)x, bytes = glint_image_pixel_bytes(image);
     const size_t stride = (size_t)image->width, row = (size_t)width, rows = (size_t)height;
     (*out)->outline = image->outline;
+    (*out)->exposure = image->exposure;
     memcpy((*out)->derivative, image->derivative, sizeof image->derivative);
     for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
         for (int c = 0; c < 3; c++)
@@ -228,6 +230,7 @@ glint_status glint_image_cover(glint_image *under, glint_overlays *overlays, int
     image->outline = under->outline;
     image->channels = under->channels;
     image->code_tone = under->code_tone;
+    image->exposure = under->exposure;
     image->row_stamp = under->row_stamp;
     image->under = under;
     image->overlays = glint_overlays_retain(overlays);

@@ -35,6 +35,7 @@ struct glint_image {
         ///< kept from all samples or from none, and where shapes or the eye move the same surface is seen; 0: that differs among the samples. NULL: none. Owned
     int channels; ///< of codes: 3, RGB; with alpha 4
     glint_tone_desc code_tone; ///< how the codes were made
+    double exposure; ///< of the frame's tone, with codes or without
     glint_film_stamp *film; ///< one a tile, left to right, top to bottom. may be NULL. Owned
     uint64_t *row_stamp; ///< one for every GLINT_TILE_HEIGHT rows of codes, top first; NULL: no codes. Equal stamps in
         ///< two images of one size and tone promise equal codes in these rows; 0 promises nothing

@@ -432,8 +432,11 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
         key = glint_derivative_key(plan, derivative, key);
     if (desc->pass >= GLINT_PASS_LIGHT)
         key = glint_light_pass_key(plan, (uint32_t)desc->pass - GLINT_PASS_LIGHT, key);
-    if (desc->colormap && (desc->pass == GLINT_PASS_DEPTH || (desc->pass >= GLINT_PASS_DERIVATIVE && desc->pass < GLINT_PASS_LIGHT)))
+    const bool scaled = desc->pass == GLINT_PASS_DEPTH || (desc->pass >= GLINT_PASS_DERIVATIVE && desc->pass < GLINT_PASS_LIGHT);
+    if (desc->colormap && scaled)
         key = glint_key_add(key, &desc->colormap, sizeof desc->colormap);
+    if (desc->range[0] != desc->range[1] && scaled)
+        key = glint_key_add(key, desc->range, sizeof desc->range);
     if (desc->dpi > 0)
         key = glint_key_add(key, &desc->dpi, sizeof desc->dpi);
     key = glint_key_add_string(key, GLINT_VERSION);

@@ -19,6 +19,10 @@ table="; a table is no vector: write glint\.vector"
 wrong table_by_number "table.lua:2: .*$table|$table" 'local red = { 0.8, 0.2, 0.2 } local f = red * 0.5'
 wrong number_by_table "$table" 'local f = function(p) return p.x * { 1, 0, 0 } end'
 check "a cure is given once" test "$(grep -o 'a table is no vector' err | wc -l)" -eq 1
+wrong pattern_by_number "pattern_by_number.lua:2: .*a pattern's numbers are changed where they are made: glint\.pattern\(" \
+    'local red = glint.pattern(function(p) return p end) local f = red * 0.5'
+wrong number_by_pattern "a pattern's numbers are changed where they are made" \
+    'local f = 1 - glint.pattern(function(p) return p.x end)'
 wrong a_global_of_glint "is it glint\.sphere\?" 'local f = sphere { radius = 1 }'
 wrong a_global_of_math "is it math\.random\?" 'local f = random()'
 wrong a_sine "is it glint\.sin\?" 'local f = function(p) return sin(p.x) end'
@@ -34,7 +38,6 @@ print "after"'
 exits 0 "print is there again" prints_again.lua --size 4x4 -o none
 check "print is there again" grep -qx after out
 
-totals
 # Numbers of a pattern that cannot be taken: each kind has a message.
 scene odd 'local f = function(p) return { glint.sqrt(p.x), 1, 1 } end'
 exits 0 "NaN" odd.lua --size 16x16 -o none
@@ -63,3 +66,4 @@ for f in 'glint.checker(4 * p, 4 * s.footprint)' 'glint.checker(p)' 'glint.strip
     if grep -q 'the pattern is' err; then fail "$f: $(cat err)"; else pass; fi
 done
 
+totals

@@ -44,7 +44,8 @@ static void project(const glint_plan_camera *camera, const double point[3], doub
 
 static void test_projection(void **state)
 {
-    static const double points[][3] = { { 0, 0, 0 }, { 1.2, 0.5, -0.3 }, { -1, -1.5, 0.4 }, { 0.2, -0.9, 2 }, { 2.5, 1, 1 }, { -3, 2, 5 } };
+    static const double points[][3] = { { 0, 0, 0 },      { 1.2, 0.5, -0.3 }, { -1, -1.5, 0.4 },
+                                        { 0.2, -0.9, 2 }, { 2.5, 1, 1 },      { -3, 2, 5 } };
     static const double shift[3] = { 0.3, -0.2, 7 };
     (void)state;
     for (int scale = 1; scale <= 3; scale++) {
@@ -64,9 +65,12 @@ static void test_projection(void **state)
         for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
             double q[3], seen[2];
             for (int r = 0; r < 3; r++)
-                q[r] = ((ROTATION[r][0] * points[i][0] + ROTATION[r][1] * points[i][1]) + ROTATION[r][2] * points[i][2]) + shift[r];
+                q[r] =
+                    ((ROTATION[r][0] * points[i][0] + ROTATION[r][1] * points[i][1]) + ROTATION[r][2] * points[i][2]) +
+                    shift[r];
             project(&camera, points[i], seen);
-            const double want[2] = { scale * (desc.fx * q[0] / q[2] + desc.cx), scale * (desc.fy * q[1] / q[2] + desc.cy) };
+            const double want[2] = { scale * (desc.fx * q[0] / q[2] + desc.cx),
+                                     scale * (desc.fy * q[1] / q[2] + desc.cy) };
             for (int c = 0; c < 2; c++)
                 assert_true(fabs(seen[c] - want[c]) <= 1e-12 * fabs(want[c]));
         }

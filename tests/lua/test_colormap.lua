@@ -211,6 +211,42 @@ function tests.maps_of_ones_own()
   end
 end
 
+-- A colour bar calls the function when it is made, and has its colours as a list.
+function tests.bars_of_ones_own()
+  local function map(share) return { share, 0, 1 - share } end
+  local bar = glint.colorbar { map = map, low = 1, high = 1000, scale = "log" }
+  local colors, made = bar.map, glint.colormap(map)
+  check(#colors == 256 and colors[1] == "#0000ff" and colors[256] == "#ff0000", "%s and %s", colors[1], colors[256])
+  for _, i in ipairs { 1, 52, 103, 256 } do
+    check((glint.colormap(colors)((i - 1) / 255) - made((i - 1) / 255)):length() < 1e-6, "colour %d", i)
+  end
+  local good, message = pcall(function() bar.map = map end)
+  check(not good and tostring(message):find("give it to glint.colorbar { ... }", 1, true), "a bar that is there: %s", message)
+  good, message = pcall(glint.colorbar, { map = function() return 1, 2 end, low = 0, high = 1 })
+  check(good, "a grey: %s", message)
+  good, message = pcall(glint.colorbar, { map = function() end, low = 0, high = 1 })
+  check(not good and tostring(message):find("colorbar.map: the function's result: ", 1, true), "no colour: %s", message)
+end
+
+-- Every picture of depth with a range has the same colour for the same distance.
+function tests.ranges_of_passes()
+  local wall = glint.plane { point = { 0, 0, 0 }, normal = { 0, 0, 1 } }
+  local scene = glint.scene { ambient = 1, wall,
+    camera = glint.camera { eye = { 0, 0, 8 }, at = { 0, 0, 0 }, projection = "orthographic", height = 2 } }
+  local image = scene:render { width = 2, height = 2, passes = "depth" }
+  local map = glint.colormap("viridis", 0, 10)
+  image:save("range.png", { pass = "depth", colormap = "viridis:0:10" })
+  local seen = glint.read_image "range.png"
+  for c, value in ipairs { seen:pixel(0, 0) } do
+    check(math.abs(value - map(8)[({ "r", "g", "b" })[c]]) < 0.01, "channel %d: %g", c, value)
+  end
+  os.remove "range.png"
+  local good, message = pcall(image.save, image, "x.png", { colormap = "viridis:1:1" })
+  check(not good and tostring(message):find("save.colormap: NAME:LOW:HIGH with two numbers that differ", 1, true), "%s", message)
+  good, message = pcall(scene.render, scene, { width = 2, height = 2, colormap = "viridis:a:1" })
+  check(not good and tostring(message):find("colormap: NAME:LOW:HIGH with two numbers that differ", 1, true), "%s", message)
+end
+
 function tests.logarithmic_scales()
   local linear, log = glint.colormap "viridis", glint.colormap("viridis", 0.01, 100, "log")
   for i = -2, 2 do

@@ -37,6 +37,8 @@ function tests.tables_stand_for_objects()
   wrong("sphere.material: material expected, got table; write glint.material { ... }",
     "glint.sphere { center = { 0, 0, 0 }, radius = 1, material = { diffuse = 1 } }")
   wrong("sphere.material: material expected, got table; write glint.material { ... }", "ball.material = { diffuse = 1 }")
+  wrong('sphere.material: material expected, got string "red"; write glint.material { diffuse = "red" }',
+    "glint.sphere { center = { 0, 0, 0 }, radius = 1, material = 'red' }")
   wrong("scene.camera: camera expected, got table; write glint.camera { ... }", "glint.scene { camera = { eye = { 0, 0, 9 } } }")
   wrong("got table; write glint.sphere { ... }, glint.point_light { ... } or another", "glint.scene { { center = { 0, 0, 0 } } }")
   wrong("sphere: a name with each value expected, sphere { center = ... }", "glint.sphere({ 0, 0, 0 }, 1)")

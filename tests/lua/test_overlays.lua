@@ -154,7 +154,7 @@ function tests.bars_of_ones_own()
   for want, fields in pairs { ["colorbar.low: numbers above 0 at both ends"] = { low = 0, scale = "log" },
     ["colorbar.map: a list of at least two colours expected, got 1"] = { map = { "red" } },
     ["colorbar.scale: \"linear\" or \"log\" expected"] = { scale = "cubic" },
-    ["colorbar.map: the name of a map or a list of colours expected, got function"] = { map = function() end } } do
+    ["colorbar.map: the function's result: {r, g, b}, a number or a colour name expected"] = { map = function() end } } do
     local good, message = pcall(picture, fields)
     check(not good and tostring(message):find(want, 1, true), "%s expected, got %s", want, message)
   end

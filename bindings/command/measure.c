@@ -1,0 +1,98 @@
+// --exposure auto, --colormap MAP:auto: finds one exposure and one range for all pictures of a script, in a first run that writes no picture.
+//
+// The first run renders every frame, whatever -f, --shard, --region and earlier runs leave to do, so that each part of a job finds
+// the same numbers.
+#include <inttypes.h>
+#include <math.h>
+
+#include "bindings/command/cli.h"
+
+// Silences print and io.write: the second run prints. os.exit ends the first run as the script's last line would.
+void cli_hush_script(lua_State *L)
+{
+    static const char text[] = "print = function() end\n"
+                               "if io and io.output then io.output '/dev/null' end\n"
+                               "if os and os.exit then os.exit = ... end\n";
+    if (luaL_loadstring(L, text) != LUA_OK)
+        lua_error(L);
+    lua_pushcfunction(L, glintL_stop_script);
+    lua_call(L, 1, 0);
+}
+
+static void report_exposure(cli_output *output, double stops, const glint_brightness *seen)
+{
+    if (output->json) {
+        fprintf(output->data, "{\"event\":\"exposure\",\"stops\":%.2f,\"brightest\":", stops);
+        glintL_json_number(output->data, seen->most);
+        fprintf(output->data, ",\"frames\":%" PRIu64 "}", seen->pictures);
+        cli_end_line(output);
+    } else if (!output->quiet) {
+        fprintf(stderr, "exposure %.2f: the brightest value of %" PRIu64 " picture%s is %.6g\n", stops, seen->pictures,
+                seen->pictures == 1 ? "" : "s", seen->most);
+    }
+}
+
+static void report_range(cli_output *output, const double range[2])
+{
+    if (output->json) {
+        fputs("{\"event\":\"range\",\"low\":", output->data);
+        glintL_json_number(output->data, range[0]);
+        fputs(",\"high\":", output->data);
+        glintL_json_number(output->data, range[1]);
+        fputc('}', output->data);
+        cli_end_line(output);
+    } else if (!output->quiet) {
+        fprintf(stderr, "colours from %.6g to %.6g\n", range[0], range[1]);
+    }
+}
+
+void cli_begin_measuring(const cli_options *options, cli_output *output, glintL_run *run, glintL_request *request)
+{
+    *request = run->request;
+    run->finds_range = options->finds_range;
+    run->measures = run->keeps_images = run->no_sheets = true;
+    run->range[0] = HUGE_VAL;
+    run->range[1] = -HUGE_VAL;
+    run->request.selection = (glintL_selection) { 0 };
+    run->request.repeat = 1;
+    run->request.warnings = GLINTL_WARNINGS_NONE;
+    if (output->progress)
+        cli_progress_step(output->progress, "looking at all pictures", 0, 0, 0);
+}
+
+static void take_exposure(cli_options *options, cli_output *output, glintL_run *run, const glint_brightness *seen)
+{
+    const double stops = glint_exposure_for(seen->most);
+    snprintf(options->exposure, sizeof options->exposure, "%.2f", stops);
+    run->request.render_text[glintL_render_find("exposure")] = options->exposure;
+    report_exposure(output, stops, seen);
+}
+
+// Without a range there is nothing to show in colours, which a warning says.
+static void take_range(cli_options *options, cli_output *output, glintL_run *run, const double range[2])
+{
+    const char **text = &run->request.render_text[glintL_render_find("colormap")];
+    if (!(range[0] < range[1]))
+        return;
+    snprintf(options->colormap, sizeof options->colormap, "%s:%.9g:%.9g", *text, range[0], range[1]);
+    *text = options->colormap;
+    report_range(output, range);
+}
+
+bool cli_end_measuring(cli_options *options, cli_output *output, glintL_run *run, const glintL_request *request,
+                       bool good)
+{
+    const glint_brightness seen = run->brightness;
+    run->measures = run->keeps_images = run->no_sheets = false;
+    run->request = *request;
+    if (output->progress)
+        cli_progress_film(output->progress, NULL, 0, 0);
+    if (run->exit_code || run->interrupted || !(good || run->is_stopped))
+        return false;
+    glintL_run_reset(run);
+    if (options->finds_exposure)
+        take_exposure(options, output, run, &seen);
+    if (options->finds_range)
+        take_range(options, output, run, run->range);
+    return true;
+}
