@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-/// Whether the sum of the samples is all that is read: no kept memory, no count of their work, nothing that tells them
-/// apart.
+/// Returns whether only the sum of the samples is read: no caching, no counting of work, nothing that distinguishes
+/// them.
 static bool is_summed(const glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot,
                       uint32_t count)
 {
@@ -41,7 +41,7 @@ static bool sum(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
     for (uint32_t i = slot; i < slot + count; i++) {
         memcpy(tile->at.light[i].lit, reached, tile->group_count * sizeof *reached);
         memcpy(tile->at.light[i].open, reached, tile->group_count * sizeof *reached);
-        tile->at.light[i].brightest = 0; // not known: the largest logarithm there is
+        tile->at.light[i].brightest = 0; // unknown: the largest logarithm possible
     }
     glint_tile_count_stage(tile, frame, GLINT_STAGE_LIGHT, false);
     tile->counts.runs[GLINT_STAGE_LIGHT] += count - 1;

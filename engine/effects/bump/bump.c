@@ -1,4 +1,4 @@
-/// Bumps: the normals that light sees, turned by the slope of a program's height.
+/// Bumps: turns shading normals by the slope of a height that a program computes.
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
 #include "engine/effects/pattern/inputs.h"
@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-/// The gradient of a height by the world's axes, of a lane of the results: by the shape's own axes through its map, and by
-/// the world's. on_surface: its slopes by u and v count, too.
+/// Computes the gradient of a height in world space for one lane: from the derivatives in the shape's own space and in
+/// world space. on_surface: includes the derivatives by u and v.
 static void gradient_of(const struct glint_pattern *pattern, const glint_pattern_place *place, bool on_surface,
                         uint32_t lane, double out[3])
 {
@@ -25,7 +25,7 @@ static void gradient_of(const struct glint_pattern *pattern, const glint_pattern
     }
 }
 
-/// n' = unit(n - (g - (g.n) n)); seen from behind, the height is a depth. False: there is no such normal.
+/// n' = unit(n - (g - (g.n) n)); seen from behind, the height is a depth. Returns false if there is no such normal.
 static bool turn(double n[3], const double gradient[3], bool back)
 {
     const double along = vec_dot(gradient, n);
@@ -65,7 +65,7 @@ static void turn_lanes(glint_tile *tile, const glint_tile_frame *frame, const gl
     }
 }
 
-/// The slopes of one material's height, for some groups that show it.
+/// Bumps the normals of one material, for groups that show it.
 static void bump_material(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
                           const glint_plan_pattern *own, const glint_pattern_lanes *entries, uint32_t count)
 {
@@ -91,7 +91,7 @@ static bool is_bumped(const glint_plan_pattern *own, uint32_t fields)
 
 void glint_tile_bump(glint_tile *tile, const glint_tile_frame *frame)
 {
-    const size_t bytes = tile->group_count * GLINT_GROUP * sizeof(double); // at least as long as floats
+    const size_t bytes = tile->group_count * GLINT_GROUP * sizeof(double); // at least the size of floats
     const glint_pattern_points points = glint_pattern_points_of(tile);
     for (int c = 0; c < 3; c++)
         memcpy(tile->unbumped[c], tile->surface.normal[c], bytes);
@@ -103,7 +103,7 @@ void glint_tile_bump(glint_tile *tile, const glint_tile_frame *frame)
 
 // ---- The surface's own horizon ----
 
-/// Whether a light is above the surface itself.
+/// Returns whether a light is above the unbumped surface.
 static bool is_above(const glint_tile *tile, const glint_plan *plan, const glint_light_args *light, uint32_t sample,
                      uint32_t i)
 {
@@ -122,7 +122,7 @@ static bool is_above(const glint_tile *tile, const glint_plan *plan, const glint
     return vec_dot(n, l) > 0;
 }
 
-/// After the stage light: lanes of surfaces with a bump from whose own normal the light is behind are not lit.
+/// After the stage light: clears lanes where the light is below the horizon of the unbumped surface.
 static void cut_horizon(glint_tile *tile, const glint_plan *plan, const glint_light_args *light)
 {
     for (uint32_t s = 0; s < light->sample_count; s++)
@@ -142,7 +142,7 @@ static void load(void *const array[3], glint_precision precision, uint32_t i, do
         out[c] = glint_real_at(array[c], precision, i);
 }
 
-/// Whether light that comes along `d` goes on by the normal `n` as it does by the surface's own: mirrored on this side of it,
+/// Returns whether light along `d` continues with the normal `n` as with the surface's own normal: reflected on this side of it,
 /// refracted beyond. ratio: see glint_bounce_args.
 static bool goes_on(const double d[3], const double n[3], const double own[3], double ratio)
 {
@@ -196,7 +196,7 @@ static void turn_normals(glint_tile *tile, const glint_tile_frame *frame, glint_
     glint_tile_bump(tile, frame);
 }
 
-/// A part of surface and light.
+/// Part of the stages surface and light.
 const glint_stage glint_stage_bump = {
     .called = glint_plan_bumps,
     .step[GLINT_AT_SURFACE] = turn_normals,

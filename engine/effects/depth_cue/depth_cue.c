@@ -1,8 +1,8 @@
-/// The distance from the eye to the first surface of a sample. What absorbs around the eye leaves exp(-absorption x distance) of the
-/// light; a depth cue then fades it towards a colour. What is left is scaled in every term, and the colour's share goes to
-/// the term of the background, whose place it takes: so passes still add up.
+/// Fading by the distance from the eye to the first surface of a sample. A medium around the eye transmits exp(-absorption x distance) of the
+/// light; a depth cue then fades it towards a colour. Every term is scaled, and the colour's share is added to
+/// the background term, so that passes still add up.
 ///
-/// All of it is double, and the same code for every instruction set: a frame without either has none of it.
+/// Everything is computed in double, by the same code for every instruction set.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/effects/light_groups/light_groups.h"
@@ -11,9 +11,9 @@
 #include <string.h>
 
 struct glint_depth_cue {
-    double total[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES]; ///< over the samples that are done
-    double left[3][GLINT_TILE_SAMPLES]; ///< of the light in each pixel of the current sample
-    double share[GLINT_TILE_SAMPLES]; ///< of the colour there
+    double total[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES]; ///< over the finished samples
+    double left[3][GLINT_TILE_SAMPLES]; ///< remaining share of the light in each pixel of the current sample
+    double share[GLINT_TILE_SAMPLES]; ///< share of the colour there
 };
 
 static void *create(const glint_plan *plan)
@@ -35,14 +35,14 @@ double glint_tile_way_of(const glint_tile *tile, const glint_plan *plan, uint32_
     return glint_real_at(tile->at.t, plan->desc.precision, i) * sqrt(vec_dot(d, d));
 }
 
-/// The background does not fade towards the colour.
+/// Returns the share of the colour at a distance. The background does not fade.
 static double share_of(const glint_plan *plan, double way)
 {
     const double x = (way - plan->depth_cue.near) / (plan->depth_cue.far - plan->depth_cue.near);
     return plan->depth_cue.on && way < HUGE_VAL && x > 0 ? fmin(x, 1) : 0;
 }
 
-/// By what the current sample sees, before any other rays are followed.
+/// Computes both shares from the hits of the current sample, before any other rays are followed.
 static void find(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     const glint_plan *plan = frame->plan;
@@ -58,7 +58,7 @@ static void find(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
     }
 }
 
-/// Adds the sums of the current sample, faded, to the totals of the tile, and begins them anew.
+/// Adds the faded sums of the current sample to the totals of the tile, and clears the sums.
 static void fade(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     (void)walk;
@@ -79,7 +79,7 @@ static void fade(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
     glint_tile_count_stage(tile, frame, GLINT_STAGE_DEPTH_CUE, false);
 }
 
-/// Puts the totals where resolve reads.
+/// Copies the totals to the sums that resolve reads.
 static void take_faded(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     const glint_plan *plan = frame->plan;

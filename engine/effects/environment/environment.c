@@ -1,7 +1,7 @@
-/// A background that a program gives: run for the rays of a tile or batch that meet nothing, in the place where `shade` adds
-/// a plain one.
+/// A background computed by a program, which runs for the rays of a tile or batch that hit nothing, at the point where `shade`
+/// would add a plain background.
 ///
-/// Directions are made unit in double, and the same code serves every instruction set; the programs are a kernel's.
+/// Directions are normalised in double, by the same code for every instruction set; a kernel runs the programs.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
@@ -58,9 +58,9 @@ bool glint_tile_sees_environment(const glint_tile *tile)
     return any;
 }
 
-// ---- What the programs read ----
+// ---- Inputs of the programs ----
 
-/// Sixteen numbers of an array of real.
+/// Loads sixteen numbers from an array of real.
 static void load_group(const void *array, glint_precision precision, size_t at, double out[GLINT_GROUP])
 {
     if (precision == GLINT_DOUBLE)
@@ -69,7 +69,7 @@ static void load_group(const void *array, glint_precision precision, size_t at, 
         out[i] = (double)((const float *)array)[at + i];
 }
 
-/// The rays of a group, not unit: as glint_tile_direction has them.
+/// Loads the directions of a group's rays, not normalised: see glint_tile_direction.
 static void load_directions(const glint_tile *tile, glint_precision precision, uint32_t g, double d[3][GLINT_GROUP])
 {
     const size_t across = glint_tile_has_arrays(tile) ? 1 : tile->groups_across, x = g % across, y = g / across;
@@ -88,7 +88,7 @@ static void load_directions(const glint_tile *tile, glint_precision precision, u
     }
 }
 
-/// The directions of sixteen rays, into group `to` of the rows.
+/// Writes the directions of sixteen rays into group `to` of the rows.
 static void put_directions(struct glint_environment *environment, const glint_plan *plan, const double d[3][GLINT_GROUP],
                            uint32_t to)
 {
@@ -122,9 +122,9 @@ static void run(const struct glint_environment *environment, const glint_tile_fr
     frame->stages->program(args);
 }
 
-// ---- What they give ----
+// ---- Results ----
 
-/// Notes the lanes of group `from` of the rows at which the program gave what is no light.
+/// Records the lanes of group `from` of the rows where the program gave an invalid light.
 static void note_odd(glint_tile *tile, const struct glint_environment *environment, uint32_t channels, uint32_t from,
                      unsigned lanes)
 {
@@ -139,7 +139,7 @@ static void note_odd(glint_tile *tile, const struct glint_environment *environme
     }
 }
 
-/// The light of group `from` of the rows, 0 in lanes that are not wanted. channels: how many the program gives; one stands for all.
+/// Loads the light of group `from` of the rows, 0 in other lanes. channels: the number that the program computes; one stands for all.
 static void light_of(glint_tile *tile, const struct glint_environment *environment, uint32_t channels, uint32_t from,
                      unsigned lanes, double light[3][GLINT_GROUP])
 {
@@ -177,7 +177,7 @@ static void add_group(glint_tile *tile, const struct glint_environment *environm
     }
 }
 
-/// What the lanes of `count` groups of the rows show.
+/// Runs the program for `count` groups of the rows.
 static void run_rows(struct glint_environment *environment, const glint_tile_frame *frame, const uint16_t *lanes,
                      uint32_t count)
 {
@@ -194,7 +194,7 @@ static void run_rows(struct glint_environment *environment, const glint_tile_fra
     run(environment, frame, own->program, &args);
 }
 
-/// Some groups of a tile, and their lanes.
+/// Runs the program for groups of a tile and their lanes.
 static void run_groups(glint_tile *tile, const glint_tile_frame *frame, const uint32_t *groups, const uint16_t *lanes,
                        uint32_t count)
 {
@@ -231,7 +231,7 @@ void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame)
 
 // ---- Rays that left surfaces ----
 
-/// The directions of `count` rays, at most a group.
+/// Loads the directions of `count` rays, at most a group.
 static void load_rays(const glint_rays *rays, glint_precision precision, const uint16_t *ray, uint32_t count,
                       double d[3][GLINT_GROUP])
 {
@@ -240,7 +240,7 @@ static void load_rays(const glint_rays *rays, glint_precision precision, const u
             d[c][i] = glint_real_at(rays->direction[c], precision, ray[i < count ? i : 0]);
 }
 
-/// What `count` rays show, as many as a call of the program takes at most.
+/// Runs the program for `count` rays, at most as many as fit into one call.
 static void run_rays(glint_tile *tile, const glint_tile_frame *frame, const glint_rays *rays, const uint16_t *ray,
                      uint32_t count, double (*light)[GLINT_TILE_SAMPLES])
 {
@@ -286,14 +286,14 @@ void glint_tile_environment_of(glint_tile *tile, const glint_tile_frame *frame, 
 
 static bool called(const glint_plan *plan) { return plan->environment; }
 
-/// Rays that leave the scene show it by their direction.
+/// Requests the directions of rays that leave the scene.
 static void need_directions(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     if (glint_tile_sees_environment(tile))
         glint_tile_need_rays(tile, frame, walk);
 }
 
-/// It stands for the plain background, which `shade` reads.
+/// Replaces the plain background that `shade` reads.
 const glint_stage glint_stage_environment = {
     .name = "environment",
     .doc = "the background's program, for rays that leave the scene",

@@ -1,4 +1,4 @@
-/// A background that a program gives, by the direction in which rays leave the scene.
+/// A background that a program computes from the direction of rays that leave the scene.
 #include "engine/base/alloc.h"
 #include "engine/base/maker.h"
 #include "engine/base/status.h"
@@ -10,7 +10,7 @@
 
 #define TURN 0x1.921fb54442d18p+2 // 2 pi
 
-/// Where a direction is in a picture of all of them.
+/// Makes a program for the position of a direction in a picture of all directions.
 static glint_status make_uv(glint_builder *builder, glint_program **out, glint_error *error)
 {
     glint_maker m = { .builder = builder, .error = error };

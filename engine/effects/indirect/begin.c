@@ -1,4 +1,4 @@
-/// Where paths of indirect light begin, and in which directions.
+/// The beginning of paths of indirect light: points and first directions.
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
 #include "engine/effects/indirect/paths.h"
@@ -6,20 +6,20 @@
 #include <math.h>
 #include <string.h>
 
-/// 4 x 4 pixels at a place among mirrors, which have a number.
+/// A block of 4 x 4 pixels, seen through the same sequence of mirrors, with its number.
 typedef struct pixel_block {
     bool known;
     uint64_t at, place, number;
 } pixel_block;
 
-/// Pixels of 2 x 2 belong together first, so that these have an even set as well.
+/// Orders the pixels of a block in squares of 2 x 2, so that each square gets an even set of numbers as well.
 static uint32_t lane_order(uint32_t lane)
 {
     const uint32_t x = lane & 3, y = lane >> 2;
     return (x & 1) | (y & 1) << 1 | (x >> 1) << 2 | (y >> 1) << 3;
 }
 
-/// Notes which block of pixels point i of `seen` belongs to; `block`: the last one found.
+/// Finds the block of point i of `seen`; `block`: the previous one.
 static void find_block(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan,
                        const glint_ray *ray, uint32_t i, pixel_block *block)
 {
@@ -37,8 +37,8 @@ static void find_block(struct glint_indirect *indirect, const glint_tile *to, co
     indirect->lane[i] = lane_order(ray->pixel % GLINT_GROUP);
 }
 
-/// What the light that paths find is multiplied by at sample i of a tile: the diffuse reflectance; where they look for open
-/// sky, the ambient light that all of it would bring.
+/// Returns the factor of the light of paths at sample i of a tile: the diffuse reflectance; with ambient occlusion
+/// the ambient light of the whole sky.
 static const double *first_weight(const glint_tile *seen, const glint_plan *plan, uint32_t i, double room[3])
 {
     if (!plan->indirect.is_sky)
@@ -48,7 +48,7 @@ static const double *first_weight(const glint_tile *seen, const glint_plan *plan
     return room;
 }
 
-/// How many paths a point gets, which is fewer times seen where mirrors leave little of it.
+/// Returns the number of paths of a point, which is smaller for points seen weakly in mirrors.
 static uint32_t paths_of(const glint_plan *plan, const glint_batch *from, uint32_t i)
 {
     const double samples = plan->indirect.samples;
@@ -58,8 +58,8 @@ static uint32_t paths_of(const glint_plan *plan, const glint_batch *from, uint32
     return from ? (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples) : (uint32_t)plan->indirect.samples;
 }
 
-/// Begins at point i, whose paths are multiplied by `found`: their first rays are alike but for the direction. Returns how many paths it
-/// gets.
+/// Begins the paths of point i, with the factor `found`. Their first rays differ only in the direction. Returns the number of
+/// paths.
 static uint32_t begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
                             const glint_tile *seen, const glint_batch *from, uint32_t i, const double *found,
                             pixel_block *block)
@@ -124,7 +124,7 @@ void glint_indirect_scatter(const glint_tile *tile, const glint_tile_frame *fram
     frame->stages->geometry[frame->plan->desc.precision].scatter(&args);
 }
 
-/// The first rays weigh what they did, but those that bumps do not let go.
+/// Restores the weights of the first rays, except those that a bumped normal sends into the surface.
 static void weigh_first(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen)
 {
     glint_rays *first = &indirect->first;
@@ -139,7 +139,7 @@ static void weigh_first(struct glint_indirect *indirect, const glint_tile_frame 
                 first->weight[c][i] = 0;
 }
 
-/// The points that get path `path`. Returns whether there are any.
+/// Selects the points that have a path number `path`. Returns whether there are any.
 static bool choose_points(struct glint_indirect *indirect, uint32_t path)
 {
     glint_rays *first = &indirect->first;
@@ -154,14 +154,14 @@ static bool choose_points(struct glint_indirect *indirect, uint32_t path)
     return any;
 }
 
-/// Draws for the points that get path `path`, or those before whose seed ends here: it lasts for 2^32 points.
+/// Draws for the points with a path number `path`. A seed lasts for 2^32 points; when it changes, draws only for those before.
 static void draw_first(struct glint_indirect *indirect, const glint_plan *plan, uint32_t path, uint64_t number)
 {
     const bool lasting = (uint64_t)plan->indirect.samples * (uint64_t)plan->desc.samples <= UINT32_MAX / GLINT_GROUP;
     if (path > 0 && lasting)
         return;
     glint_sequence_seed seed;
-    uint64_t last = 0; // the block that it is made of
+    uint64_t last = 0; // the block of the last seed
     bool known = false;
     for (uint32_t g = 0; g < indirect->first.group_count; g++)
         for (unsigned left = indirect->first.active[g]; left; left &= left - 1) {

@@ -1,4 +1,4 @@
-/// The paths of a tile's points: what the sources of this folder share. Internal.
+/// The paths of a tile's points, shared by the files of this folder. Internal.
 #ifndef GLINT_INDIRECT_PATHS_H
 #define GLINT_INDIRECT_PATHS_H
 
@@ -14,20 +14,20 @@ typedef struct draws {
 
 struct glint_indirect {
     glint_batch batch;
-    glint_plan plan; ///< the frame's, with one sample of each light, which is not seen
-    glint_tile_frame frame; ///< likewise
+    glint_plan plan; ///< the frame's plan, with one sample of each light and without visible lights
+    glint_tile_frame frame; ///< the frame with this plan
     glint_plan_light *lights; ///< of that plan; NULL: there are none
-    uint32_t paths[GLINT_TILE_SAMPLES], fewest; ///< that each point gets, and the least of these
-    uint16_t matt[GLINT_TILE_GROUPS]; ///< the points that get any
+    uint32_t paths[GLINT_TILE_SAMPLES], fewest; ///< number of paths of each point, and the least of these
+    uint16_t matt[GLINT_TILE_GROUPS]; ///< the points that have paths
     uint64_t
-        block[GLINT_TILE_SAMPLES]; ///< a number for the 4 x 4 pixels of each point, and for its place among mirrors
-    uint32_t lane[GLINT_TILE_SAMPLES]; ///< which of these pixels
-    draws first_draws, next_draws; ///< of the points, and of what their paths met
-    glint_rays first; ///< from each point its own number's ray: but for its direction, the same for all paths
-    double weight[3][GLINT_TILE_SAMPLES]; ///< what these weigh before anything is taken from them
+        block[GLINT_TILE_SAMPLES]; ///< number of the 4 x 4 pixels of each point and of its sequence of mirrors
+    uint32_t lane[GLINT_TILE_SAMPLES]; ///< index of the pixel in its block
+    draws first_draws, next_draws; ///< for the points, and for the hits of their paths
+    glint_rays first; ///< the first ray of each point, by number; equal for all paths except for its direction
+    double weight[3][GLINT_TILE_SAMPLES]; ///< weights of these rays before anything is subtracted
     glint_rays next[2]; ///< rays of odd and even steps
-    uint16_t scattered[GLINT_TILE_GROUPS]; ///< samples that a path leaves so
-    _Alignas(64) double direction[3][GLINT_TILE_SAMPLES]; ///< of these
+    uint16_t scattered[GLINT_TILE_GROUPS]; ///< samples whose path is scattered
+    _Alignas(64) double direction[3][GLINT_TILE_SAMPLES]; ///< directions of scattered paths
 };
 
 /// As fmax: of a NaN and a number the number.
@@ -35,21 +35,21 @@ static inline double glint_larger(double a, double b) { return a > b || b != b ?
 
 static inline double glint_largest(const double c[3]) { return glint_larger(c[0], glint_larger(c[1], c[2])); }
 
-/// Which point of its sequence path `number` of a pixel's point i takes.
+/// Returns the index in its sequence for path `number` of point i.
 static inline uint64_t glint_indirect_point_of(const struct glint_indirect *indirect, uint32_t i, uint64_t number)
 {
     const uint64_t each = (uint64_t)indirect->plan.indirect.samples * (uint64_t)indirect->plan.desc.samples;
     return indirect->lane[i] * each + number;
 }
 
-/// The seed of that sequence, two for each turn: `which` says what for. k: the point.
+/// Returns the seed of that sequence. There are two for each step; `which` selects one. k: the index.
 static inline uint64_t glint_indirect_seed_of(const struct glint_indirect *indirect, uint32_t i, uint64_t k,
                                               uint32_t which)
 {
     return glint_sequence_mix(indirect->block[i], which | (k >> 32) << 32);
 }
 
-/// Notes point k of a sequence in place `at` for the stage scatter, which takes the point `further` than what is noted.
+/// Stores index k of a sequence at `at` for the stage scatter, which uses the index plus its own offset `further`.
 static inline void glint_indirect_note(draws *to, uint32_t at, uint64_t k, const glint_sequence_seed *seed,
                                        uint32_t further)
 {
@@ -59,7 +59,7 @@ static inline void glint_indirect_note(draws *to, uint32_t at, uint64_t k, const
     to->digits[1][at] = seed->digits[1];
 }
 
-/// Whether light that is scattered from a sample leaves its surface, along the direction in place i.
+/// Returns whether the scattered direction at i leaves the sample's surface.
 static inline bool glint_indirect_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t i,
                                          const double (*direction)[GLINT_TILE_SAMPLES])
 {
@@ -69,21 +69,21 @@ static inline bool glint_indirect_leaves(const glint_tile *tile, const glint_pla
     return glint_tile_leaves(tile, plan, i, d);
 }
 
-/// Where paths begin, and how many at each point. Returns the most.
+/// Finds the points and their numbers of paths. Returns the largest number.
 uint32_t glint_indirect_find_points(struct glint_indirect *indirect, const glint_tile *to,
                                     const glint_tile_frame *frame, const glint_tile *seen, const glint_batch *from);
-/// Directions around the normals of `tile` for the samples in `wanted`, by points that are `further` than those drawn.
+/// Computes directions around the normals of `tile` for the samples in `wanted`, with indices offset by `further`.
 void glint_indirect_scatter(const glint_tile *tile, const glint_tile_frame *frame, const uint16_t *wanted,
                             const draws *drawn, uint32_t further, double (*direction)[GLINT_TILE_SAMPLES]);
-/// The first rays of path `path` of every point. Returns whether there are any.
+/// Makes the first rays of path number `path` of every point. Returns whether there are any.
 bool glint_indirect_begin_paths(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
                                 uint32_t path, uint64_t number);
-/// Samples of the batch that mirrors and transparent materials may send paths on from; finds where to.
+/// Computes the continuations at samples of the batch with mirrors and transparent materials.
 void glint_indirect_find_ways(struct glint_indirect *indirect, const glint_tile_frame *frame);
-/// Adds what rays that meet nothing bring, the lanes in `missed`, to the sums of their pixels.
+/// Adds the background seen by rays that hit nothing, the lanes in `missed`, to the sums of their pixels.
 void glint_indirect_collect_missed(const struct glint_indirect *indirect, const glint_tile_frame *frame,
                                    const uint16_t *missed, const double background[3], glint_tile *to);
-/// After a cast: adds the light of the open sky that the rays lead to, and sends those on that meet what lets light through.
+/// After a cast: adds the open sky that the rays reach, and continues the rays that hit transparent surfaces.
 /// Returns whether there are any.
 bool glint_indirect_open_sky(struct glint_indirect *indirect, const glint_tile_frame *frame, bool any, uint32_t step,
                              glint_tile *to);

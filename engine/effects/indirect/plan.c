@@ -1,10 +1,10 @@
-/// Indirect light: what surfaces get from other surfaces and from the background.
+/// Indirect light: light from other surfaces and from the background.
 ///
-/// A material's ambient light is ka Ia. As much of it as kd Ia stands for the light that its surroundings send, Ia being
-/// the mean L of all directions; that part is replaced by kd times what paths of light find, and comes back only where a
-/// path is followed no further. What ka has beyond kd is light of the surface's own.
+/// A material's ambient light is ka Ia. The part kd Ia represents the light of its surroundings, where Ia is
+/// the mean light from all directions. Indirect light replaces this part by kd times the light of paths; it is used only where a
+/// path ends. The excess of ka over kd is light of the surface's own.
 ///
-/// Ambient occlusion is the same with one path of one step: that part of the ambient light, times the share of the sky that
+/// Ambient occlusion is the same with paths of one step: that part of the ambient light, times the share of the sky that
 /// is open.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
@@ -17,8 +17,8 @@ static bool is_matt(const glint_plan *plan, uint32_t i)
     return kd[0] > 0 || kd[1] > 0 || kd[2] > 0;
 }
 
-/// Parts a material's ambient light. Where a program gives it, or the diffuse reflectance, so do the stages pattern and
-/// indirect.
+/// Splits a material's ambient light. If a program computes it or the diffuse reflectance, the stages pattern and indirect
+/// split it.
 static void part_ambient(glint_plan *plan, uint32_t i, double rest[3])
 {
     glint_shade_material *material = &plan->materials[i];
@@ -36,7 +36,7 @@ static void part_ambient(glint_plan *plan, uint32_t i, double rest[3])
     }
 }
 
-/// Where the samples of each light begin.
+/// Finds the first row of each light's samples.
 static glint_status find_lights(glint_plan *plan, glint_error *error)
 {
     glint_plan_indirect *indirect = &plan->indirect;

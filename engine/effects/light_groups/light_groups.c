@@ -6,22 +6,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Share of a pixel's light below which the rest is rounding, and none: of sums in double; of faces and vertices, whose light is float.
+/// A rest below this share of a pixel's light is rounding, and counts as 0.
 #define ROUNDING 0x1p-40
 #define ROUNDING_OF_SITES 0x1p-22
 
-enum { DIFFUSE, SPECULAR, OTHER, SUMS }; ///< other: all that is not light of lamps on the hits of the tile itself
+enum { DIFFUSE, SPECULAR, OTHER, SUMS }; ///< OTHER: everything except light of lamps on the tile's own hits
 
 typedef double term_sums[SUMS][3][GLINT_TILE_SAMPLES];
 
 struct glint_group_sums {
-    _Alignas(64) double local[GLINT_TERM_LOCAL][3][GLINT_TILE_SAMPLES]; ///< of one call of shade without lights
+    _Alignas(64) double local[GLINT_TERM_LOCAL][3][GLINT_TILE_SAMPLES]; ///< terms of one call of shade without lights
     uint32_t count, pass_count;
     term_sums *sum; ///< of each group
-    double (*faded)[3][GLINT_TILE_SAMPLES]; ///< of each group, over the samples that are done; NULL: nothing fades
+    double (*faded)[3][GLINT_TILE_SAMPLES]; ///< for each group, over the finished samples; NULL: nothing fades
     float (*mean)[3][GLINT_TILE_SAMPLES]; ///< of each pass
     struct glint_group_sums *batch,
-        *sites; ///< of rays that left surfaces, and of faces and vertices; owned by the tile's own
+        *sites; ///< sums of rays that left surfaces, and of faces and vertices; owned by the tile's sums
 };
 
 // ---- Memory ----
@@ -69,7 +69,7 @@ struct glint_group_sums *glint_group_sums_create(const glint_plan *plan)
     if (plan->runs[GLINT_STAGE_VERTEX])
         good = (sums->sites = create(groups->count)) && good;
     if (sums->batch)
-        sums->batch->sites = sums->sites; // batches show them, too
+        sums->batch->sites = sums->sites; // used by batches, too
     if (good)
         return sums;
     glint_group_sums_destroy(sums);
@@ -94,7 +94,7 @@ struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool sites)
 
 // ---- A sample ----
 
-/// What a group has of a sample.
+/// Returns the light of a group in a sample.
 static double sum_of(const struct glint_group_sums *sums, uint32_t group, int c, uint32_t i)
 {
     double(*sum)[3][GLINT_TILE_SAMPLES] = sums->sum[group];
@@ -121,7 +121,7 @@ void glint_groups_add(const glint_tile *tile, uint32_t group, uint32_t i, const 
         tile->group_sums->sum[group][OTHER][c][i] += light[c];
 }
 
-/// The ambient term that every hit gets, of which lights bring their share.
+/// Computes the ambient term of all hits, of which each light has a share.
 static void shade_ambient(const glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args)
 {
     const struct glint_light_groups *groups = frame->plan->light_groups;
@@ -153,8 +153,8 @@ void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, con
     frame->stages->shade(&own);
 }
 
-/// Fills in the lights of a call that belong to a group, and the next group that any belongs to. Samples of a light whose sum stands
-/// in the first of them have no place of their own in the call.
+/// Selects the lights of a call that belong to a group, and finds the next group. If the sum of a light's samples is stored in its
+/// first row, its other rows are not in the call.
 static uint32_t choose_lights(const glint_tile *tile, const glint_plan_light *rows, uint32_t count,
                               const glint_shade_light *lights, uint32_t group, glint_shade_light *chosen,
                               uint32_t *next)
@@ -218,9 +218,9 @@ void glint_groups_fade(const glint_tile *tile, const glint_plan *plan, const dou
             }
 }
 
-// ---- Light that is found once a face or vertex ----
+// ---- Light computed once per face or vertex ----
 
-/// What group `group` gives both sides' faces and vertices; those of the picture come first.
+/// Returns the cached light of `group` for the faces and vertices of both sides. The picture's own light comes first.
 static glint_shading_point_light *kept_light(const glint_tile_frame *frame, uint32_t group)
 {
     const size_t each = 2 * (size_t)frame->shading_points->blocks * GLINT_SHADING_POINT_BLOCK;
@@ -252,7 +252,7 @@ void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, 
 
 // ---- The picture ----
 
-/// What a group has of `count` pixels in all samples, in a channel.
+/// Loads the light of a group for `count` pixels over all samples, in one channel.
 static void take_light(const struct glint_group_sums *sums, uint32_t group, int c, uint32_t count,
                        double *restrict light)
 {
@@ -266,7 +266,7 @@ static void take_light(const struct glint_group_sums *sums, uint32_t group, int 
         light[i] = (diffuse[i] + specular[i]) + other[i];
 }
 
-/// Adds it to the light of all lamps. mean: of a pass; NULL: the group has none.
+/// Adds this light to the light of all lamps. mean: of the group's pass; NULL: it has none.
 static void add_light(const double *restrict light, uint32_t count, double samples, double *restrict lamps,
                       float *restrict mean)
 {
@@ -276,7 +276,7 @@ static void add_light(const double *restrict light, uint32_t count, double sampl
         mean[i] = (float)(light[i] / samples);
 }
 
-/// The mean of the light that no lamp sends, in a channel of all pixels. lamps: the sums of all groups.
+/// Computes the mean of the light that comes from no lamp, in one channel. lamps: the sums of all groups.
 static void find_rest(const glint_tile *tile, const glint_plan *plan, int c, const double *lamps, float *mean)
 {
     const double rounding = plan->runs[GLINT_STAGE_VERTEX] ? ROUNDING_OF_SITES : ROUNDING;

@@ -1,8 +1,8 @@
-/// Light passes: the light of each group of lights, summed beside the picture's own sums. Internal.
+/// Light passes: the light of each group of lights, summed in addition to the picture's own sums. Internal.
 ///
-/// Every place that adds light to the sums of a tile adds it once more to those of the light's group: shade, shaders, transparent
-/// shadows, visible lights, mirrors and glass, indirect light, and what is found once a face or vertex. Rays, hits, shadows and
-/// weights are the picture's own. The light that no lamp sends is the difference to the picture's sums.
+/// Each place that adds light to the sums of a tile also adds it to the sums of the light's group: shade, shaders, transparent
+/// shadows, visible lights, mirrors and glass, indirect light, and the light of faces and vertices. Rays, hits, shadows and
+/// weights are those of the picture. The light that comes from no lamp is the difference to the picture's sums.
 #ifndef GLINT_LIGHT_GROUPS_H
 #define GLINT_LIGHT_GROUPS_H
 
@@ -13,29 +13,29 @@ struct glint_group_sums *glint_group_sums_create(const glint_plan *plan);
 void glint_group_sums_destroy(struct glint_group_sums *sums); ///< NULL: nothing
 bool glint_group_sums_fit(const struct glint_group_sums *sums,
                           const glint_plan *plan); ///< NULL fits frames without light passes
-/// The sums of a batch that is made for a tile; sites: of faces and vertices. NULL: the frame has no light passes.
+/// Returns the sums for a batch of a tile; sites: for faces and vertices. NULL: the frame has no light passes.
 struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool sites);
 
-/// Begins a tile's sums; then, for each call of shade, adds what its lights give, and the ambient light that lights bring where it has `first`.
+/// Clears a tile's sums. Then, for each call of shade, adds the light of its lights, and the lights' share of ambient light if it has `first`.
 void glint_groups_begin(glint_tile *tile, const glint_plan *plan);
 /// The lights of the call are `count` rows of the plan from row `from` on, by glint_tile_shade_args; or all of one group.
 void glint_groups_shade(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from,
                         uint32_t count);
 void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args,
                             uint32_t group);
-/// Where the diffuse and specular light of a group is summed.
+/// Returns the sums of a group's diffuse and specular light.
 double (*glint_group_sum(const glint_tile *tile, uint32_t group))[3][GLINT_TILE_SAMPLES];
-/// A light of this group shows `light` to pixel i.
+/// Adds `light` of a visible light of this group to pixel i.
 void glint_groups_add(const glint_tile *tile, uint32_t group, uint32_t i, const double light[3]);
-/// In frames with light passes: adds to pixel `pixel` of `to` what sample `at` of a batch has found, times a weight.
+/// In frames with light passes: adds the light of sample `at` of a batch, times a weight, to pixel `pixel` of `to`.
 void glint_groups_collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to, uint32_t at, uint32_t pixel,
                           const double weight[3]);
-/// Likewise: of ambient light that is added to a pixel, the part that lights bring.
+/// Likewise: adds the lights' share of ambient light to a pixel.
 void glint_groups_add_ambient(const glint_tile *to, const glint_plan *plan, uint32_t pixel, int c, double light);
 /// Fades the sums of the current sample, in each pixel and channel; see effects/depth_cue/.
 void glint_groups_fade(const glint_tile *tile, const glint_plan *plan, const double (*left)[GLINT_TILE_SAMPLES]);
 
-/// Keeps the light of a block of faces or vertices, and gives it to the samples that show them; see effects/vertex_shading/.
+/// Caches the light of a block of faces or vertices, and adds it to the samples that show them; see effects/vertex_shading/.
 void glint_groups_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
 void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, glint_vertex_args *args);
 

@@ -1,4 +1,4 @@
-/// Light passes: the groups that lights belong to, and which of them a frame wants.
+/// Light passes: the groups of lights, and those that a frame needs.
 #include "engine/effects/light_groups/plan.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
@@ -31,7 +31,7 @@ static uint32_t find_pass(const groups *g, const char *name)
     return i;
 }
 
-/// Whether a name can be in a list, in a file's name and in the name of a channel.
+/// Returns whether a name is allowed in a list, in a file name and in the name of a channel.
 static bool is_usable(const char *name)
 {
     for (const char *at = name; *at; at++)
@@ -40,7 +40,7 @@ static bool is_usable(const char *name)
     return name[0] != ' ' && name[0] != '.' && name[strlen(name) - 1] != ' ';
 }
 
-/// A name that is a group's. False: no light of the scene has it.
+/// Returns whether a light of the scene has this group.
 static bool is_group(const glint_scene *scene, const char *name)
 {
     char own[GLINT_NAME_SIZE];
@@ -52,7 +52,7 @@ static bool is_group(const glint_scene *scene, const char *name)
     return false;
 }
 
-/// The scene's groups, for messages.
+/// Lists the scene's groups, for messages.
 static void list_groups(const glint_scene *scene, char out[320])
 {
     char own[GLINT_NAME_SIZE];
@@ -80,7 +80,7 @@ static glint_status add_pass(groups *g, const char *name, glint_error *error)
     return GLINT_OK;
 }
 
-/// Adds what one entry of the list stands for.
+/// Adds the passes of one entry of the list.
 static glint_status add_entry(groups *g, const glint_scene *scene, const char *name, glint_error *error)
 {
     char own[GLINT_NAME_SIZE], all[320];

@@ -1,4 +1,4 @@
-/// Which lights a frame's light passes hold. Internal.
+/// The lights of a frame's light passes. Internal.
 #ifndef GLINT_LIGHT_GROUPS_PLAN_H
 #define GLINT_LIGHT_GROUPS_PLAN_H
 
@@ -7,28 +7,28 @@
 #define GLINT_NO_GROUP UINT32_MAX
 #define GLINT_LIGHT_REST "ambient" ///< the pass of the light that no lamp sends
 
-/// Light is summed once more for each group of lights. Passes come first among the groups; where the rest is wanted, all lights
-/// without a pass of their own are one more group.
+/// Light is also summed for each group of lights. Passes come first among the groups. If the rest is requested, all lights
+/// without a pass form one more group.
 struct glint_light_groups {
     uint32_t pass_count, count; ///< passes of the frame; groups
-    uint32_t rest; ///< the pass that is the rest, whose group stays empty; GLINT_NO_GROUP: none is
+    uint32_t rest; ///< the pass of the rest, whose group stays empty; GLINT_NO_GROUP: none
     char (*name)[GLINT_NAME_SIZE]; ///< of each pass
-    char *list; ///< these, divided by commas
+    char *list; ///< the names, separated by commas
     uint32_t *of_light; ///< the group of each light of the scene, or GLINT_NO_GROUP
-    double (*ambient)[3]; ///< of each group, the share of the plan's ambient light that its lights bring
+    double (*ambient)[3]; ///< for each group, its lights' share of the plan's ambient light
     bool has_ambient; ///< some share is above 0
 };
 
-/// Finds the groups that the plan's description names. Fails where a name is no group's of the scene.
+/// Finds the groups named in the plan's description. Fails if no light of the scene has a group.
 glint_status glint_plan_find_light_groups(glint_plan *plan, const glint_scene *scene, glint_error *error);
 void glint_light_groups_free(struct glint_light_groups *groups); ///< NULL: nothing
-/// The group of a light of the scene; GLINT_NO_GROUP also in frames without light passes.
+/// Returns the group of a light of the scene; GLINT_NO_GROUP if it has none, or without light passes.
 uint32_t glint_light_group_of(const glint_plan *plan, size_t light);
 /// Continues a key with the names of the passes and the groups of all lights.
 glint_key glint_light_groups_key(const glint_plan *plan, glint_key key);
-/// Continues a key with which lights one of the passes holds: files of the same pass are the same whatever the others are.
+/// Continues a key with the lights of one pass. The file of a pass does not depend on the other passes.
 glint_key glint_light_pass_key(const glint_plan *plan, uint32_t pass, glint_key key);
-/// Whether two plans have the same passes, and no light has another group.
+/// Returns whether two plans have the same passes, and each light the same group.
 bool glint_light_groups_equal(const glint_plan *a, const glint_plan *b);
 
 #endif

@@ -1,4 +1,4 @@
-/// What only frames with materials of microfacets have: the stages view and facet, and where their results are kept.
+/// Microfacets: the stages view and facet, and the memory of their results.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/tile/tile.h"
@@ -101,7 +101,7 @@ void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
 
 static bool called(const glint_plan *plan) { return glint_plan_is_lit(plan) && plan->facets; }
 
-/// The angles that microfacets are seen at.
+/// Computes the viewing angles of microfacets.
 static void find_view(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     if (view_memory(tile, frame, walk->sample)) {
@@ -112,7 +112,7 @@ static void find_view(glint_tile *tile, const glint_tile_frame *frame, glint_sam
     glint_tile_view(tile, frame);
 }
 
-/// What else the rows of a light do to microfacets.
+/// Computes the angles of microfacets for the rows of a light.
 static void find_facets(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     uint32_t unknown[GLINT_LIGHT_CHUNK], left = 0;

@@ -8,7 +8,7 @@ typedef struct outliner {
     double offset[2]; ///< of the pixels' centres, which the planes hold
 } outliner;
 
-/// What a pixel shows.
+/// The object, point and normal of a pixel.
 typedef struct point {
     size_t at;
     double depth, place[3], normal[3]; ///< place: from the eye
@@ -35,7 +35,7 @@ static point point_at(const outliner *o, int x, int y)
 
 static bool is_hit(const point *p) { return p->depth < HUGE_VAL; }
 
-/// Whether no smooth surface goes through both.
+/// Returns whether no smooth surface passes through both points.
 static bool is_break(const point *p, const point *q)
 {
     double e[3];
@@ -47,7 +47,7 @@ static bool is_break(const point *p, const point *q)
     return fmax(up, down) > GLINT_OUTLINE_VALLEY * length || fmin(up, down) < -GLINT_OUTLINE_RIDGE * length;
 }
 
-/// Whether there is an edge between two pixels, and the line is on p, which is hit.
+/// Returns whether there is an edge between two pixels with its line on p, which is a hit.
 static bool draws(const outliner *o, const point *p, int x, int y)
 {
     const glint_extent *e = &o->extent;
@@ -84,7 +84,7 @@ void glint_outline(const glint_plan *plan, const glint_extent *extent, glint_poo
 
 static bool called(const glint_plan *plan) { return plan->desc.passes >> GLINT_PASS_OUTLINE & 1; }
 
-/// Of the whole picture, when its tiles are done.
+/// Runs on the whole picture after its tiles.
 const glint_stage glint_stage_outline = {
     .name = "outline",
     .doc = "lines where depth, normal or object changes",

@@ -1,7 +1,7 @@
-/// The pass `outline`: 1 where a line is drawn, else 0; made of the finished planes depth, normal and object_id. Internal.
+/// The pass `outline`: 1 where a line is drawn, else 0; computed from the finished planes depth, normal and object_id. Internal.
 ///
-/// Two pixels side by side show an edge between them where one hits nothing, where they show two objects, or where no one
-/// smooth surface has both their points P, Q with their normals m, n. With e = (Q - P) / |Q - P|: on an arc, e.m and -e.n
+/// There is an edge between two adjacent pixels if one hits nothing, if they show different objects, or if no
+/// single smooth surface contains both their points P, Q with their normals m, n. With e = (Q - P) / |Q - P|: on an arc, e.m and -e.n
 /// are the sine of half the angle between the normals. It bends towards the eye, or one point hides in front of the other,
 /// where the larger of e.m and -e.n is positive: an edge above GLINT_OUTLINE_VALLEY; it bends away, an edge above
 /// GLINT_OUTLINE_RIDGE, where that much could also be a small ball. Where m.n is above GLINT_OUTLINE_SMOOTH, a mesh with
@@ -19,7 +19,7 @@
 #define GLINT_OUTLINE_SMOOTH 0.95 ///< cosine of 18 degrees
 #define GLINT_OUTLINE_STEP 0.7 ///< sine of 44 degrees
 
-/// Fills the image's plane where it is rendered. Any number of threads gives the same.
+/// Fills the rendered part of the image's plane. The result does not depend on the number of threads.
 void glint_outline(const glint_plan *plan, const glint_extent *extent, glint_pool *pool, glint_image *image);
 
 #endif

@@ -11,18 +11,18 @@
 #define COUNTS_MAX ((size_t)1 << 24)
 #define BUCKETS 64 ///< of depth, when a tile's entries are put in order
 
-/// The picture as it is projected on.
+/// The picture plane for projection.
 typedef struct picture {
     const glint_plan_camera *camera;
     double width, height, scale;
     double per_right, per_up; ///< 1 / length^2
     double unit[2]; ///< 1 / length: how many half pixels a world unit is at distance 1
-    double low[2], high[2]; ///< where in their pixel samples lie, across and down
+    double low[2], high[2]; ///< range of sample positions within a pixel, across and down
     double rounding; ///< of one operation
     bool is_float;
 } picture;
 
-/// The pixels that a triangle may show in, both ends included.
+/// The pixels that a triangle may cover, both ends included.
 typedef struct extent {
     uint16_t x0, y0, x1, y1;
     float depth; ///< see glint_raster_entry; +inf: none
@@ -34,24 +34,24 @@ typedef struct scanning {
     uint32_t across; ///< tiles
     size_t tile_count, chunk_count;
     extent *extents; ///< of each primitive
-    uint32_t *counts; ///< chunk after chunk, of each tile; then where the chunk's first entry of that tile goes
+    uint32_t *counts; ///< entries of each tile, chunk after chunk; then the position of the chunk's first entry of the tile
     glint_raster *raster;
 } scanning;
 
 // ---- Projection ----
 
-/// What a corner is to the eye.
+/// A corner relative to the eye.
 typedef struct seen_corner {
-    double p[3]; ///< from the eye, as the decision sees it
+    double p[3]; ///< from the eye, as used by the decision
     double z, s, t; ///< along the view and across it, not yet divided by z
-    double size; ///< of p and of what it came from
+    double size; ///< magnitude of p and of its terms, for the rounding error
 } seen_corner;
 
 typedef struct range {
     double low, high;
 } range;
 
-// Not fmin and fmax, which are calls: there are a dozen a triangle.
+// fmin and fmax would be calls, a dozen for each triangle.
 static inline double lower(double a, double b) { return a < b ? a : b; }
 static inline double higher(double a, double b) { return a > b ? a : b; }
 
@@ -75,7 +75,7 @@ static inline seen_corner see_corner(const picture *screen, const double corner[
     return out;
 }
 
-/// Adds a corner in front of the eye.
+/// Extends the ranges by a corner in front of the eye.
 static inline void cover_corner(const picture *screen, const seen_corner *corner, range *s, range *t)
 {
     const double per_z = screen->camera->orthographic ? 1 : 1 / corner->z, x = corner->s * per_z, y = corner->t * per_z;
@@ -84,7 +84,7 @@ static inline void cover_corner(const picture *screen, const seen_corner *corner
     cover(t, y, slack * (screen->unit[1] + fabs(y)) + 0x1p-40 * (fabs(screen->camera->span[1]) + fabs(y)));
 }
 
-/// Adds the way to where an edge comes to the eye's plane: it goes to infinity on the screen.
+/// Extends the ranges along an edge that crosses the plane of the eye: it goes to infinity on the screen.
 static void cover_far(const seen_corner *front, const seen_corner *other, range *s, range *t)
 {
     const double share = other->z < 0 ? front->z / (front->z - other->z) : 1;
@@ -101,7 +101,7 @@ static void cover_far(const seen_corner *front, const seen_corner *other, range 
         t->high = HUGE_VAL;
 }
 
-/// The part of the screen that a triangle may cover. False: all of it is behind the eye.
+/// Computes the part of the screen that a triangle may cover. Returns false if the triangle is behind the eye.
 static inline bool cover_triangle(const picture *screen, const seen_corner corner[3], range *s, range *t)
 {
     const double sure = screen->is_float ? 1e-4 : 1e-10;
@@ -127,7 +127,7 @@ static inline bool cover_triangle(const picture *screen, const seen_corner corne
     return true;
 }
 
-/// A lower bound of t * scale; -inf where the triangle is seen so much edge-on that rounding may put a hit anywhere.
+/// Returns a lower bound of t * scale; -inf if the triangle is so close to edge-on that rounding may put a hit anywhere.
 static inline float depth_of(const picture *screen, const seen_corner corner[3])
 {
     const double edge_on = screen->is_float ? 1e-3 : 1e-9, margin = screen->is_float ? 1e-3 : 1e-6;
@@ -144,7 +144,7 @@ static inline float depth_of(const picture *screen, const seen_corner corner[3])
     return (float)lower(depth - 0x1p-20 * fabs(depth), FLT_MAX);
 }
 
-/// The whole numbers within a range, cut to 0 .. size - 1. False: there are none.
+/// Computes the whole numbers within a range, clipped to 0 .. size - 1. Returns false if there are none.
 static inline bool pixels_of(double low, double high, double size, uint16_t *first, uint16_t *last)
 {
     if (low > size - 1 || high < 0)
@@ -196,7 +196,7 @@ static void count_chunk(void *context, size_t chunk, int worker)
     }
 }
 
-/// The part of 0 .. size - 1 of a tile that begins at `start`.
+/// Clips a range to a tile that begins at `start`, relative to it.
 static void clip(uint32_t low, uint32_t high, uint32_t start, uint32_t size, uint8_t *first, uint8_t *last)
 {
     *first = (uint8_t)(low > start ? low - start : 0);
@@ -230,7 +230,7 @@ static int bucket_of(float depth, float low, float per_depth)
     return x > 0 ? x < BUCKETS - 1 ? (int)x : BUCKETS - 1 : 0;
 }
 
-/// The nearer ones first, more or less: what they hide is then not decided.
+/// Sorts entries roughly by depth, nearest first, so that hidden triangles need no decision.
 static void order_tile(void *context, size_t tile, int worker)
 {
     const scanning *s = context;
@@ -257,7 +257,7 @@ static void order_tile(void *context, size_t tile, int worker)
     free(copy);
 }
 
-/// Turns the counts into places; returns how many entries there are.
+/// Turns the counts into positions; returns the number of entries.
 static size_t place_entries(scanning *s)
 {
     size_t total = 0;
@@ -299,7 +299,7 @@ static picture make_screen(const glint_plan *plan, double scale)
 static glint_status enter_all(scanning *s, glint_pool *pool, glint_error *error)
 {
     glint_raster *raster = s->raster;
-    const size_t placed = place_entries(s), total = placed ? placed : 1; // a table of its own, be it empty
+    const size_t placed = place_entries(s), total = placed ? placed : 1; // an allocation even if empty
     if (total > ENTRIES_MAX)
         return GLINT_OK;
     if (total > raster->entry_room) {
@@ -357,26 +357,26 @@ void glint_raster_clear(glint_raster *raster)
 // Nanoseconds on one core of an EPYC (Zen 4), 1280x720, spheres and terrains of 1,000 to 1,000,000 triangles. A wrong guess
 // costs a few of them a triangle or pixel.
 #define PROJECT_NS 45 ///< a triangle, in view or not
-#define VISIT_NS 20 ///< what casting takes more for a triangle in view ...
+#define VISIT_NS 20 ///< additional time of casting for a triangle in view ...
 #define PIXEL_NS 1 ///< ... and for a sample
-#define MERGE_NS 4 ///< a sample, where something else is to be cast beside
+#define MERGE_NS 4 ///< a sample, if other primitives are cast as well
 #define BUILD_NS 500 ///< an index, for each primitive
-#define FRAMES_WITHOUT 8 ///< frames whose projections together are the work of building an index
+#define FRAMES_WITHOUT 8 ///< frames after which the projections cost as much as building an index
 
-/// What is known of a geometry that others may be arranging or indexing.
+/// Facts about a geometry, which other threads may be arranging or indexing.
 typedef struct outlook {
-    double in_view; ///< share of its triangles, by some of them
+    double in_view; ///< share of its triangles, estimated from some of them
     bool alone; ///< there are only triangles
     bool indexed;
 } outlook;
 
 static outlook look_at(const glint_plan *plan)
 {
-    enum { LOOKED_AT = 509 }; // a prime: no grid of a mesh is looked at along its lines
+    enum { LOOKED_AT = 509 }; // a prime, so that samples do not follow the lines of a regular mesh
     glint_geometry *geometry = plan->geometry;
     outlook out = { .in_view = 1, .indexed = true };
     if (pthread_mutex_trylock(&geometry->index->lock))
-        return out; // it is being indexed now
+        return out; // another thread is indexing it
     const picture screen = make_screen(plan, geometry->table.scale);
     const uint32_t count = geometry->table.prim_count, step = count / LOOKED_AT + 1;
     uint32_t looked = 0, seen = 0;

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/// What is cast beside triangles.
+/// The results of casting the other primitives.
 struct glint_raster_rest {
     _Alignas(64) double t[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
@@ -21,7 +21,7 @@ bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *
     return raster->rest || raster->first[tile->index + 1] > raster->first[tile->index];
 }
 
-/// As between any two surfaces: the nearer one, of equal ones the one defined first.
+/// Merges both: the nearer hit wins, or at equal distance the surface defined first.
 static void merge(glint_tile *tile, const glint_tile_frame *frame)
 {
     const struct glint_raster_rest *rest = tile->raster_rest;

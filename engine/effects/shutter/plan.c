@@ -1,8 +1,8 @@
-/// A frame seen while a shutter is open: the mean of its light at several times.
+/// A frame with an open shutter: the mean of its light at several times.
 ///
-/// Light adds up. Where lights alone differ from time to time, the frame is one plan, in which a light that changes is there once
-/// for each time with its share of the strength; nothing else is done twice. Where surfaces, materials or the camera differ, each
-/// time is rendered, and effects/shutter/shutter.c takes the mean; so are frames with derivatives, of which it takes the mean, too.
+/// Light adds up. If only lights differ between the times, the frame is one plan, which contains a changing light once
+/// for each time with its share of the strength; nothing else is done twice. If surfaces, materials or the camera differ, each
+/// time is rendered, and effects/shutter/shutter.c takes the mean, also of derivatives.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROWS_MAX 0x1p27 ///< of all times; light samples likewise
+#define ROWS_MAX 0x1p27 ///< for all times; the same limit for light samples
 
 glint_render_desc glint_shutter_desc(const glint_render_desc *frame)
 {
@@ -24,7 +24,7 @@ glint_render_desc glint_shutter_desc(const glint_render_desc *frame)
     return desc;
 }
 
-// ---- Whether lights alone differ ----
+// ---- Do only lights differ? ----
 
 static bool vec_equal(const double a[3], const double b[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 
@@ -34,7 +34,7 @@ static bool equal_depth_cue(const glint_plan *a, const glint_plan *b)
            a->depth_cue.near == b->depth_cue.near && a->depth_cue.far == b->depth_cue.far;
 }
 
-/// Whether two plans differ in nothing but lights, if in anything. What becomes of the pixels may differ, too.
+/// Returns whether two plans are equal except for lights and for the conversion to pixel values.
 static bool differ_in_lights(const glint_plan *a, const glint_plan *b)
 {
     static const glint_stage_id read[] = { GLINT_STAGE_SURFACE, GLINT_STAGE_PATTERN, GLINT_STAGE_VIEW };
@@ -65,7 +65,7 @@ static uint32_t rows_of(const glint_plan *plan, uint32_t first)
     return end - first;
 }
 
-/// Whether a light is the same in all times.
+/// Returns whether a light is the same at all times.
 static bool is_steady(glint_plan *const *times, size_t count, uint32_t first, uint32_t rows)
 {
     for (size_t k = 1; k < count; k++)
@@ -75,7 +75,7 @@ static bool is_steady(glint_plan *const *times, size_t count, uint32_t first, ui
     return true;
 }
 
-/// Whether all times have the same lights in the same rows, wherever these are and whatever they give.
+/// Returns whether all times have the same lights in the same rows, regardless of positions and strengths.
 static bool same_rows(glint_plan *const *times, size_t count)
 {
     for (size_t k = 1; k < count; k++) {
@@ -94,7 +94,7 @@ static size_t samples_of(const glint_plan_light *light)
     return light->cap ? 1 : light->light_samples ? light->turn_count : 0;
 }
 
-/// What is filled.
+/// The lights to be filled in.
 typedef struct lights {
     glint_plan_light *rows;
     glint_light_sample *samples;
@@ -118,7 +118,7 @@ static void add_row(lights *to, const glint_plan_light *from, double share)
     to->sample_count += samples;
 }
 
-/// The lights of all times, one after the other; those that are steady once.
+/// Adds the lights of all times one after the other, and steady lights once.
 static void add_all(lights *to, glint_plan *const *times, size_t count)
 {
     const bool alike = same_rows(times, count);

@@ -1,5 +1,5 @@
-/// The mean of a frame's times, where more than lights differ between them: each is rendered as a frame of its own, with all that
-/// is kept from one to the next, and added up in double.
+/// The mean of a frame's times, if more than lights differ between them. Each time is rendered as a frame of its own, with
+/// reuse between them, and added up in double.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/film/tone.h"
@@ -25,19 +25,19 @@ typedef struct exposure {
     glint_image *image;
     const glint_image *part; ///< of one time
     double *sums; ///< of all means
-    const float *beauty[3], *alpha; ///< what codes are made of: planes of the image, or of
-    float *own; ///< owned: those that the image does not have
+    const float *beauty[3], *alpha; ///< the source of pixel values: planes of the image, or
+    float *own; ///< owned: planes that the image does not have
     const glint_tone_table *table;
     uint64_t (*counts)[2]; ///< pixels too bright and not finite, of each row
 } exposure;
 
-/// Rows of the extent are the items of all that follows.
+/// Returns the image row of item `index`. The following functions handle rows.
 static size_t row_at(const exposure *e, size_t index)
 {
     return ((size_t)e->extent.y + index) * (size_t)e->image->width;
 }
 
-/// What a time has of a mean; NULL: nothing depends on the derivative then, or the group has no lights.
+/// Returns a time's plane of a mean; NULL: nothing depends on the derivative at this time, or the group has no lights.
 static const float *plane_of(const exposure *e, const mean *m)
 {
     if (m->pass < GLINT_PASS_DERIVATIVE)
@@ -67,7 +67,7 @@ static void add_row(void *context, size_t index, int worker)
     }
 }
 
-/// Where all terms are there, beauty is their sum, as in a frame of one instant.
+/// If all terms are among the passes, beauty is their sum, as in a frame of one instant.
 static void sum_terms(const exposure *e, size_t row)
 {
     float *const *beauty = e->image->plane[GLINT_PASS_BEAUTY];
@@ -119,7 +119,7 @@ static void finish_row(void *context, size_t index, int worker)
         tone_row(e, row, e->counts[index]);
 }
 
-/// What is of the frame's own instant: copied from its picture.
+/// Copies the passes that belong to the frame's own instant from its picture.
 static glint_status take_instant(exposure *e, glint_renderer *renderer, glint_frame_stats *stats, glint_error *error)
 {
     glint_image *instant = NULL;
@@ -135,7 +135,7 @@ static glint_status take_instant(exposure *e, glint_renderer *renderer, glint_fr
     return status;
 }
 
-/// Each plane of the image that has a mean, and those that codes are made of.
+/// Makes the means of the image's planes, and of the planes for pixel values.
 static glint_status make_means(exposure *e, glint_error *error)
 {
     const size_t pixels = (size_t)e->image->width * (size_t)e->image->height;

@@ -1,9 +1,9 @@
 /// The stage vertex: computes the light of faces and vertices on first use, and gives each sample of their
-/// triangles what it has of them.
+/// triangles its share.
 ///
-/// A site lies on a surface and on none of its triangles: what touches it there neither shadows it nor is its own, so
-/// that neighbours never shadow a face's middle or each other's common vertex by rounding. What stands away from it
-/// does, as from any point.
+/// A shading point lies on a surface, but on none of its triangles. Surfaces that touch the point do not shadow it, so
+/// that neighbours never shadow the middle of a face or a common vertex by rounding. Surfaces at a distance
+/// do, as for any point.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/tile/batch.h"
@@ -14,7 +14,7 @@
 #include <sched.h>
 #include <stdlib.h>
 
-#define PREFETCHED 8 ///< sites ahead
+#define PREFETCHED 8 ///< points ahead
 
 struct glint_vertex {
     glint_batch batch; ///< of one block
@@ -48,15 +48,15 @@ static bool fit(void *memory, const glint_plan *plan)
 
 static struct glint_vertex *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_VERTEX]; }
 
-// ---- Where a site is ----
+// ---- Positions ----
 
 typedef struct shading_point {
-    double point[3], normal[3]; ///< the normal is that of the front
-    double slack; ///< as surface gives it, in units of a rounding
-    uint32_t prim; ///< its place among the arranged primitives
+    double point[3], normal[3]; ///< the normal of the front side
+    double slack; ///< as in the stage surface, in units of a rounding
+    uint32_t prim; ///< its index among the arranged primitives
 } shading_point;
 
-/// Twice the area of a triangle, along its normal, in units of the table.
+/// Computes the normal of a triangle with the length of twice its area, in units of the table.
 static void area_of(const glint_prim *prim, double scale, double out[3])
 {
     double f[3], g[3];
@@ -67,7 +67,7 @@ static void area_of(const glint_prim *prim, double scale, double out[3])
     vec_cross(out, f, g);
 }
 
-/// A place on the triangle; w: weights of its second and third corner.
+/// Puts a shading point on the triangle; w: weights of its second and third corner.
 static void put_on(shading_point *s, const glint_prim *prim, const double w[2])
 {
     double f[3], g[3];
@@ -78,7 +78,7 @@ static void put_on(shading_point *s, const glint_prim *prim, const double w[2])
     s->slack = (vec_max_abs(f) + vec_max_abs(g)) + vec_max_abs(s->point);
 }
 
-/// The triangles that one face was cut into follow each other.
+/// Returns the number of triangles of a face; they follow each other.
 static uint32_t face_size(const glint_geometry *geometry, uint32_t first, uint32_t number)
 {
     uint32_t count = 1;
@@ -92,7 +92,7 @@ static uint32_t face_size(const glint_geometry *geometry, uint32_t first, uint32
     return count;
 }
 
-/// Weights, as of put_on, of the foot of a point on a triangle, along the normal of a face. Returns the least of all three.
+/// Computes the weights, as for put_on, of a point projected onto a triangle along the normal of a face. Returns the least of all three.
 static double weights_of(const glint_prim *prim, double scale, const double point[3], const double normal[3],
                          double w[2])
 {
@@ -112,7 +112,7 @@ static double weights_of(const glint_prim *prim, double scale, const double poin
     return fmin(fmin(w[0], w[1]), 1 - w[0] - w[1]);
 }
 
-/// The middle of a polygon, on the triangle of it that has it; of one whose middle is outside, that of its largest.
+/// Finds the middle of a polygon, on the triangle that contains it; if the middle is outside, the middle of the largest triangle.
 static void find_polygon_middle(const glint_geometry *geometry, uint32_t first, uint32_t count, shading_point *s)
 {
     const double scale = geometry->table.scale;
@@ -150,7 +150,7 @@ static void find_polygon_middle(const glint_geometry *geometry, uint32_t first, 
     put_on(s, &geometry->prims[s->prim], w);
 }
 
-/// The corner of its triangle that a site is.
+/// Finds the position of a vertex from a triangle.
 static void find_corner(const glint_geometry *geometry, const glint_prim *prim, uint32_t number, shading_point *s)
 {
     static const double corners[3][2] = { { 0, 0 }, { 1, 0 }, { 0, 1 } };
@@ -160,7 +160,7 @@ static void find_corner(const glint_geometry *geometry, const glint_prim *prim, 
     put_on(s, prim, corners[j]);
     vec_copy(s->point, prim->corner[j]);
     const double length2 = vec_dot(normal, normal), side = vec_dot(normal, s->normal) < 0 ? -1 : 1;
-    if (length2 > 0) // which are unit but for rounding stay as they are
+    if (length2 > 0) // normals of length 1 up to rounding stay as they are
         vec_scale(s->normal, normal, fabs(length2 - 1) < 1e-12 ? side : side / sqrt(length2));
 }
 
@@ -186,7 +186,7 @@ static void find_shading_point(const glint_geometry *geometry, uint32_t number, 
 
 // ---- A block ----
 
-/// From the eye to a point, unit.
+/// Computes the unit vector from a point to the eye.
 static void view_of(const glint_plan_camera *camera, const double point[3], double out[3])
 {
     vec_sub(out, point, camera->eye);
@@ -213,7 +213,7 @@ static void put_shading_point(glint_tile *tile, const glint_tile_frame *frame, u
     tile->surface.material[i] = frame->geometry.prims[s->prim].material;
 }
 
-/// A site's triangle is anywhere in memory.
+/// Prefetches a triangle, which can be anywhere in memory.
 static void prefetch_prim(const glint_geometry *geometry, uint32_t number)
 {
     const uint32_t first = geometry->shading_point_prims[number];
@@ -221,7 +221,7 @@ static void prefetch_prim(const glint_geometry *geometry, uint32_t number)
         __builtin_prefetch(&geometry->prims[geometry->places[first]]);
 }
 
-/// Puts a block's sites into the arrays. The backs of one-sided surfaces have no light.
+/// Loads the points of a block into the arrays. The backs of one-sided surfaces have no light.
 static void load_block(struct glint_vertex *vertex, const glint_tile_frame *frame, uint32_t block)
 {
     glint_tile *tile = &vertex->batch.tile;
@@ -284,7 +284,7 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
 
 // ---- A tile ----
 
-/// The light of a tile's site is worked out by this worker, unless another has begun to. Returns whether it is known.
+/// Computes a block unless another worker has begun it. Returns whether the block is ready.
 static bool ask_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
 {
     unsigned char state = atomic_load_explicit(&frame->shading_points->state[block], memory_order_acquire);
@@ -304,7 +304,7 @@ static bool wait_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t b
     return true;
 }
 
-/// Does something with the block of each site that the wanted samples have. Returns whether all are done.
+/// Calls a function for the block of each point that the wanted samples need. Returns whether all are ready.
 static inline bool each_block(glint_tile *tile, const glint_tile_frame *frame,
                               bool (*act)(glint_tile *, const glint_tile_frame *, uint32_t))
 {
@@ -363,7 +363,7 @@ bool glint_tile_has_shading_points(const glint_tile *tile)
     return any;
 }
 
-/// What the sites of each sample's triangle give to it, added to `sum`: diffuse and specular.
+/// Adds the interpolated light of the points of each sample's triangle to `sum`: diffuse and specular.
 static void spread(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES])
 {
     const glint_plan *plan = frame->plan;
@@ -418,7 +418,7 @@ static void choose(glint_tile *tile, const glint_tile_frame *frame, glint_sample
     walk->shines = walk->any && glint_tile_choose_sampled(tile, frame);
 }
 
-/// The light of faces and vertices.
+/// Adds the light of faces and vertices.
 static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     if (!walk->any || !glint_tile_has_shading_points(tile))

@@ -1,4 +1,4 @@
-/// The lights that rays see: their surfaces, and how bright they look.
+/// Visible lights: their surfaces and brightness.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -24,7 +24,7 @@ bool glint_light_shows(const glint_light_desc *desc, double shown[3])
     return any;
 }
 
-/// The edges of a polygon, into the plan's room for all of them.
+/// Adds the edges of a polygon to the plan's list.
 static void add_edges(glint_plan *plan, glint_plan_visible_light *visible_light, const glint_light_desc *desc)
 {
     visible_light->edges = plan->visible_light_edges + plan->visible_light_edge_count;
@@ -53,7 +53,7 @@ static void add_visible_light(glint_plan *plan, const glint_light_desc *desc, co
         glint_light_sample_polygon_normal(desc, visible_light->normal);
         vec_copy(visible_light->center, desc->vertices[0]);
         visible_light->radius = 0;
-        for (size_t i = 1; i < desc->vertex_count; i++) { // all of it is that near to its first corner
+        for (size_t i = 1; i < desc->vertex_count; i++) { // the whole polygon is within this distance of its first corner
             double away[3];
             vec_sub(away, desc->vertices[i], desc->vertices[0]);
             visible_light->radius = fmax(visible_light->radius, sqrt(vec_dot(away, away)) * (1 + 1e-12));

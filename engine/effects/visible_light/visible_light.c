@@ -1,5 +1,5 @@
-/// Lights that are seen: which rays meet one before any surface. What such a ray sees is the light's surface: it is a miss
-/// to all that follows but `shade`, where the light takes the background's place.
+/// Visible lights: finds the rays that hit a light before any surface. For the following stages except `shade`, such a ray
+/// misses; in `shade` the light replaces the background.
 ///
 /// All of it is double, and the same code for every instruction set: few pixels see a light.
 #include "engine/base/alloc.h"
@@ -9,12 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Of the lengths it came from, what rounding may have moved a point off a plane by: by the precision of the hits.
+/// The largest distance by which rounding moves a point off a plane, relative to the lengths involved, by the precision of hits.
 static const double plane_slack[] = { [GLINT_DOUBLE] = 0x1p-46, [GLINT_FLOAT] = 0x1p-18 };
 
 struct glint_visible_light {
     uint16_t seen[GLINT_TILE_GROUPS]; ///< lanes whose ray sees a light; first: see glint_tile_sees_light
-    uint32_t *near; ///< the lights that the rays at hand may see
+    uint32_t *near; ///< the lights that the current rays may see
     uint32_t near_count;
     uint32_t which[GLINT_TILE_SAMPLES]; ///< that light
 };
@@ -52,7 +52,7 @@ typedef struct visible_light_ray {
     double slack; ///< of the frame's precision
 } visible_light_ray;
 
-/// Where a ray meets the ball first, or leaves it where it begins inside; 0: nowhere. The formula is that of cast.
+/// Returns the first hit of a ray with a sphere, or its exit if the ray begins inside; 0: none. The formula is that of cast.
 static double meet_ball(const glint_plan_visible_light *visible_light, const visible_light_ray *ray)
 {
     double f[3], x[3];
@@ -69,7 +69,7 @@ static double meet_ball(const glint_plan_visible_light *visible_light, const vis
     return (c <= 0 && b >= 0 ? q / a : c / q) / scale;
 }
 
-/// The height of a point over the light's plane; 0 where rounding does not let us know its side.
+/// Returns the height of a point above the light's plane; 0 if rounding hides its side.
 static double height_over(const glint_plan_visible_light *visible_light, const double point[3], double lengths,
                           double slack)
 {
@@ -91,7 +91,7 @@ static bool within(const glint_plan_visible_light *visible_light, const double p
     return visible_light->edge_count > 0 || vec_dot(away, away) <= visible_light->radius * visible_light->radius;
 }
 
-/// Where a ray meets a disk or polygon from a side that shines; 0: nowhere. In its plane a ray meets it nowhere.
+/// Returns the hit of a ray with a shining side of a disk or polygon; 0: none. A ray in the light's plane has no hit.
 static double meet_flat(const glint_plan_visible_light *visible_light, const visible_light_ray *ray)
 {
     double p[3];
@@ -105,7 +105,7 @@ static double meet_flat(const glint_plan_visible_light *visible_light, const vis
     return within(visible_light, p) ? t : 0;
 }
 
-/// Whether a surface at `t` lies in the light's plane, as far as rounding lets us know.
+/// Returns whether a surface at `t` lies in the light's plane, within rounding.
 static bool lies_in(const glint_plan_visible_light *visible_light, const visible_light_ray *ray, double t)
 {
     double p[3], way[3];
@@ -117,7 +117,7 @@ static bool lies_in(const glint_plan_visible_light *visible_light, const visible
     return height_over(visible_light, p, vec_max_abs(way) + vec_max_abs(ray->origin), ray->slack) == 0;
 }
 
-/// The light that a ray sees before `*t`, where its surface is; GLINT_MISS: none. Equally far, the one defined first.
+/// Returns the light that a ray hits before its surface at `*t`; GLINT_MISS: none. At equal distance, the light defined first.
 static uint32_t see(const struct glint_visible_light *visible_light, const glint_plan *plan,
                     const visible_light_ray *ray, double *t)
 {
@@ -135,9 +135,9 @@ static uint32_t see(const struct glint_visible_light *visible_light, const glint
     return best;
 }
 
-// ---- Those of a tile ----
+// ---- The lights of a tile ----
 
-/// Whether a ball is outside of the side of a pyramid of rays from the eye that two of its edges span.
+/// Returns whether a ball is outside the side of a pyramid of rays that two of its edges span.
 static bool beyond_side(const double a[3], const double b[3], const double middle[3], const double away[3],
                         double radius)
 {
@@ -148,7 +148,7 @@ static bool beyond_side(const double a[3], const double b[3], const double middl
     return vec_dot(n, away) > sqrt(vec_dot(n, n)) * (radius * (1 + 1e-9) + 1e-9 * vec_max_abs(away));
 }
 
-/// Notes the lights that a tile of a perspective camera may show.
+/// Lists the lights that a tile of a perspective camera may show.
 static void find_near(struct glint_visible_light *visible_light, const glint_tile *tile, const glint_plan *plan)
 {
     const glint_camera_args *camera = &tile->camera;
@@ -188,7 +188,7 @@ bool glint_tile_visible_light_in_sight(glint_tile *tile, const glint_tile_frame 
     return visible_light->near_count > 0;
 }
 
-/// The sample's hits become the tile's own, where they are kept between frames.
+/// Copies the sample's hits into the tile's own memory if they are in the cache.
 static void own_hits(glint_tile *tile, glint_precision precision)
 {
     const size_t count = tile->group_count * GLINT_GROUP;
@@ -234,7 +234,7 @@ void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, cons
             see_lane(tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
 }
 
-// ---- What they look like ----
+// ---- Their brightness ----
 
 static void normal_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double normal[3])
 {
@@ -282,7 +282,7 @@ static glint_key place_key(const glint_plan_visible_light *visible_light, glint_
     return glint_key_add(key, visible_light->edges, visible_light->edge_count * sizeof *visible_light->edges);
 }
 
-/// Where lights are seen; what they look like belongs to the background.
+/// Hashes the places of visible lights; their brightness belongs to the background.
 static glint_key places_key(const glint_plan *plan, glint_key key)
 {
     for (uint32_t i = 0; i < plan->visible_light_count; i++)
