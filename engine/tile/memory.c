@@ -1,11 +1,11 @@
-/// What a tile's working memory has beside the tile itself: allocated for the first frame that needs it, kept for those after it.
+/// The working memory of a tile that only some frames need: allocated for the first such frame, and kept for later ones.
 #include "engine/base/alloc.h"
 #include "engine/effects/pattern/pattern.h"
 #include "engine/effects/light_groups/light_groups.h"
 
 #include <stdlib.h>
 
-/// The memory of programs, whose size is the plan's. Returns whether there is enough.
+/// Makes the memory of programs fit the plan. Returns false when out of memory.
 static bool fit_pattern(glint_tile *tile, const glint_plan *plan)
 {
     if (glint_pattern_fits(tile->pattern, plan))
@@ -45,7 +45,7 @@ void glint_tile_free_stage(glint_tile *tile, glint_stage_id id)
 bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
 {
     bool good = true;
-    tile->view.made = false; // another frame's
+    tile->view.made = false; // it belongs to another frame
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         good = glint_tile_fit_stage(tile, plan, (glint_stage_id)id) && good;
     if (plan->is_base && !tile->differ)

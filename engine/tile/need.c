@@ -1,4 +1,4 @@
-/// What a stage asks for of the current sample: computed when the first stage needs it, and not otherwise.
+/// Data of the current sample that stages request: computed when the first stage needs it, and not otherwise.
 #include "engine/tile/tile.h"
 
 void glint_tile_need_rays(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)

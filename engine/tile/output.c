@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/// A group of which the image has every pixel.
+/// Stores a group that lies inside the image.
 static void store_group(const uint32_t *from, uint32_t *to, size_t stride)
 {
     memcpy(to, from, 4 * sizeof *to);
@@ -59,8 +59,8 @@ bool glint_tile_wants_geometry(const glint_plan *plan)
     return plan->is_base || plan->desc.passes & GLINT_CENTRE_PASSES;
 }
 
-/// Where normals and numbers of objects go before they are stored: of a base to where they are compared, the arrays of which follow one
-/// another; else to `own`.
+/// Returns the buffer for normals and object numbers before they are stored: for a base the buffer where they are compared, with
+/// consecutive arrays; otherwise `own`.
 static float *geometry_of(const glint_tile *tile, const glint_tile_frame *frame, int value, float *own)
 {
     return frame->plan->is_base ? glint_differ_values(tile->differ, value) : own;
@@ -87,7 +87,7 @@ static void store_depth(const glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_store_pass(tile, frame, GLINT_PASS_DEPTH, depth);
 }
 
-/// The normals of those rays of a group that hit nothing.
+/// Clears the normals of a group's rays that hit nothing.
 static void rest_normals(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, float *const normal[3])
 {
     for (unsigned left = 0xffffu & ~(unsigned)tile->at.hits[g]; left; left &= left - 1) {
@@ -100,7 +100,7 @@ static void rest_normals(const glint_tile *tile, const glint_tile_frame *frame, 
     }
 }
 
-/// A component of those of group g.
+/// Rounds a component of group g to float.
 static void round_normals(const void *reals, glint_precision precision, uint32_t g, float *restrict out)
 {
     const double *from = (const double *)reals + (size_t)g * GLINT_GROUP;
@@ -135,7 +135,7 @@ static float object_of(const glint_tile_frame *frame, uint32_t prim)
     return (float)(glint_geometry_object(frame->plan->geometry, frame->geometry.prims[prim].id) + 1);
 }
 
-/// The numbers of a group some of whose rays hit nothing, or that shows several primitives. last: that of `object`, now and before.
+/// Writes the object numbers of a group that shows several primitives or the background. last: the last primitive, and `object` its number.
 static void part_ids(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, uint32_t *last, float *object, float *id)
 {
     const uint32_t *prim = tile->at.prim + (size_t)g * GLINT_GROUP;
@@ -237,7 +237,7 @@ static void store_coverage(const glint_tile *tile, const glint_tile_frame *frame
 
 // ---- Light --------------------------------------------------------------------------------------------------------
 
-/// Without adaptive sampling every pixel has all samples.
+/// Stores the pass `refined` without adaptive sampling: every pixel has all samples.
 static void store_refined(const glint_tile *tile, const glint_tile_frame *frame)
 {
     float all[GLINT_TILE_SAMPLES];
@@ -294,7 +294,7 @@ static void tone16(glint_tile *tile, const glint_tile_frame *frame)
     }
 }
 
-/// Prefetches the tile's rows of a picture; memory NULL: there is none.
+/// Prefetches the tile's rows of a picture; memory may be NULL.
 static void prefetch_rows(const glint_tile *tile, const void *memory, int width, size_t pixel)
 {
     const size_t stride = (size_t)width * pixel;
@@ -311,14 +311,14 @@ void glint_tile_prefetch_output(const glint_tile *tile, const glint_tile_frame *
             prefetch_rows(tile, image->plane[__builtin_ctz(left)][c], image->width, sizeof(float));
 }
 
-/// The line of a plane that number `at` is in.
+/// Prefetches the cache line of number `at` in a plane.
 static void prefetch_number(const void *plane, size_t at)
 {
     if (plane)
         glint_prefetch((const uint32_t *)plane + at, sizeof(uint32_t));
 }
 
-/// Four groups side by side have lines of sixteen pixels in common: each group takes one of their four.
+/// Four adjacent groups share cache lines of sixteen pixels: each group prefetches one of the four.
 void glint_tile_prefetch_derivatives(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
     const glint_image *image = frame->image;

@@ -1,4 +1,4 @@
-/// Where a tile is in the picture.
+/// The position of a tile in the picture.
 #include "engine/tile/tile.h"
 
 void glint_tile_activate(glint_tile *tile)

@@ -1,5 +1,5 @@
-/// The calls of shade and resolve: of one sample, whose terms are added to sums where there are several, or of all samples
-/// of a tile together, whose sums never leave the registers.
+/// Calls shade and resolve: for one sample, whose terms are added to sums if there are several samples, or for all samples
+/// of a tile together, so that the sums stay in registers.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/effects/pattern/pattern.h"
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// The light in slot i as shade sees it; `lit`: the lanes that it reaches.
+/// Returns the light in slot i as an argument of shade; `lit`: the lanes that it reaches.
 static glint_shade_light shade_light(const glint_tile *tile, const glint_plan_light *light, uint32_t i,
                                      const uint16_t *lit)
 {
@@ -46,7 +46,7 @@ glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_
     for (uint32_t i = 0; i < count; i++) {
         const glint_plan_light *light = &plan->lights[from + i];
         const uint16_t *open = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit;
-        if (!tile->at.light[i].summed || !light->joined || i == 0) // else it is in the sum
+        if (!tile->at.light[i].summed || !light->joined || i == 0) // otherwise it is in the sum
             lights[args.light_count++] = shade_light(tile, light, i, open);
     }
     if (!tile->transparent)
@@ -63,7 +63,7 @@ void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film
     }
 }
 
-/// What shaders make of the lights of a call of shade.
+/// Runs shaders for the lights of a call of shade.
 static void run_shaders(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count,
                         const glint_shade_light *lights)
 {
@@ -80,7 +80,7 @@ static void run_shaders(glint_tile *tile, const glint_tile_frame *frame, uint32_
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_bounce_material *materials = frame->plan->bouncing;
-    uint32_t last = GLINT_MISS; // most lanes show what the lane before shows
+    uint32_t last = GLINT_MISS; // most lanes show the same primitive as the lane before
     if (tile->at.only) {
         const glint_bounce_material *only = &materials[frame->geometry.prims[*tile->at.only].material];
         return glint_sends_on(only);
@@ -95,8 +95,8 @@ bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
     return false;
 }
 
-/// Whether all light of the tile's only sample is what one call of shade makes: nothing in sight sends rays on, and none is kept from a
-/// light, which might come through something. Hits are known, materials named, shadows found.
+/// Returns whether one call of shade computes all light of the tile's only sample: no visible material needs secondary rays, and no light is
+/// hidden by a transparent surface. Hits, materials and shadows must be known.
 static bool is_direct(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
@@ -115,7 +115,7 @@ static bool is_direct(const glint_tile *tile, const glint_tile_frame *frame)
              (plan->tints && glint_tile_is_shadowed(tile, plan, 0, plan->light_count)));
 }
 
-/// Before the first call for what the eye sees: the sums that it adds to, where it does.
+/// Called before the first call of shade for the eye's hits: clears the sums, if they are used.
 static void begin_sums(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
@@ -175,7 +175,7 @@ void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_count_stage(tile, frame, GLINT_STAGE_RESOLVE, false);
 }
 
-// ---- Samples that are shaded together ----
+// ---- Samples shaded together ----
 
 struct glint_samples {
     _Alignas(64) uint32_t material[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES];
@@ -215,7 +215,7 @@ void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_count_stage(tile, frame, GLINT_STAGE_RESOLVE, false);
 }
 
-/// The light in arrays of which the sample's part begins at group g.
+/// Returns a light whose arrays begin at group g.
 static glint_shade_light light_from(const glint_shade_light *light, uint32_t g)
 {
     glint_shade_light out = *light;
@@ -227,7 +227,7 @@ static glint_shade_light light_from(const glint_shade_light *light, uint32_t g)
     return out;
 }
 
-/// The k-th of the samples that `all` has the first of, each in so many groups. lights: to be filled in.
+/// Returns the arguments of the k-th sample, from those of the first one in `all`. Fills in `lights`.
 static glint_shade_args stacked_sample(const glint_shade_args *all, uint32_t k, glint_shade_light *lights)
 {
     const uint32_t g = k * all->group_count;
@@ -240,7 +240,7 @@ static glint_shade_args stacked_sample(const glint_shade_args *all, uint32_t k, 
     return args;
 }
 
-/// Without sums.
+/// Shades and resolves all samples without sums.
 static void resolve_stacked(const glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *all, uint32_t samples)
 {
     struct glint_samples *memory = tile->samples;
@@ -249,7 +249,7 @@ static void resolve_stacked(const glint_tile *tile, const glint_tile_frame *fram
     frame->stages->resolve_samples(memory->shade, samples);
 }
 
-/// Adds the light of sites in sample k of each pixel.
+/// Adds the light of faces and vertices in sample k of each pixel.
 static void add_sites(glint_tile *tile, const glint_tile_frame *frame, const double (*sites)[3][GLINT_TILE_SAMPLES], uint32_t count,
                       uint32_t k, uint32_t samples)
 {
@@ -279,7 +279,7 @@ static void add_stacked(glint_tile *tile, const glint_tile_frame *frame, const g
     }
 }
 
-/// The means of the sums of so many groups.
+/// Computes the means of the sums.
 static void resolve_sums(glint_tile *tile, const glint_tile_frame *frame, uint32_t groups, float *const beauty[3])
 {
     glint_resolve_args args = { .group_count = groups, .samples = frame->plan->desc.samples };

@@ -1,11 +1,11 @@
-/// Spot lights that shine past a whole tile.
+/// Spot lights that miss a whole tile.
 #include "engine/base/vec.h"
 #include "engine/tile/tile.h"
 
-#define SPOT_SLACK 1e-3 ///< of a cosine: by far more than rounding changes it by, of float too
+#define SPOT_SLACK 1e-3 ///< for a cosine: far more than its rounding error, also in float
 
-/// Whether no point of a box is in a spot's cone, for certain. Of all ways from the apex to the ball around the box the one nearest to the
-/// axis counts.
+/// Returns whether certainly no point of a box is in a spot's cone. Tests the direction from the apex to the ball around the box that is nearest
+/// to the axis.
 static bool is_past(const glint_spot *spot, const double apex[3], const glint_point_box *box)
 {
     double way[3], half[3], size = 0;
@@ -15,7 +15,7 @@ static bool is_past(const glint_spot *spot, const double apex[3], const glint_po
         size = fmax(size, fmax(fabs(apex[c]), fmax(fabs(box->lower[c]), fabs(box->upper[c]))));
     }
     const double distance = sqrt(vec_dot(way, way)), radius = sqrt(vec_dot(half, half));
-    if (!(distance - radius > SPOT_SLACK * size)) // so near that rounding may turn a way
+    if (!(distance - radius > SPOT_SLACK * size)) // too near: rounding may turn a direction
         return false;
     const double sine = radius / distance, cosine = sqrt(1 - sine * sine);
     const double along = vec_dot(way, spot->axis) / distance, across = sqrt(fmax(1 - along * along, 0));

@@ -1,4 +1,4 @@
-/// The calls of a tile's stages: plan and memory in, the kernels' argument structs out.
+/// Calls the stages of a tile: fills in the kernels' arguments from plan and memory.
 #include "engine/effects/pattern/pattern.h"
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
@@ -16,7 +16,7 @@ uint64_t glint_tile_now_ns(void)
     return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec;
 }
 
-/// Books the time since the last call on a stage, when stages are timed.
+/// Adds the time since the last call to a stage, when stages are timed.
 static void lap(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage)
 {
     if (!frame->time_stages)
@@ -26,7 +26,7 @@ static void lap(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id 
     tile->clock = now;
 }
 
-/// Counts a stage's call; `reused`: its result was at hand.
+/// Counts a call of a stage; `reused`: its result was in the cache.
 void glint_tile_count_stage(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused)
 {
     if (reused)
@@ -101,7 +101,7 @@ bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame)
     return frame->stages->geometry[frame->plan->desc.precision].in_sight(&args);
 }
 
-/// Pixels that a sample of is taken.
+/// Returns the number of sampled pixels.
 static uint64_t count_active(const glint_tile *tile)
 {
     uint64_t count = 0, four;
@@ -131,15 +131,15 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_count_stage(tile, frame, GLINT_STAGE_CAST, false);
 }
 
-/// Whether the box of the tile's points is known from an earlier frame: of the only sample of each pixel, since others have
-/// boxes of their own, less wide than that of all.
+/// Returns whether the box of the tile's points is known from an earlier frame. Only with one sample per pixel, because each of several samples
+/// has its own, smaller box.
 static bool has_box(const glint_tile *tile, const glint_tile_frame *frame)
 {
     return tile->cached && frame->plan->desc.samples == 1 &&
            glint_key_equal(tile->cached->boxed, frame->plan->keys[GLINT_STAGE_SURFACE]);
 }
 
-/// The box that a call of the stage filled in, or the known one.
+/// Stores the box that a call of the stage filled in, or the known one.
 static void take_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *filled)
 {
     if (filled)
@@ -216,7 +216,7 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
     }
 }
 
-/// Whether only this frame's shading reads the highlights.
+/// Returns whether only this frame's shading reads the highlights.
 static bool is_sparing(const glint_tile *tile, const glint_tile_frame *frame, const uint32_t *slot, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++)
@@ -225,7 +225,7 @@ static bool is_sparing(const glint_tile *tile, const glint_tile_frame *frame, co
     return !frame->count_work;
 }
 
-/// Highlights that were spared may be as bright as any that shade does not see.
+/// Sets a bound for highlights that were not computed: they are below what shade evaluates.
 static void bound_brightest(glint_tile *tile, const glint_tile_frame *frame, const glint_light_args *args,
                             const uint32_t *slot)
 {
@@ -278,7 +278,7 @@ glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame 
     return args;
 }
 
-/// What the stage light says of a light that shines nowhere.
+/// Writes the results of the stage light for a light that shines nowhere.
 static void leave_unlit(const glint_tile *tile, const glint_light_args *args)
 {
     memset(args->lit[0], 0, tile->group_count * sizeof *args->lit[0]);
@@ -286,7 +286,7 @@ static void leave_unlit(const glint_tile *tile, const glint_light_args *args)
         *args->brightest[0] = GLINT_NO_SPECULAR;
 }
 
-/// What stages take from the lanes that a light shines on.
+/// Lets stages remove lanes from those that a light shines on.
 static void limit(glint_tile *tile, const glint_plan *plan, const glint_light_args *args)
 {
     for (uint32_t left = plan->limits; left; left &= left - 1)
@@ -349,7 +349,7 @@ void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *fra
         vec_copy(out, light->position);
 }
 
-/// What is seen of a light, times its attenuation; within its radius a radiant one is as strong as at it.
+/// Computes the visible share of a light, times its attenuation. Inside its radius, a light with radiance is as strong as on its surface.
 static void weaken(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot)
 {
     const glint_precision precision = frame->plan->desc.precision;
@@ -366,7 +366,7 @@ static void weaken(glint_tile *tile, const glint_tile_frame *frame, const glint_
         }
 }
 
-/// Leaves those lanes of a group from whose surface the light's middle is not behind.
+/// Returns the lanes of a group whose surface faces the light's middle.
 static uint16_t facing_lanes(const glint_tile *tile, const glint_plan *plan, const double middle[3], uint32_t g,
                              unsigned lanes)
 {
@@ -384,7 +384,7 @@ static uint16_t facing_lanes(const glint_tile *tile, const glint_plan *plan, con
     return facing;
 }
 
-/// What stages add to the lanes that a light reaches.
+/// Lets stages add lanes to those that a light reaches.
 static void admit(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle, const uint16_t *lit,
                   uint16_t *open)
 {
@@ -392,7 +392,7 @@ static void admit(glint_tile *tile, const glint_tile_frame *frame, const glint_p
         glint_stage_table[__builtin_ctz(left)]->admit(tile, frame, light, middle, lit, open);
 }
 
-/// One ray to the middle of an area light decides for all samples of the call.
+/// Casts one ray to the middle of an area light for all samples of the call.
 static void occlude_middle(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
                            const glint_occlude_args *samples)
 {
@@ -414,7 +414,7 @@ static void occlude_middle(glint_tile *tile, const glint_tile_frame *frame, cons
             samples->open[s][g] = samples->lit[s][g] & open[g];
 }
 
-/// The grid of a light; NULL: it has none.
+/// Returns the grid of a light; NULL: it has none.
 static const glint_light_grid *grid_of(const glint_tile_frame *frame, const glint_plan_light *light)
 {
     for (uint32_t i = 0; i < frame->grid_count; i++) {
@@ -426,7 +426,7 @@ static const glint_light_grid *grid_of(const glint_tile_frame *frame, const glin
     return NULL;
 }
 
-/// Sets what in the arguments is of one light, or of samples of one.
+/// Sets the arguments that depend on the light, or on the samples of one.
 static void aim_occlude(const glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                         glint_occlude_args *args)
 {
@@ -466,7 +466,7 @@ glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_fr
     return args;
 }
 
-/// What one light, or samples of one, reach. The arguments are aimed at it.
+/// Finds the lanes that one light, or samples of one, reach. The arguments must be set for it.
 static void occlude_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                           glint_occlude_args *args)
 {

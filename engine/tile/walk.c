@@ -1,13 +1,13 @@
-/// The walk of a tile: which stages run, in what order, and where their results go.
+/// The walk of a tile: runs the stages in their order.
 #include "engine/effects/pattern/pattern.h"
 
 #include <string.h>
 
-#define TIMED_TILES 17 ///< one in so many; no divisor of a picture's width in tiles that is common
+#define TIMED_TILES 17 ///< one of so many; not a divisor of common picture widths in tiles
 
 // ---- A sample ----
 
-/// Finds the points of the lanes that are listed, and no more: their programs read nothing else.
+/// Computes the points of the listed lanes only: their programs read nothing else.
 static void need_painted(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w)
 {
     uint16_t painted[GLINT_TILE_GROUPS];
@@ -16,7 +16,7 @@ static void need_painted(glint_tile *tile, const glint_tile_frame *frame, glint_
     glint_tile_find_points(tile, frame, painted);
 }
 
-/// What programs give of the materials in sight, which are named.
+/// Runs the programs of the visible materials.
 static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w)
 {
     const bool normals = glint_pattern_needs_normals(frame->plan) || frame->geometry.triangles || frame->geometry.solids;
@@ -31,13 +31,13 @@ static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, glint
         return;
     if (!w->lit && !w->points && normals) {
         glint_tile_need_points(tile, frame, w);
-        glint_tile_find_painted(tile, frame); // bumps make lists of their own
+        glint_tile_find_painted(tile, frame); // bumps make their own lists
     } else if (!w->lit && !w->points)
         need_painted(tile, frame, w);
     glint_tile_keep_pattern(tile, frame, w->sample);
 }
 
-/// Whether this walk stores the picture's geometry: the walk through the pixels' centres, or sample 0 where that is the same ray.
+/// Returns whether this walk stores the picture's geometry: the walk through the pixels' centres, or sample 0 if it is the same ray.
 static bool shows_geometry(const glint_tile_frame *frame, const glint_sample_walk *w)
 {
     if (w->sample > 0 || !glint_tile_wants_geometry(frame->plan))
@@ -45,8 +45,8 @@ static bool shows_geometry(const glint_tile_frame *frame, const glint_sample_wal
     return glint_plan_casts_centres(frame->plan) ? w->centres : !frame->base;
 }
 
-/// Whether the points and what the light does there can be found in one: of one plain lamp, where bumps do not turn
-/// normals. Where stages are timed, each runs by itself.
+/// Returns whether the fused surface-and-light kernel applies: one point or directional light and no bumps. When
+/// stages are timed, each runs separately.
 static bool is_plain(const glint_tile_frame *frame, const glint_sample_walk *w)
 {
     const glint_plan *plan = frame->plan;
@@ -54,7 +54,7 @@ static bool is_plain(const glint_tile_frame *frame, const glint_sample_walk *w)
            !plan->lights[0].light_samples && !plan->lights[0].is_spot;
 }
 
-/// Stores the picture's geometry where this walk has it to store.
+/// Stores the picture's geometry if this walk has it.
 static void store_geometry(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w, bool any)
 {
     if (!w->shows)
@@ -67,7 +67,7 @@ static void store_geometry(glint_tile *tile, const glint_tile_frame *frame, glin
     w->shows = false;
 }
 
-/// Returns whether anything is hit.
+/// Casts the rays. Returns whether anything is hit.
 static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w)
 {
     const glint_plan *plan = frame->plan;
@@ -100,8 +100,8 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, glint_sam
     return any;
 }
 
-/// Whether the light leaves normals: where a stage after it is likely to read them, and of triangles and solids, since they
-/// cost little beside these.
+/// Returns whether the fused kernel should also write normals: if a later stage is likely to read them, and for triangles and solids, where they
+/// cost little.
 static bool wants_normals(const glint_tile_frame *frame, const glint_sample_walk *w)
 {
     const glint_plan *plan = frame->plan;
@@ -109,12 +109,12 @@ static bool wants_normals(const glint_tile_frame *frame, const glint_sample_walk
            frame->geometry.solids;
 }
 
-/// Which lights a light's samples, or several that are alike, leave to be found: `shine` and `occlude` get their slots.
+/// The slots of lights that still need the stages light (`shine`) and `occlude`.
 typedef struct light_work {
     uint32_t shine[GLINT_LIGHT_CHUNK], occlude[GLINT_LIGHT_CHUNK], shining, occluding;
 } light_work;
 
-/// Of `count` rows of the plan from `first + slot` on.
+/// Returns the work for `count` rows of the plan from `first + slot` on.
 static light_work find_light_work(glint_tile *tile, const glint_tile_frame *frame, const glint_sample_walk *w, uint32_t first,
                                   uint32_t slot, uint32_t count)
 {
@@ -135,7 +135,7 @@ static light_work find_light_work(glint_tile *tile, const glint_tile_frame *fram
     return work;
 }
 
-/// What one light, or lights that are alike, do to this sample: `count` rows of the plan from `first + slot` on.
+/// Computes light and shadow of one light, or of similar lights, for this sample: `count` rows of the plan from `first + slot` on.
 static void find_light(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w, uint32_t first, uint32_t slot,
                        uint32_t count)
 {
@@ -165,7 +165,7 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, glint_sa
             glint_tile_note_light(tile, first + i, i, lights[i].shadows, w->sample);
 }
 
-/// A chunk of lights; the samples of one are found together, and what lights that are alike do to each point.
+/// Computes a chunk of lights. The samples of one light are computed together, and so are similar lights.
 static void find_lights(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w, uint32_t first, uint32_t count)
 {
     for (uint32_t slot = 0, next; slot < count; slot = next) {
@@ -176,7 +176,7 @@ static void find_lights(glint_tile *tile, const glint_tile_frame *frame, glint_s
     }
 }
 
-/// Names the materials and finds the points that shading a chunk of lights needs and that these have not found.
+/// Finds the materials and points that shading a chunk of lights needs and that are not yet known.
 static void need_shading(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w, bool any, bool lit, uint32_t from)
 {
     if (from == 0 && any && !w->points && !w->lit) {
@@ -185,12 +185,12 @@ static void need_shading(glint_tile *tile, const glint_tile_frame *frame, glint_
     }
     if (any)
         find_patterns(tile, frame, w);
-    const bool inside = frame->plan->dims; // which points are inside what absorbs
+    const bool inside = frame->plan->dims; // to find points inside an absorbing medium
     if (lit && !w->points && (inside || glint_tile_shows_shader(tile, frame->plan)))
         glint_tile_need_points(tile, frame, w);
 }
 
-/// One sample of every pixel: hits, then the lights, a chunk at a time.
+/// Renders one sample of every pixel: hits, then the lights, a chunk at a time.
 static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     glint_sample_walk w = { .sample = k };
@@ -224,7 +224,7 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     glint_tile_step(tile, frame, GLINT_AT_SUMMED, &w);
 }
 
-/// Some samples, from number `first` on, of `count` pixels that are gathered.
+/// Renders some samples, from number `first` on, of `count` gathered pixels.
 static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first)
 {
     const uint32_t left = (uint32_t)frame->plan->desc.samples - first, most = glint_tile_gathered_samples(frame->plan);
@@ -245,7 +245,7 @@ static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, con
     glint_tile_shade_gathered(tile, frame, lights, place, count, first, samples);
 }
 
-/// All samples of pixels that are gathered.
+/// Renders all samples of gathered pixels.
 static void take_gathered(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count)
 {
     const uint32_t most = glint_tile_most_gathered(frame->plan), samples = (uint32_t)frame->plan->desc.samples;
@@ -254,7 +254,7 @@ static void take_gathered(glint_tile *tile, const glint_tile_frame *frame, const
             sample_gathered(tile, frame, place + i, count - i < most ? count - i : most, k);
 }
 
-/// All samples of the active pixels; false: they are given up.
+/// Renders all samples of the active pixels. Returns false when cancelled.
 static bool take_samples(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
@@ -273,7 +273,7 @@ static bool take_samples(glint_tile *tile, const glint_tile_frame *frame)
     return true;
 }
 
-/// Stores the geometry that a pinhole in the middle of the lens sees through the pixels' centres. Nothing is cached.
+/// Stores the geometry seen by a pinhole in the middle of the lens through the pixels' centres. Nothing is cached.
 static void find_geometry(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_cached_tile *cached = tile->cached;
@@ -287,7 +287,7 @@ static void find_geometry(glint_tile *tile, const glint_tile_frame *frame)
     tile->cached = cached;
 }
 
-/// The time now, of tiles that are timed, else 0. Without times of stages a few tiles tell what share the tone has.
+/// Returns the current time for timed tiles, otherwise 0. If stages are not timed, a few tiles give the share of tone.
 static uint64_t clock_of(const glint_tile *tile, const glint_tile_frame *frame)
 {
     return frame->time_stages || tile->index % TIMED_TILES == 0 ? glint_tile_now_ns() : 0;
@@ -303,8 +303,8 @@ static void tone(glint_tile *tile, const glint_tile_frame *frame)
     tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - start;
 }
 
-/// The tile into the image. A base that is codes leaves light only where some is clipped or not finite: these are counted again
-/// where the tile is refined.
+/// Stores the tile in the image. A base of pixel values stores light only where it is clipped or not finite: such pixels are counted again
+/// when the tile is refined.
 static void store(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before)
 {
     const bool in_codes = frame->plan->is_base && frame->refine->in_codes;
@@ -315,7 +315,7 @@ static void store(glint_tile *tile, const glint_tile_frame *frame, glint_film_co
         glint_tile_store_light(tile, frame);
 }
 
-/// What is kept of the tile, before its first sample.
+/// Prepares the cache of the tile, before its first sample.
 static void begin_cached(glint_tile *tile, const glint_tile_frame *frame)
 {
     if (tile->cached)
@@ -326,7 +326,7 @@ static void begin_cached(glint_tile *tile, const glint_tile_frame *frame)
         glint_tile_prefetch(tile, frame);
 }
 
-/// Every stage that the tile needs.
+/// Runs every stage that the tile needs.
 static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;

@@ -12,7 +12,7 @@ static bool is_power(const glint_shade_material *material)
     return material->highlight == GLINT_HIGHLIGHT_PHONG || material->highlight == GLINT_HIGHLIGHT_BLINN;
 }
 
-/// As `shade` decides it: the light reaches the point, whose material has a highlight there.
+/// Counts the highlights that `shade` evaluates: the light reaches the point, and the material has a highlight there.
 void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count)
 {
     const glint_plan *plan = frame->plan;
