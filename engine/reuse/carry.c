@@ -1,6 +1,6 @@
-/// Results that outlive a change of geometry: where a few primitives have moved, come or gone, a tile in which none of them
-/// shows, before or after, has the hits it had, and a light whose way to the tile's points none of them crosses reaches what
-/// it reached. Such results are given the new plan's keys before the frame begins.
+/// Keeps results after a change of geometry: if a few primitives have moved, come or gone, a tile in which none of them
+/// shows, before or after, keeps its hits, and a light keeps its shadows in a tile if none of them crosses the segments to the
+/// tile's points. Such results get the new plan's keys before the frame begins.
 #include "engine/base/vec.h"
 #include "engine/reuse/between.h"
 #include "engine/reuse/reuse.h"
@@ -9,25 +9,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CARRY_PRIMS 16384u ///< in a scene of more, frames that changed too much are not looked at for some frames
-#define CARRY_AT_ONCE 131072u ///< in a scene of more, the places of the first frame are not noted, which a picture alone has no use for
-#define CARRY_CHANGES 64 ///< a frame that has changed more keeps nothing
+#define CARRY_PRIMS 16384u ///< in larger scenes, changes are not searched for some frames after too many
+#define CARRY_AT_ONCE 131072u ///< in larger scenes, the first frame does not record places, which a single picture would not use
+#define CARRY_CHANGES 64 ///< with more changes, nothing is kept
 #define CARRY_PAUSE_MAX 16 ///< frames
 
 typedef struct carry {
     glint_reuse *reuse;
     const glint_plan *plan;
-    const glint_plan *before; ///< the same plan with the places of the last frame: its keys
-    glint_ball balls[2 * CARRY_CHANGES]; ///< around all that has changed, as it was and as it is
+    const glint_plan *before; ///< the same plan with the places of the last frame, for its keys
+    glint_ball balls[2 * CARRY_CHANGES]; ///< around all changed primitives, before and after
     uint32_t ball_count;
-    const uint32_t *moved_to; ///< the place of each primitive of the last frame; NULL: all are where they were
+    const uint32_t *moved_to; ///< the new index of each primitive of the last frame; NULL: unchanged
     glint_image *const *images;
     uint32_t image_count;
 } carry;
 
-// ---- What has changed ----
+// ---- Changes ----
 
-/// Every primitive's, by id. NULL: no memory.
+/// Finds the place of every primitive, by id. NULL: out of memory.
 static glint_cached_place *find_places(const glint_geometry *geometry, uint32_t count)
 {
     glint_cached_place *places = malloc((count + 1) * sizeof *places);
@@ -50,7 +50,7 @@ static glint_cached_place *find_places(const glint_geometry *geometry, uint32_t 
         }
         place->radius = prim->kind == GLINT_PRIM_SPHERE ? prim->radius : sqrt(vec_dot(half, half));
     }
-    for (uint32_t i = 0; places && i < geometry->member_count; i++) // a whole's key has what its parts are
+    for (uint32_t i = 0; places && i < geometry->member_count; i++) // the key of a combined solid includes its parts
         places[geometry->members[i].id] = (glint_cached_place) { .at = geometry->table.prim_count + i };
     return places;
 }
@@ -67,7 +67,7 @@ static bool add_ball(carry *c, const glint_cached_place *place)
     return true;
 }
 
-/// Returns whether what has changed is little.
+/// Lists the changes. Returns false if there are too many.
 static bool find_changes(carry *c, const glint_cached_place *was, const glint_cached_place *is, uint32_t count)
 {
     for (uint32_t id = 0; id < count; id++) {
@@ -88,7 +88,7 @@ static void renew(glint_key *key, glint_key before, glint_key now)
         *key = now;
 }
 
-/// Where a primitive is now; GLINT_MISS, and what lanes beside the picture hold, stay as they are.
+/// Returns the new index of a primitive; GLINT_MISS, and the values of lanes outside the picture, stay as they are.
 static uint32_t moved(const carry *c, uint32_t place)
 {
     return c->moved_to && place < c->reuse->place_count ? c->moved_to[place] : place;
@@ -111,7 +111,7 @@ static void carry_hits(const carry *c, glint_cached_tile *tile)
     renew(&tile->boxed, was[GLINT_STAGE_SURFACE], is[GLINT_STAGE_SURFACE]);
 }
 
-/// Returns whether all lights reach what they reached.
+/// Renews the lights' keys. Returns whether all shadows are unchanged.
 static bool carry_lights(const carry *c, glint_cached_tile *tile, bool boxed, uint32_t column, uint32_t row)
 {
     bool all = true;
@@ -158,14 +158,14 @@ static void carry_all(const carry *c)
     const uint32_t across = (reuse->width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     for (size_t i = 0; i < reuse->tile_count; i++)
         carry_tile(c, i, (uint32_t)(i % across), (uint32_t)(i / across));
-    reuse->cast = c->plan->keys[GLINT_STAGE_CAST]; // what stays where it is may be kept from now on
+    reuse->cast = c->plan->keys[GLINT_STAGE_CAST]; // unchanged places may be cached from now on
     renew(&reuse->pattern, c->before->keys[GLINT_STAGE_PATTERN], c->plan->keys[GLINT_STAGE_PATTERN]);
     renew(&reuse->view, c->before->keys[GLINT_STAGE_VIEW], c->plan->keys[GLINT_STAGE_VIEW]);
     for (uint32_t i = 0; i < reuse->light_count; i++)
         renew(&reuse->light[i], c->before->lights[i].key, c->plan->lights[i].key);
 }
 
-/// Where each primitive of the last frame is now. False: no memory. *moved_to is NULL where none has moved.
+/// Finds the new index of each primitive of the last frame. Returns false when out of memory. *moved_to is NULL if none has moved.
 static bool find_moves(const glint_cached_place *was, const glint_cached_place *is, uint32_t count, uint32_t **moved_to)
 {
     bool same = true;
@@ -178,7 +178,7 @@ static bool find_moves(const glint_cached_place *was, const glint_cached_place *
     return same || *moved_to;
 }
 
-/// Returns whether what has changed is little.
+/// Carries results over a change. Returns false if there are too many changes.
 static bool carry_changes(carry *c, const glint_cached_place *is, uint32_t count)
 {
     const glint_cached_place *was = c->reuse->places;
@@ -199,7 +199,7 @@ static bool carry_changes(carry *c, const glint_cached_place *is, uint32_t count
     return true;
 }
 
-/// Whether the places of this frame are worth finding: of many primitives not in each frame of a scene in which most of them move.
+/// Returns whether to record the places of this frame: with many primitives, not in every frame if most of them move.
 static bool is_worth_finding(glint_reuse *reuse, uint32_t count)
 {
     if (count * sizeof(glint_cached_place) >= reuse->budget / 64)
@@ -212,7 +212,7 @@ static bool is_worth_finding(glint_reuse *reuse, uint32_t count)
     return false;
 }
 
-/// After a frame that changed much: twice as long as the last time.
+/// After a frame with many changes: waits twice as long as the last time.
 static void wait_longer(glint_reuse *reuse)
 {
     reuse->carry_pause = reuse->carry_pause ? reuse->carry_pause * 2 : 1;
@@ -225,13 +225,13 @@ void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *
 {
     const glint_geometry *geometry = plan->geometry;
     const uint32_t count = geometry->id_count, lights = plan->light_count;
-    const bool plain = reuse->plain == geometry->index->plain; // else the same places may have another order
+    const bool plain = reuse->plain == geometry->index->plain; // otherwise the same places may have another order
     if (!reuse->on || (plain && glint_key_equal(reuse->where, geometry->where)))
         return;
     carry c = { .reuse = reuse, .plan = plan, .images = images, .image_count = image_count };
     glint_cached_place *places = is_worth_finding(reuse, count) ? find_places(geometry, count) : NULL;
     const bool alike = plain && reuse->places && places && reuse->place_count == count && reuse->tile_count > 0 &&
-                       reuse->scale == geometry->table.scale && // another underflows elsewhere
+                       reuse->scale == geometry->table.scale && // with another scale, other numbers underflow
                        reuse->light_count == (lights < GLINT_CACHED_LIGHTS ? lights : GLINT_CACHED_LIGHTS);
     if (alike && plan->desc.precision == GLINT_DOUBLE && !glint_plan_cuts(plan)) {
         if (carry_changes(&c, places, count))

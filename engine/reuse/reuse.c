@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/// Blocks are cut from chunks of large pages: many tiles follow each other there, and few pages are looked up.
+/// Blocks are cut from chunks of large pages, so that many tiles share few pages.
 #define CHUNK_BYTES ((size_t)4 << 20)
 #define BLOCK_ALIGN 64
 
@@ -45,7 +45,7 @@ void glint_reuse_destroy(glint_reuse *reuse)
     pthread_mutex_destroy(&reuse->lock);
 }
 
-/// The slots of every tile, or none at all.
+/// Makes the slots of every tile, or none at all.
 static void make_slots(glint_reuse *reuse, const glint_plan *plan, size_t tile_count, uint32_t light_count)
 {
     reuse->width = (uint32_t)plan->desc.width;
@@ -105,7 +105,7 @@ bool glint_reuse_shows_more(const glint_cached_tile *tile, const glint_plan *pla
     return false;
 }
 
-/// Whether a material's highlight may be above 0 in the tile.
+/// Returns whether a material's highlight may be above 0 in the tile.
 static bool shines(const glint_reuse *reuse, const glint_cached_tile *tile, const glint_plan *plan, uint32_t index)
 {
     const glint_shade_material *material = &plan->materials[index];
@@ -118,7 +118,7 @@ static bool shines(const glint_reuse *reuse, const glint_cached_tile *tile, cons
     return false;
 }
 
-/// The materials that the tile shows.
+/// Continues a key with the materials that the tile shows.
 static glint_key materials_key(const glint_reuse *reuse, const glint_cached_tile *tile, const glint_plan *plan, glint_key key)
 {
     if (tile->shown_count > GLINT_SHOWN_MAX)
@@ -168,7 +168,7 @@ bool glint_reuse_reserve(glint_reuse *reuse, size_t bytes)
 
 void glint_reuse_unreserve(glint_reuse *reuse, size_t bytes) { reuse->pictures -= bytes; }
 
-/// Makes a chunk for blocks of this size: a large one where the budget has room for it.
+/// Makes a chunk for blocks of this size: a large one if it fits into the budget.
 static bool add_chunk(glint_reuse *reuse, size_t bytes)
 {
     const size_t room = reuse->budget - reuse->pictures, least = bytes + BLOCK_ALIGN;
@@ -187,7 +187,7 @@ static bool add_chunk(glint_reuse *reuse, size_t bytes)
     return true;
 }
 
-/// A block of memory within the budget, or NULL; its contents do not matter yet. It lasts until all is cleared.
+/// Returns a block of uninitialised memory within the budget, or NULL. It lasts until everything is cleared.
 static void *hold(glint_reuse *reuse, size_t bytes)
 {
     void *block = NULL;
@@ -255,7 +255,7 @@ bool glint_reuse_hold_values(glint_reuse *reuse, glint_cached_tile *tile)
     if (bytes <= tile->value_bytes)
         return true;
     void *values = hold(reuse, bytes);
-    if (!values) // what is there stays, and what is known of it
+    if (!values) // the contents and their keys stay
         return false;
     tile->values = values;
     tile->value_bytes = bytes;

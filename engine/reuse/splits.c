@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Tenths of a nanosecond a sample: of what programs read.
-#define COST_OF_POINTS 20u ///< of spheres and planes
-#define COST_OF_SURFACES 40u ///< where there are others: normals are found with their points
+// Costs of the programs' inputs, in tenths of a nanosecond per sample.
+#define COST_OF_POINTS 20u ///< points of spheres and planes
+#define COST_OF_SURFACES 40u ///< with other shapes, whose normals are computed with their points
 
 static const glint_key none;
 
@@ -28,7 +28,7 @@ void glint_splits_clear(glint_splits *splits)
     *splits = (glint_splits) { .of = NULL };
 }
 
-// ---- What has changed ---------------------------------------------------------------------------------------------
+// ---- Changes ---------------------------------------------------------------------------------------------
 
 static glint_key like_of(const glint_plan_pattern *own, int field)
 {
@@ -37,7 +37,7 @@ static glint_key like_of(const glint_plan_pattern *own, int field)
     return program ? glint_key_add(program->structure, parts, sizeof parts) : none;
 }
 
-/// Begins with a program that was another in the last frame. Returns false without memory.
+/// Begins with a program that differs from the last frame's. Returns false when out of memory.
 static bool begin_field(glint_split_field *f, const glint_program *program, glint_key like)
 {
     clear_field(f);
@@ -55,7 +55,7 @@ static bool begin_field(glint_split_field *f, const glint_program *program, glin
     return true;
 }
 
-/// Which numbers have changed since the last frame. Returns whether some had not before.
+/// Marks the numbers that have changed since the last frame. Returns whether some changed for the first time.
 static bool find_changes(glint_split_field *f, const glint_program *program)
 {
     bool more = false;
@@ -76,13 +76,13 @@ static bool any_changed(const glint_split_field *f)
     return any;
 }
 
-/// Whether what follows from a material's programs is made in place of what they give, so that all of them are run again.
+/// Returns whether derived planes overwrite the results of a material's programs, so that all programs must run again.
 static bool is_joined(const glint_plan_pattern *own)
 {
     return own->made >> GLINT_FIELD_AMBIENT & 1 || own->desc.normalized;
 }
 
-/// Splits a material's programs. saved: what need not be found where none is run as a whole. Returns false without memory.
+/// Splits a material's programs. saved: the cost saved if no program runs as a whole. Returns false when out of memory.
 static bool split(glint_split_material *m, const glint_plan_pattern *own, uint32_t saved)
 {
     uint32_t cost = 0;
@@ -108,7 +108,7 @@ static bool split(glint_split_material *m, const glint_plan_pattern *own, uint32
     return true;
 }
 
-/// The same where numbers have changed that had not. Where keeping for all that ever did does not pay, it is for those that
+/// The same when numbers change for the first time. If caching for all numbers that ever changed does not pay, splits for those that
 /// have just changed.
 static bool split_again(glint_split_material *m, const glint_plan_pattern *own, uint32_t saved)
 {
@@ -125,7 +125,7 @@ static bool split_again(glint_split_material *m, const glint_plan_pattern *own, 
     return split(m, own, saved);
 }
 
-/// Compares a material's programs with the last frame's, and splits them as they have changed. Returns false without memory.
+/// Compares a material's programs with the last frame's, and splits them by their changes. Returns false when out of memory.
 static bool follow(glint_split_material *m, const glint_plan_pattern *own, uint32_t saved)
 {
     bool more = false, other = false;
@@ -141,11 +141,11 @@ static bool follow(glint_split_material *m, const glint_plan_pattern *own, uint3
     return more ? split_again(m, own, saved) : !other || split(m, own, saved);
 }
 
-// ---- What is kept -------------------------------------------------------------------------------------------------
+// ---- Cached values -------------------------------------------------------------------------------------------------
 
 static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
 
-/// Finds places for what is kept of a material.
+/// Assigns positions to a material's cached values.
 static void place(glint_splits *splits, glint_split_material *m, const glint_plan_patterns *patterns, uint32_t made)
 {
     uint32_t numbers = 0, truths = 0;
@@ -160,7 +160,7 @@ static void place(glint_splits *splits, glint_split_material *m, const glint_pla
         splits->planes = patterns->plane_count;
 }
 
-/// Of all that what is kept is made from.
+/// Returns the key of everything that the cached values depend on.
 static glint_key kept_key(const glint_splits *splits)
 {
     glint_key key = splits->surface;

@@ -1,36 +1,36 @@
-/// The programs of materials in a row of frames in which some of their numbers change, split: see engine/program/split.h. What their
-/// first parts give is kept of each sample, so that the second parts alone run again. Internal.
+/// Splits the programs of materials in a sequence of frames in which some of their numbers change: see engine/program/split.h. The
+/// results of the first parts are cached for each sample, so that only the second parts run again. Internal.
 #ifndef GLINT_REUSE_SPLITS_H
 #define GLINT_REUSE_SPLITS_H
 
 #include "engine/plan/plan.h"
 #include "engine/program/split.h"
 
-/// A program, and how it has changed.
+/// A program and its changes.
 typedef struct glint_split_field {
-    glint_key like; ///< of it and what it reads, but for its numbers; all zero: there is none
+    glint_key like; ///< of the program and its inputs, except for its numbers; all zero: no program
     uint32_t number_count;
     double *numbers; ///< owned: those of the last frame
-    bool *changed, *now; ///< owned: which were others before; which have just changed
+    bool *changed, *now; ///< owned: numbers that have ever changed; numbers that have just changed
     glint_split *split; ///< owned; NULL: none of its numbers changes
-    uint32_t place[GLINT_PROGRAM_OUTPUTS_MAX]; ///< of what is kept, among the numbers or truths of a sample
+    uint32_t place[GLINT_PROGRAM_OUTPUTS_MAX]; ///< positions of the cached values, among the numbers or booleans of a sample
 } glint_split_field;
 
 typedef struct glint_split_material {
     glint_split_field of[GLINT_FIELD_PLANES];
-    uint32_t again; ///< fields that depend on what changes, a bit each: those that programs give, and what follows from these
-    bool whole; ///< these are run as they are, as keeping does not pay
+    uint32_t again; ///< fields that depend on changing numbers, one bit each: computed by programs or derived from them
+    bool whole; ///< the programs run whole, because caching does not pay
 } glint_split_material;
 
 typedef struct glint_splits {
-    glint_split_material *of; ///< beside the plan's materials; owned
+    glint_split_material *of; ///< one for each material of the plan; owned
     uint32_t material_count;
     glint_key surface; ///< of the last frame
-    glint_key key; ///< of what is kept for this one; all zero: nothing is
-    uint32_t numbers, planes, truths; ///< that are kept of a sample: doubles; the plan's planes, if some do not change; bits
+    glint_key key; ///< of the values cached for this frame; all zero: none
+    uint32_t numbers, planes, truths; ///< cached per sample: doubles; the plan's planes, if some do not change; bits
 } glint_splits;
 
-/// Before a frame. Without memory nothing is kept.
+/// Called before a frame. Without memory, nothing is cached.
 void glint_splits_begin(glint_splits *splits, const glint_plan *plan);
 void glint_splits_clear(glint_splits *splits);
 
@@ -39,7 +39,7 @@ static inline bool glint_splits_are_on(const glint_splits *splits)
     return !glint_key_equal(splits->key, (glint_key) { 0 });
 }
 
-/// Bytes of what is kept of one sample: the numbers, then the planes, then the truths.
+/// Returns the cached bytes of one sample: numbers, then planes, then booleans.
 static inline size_t glint_splits_bytes(const glint_splits *splits)
 {
     const size_t bits = splits->truths * GLINT_TILE_SAMPLES / 8;
