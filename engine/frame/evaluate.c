@@ -1,4 +1,4 @@
-/// A program at one point, by the frame's own kernel.
+/// Evaluates a program at one point, with the frame's own kernel.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/plan/plan.h"

@@ -3,10 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-#define FEWEST 256 ///< primitives; among fewer the walk of the index is as quick
-#define SAMPLES_A_PRIMITIVE 0.5 ///< of a frame: with fewer a grid is never made
-#define SAMPLES_AT_ONCE 4.0 ///< with so many, shared by the threads, it saves more in one frame than it takes; with fewer it is
-    ///< made in the second frame that finds the light and the geometry where they were
+#define FEWEST 256 ///< primitives; with fewer, traversing the index is as fast
+#define SAMPLES_A_PRIMITIVE 0.5 ///< of a frame; with fewer, a grid is never made
+#define SAMPLES_AT_ONCE 4.0 ///< with this many, shared by the threads, a grid pays in one frame; with fewer it is
+    ///< made in the second frame with unchanged light and geometry
 
 void glint_grids_clear(glint_grids *grids)
 {
@@ -42,7 +42,7 @@ static void keep_used(glint_grids *grids, const glint_plan *plan)
     grids->count = kept;
 }
 
-/// Notes a light, or makes its grid: at once, or where it was noted by a frame before this one.
+/// Records a light, or makes its grid: at once, or if an earlier frame recorded it.
 static glint_status add(glint_grids *grids, const glint_plan_light *light, const glint_geometry_table *table,
                         bool at_once, size_t room, glint_error *error)
 {
@@ -65,7 +65,7 @@ static glint_status add(glint_grids *grids, const glint_plan_light *light, const
     return glint_light_grid_create(table, light->directional, light->position, room, &grids->of[i].grid, error);
 }
 
-/// Whether a tile is run with shadows that are not there from an earlier frame.
+/// Returns whether a tile needs shadows that are not cached.
 static bool lacks_shadows(const glint_tile_frame *frame, size_t index)
 {
     const glint_plan *plan = frame->plan;
@@ -83,7 +83,7 @@ static bool lacks_shadows(const glint_tile_frame *frame, size_t index)
     return plan->light_count > reuse->light_count;
 }
 
-/// How many of the frame's samples lights have to be looked for from.
+/// Returns the number of the frame's samples that need shadows.
 static double count_shadowed(const glint_tile_frame *frame, const glint_extent *extent)
 {
     const glint_plan *plan = frame->plan;
@@ -96,7 +96,7 @@ static double count_shadowed(const glint_tile_frame *frame, const glint_extent *
     return fmin(all, (double)lacking * GLINT_TILE_SAMPLES * plan->desc.samples);
 }
 
-/// Notes or makes those that pay.
+/// Records lights, or makes their grids, where that pays.
 static glint_status find(glint_grids *grids, const glint_tile_frame *frame, const glint_extent *extent, int threads,
                          glint_error *error)
 {

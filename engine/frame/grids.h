@@ -1,4 +1,4 @@
-/// The grids of a frame's lights, kept while the geometry and a light stay where they are. Internal.
+/// The grids of a frame's lights, cached while geometry and light stay unchanged. Internal.
 #ifndef GLINT_GRIDS_H
 #define GLINT_GRIDS_H
 
@@ -6,22 +6,22 @@
 #include "engine/tile/tile.h"
 
 typedef struct glint_grids {
-    glint_key where; ///< of the geometry that they are of
+    glint_key where; ///< of the grids' geometry
     const glint_node *nodes;
     bool plain; ///< see glint_index
     uint32_t count;
     struct {
         bool directional;
-        bool used; ///< noted by an earlier frame, and of the one at hand too
-        bool made; ///< else it was only noted
+        bool used; ///< recorded by an earlier frame, and used in the current one, too
+        bool made; ///< otherwise only recorded
         double position[3];
         glint_light_grid *grid; ///< NULL: there is none
     } of[GLINT_TILE_GRIDS];
 } glint_grids;
 
-/// Makes the grids of a frame's lights without samples that throw shadows, and names them in `frame`; drops those that it has no use
-/// for. A grid is made where the tiles that the frame runs, or those of the next frames, pay for it, and where it takes no more than
-/// 1 / GLINT_TILE_GRIDS of what may be kept. A refined frame has those of its base. Zeroed memory is a beginning.
+/// Makes the grids of a frame's lights that cast shadows and have no samples, and sets them in `frame`. Drops grids that are not
+/// needed. A grid is made if it pays in the tiles of this or the next frames, and if it takes at most
+/// 1 / GLINT_TILE_GRIDS of the cache budget. A refined frame has the grids of its base. Initialise the structure with zeros.
 glint_status glint_grids_begin(glint_grids *grids, glint_tile_frame *frame, const glint_extent *extent, int threads,
                                glint_error *error);
 void glint_grids_clear(glint_grids *grids);

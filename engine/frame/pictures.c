@@ -1,8 +1,8 @@
-/// Pictures of frames before the last, given again when a frame reads what one of them did. A picture whose key comes back once is
-/// set aside from then on; the one that was given least recently goes where there is no place for another.
+/// Pictures of earlier frames, returned again when a frame has the same inputs. A picture whose key returns once is
+/// stored from then on; when there is no space, the least recently returned picture is dropped.
 #include "engine/frame/renderer.h"
 
-/// The key of the whole picture, or of its region.
+/// Returns the key of the whole picture, or of its region.
 static glint_key picture_key(const glint_plan *plan)
 {
     const glint_stage_id last = plan->desc.codes ? GLINT_STAGE_TONE : GLINT_STAGE_RESOLVE;

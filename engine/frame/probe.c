@@ -1,4 +1,4 @@
-/// One ray, one reflection: the answers of the frame's own kernels for people who debug, and for tests.
+/// Single rays and reflections, computed by the frame's own kernels, for debugging and tests.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-/// A group of which lane 0 alone is used.
+/// A group of which only lane 0 is used.
 typedef struct lane_group {
     _Alignas(64) double origin[3][GLINT_GROUP], direction[3][GLINT_GROUP], point[3][GLINT_GROUP],
         normal[3][GLINT_GROUP];
@@ -45,14 +45,14 @@ static void cast_lane(const glint_stages *stages, const glint_geometry_table *ge
         stages->geometry[GLINT_DOUBLE].surface(&surface);
 }
 
-/// The number of a part of a combined solid, from 0. whole, id: of the solid; of the part, or of a triangle of one that is a mesh.
+/// Returns the number of a part of a combined solid, from 0. whole, id: ids of the solid, and of the part or of a triangle if the part is a mesh.
 static size_t part_number(const glint_geometry *geometry, uint32_t whole, uint32_t id)
 {
     const uint32_t count = geometry->hull_count ? geometry->hulls[0].first : geometry->member_count; // triangles come after
     size_t parts = 0;
     for (uint32_t i = 0; i < count; i++) {
         const glint_prim *member = &geometry->members[i];
-        const bool first = member->kind == GLINT_PRIM_PLANE || member->face <= 1; // of those that are one
+        const bool first = member->kind == GLINT_PRIM_PLANE || member->face <= 1; // the first primitive of a part
         parts += member->id > whole && member->id <= id && first;
     }
     return parts - 1;
@@ -62,7 +62,7 @@ static void read_hit(const glint_geometry *geometry, uint32_t id, const lane_gro
 {
     const glint_part *part = &geometry->parts[geometry->prim_part[id]];
     *out = (glint_hit) { .t = g->t[0] * scale, .shape = part->shape, .element = id - part->first_prim };
-    for (uint32_t whole = id; part->whole; whole--) { // whose id is before those of its parts
+    for (uint32_t whole = id; part->whole; whole--) { // its id is before those of its parts
         const glint_part *other = &geometry->parts[geometry->prim_part[whole]];
         if (other->whole)
             continue;
@@ -122,7 +122,7 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
     return status;
 }
 
-/// What microfacets need beside `light`, which has run.
+/// Runs the stages of microfacets, after `light`.
 static void evaluate_facets(const glint_stages *stages, const glint_light_args *light, lane_group *g)
 {
     glint_view_args view = { .group_count = 1, .hits = &g->hits, .facing = g->facing };

@@ -15,7 +15,7 @@ typedef struct frame {
     glint_extent extent;
 } frame;
 
-/// What the environment says, where the choice is left open.
+/// Reads the choice from the environment, if it is left open.
 static glint_status choose_hits(glint_hits_choice *hits, glint_error *error)
 {
     static const char *const words[] = { "measured", "kept", "anew" };
@@ -123,7 +123,7 @@ static void render_item(void *context, size_t index, int worker)
     atomic_fetch_add(&renderer->tiles_done, 1);
 }
 
-/// A row of tiles is stamped by the stamps of its tiles.
+/// Makes the stamp of each row of tiles from the stamps of its tiles.
 static void stamp_rows(glint_image *image, uint32_t across)
 {
     for (size_t row = 0; image->codes && row < glint_image_stamps(image); row++) {
@@ -138,7 +138,7 @@ static void stamp_rows(glint_image *image, uint32_t across)
     }
 }
 
-/// What needs all tiles.
+/// Finishes the frame with the work that needs all tiles.
 static void finish(glint_renderer *renderer, const glint_plan *plan, const glint_extent *extent, glint_image *image)
 {
     glint_tile_counts *counts = &renderer->tiles[0]->counts;
@@ -150,7 +150,7 @@ static void finish(glint_renderer *renderer, const glint_plan *plan, const glint
     counts->runs[GLINT_STAGE_OUTLINE]++;
 }
 
-/// Whether some tile's hits are not there from an earlier frame.
+/// Returns whether some tile's hits are not cached.
 static bool casts(const glint_reuse *reuse, const glint_plan *plan)
 {
     for (size_t i = 0; i < reuse->tile_count; i++)
@@ -159,7 +159,7 @@ static bool casts(const glint_reuse *reuse, const glint_plan *plan)
     return reuse->tile_count == 0;
 }
 
-/// What the frame's rays meet, and by which way what the eye sees is found.
+/// Prepares the geometry for the frame's rays, and chooses casting or scan conversion.
 static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, glint_tile_frame *shared,
                             size_t tile_count, glint_error *error)
 {
@@ -189,7 +189,7 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
     return status;
 }
 
-/// Whether an image has these light passes, and no others. list: as in a plan's description.
+/// Returns whether an image has exactly these light passes. list: as in a plan's description.
 static bool has_lights(const glint_image *image, const char *list)
 {
     size_t i = 0;
@@ -233,7 +233,7 @@ static frame frame_of(glint_renderer *renderer, const glint_plan *plan, glint_im
                      .extent = glint_plan_extent(&plan->desc) };
 }
 
-/// What the tiles read and write besides the picture's planes. `tiles`: of the whole picture.
+/// Prepares the data of tiles besides the picture's planes. `tiles`: number of tiles of the whole picture.
 static glint_status begin_tiles(frame *f, size_t tiles, glint_error *error)
 {
     glint_renderer *renderer = f->renderer;
@@ -243,7 +243,7 @@ static glint_status begin_tiles(frame *f, size_t tiles, glint_error *error)
     glint_status status = prepare(renderer, plan, &f->shared, tiles, error);
     if (!status && plan->is_base)
         status = glint_refine_begin(renderer->refine, renderer->stages, image, &plan->desc, error);
-    if (image->film && !renderer->reuse.tile_count) // what is put there is not signed
+    if (image->film && !renderer->reuse.tile_count) // stamps are not used
         memset(image->film, 0, tiles * sizeof *image->film);
     if (!status)
         status = glint_grids_begin(renderer->grids, &f->shared, &f->extent, threads, error);

@@ -1,4 +1,4 @@
-/// What the files of a frame have of its renderer. Internal.
+/// Functions of the renderer, shared by the files of this folder. Internal.
 #ifndef GLINT_FRAME_RENDER_H
 #define GLINT_FRAME_RENDER_H
 
@@ -8,16 +8,16 @@
 
 glint_pool *glint_renderer_pool(const glint_renderer *renderer);
 
-/// One instant, in an image of the whole frame's size, of which the plan's extent is rendered. The image may be the renderer's
-/// last, too: it is not written to.
+/// Renders one instant into an image of the whole frame's size, within the plan's extent. The image may be the renderer's
+/// last one; the caller must not write to it.
 glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
                                   glint_frame_stats *stats, glint_error *error);
 
-/// exposure.c: likewise of a plan that has `times`, in an image of its own.
+/// likewise for a plan that has `times`, into a new image.
 glint_status glint_render_times(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
                                 glint_frame_stats *stats, glint_error *error);
 
-/// Adds what another part of the frame took: times, rays, work. Stages are those of `to`, and `share` of what they did is of the
+/// Adds the times, rays and work of another part of the frame. The stages are those of `to`; `share` of their work belongs to the
 /// other part.
 void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more, double share);
 

@@ -1,4 +1,4 @@
-/// A renderer, as the files see it that render with it: render.c, adaptive.c, stats.c. Internal.
+/// The renderer's structure, for the files that render: render.c, adaptive.c, stats.c. Internal.
 #ifndef GLINT_FRAME_RENDERER_H
 #define GLINT_FRAME_RENDERER_H
 
@@ -13,18 +13,18 @@
 
 #include <stdatomic.h>
 
-/// Pictures whose memory a renderer holds on to, for a job with two in its queue: these, the one that is encoded and the one
-/// that is rendered. A fifth would be new memory and a whole picture to copy or make each time.
+/// Number of pictures whose memory a renderer reuses, for a job with two in its queue: these two, the one being encoded and the one
+/// being rendered. A fifth would cost new memory and a whole picture to copy or render each time.
 #define GLINT_SPARE_IMAGES 4
 
-#define GLINT_PICTURES_MAX 33 ///< that may be given again
+#define GLINT_PICTURES_MAX 33 ///< largest number of stored pictures
 
-/// A picture that is given again when a frame reads what it did.
+/// A picture that is returned again when a frame has the same inputs.
 typedef struct glint_picture {
     glint_image *image; ///< a reference; NULL: none
     glint_key key;
     glint_frame_stats stats;
-    uint64_t used; ///< when it was given last
+    uint64_t used; ///< when it was last returned
 } glint_picture;
 
 struct glint_renderer {
@@ -32,54 +32,54 @@ struct glint_renderer {
     const glint_stages *stages;
     bool time_stages, count_work;
     atomic_bool cancelled;
-    atomic_bool *stop; ///< its own `cancelled`; of a renderer of bases, that of its frames
+    atomic_bool *stop; ///< its own `cancelled`; for a renderer of bases, that of the frame's renderer
     atomic_size_t tiles_done;
     atomic_size_t tile_count;
     glint_tile **tiles; ///< a tile's working memory for each worker
     glint_reuse reuse;
     glint_shading_points_cached shading_points;
     glint_raster raster;
-    glint_tints tints; ///< of frames where what transmits tints shadows
-    glint_grids own_grids, *grids; ///< a renderer of bases has those of its frames
-    glint_picture pictures[GLINT_PICTURES_MAX]; ///< the last frame's; those set aside
-    uint64_t pictures_given; ///< and set aside
+    glint_tints tints; ///< for frames where transparent materials tint shadows
+    glint_grids own_grids, *grids; ///< a renderer of bases uses those of the frame's renderer
+    glint_picture pictures[GLINT_PICTURES_MAX]; ///< the last frame's; stored ones
+    uint64_t pictures_given; ///< number of pictures returned and stored
     glint_recent recent; ///< keys of the last pictures
-    /// Pictures given before, whose memory is used again once no other reference holds them.
+    /// Earlier pictures, whose memory is used again when there is no other reference.
     glint_image *spare[GLINT_SPARE_IMAGES];
-    glint_refine own_refine, *refine; ///< a renderer of bases has that of its frames
-    double refined_by[3]; ///< threshold, curve and exposure that the last base was compared by
-    glint_key setting; ///< the plan's setting_key of the last frame that had a base
-    /// Makes the pictures that adaptive sampling looks at, with the pool and the tiles of this one; NULL until a frame
-    /// has it, and again after one that has not.
+    glint_refine own_refine, *refine; ///< a renderer of bases uses that of the frame's renderer
+    double refined_by[3]; ///< threshold, curve and exposure of the last base's comparison
+    glint_key setting; ///< setting_key of the last frame with a base
+    /// Renders the bases of adaptive sampling, with the pool and the tiles of this renderer; NULL until a frame
+    /// needs it, and again after a frame that does not.
     struct glint_renderer *base;
-    bool shares; ///< it is such a one: pool and tiles are another's
+    bool shares; ///< this is such a renderer: pool and tiles belong to another one
 };
 
-/// Renders a plan that is no mean of times into `image`, of its format and size. The caller owns all that is given.
-/// base   of adaptive sampling: the picture of one sample a pixel, whose pixels have been compared; else NULL
-/// table  of the plan's tone; NULL: there are no codes
+/// Renders a plan of one instant into `image`, which has its format and size. The caller owns all arguments.
+/// base   adaptive sampling: the picture with one sample per pixel, already compared; otherwise NULL
+/// table  table of the plan's tone curve; NULL: there are no pixel values
 /// Fails with GLINT_ERR_CANCELLED or GLINT_ERR_NOMEM; the image then holds parts of the frame.
 glint_status glint_renderer_run(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,
                                 const glint_tone_table *table, glint_frame_stats *stats, glint_error *error);
 
-/// A picture to render into: one given before that has no other reference, or a new one. The caller releases it.
+/// Returns a picture to render into: an earlier one without other references, or a new one. The caller releases it.
 glint_status glint_renderer_take_image(glint_renderer *renderer, const glint_render_desc *desc, glint_image **out,
                                        glint_error *error);
 
-/// adaptive.c: glint_renderer_run of a plan with a base: the base, then all samples of the pixels that are worth them.
+/// adaptive.c: glint_renderer_run for a plan with a base: the base, then all samples of the pixels that need them.
 glint_status glint_renderer_run_adaptive(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
                                          const glint_tone_table *table, glint_frame_stats *stats, glint_error *error);
 
-/// pictures.c: gives an earlier picture again when this frame's would be the same. False: there is none.
+/// pictures.c: returns an earlier picture if this frame's would be the same. Returns false if there is none.
 bool glint_picture_give(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats);
-/// Makes the picture the last one, when it is among the spares.
+/// Stores the picture as the last one, if it is among the spare images.
 void glint_picture_remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_frame_stats *stats);
 void glint_pictures_clear(glint_renderer *renderer);
 
-/// stats.c: what the tiles of a frame counted. wall_ms: from the first tile to the last.
+/// stats.c: collects the counts of a frame's tiles. wall_ms: from the first tile to the last.
 void glint_renderer_collect(const glint_renderer *renderer, const glint_plan *plan, const glint_extent *extent, double wall_ms,
                             glint_frame_stats *out);
-/// Pixels at the edges of shadows that a derivative's parameter moves, of a picture that has them.
+/// Counts the pixels at edges that a derivative's parameter moves.
 uint64_t glint_count_shifted(const glint_image *image, const glint_extent *extent);
 
 /// Milliseconds since a fixed moment.

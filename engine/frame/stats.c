@@ -1,4 +1,4 @@
-/// What a frame took and found: the counts of its tiles as stats, and stats of several parts as one.
+/// Statistics of a frame: from the counts of its tiles, and merged from several parts.
 #include "engine/frame/render.h"
 #include "engine/frame/renderer.h"
 
@@ -98,8 +98,8 @@ static inline bool is_shifted(uint32_t own, uint32_t before, uint32_t after, uin
     return (own == 0) | (((own ^ before) | (own ^ after) | (own ^ up) | (own ^ down)) != 0);
 }
 
-/// Pixels of a row from whose samples other things are kept than from those of one beside them, or not from all the same. `up` and
-/// `down`: the rows beside it; at an edge itself.
+/// Counts the pixels of a row whose hidden lights differ from a neighbour's, or between their samples. `up` and
+/// `down`: the neighbouring rows; at an edge the row itself.
 static uint64_t count_row(const uint32_t *at, const uint32_t *up, const uint32_t *down, int width)
 {
     const int last = width - 1;
@@ -125,7 +125,7 @@ uint64_t glint_count_shifted(const glint_image *image, const glint_extent *exten
 
 // ---- Of several parts ----
 
-/// The mean of tiles that were measured, of which either part may have none.
+/// Merges the mean times of measured tiles; either part may have none.
 static void add_hits(glint_frame_stats *to, const glint_frame_stats *more)
 {
     const double own = to->hits_kept_us > 0 ? (double)(to->hits_kept + to->hits_anew) : 0;

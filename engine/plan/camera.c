@@ -3,7 +3,7 @@
 #include "engine/base/vec.h"
 #include "engine/plan/plan.h"
 
-/// The view's axes. An `up` along the view gives way to the world axis least aligned with it.
+/// Computes the axes of the view. If `up` is parallel to the view, the world axis least aligned with it replaces it.
 static void view_axes(const glint_camera_desc *desc, double forward[3], double right[3], double up[3])
 {
     if (desc->has_direction) {

@@ -1,4 +1,4 @@
-/// The stages that the core of every frame is made of.
+/// The stages of the core.
 #include "engine/plan/plan.h"
 
 static bool has_surfaces(const glint_plan *plan) { return plan->geometry->table.prim_count > 0; }

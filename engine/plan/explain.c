@@ -12,7 +12,7 @@ typedef struct explainer {
     glint_plan *plan;
     glint_error *error;
     glint_status status;
-    const char *effect; ///< the one being collected
+    const char *effect; ///< the effect being collected
     size_t callers;
 } explainer;
 

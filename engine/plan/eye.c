@@ -1,6 +1,6 @@
-/// What the eye is in: transparent objects that it is inside of, each by a rule of its own. A ball, a plane and a solid have
-/// an inside; of a mesh it is where a ray from the eye along the view goes out through more faces than in, which of a closed
-/// mesh holds along any ray.
+/// Finds the transparent objects that contain the eye. Spheres, planes and solids have
+/// an inside. The eye is inside a mesh if a ray along the view leaves through more faces than it enters; for a closed
+/// mesh, this holds for any ray.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Media from the outermost to the innermost, which is the smallest, of equals the last defined.
+/// Media from the outermost to the innermost. The innermost is the smallest, or the last defined of equal ones.
 typedef struct around {
     uint32_t count;
     struct holder {
@@ -18,9 +18,9 @@ typedef struct around {
     } in[GLINT_MEDIA_MAX];
 } around;
 
-/// The triangles of one part, so far.
+/// The triangles of one part so far.
 typedef struct hull {
-    int exits; ///< less entries
+    int exits; ///< exits minus entries
     uint32_t id, material; ///< the first triangle's
     double lower[3], upper[3];
 } hull;
@@ -91,7 +91,7 @@ static void add_triangle(hull *part, const glint_plan *plan, const glint_prim *p
     part->exits += glint_prim_crossing(prim, plan->camera.eye, plan->camera.forward);
 }
 
-/// hulls: of each part, where there are triangles. A renderer may be arranging the primitives meanwhile.
+/// hulls: one per part, if there are triangles. A renderer may be arranging the primitives at the same time.
 static void find_media(const glint_plan *plan, hull *hulls, around *eye)
 {
     const glint_geometry *geometry = plan->geometry;

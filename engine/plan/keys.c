@@ -62,7 +62,7 @@ static glint_key highlights_key(const glint_plan *plan, glint_key key)
     return key;
 }
 
-/// Of materials with programs: those of `fields`, a bit each, and where the shapes are that show them.
+/// Continues a key with the materials' programs for `fields` (one bit each), and the places of the shapes with these materials.
 static glint_key programs_key(const glint_plan *plan, uint32_t fields, glint_key key)
 {
     for (uint32_t i = 0; plan->patterns && i < plan->material_count; i++)
@@ -74,11 +74,11 @@ static glint_key cut_outs_key(const glint_plan *plan, glint_key key)
 {
     for (uint32_t i = 0; i < plan->material_count; i++)
         GLINT_KEY_ADD(key, plan->patterns->of[i].cut);
-    GLINT_KEY_ADD(key, plan->geometry->look); // which material a surface has
+    GLINT_KEY_ADD(key, plan->geometry->look); // the materials of surfaces
     return programs_key(plan, 1u << GLINT_FIELD_OPACITY, key);
 }
 
-/// All programs of a material; with them goes the ambient light, which is multiplied by what they give and not by its table.
+/// Continues a key with all programs of a material, and with the ambient light, which multiplies their results instead of the table.
 static glint_key own_programs_key(const glint_plan *plan, uint32_t i, glint_key key)
 {
     if (!plan->patterns)
@@ -100,7 +100,7 @@ static glint_key material_key(const glint_plan *plan, uint32_t i, glint_key key)
     return own_programs_key(plan, i, key);
 }
 
-/// What of a material is read where it has no highlight.
+/// Returns the key of a material's fields that are read where it has no highlight.
 static glint_key matte_key(const glint_plan *plan, uint32_t i, glint_key key)
 {
     GLINT_KEY_ADD(key, plan->materials[i].diffuse);
@@ -177,7 +177,7 @@ static glint_key add_inputs(const glint_plan *plan, uint64_t which, glint_key ke
     return output_key(plan, which, key);
 }
 
-/// What sites are lit by. Where no material has a highlight, nothing of the camera.
+/// Returns the key of the light of faces and vertices. Without highlights, it does not include the camera.
 static glint_key vertex_key(const glint_plan *plan)
 {
     const glint_plan_camera *c = &plan->camera;
@@ -196,7 +196,7 @@ static glint_key vertex_key(const glint_plan *plan)
                       key);
 }
 
-/// The keys of the parts that a tile may depend on alone.
+/// Computes the keys of single materials and lights, for tiles that depend only on these.
 static glint_status part_keys(glint_plan *plan, glint_error *error)
 {
     const glint_key none = { 0 };
@@ -207,7 +207,7 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         glint_plan_light *light = &plan->lights[i];
         light->key = light_place_key(light, light_base);
         light->place_key = glint_key_add(light->key, &light->shadows, sizeof light->shadows);
-        const uint32_t place = i % GLINT_LIGHT_CHUNK; // samples of a lamp are added up a call of shade at a time
+        const uint32_t place = i % GLINT_LIGHT_CHUNK; // one call of shade adds up the samples of a lamp
         light->look_key = glint_key_add(light_color_key(light, light->place_key), &place, sizeof place);
     }
     plan->material_keys = glint_alloc(plan->material_count, sizeof *plan->material_keys);

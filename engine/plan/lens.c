@@ -1,8 +1,8 @@
-/// The camera's lens: where the samples of a pixel go through it.
+/// The camera's lens: the points where samples cross it.
 ///
-/// Sample k of the pixel in lane j of its group of 4 x 4 has point j 2^b + k of one scrambled Sobol sequence, 2^b being the
-/// samples of a pixel or the next power of two: those of a pixel are evenly spread over the lens, and so are those of all 16
-/// together. The order is scrambled as well, so that places on the lens have nothing to do with places in the pixel.
+/// Sample k of the pixel in lane j of its group of 4 x 4 uses point j 2^b + k of one scrambled Sobol sequence, where 2^b is the
+/// number of samples or the next power of two. So the points of a pixel are evenly spread over the lens, and so are those of all 16
+/// pixels together. The order is scrambled as well, so that positions on the lens and in the pixel are independent.
 #include "engine/base/alloc.h"
 #include "engine/base/math.h"
 #include "engine/base/sequence.h"
@@ -15,7 +15,7 @@
 #define PI 0x1.921fb54442d18p+1
 #define BEND_MAX 1e12 ///< radius of the lens over the distance of its focus
 
-/// Squares around the middle become circles, and equal areas equal areas (P. Shirley, K. Chiu, "A Low Distortion Map Between
+/// Maps squares around the middle to circles, preserving areas (P. Shirley, K. Chiu, "A Low Distortion Map Between
 /// Disk and Square", 1997): with a = 2 u - 1, b = 2 v - 1, the larger of them is the radius.
 static void round_point(const double square[2], double out[2])
 {
@@ -27,7 +27,7 @@ static void round_point(const double square[2], double out[2])
     out[1] = radius * glint_sin(angle);
 }
 
-/// The triangles from the middle to each side share u; sqrt(the rest of u) goes from the middle to the side, v along it.
+/// Maps the square to a polygon: u selects a triangle between the middle and a side; sqrt(the rest of u) goes from the middle to the side, v along it.
 static void polygon_point(const double square[2], uint32_t blades, double rotation, double out[2])
 {
     const double place = square[0] * blades, side = fmin(floor(place), blades - 1.0);
@@ -45,7 +45,7 @@ void glint_lens_point(const double square[2], uint32_t blades, double rotation, 
         round_point(square, out);
 }
 
-/// How far away what is sharp is, along the view.
+/// Computes the distance of the plane of focus along the view.
 static glint_status find_focus(glint_plan_camera *camera, const glint_camera_desc *desc, glint_error *error)
 {
     const double *point = desc->has_focus_point ? desc->focus_point : desc->at;
@@ -64,7 +64,7 @@ static glint_status find_focus(glint_plan_camera *camera, const glint_camera_des
                       point[0], point[1], point[2]);
 }
 
-/// Whether all of the lens can be worked with.
+/// Checks the numbers of the lens.
 static glint_status check_size(const glint_plan *plan, glint_error *error)
 {
     const glint_plan_camera *camera = &plan->camera;
@@ -81,7 +81,7 @@ static void fill_points(glint_plan *plan)
 {
     const glint_plan_camera *camera = &plan->camera;
     const uint32_t samples = (uint32_t)plan->desc.samples, block = 1u << glint_sequence_bits(samples);
-    const uint64_t seed = glint_sequence_mix((uint64_t)plan->desc.seed, 0x6c656e73); // of lenses alone
+    const uint64_t seed = glint_sequence_mix((uint64_t)plan->desc.seed, 0x6c656e73); // a seed for lenses only
     for (uint32_t k = 0; k < samples; k++)
         for (uint32_t lane = 0; lane < GLINT_GROUP; lane++) {
             double square[2], point[2];

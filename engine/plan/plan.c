@@ -82,7 +82,7 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
     return status;
 }
 
-/// Whether triangles are to be scanned.
+/// Decides whether triangles are scan-converted.
 static void choose_visibility(glint_plan *plan)
 {
     const glint_visibility requested = plan->desc.visibility;
@@ -94,7 +94,7 @@ static void choose_visibility(glint_plan *plan)
     plan->needs_index = !plan->raster || needs_index || glint_plan_cuts(plan);
 }
 
-/// Whether light comes from nowhere but the stages shade, in one call a sample, and vertex.
+/// Returns whether light comes only from the stages shade, with one call per sample, and vertex.
 static bool is_local(const glint_plan *plan)
 {
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
@@ -103,7 +103,7 @@ static bool is_local(const glint_plan *plan)
     return !plan->light_groups && !plan->tints && plan->light_count <= GLINT_LIGHT_CHUNK;
 }
 
-/// Whether the samples of a tile can be shaded in one: what was found for each fits the tile.
+/// Returns whether all samples of a tile can be shaded together: their data fit into the tile's memory.
 static bool shades_together(const glint_plan *plan)
 {
     return plan->local && !plan->runs[GLINT_STAGE_VERTEX] && plan->desc.samples > 1 && plan->desc.samples <= GLINT_LIGHT_CHUNK &&
@@ -112,7 +112,7 @@ static bool shades_together(const glint_plan *plan)
 
 _Static_assert(GLINT_STAGE_COUNT <= 32, "a bit a stage");
 
-/// Lists what the stages of this frame do in the walk of a tile, which asks for it in each sample.
+/// Lists the steps of the frame's stages in the walk of a tile, for each time of the walk.
 static void list_steps(glint_plan *plan)
 {
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
@@ -141,7 +141,7 @@ static void choose_stages(glint_plan *plan)
     list_steps(plan);
 }
 
-/// times: of `shutter_times`, whose lights the frame has; NULL: it has its own. `desc`: with its derivatives.
+/// times: the plans of `shutter_times`, whose lights the frame takes; NULL: it has its own. `desc`: with its derivatives.
 static glint_status fill(glint_plan *plan, const glint_scene *scene, const glint_render_desc *desc,
                          glint_plan *const *times, glint_error *error)
 {
@@ -193,7 +193,7 @@ static glint_status take_overlays(glint_plan *plan, const glint_scene *scene, gl
     return glint_overlays_take(scene, (int)plan->desc.width, (int)plan->desc.height, &camera, &plan->overlays, error);
 }
 
-/// times: see `fill`. shutter_times: 0, or how many times the frame has, however they are rendered.
+/// times: see `fill`. shutter_times: the number of times of the frame, or 0.
 static glint_status create(const glint_scene *scene, const glint_render_desc *desc, glint_plan *const *times,
                            uint32_t shutter_times, glint_plan **out, glint_error *error)
 {
@@ -242,7 +242,7 @@ glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc
     return create(scene, desc, NULL, 0, out, error);
 }
 
-/// Whether a time has derivatives that the frame has not.
+/// Returns whether a time has derivatives that the frame does not have.
 static bool derives_more(const glint_plan *time, const glint_render_desc *frame)
 {
     bool more = false;
@@ -349,7 +349,7 @@ size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list)
     return plan->stage_count;
 }
 
-#define APRON 4 ///< pixels around a region that its own depend on: what they are compared with, and GLINT_REFINE_SPREAD more
+#define APRON 4 ///< width of the border around a region that its pixels depend on: compared pixels, and GLINT_REFINE_SPREAD more
 
 /// Along one axis: `of` pixels in tiles of `size`.
 static void find_range(double from, double count, double of, int size, uint32_t *first, uint32_t *tiles, int *pixel,
@@ -414,7 +414,7 @@ glint_key glint_plan_picture_key(const glint_plan *plan, glint_stage_id stage)
 
 static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
 {
-    const int pass = desc->pass < GLINT_PASS_DERIVATIVE ? desc->pass : // whatever its number
+    const int pass = desc->pass < GLINT_PASS_DERIVATIVE ? desc->pass : // any of these numbers
                          desc->pass < GLINT_PASS_LIGHT ? GLINT_PASS_DERIVATIVE : GLINT_PASS_LIGHT;
     const int options[] = { pass,                desc->tone.curve, desc->tone.transfer,
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
@@ -426,7 +426,7 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
         key = glint_overlays_key(plan->overlays, key);
     const bool outlined = desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline;
     if ((outlined || (pass < GLINT_PASS_COUNT && GLINT_CENTRE_PASSES >> pass & 1)) && glint_plan_casts_centres(plan))
-        key = glint_key_add_string(key, "centres"); // earlier versions had them of the first sample
+        key = glint_key_add_string(key, "centres"); // earlier versions stored these passes of the first sample
     const size_t derivative = (size_t)desc->pass - GLINT_PASS_DERIVATIVE;
     if (desc->pass >= GLINT_PASS_DERIVATIVE && plan->derivatives && derivative < plan->derivatives->count)
         key = glint_derivative_key(plan, derivative, key);

@@ -1,7 +1,7 @@
-/// The work of a frame that is rendered right after another, judged by the keys of both and without a pixel.
+/// Estimates the work of a frame that is rendered right after another, from the keys of both, without rendering.
 #include "engine/plan/plan.h"
 
-/// The rows of lights whose key differs from that of the same row of the plan before.
+/// Counts the rows of lights whose keys differ from the same rows of the plan before.
 static double changed_lights(const glint_plan *plan, const glint_plan *before, bool places)
 {
     double count = 0;
