@@ -10,13 +10,13 @@ void *glint_alloc(size_t count, size_t size);
 void *glint_alloc_large(size_t count, size_t size);
 
 /// Memory for what is thrown away soon, not zeroed, aligned for anything of 16 bytes; the system has it back at once where it is much, so
-/// that what is made next does not come on top of it. Changes its size, from 0: there is none yet. NULL: no memory, and what there is stays.
+/// that what is made next does not come on top of it. Changes its size, from 0: there is none yet. NULL: out of memory, and the old block stays.
 void *glint_scratch_resize(void *memory, size_t from, size_t to);
 /// Gives the system back what lies between two of its bytes, which nothing reads from now on. bytes: as resized to last.
 void glint_scratch_drop(void *memory, size_t bytes, size_t from, size_t to);
 void glint_scratch_free(void *memory, size_t bytes);
 
-/// Prefetches memory that is soon read or written, into the second level of the caches: the first is full of what is worked on.
+/// Prefetches memory that is read or written soon into the second-level cache: the first level is full of current data.
 static inline void glint_prefetch(const void *memory, size_t bytes)
 {
     for (size_t i = 0; i < bytes; i += 64)

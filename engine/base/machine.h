@@ -1,4 +1,4 @@
-/// What the engine relies on and no instruction set can make up for: said where it is compiled, not found in a picture.
+/// Requirements of the engine that no instruction set can replace, checked at compile time.
 #ifndef GLINT_BASE_MACHINE_H
 #define GLINT_BASE_MACHINE_H
 

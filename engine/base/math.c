@@ -2,7 +2,7 @@
 ///
 /// Each result is formed as an unevaluated sum of two doubles (`sum2`) with a relative error below 2^-60 and rounded
 /// once, so that it is within 0.51 ulp of the truth (subnormal results are rounded twice: 0.76 ulp).
-/// Special cases are those of C99, annex F.
+/// Special cases follow C99, annex F.
 #include "engine/base/math.h"
 
 #include "engine/base/math_tables.h"

@@ -32,7 +32,7 @@ glint_status glint_file_fail(glint_error *error, const char *path, int code)
     return glint_fail(error, status, "%s%s: %s", dots, end, reason);
 }
 
-/// 0, or the status of what is no file.
+/// Returns 0, or the status of something that is not a file.
 static glint_status check_kind(const char *path, mode_t mode, glint_error *error)
 {
     const char *dots, *end = shown(path, &dots);

@@ -1,4 +1,4 @@
-/// Opening files that are read, and what errno says of them. Internal.
+/// Opens files for reading, and explains errno. Internal.
 #ifndef GLINT_BASE_OPEN_H
 #define GLINT_BASE_OPEN_H
 

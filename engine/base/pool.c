@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-// Of a worker: eight times what tiles were seen to take. Where systems choose, it is from 128 KiB (musl), which is all, to
+// The stack of a worker: eight times the measured use of tiles. System defaults range from 128 KiB (musl), which is too little, to
 // 8 MiB, of which some hundred workers fill the addresses that a process may have.
 #define STACK_BYTES ((size_t)1 << 20)
 

@@ -38,7 +38,7 @@ static uint32_t reverse32(uint32_t x)
     return (x & 0xaaaaaaaau) >> 1 | (x & 0x55555555u) << 1;
 }
 
-/// Flips each bit or not, depending on the seed and on the bits below it alone.
+/// Flips each bit or not, depending only on the seed and on the lower bits.
 static uint32_t flip_upwards(uint32_t x, uint32_t seed)
 {
     x ^= x * 0x9e3779b2u;

@@ -14,7 +14,7 @@ void glint_sequence_point(uint32_t k, int bits, double seed, double out[2]);
 /// Owen Scrambling", JCGT 9(4), 2020.)
 void glint_sequence_scrambled(uint32_t k, uint64_t seed, double out[2]);
 
-/// What such a sequence needs of its seed: how the order and each coordinate's digits are scrambled.
+/// The constants of a sequence derived from its seed: how the order and each coordinate's digits are scrambled.
 typedef struct glint_sequence_seed {
     uint32_t order, digits[2];
 } glint_sequence_seed;

@@ -1,4 +1,4 @@
-/// Three doubles. Internal; the arithmetic has one written order, like that of the stages.
+/// Three doubles. Internal; the arithmetic has one written order, like the stages.
 #ifndef GLINT_BASE_VEC_H
 #define GLINT_BASE_VEC_H
 

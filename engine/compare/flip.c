@@ -61,7 +61,7 @@ static void rgb_to_ycxcz(const double rgb[3], double out[3])
     out[2] = 200 * (w[1] - w[2]);
 }
 
-/// The light that a blurred YCxCz stands for, cut to what a screen shows.
+/// Converts a blurred YCxCz to linear light, clipped to the range of a screen.
 static void ycxcz_to_rgb(const double ycxcz[3], double out[3])
 {
     const double y = (ycxcz[0] + 16) / 116, w[3] = { y + ycxcz[1] / 500, y, y - ycxcz[2] / 200 };
@@ -207,7 +207,7 @@ static void blur_colors(const glint_flip *size, workshop *w)
     double weight[2], g[2 * RADIUS_MAX + 1], sum = 0;
     blur_channel(size, w, 0, 0.0047, 1);
     blur_channel(size, w, 1, 0.0053, 1);
-    for (int i = 0; i < 2; i++) { // two Gaussians, each separable; their shares are those of their sums over the plane
+    for (int i = 0; i < 2; i++) { // two Gaussians, each separable, weighted by their sums over the plane
         const double *ab = blue_yellow[i];
         const double mass = gaussian(COLOR_RADIUS, sqrt(ab[1] / (2 * PI * PI)) * GLINT_FLIP_PPD, g);
         sum += weight[i] = ab[0] * sqrt(PI / ab[1]) * mass * mass;

@@ -21,7 +21,7 @@ typedef struct codes {
 
 static size_t pixel_count(const glint_image *image) { return (size_t)image->width * (size_t)image->height; }
 
-/// Of an open store of tables.
+/// The tables of an open reference.
 static glint_status fill_codes(const glint_image *image, glint_tone_desc tone, int bits, codes *out, glint_error *error)
 {
     const glint_tone_table *table = NULL;
@@ -55,7 +55,7 @@ static double code_at(const codes *c, size_t i)
     return c->bits == 16 ? ((const uint16_t *)c->rgb)[i] / 257.0 : ((const uint8_t *)c->rgb)[i];
 }
 
-/// What every code stands for as linear light, sRGB codes or linear ones. NULL: no memory.
+/// Returns the linear light of every pixel value, sRGB or linear. NULL: out of memory.
 static float *decoding(bool srgb, int bits)
 {
     const int last = bits == 16 ? 65535 : 255;
@@ -65,7 +65,7 @@ static float *decoding(bool srgb, int bits)
     return table;
 }
 
-/// What light of the scene every code stands for: curve and exposure undone, too; +inf for no light. NULL: no memory.
+/// Returns the scene's light for every pixel value: tone curve and exposure are undone, too; +inf for none. NULL: out of memory.
 static float *scene_light(const glint_tone_desc *tone, int bits)
 {
     const int last = bits == 16 ? 65535 : 255;

@@ -43,7 +43,7 @@ static void take_bytes(png_structp png, png_bytep data, size_t size)
         png_error(png, "no room");
 }
 
-/// What libpng met: the draft's error, else it ran out of memory.
+/// Returns libpng's error: the draft's error, otherwise out of memory.
 static glint_status give_error(const glint_apng *apng, glint_error *error)
 {
     if (!apng->error.status)

@@ -16,7 +16,7 @@
 typedef uint8_t vector8 __attribute__((vector_size(VECTOR)));
 typedef uint16_t vector16 __attribute__((vector_size(VECTOR)));
 
-/// What has to agree for stamps to be compared, and for bands to take each other's place.
+/// The properties that must agree for stamps to be comparable, and for bands to be reusable.
 typedef struct layout {
     int width, height;
     bool alpha;
@@ -317,7 +317,7 @@ void glint_bands_destroy(glint_bands *bands)
 glint_status glint_bands_deflate(glint_bands *bands, const glint_png_source *source, glint_encode encode,
                                  const glint_bytes **stream, double *reused, glint_error *error)
 {
-    picture passing = { 0 }; // what has no stamps is not worth keeping, nor losing what is kept
+    picture passing = { 0 }; // without stamps, a picture is not worth caching, nor dropping the cached one
     picture *p = source->stamp ? &bands->last : &passing;
     const layout l = layout_of(source, encode);
     const bool done = lay_out(p, &l) && deflate_picture(bands, p, source, reused);

@@ -20,7 +20,7 @@
 #define FAST_LEVEL_ZLIB 1
 #define SMALL_LEVEL_ZLIB 6
 
-/// Room that any of the encoders finds enough; a function of the size alone, since some look at how much there is.
+/// Returns a buffer size that is enough for every encoder. It depends only on the size of the data, because some encoders look at the space.
 static size_t room_for(size_t size) { return size + size / 8 + 4096; }
 
 // ---- zlib ---------------------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-/// A file on its way: hidden beside its place until it is whole.
+/// A draft of a file: hidden next to its final name until it is complete.
 #include "engine/base/status.h"
 #include "engine/file/file.h"
 

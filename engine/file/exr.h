@@ -8,7 +8,7 @@
 #include "engine/glint.h"
 #include "engine/file/bytes.h"
 
-/// Appends the file to `out`, scan lines deflated in blocks of 16. The values are those of .pfm files; with `half` those of
+/// Appends the file to `out`, scan lines deflated in blocks of 16. The values are as in .pfm files; with `half` as in
 /// passes of three channels are rounded to half, as is alpha. GLINT_ERR_UNSUPPORTED in a build without the library.
 glint_status glint_exr_encode(const glint_image *image, bool half, const glint_text *text, size_t text_count,
                               glint_bytes *out, glint_error *error);

@@ -19,7 +19,7 @@ bool glint_is_jpeg(const uint8_t *data, size_t size)
 
 #include <jerror.h>
 
-/// What libjpeg's callbacks find through its `err`.
+/// The data of libjpeg's callbacks, found through its `err`.
 typedef struct failing {
     struct jpeg_error_mgr manager; ///< first, as libjpeg has its address
     jmp_buf back;

@@ -1,4 +1,4 @@
-/// What libpng calls while a PNG is written. It jumps to png_jmpbuf when something fails. Internal.
+/// Callbacks of libpng for writing a PNG. It jumps to png_jmpbuf when something fails. Internal.
 #ifndef GLINT_FILE_LIBPNG_H
 #define GLINT_FILE_LIBPNG_H
 

@@ -5,7 +5,7 @@
 #include "engine/glint.h"
 #include "engine/file/bytes.h"
 
-/// What files of floats hold of a value: of three channels an infinite one is the largest float of its sign, and NaN is 0;
+/// Returns a value as stored in float files: with three channels, infinity becomes the largest float of its sign and NaN becomes 0;
 /// one channel is a distance and may be infinite.
 float glint_pfm_value(int channels, float value);
 

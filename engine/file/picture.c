@@ -70,7 +70,7 @@ const char *glint_picture_text(const glint_picture *picture, const char *keyword
 
 // ---- Reading ------------------------------------------------------------------------------------------------------
 
-/// Fills the table of what each code looks like.
+/// Fills the table of displayed values for all pixel values.
 static bool make_viewed(glint_picture *picture)
 {
     bool linear = picture->head.transfer == GLINT_TRANSFER_LINEAR;

@@ -1,4 +1,4 @@
-/// What the files of engine/image share of a glint_picture. Internal.
+/// The structure of glint_picture, shared by the files that read pictures. Internal.
 #ifndef GLINT_IMAGE_PICTURE_H
 #define GLINT_IMAGE_PICTURE_H
 

@@ -35,8 +35,8 @@ typedef struct glint_png_desc {
     double dpi; ///< pixels an inch; 0: not said
 } glint_png_desc;
 
-/// Appends a whole PNG to `out`. The bytes depend on source and desc and the deflate library alone; no dates.
-/// bands and reused are those of glint_bands_deflate; bands NULL: some for this picture alone, on one thread.
+/// Appends a whole PNG to `out`. The bytes depend only on source, desc and the deflate library; there are no dates.
+/// bands and reused: see glint_bands_deflate; bands NULL: temporary ones for this picture, on one thread.
 /// GLINT_ERR_INVALID for a bad keyword or a value that is too long; GLINT_ERR_NOMEM. `out` may have grown on failure.
 glint_status glint_png_encode(glint_bands *bands, const glint_png_source *source, const glint_png_desc *desc,
                               glint_bytes *out, double *reused, glint_error *error);

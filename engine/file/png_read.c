@@ -200,7 +200,7 @@ static glint_status refuse_ihdr(const chunk *c, glint_error *error)
                       GLINT_SIDE_MAX, width, height);
 }
 
-/// What the chunks before the pixels say of transparency.
+/// Reads transparency from the chunks before the pixels.
 typedef struct seen_chunks {
     int color; ///< of IHDR: 0 grey, 2 RGB, 3 palette
     uint32_t palette; ///< entries
@@ -215,7 +215,7 @@ static bool is_transparency(const chunk *c, const seen_chunks *seen)
     return seen->color == 0 ? c->size == 2 : seen->color == 2 ? c->size == 6 : 0 < c->size && c->size <= seen->palette;
 }
 
-/// What one chunk beside the pixels adds to the head.
+/// Reads one chunk other than the pixels into the head.
 static void read_ancillary(const chunk *c, seen_chunks *seen, glint_png_head *head)
 {
     if (is_type(c, "IHDR") && c->size == 13)

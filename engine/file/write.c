@@ -16,7 +16,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-/// What a row of codes is made from.
+/// The source of a row of pixel values.
 typedef struct picture {
     const glint_image *image;
     float *const *plane;
@@ -282,7 +282,7 @@ static glint_status fail_not_kept(const glint_image *image, glint_pass pass, gli
 }
 
 /// Draws the overlays into the rows. Where they are the stamps of rows of tiles promise nothing.
-/// stamps  written: those of the source from now on, to be freed.
+/// stamps  written: the source's stamps from now on, to be freed.
 static glint_status lay_over(picture *p, glint_png_source *source, double dpi, uint64_t **stamps, glint_error *error)
 {
     const glint_image *image = p->image;

@@ -33,7 +33,7 @@ struct glint_writer {
     int filer_count;
     glint_bands *bands; ///< the encoder's
     pthread_mutex_t
-        lock; ///< over all below; what is being encoded or filed is the thread's meanwhile, but for `next`, `state`
+        lock; ///< protects all fields below; an entry being encoded or written belongs to its thread, except for `next`, `state`
     pthread_cond_t to_encode, to_file; ///< there may be something for the encoder; for one of the filers
     pthread_cond_t moved; ///< a job has left the queue, or is done
     job *first, **end; ///< submitted and not collected
@@ -88,7 +88,7 @@ static void file(job *j)
     j->result.write_ms = now_ms() - start;
 }
 
-/// Whether a file of the same place, submitted before, is on its way: the last one submitted is the one that stays.
+/// Returns whether an earlier file with the same path is still being written: the last one submitted must win.
 static bool is_behind(const glint_writer *writer, const job *j)
 {
     for (const job *before = writer->first; before != j; before = before->next)

@@ -11,9 +11,9 @@
 
 #define GLINT_PLANE_COUNT (GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX) ///< passes and derivatives
 
-/// What is known of one tile's pixels.
+/// The stamp of one tile's pixels.
 typedef struct glint_film_stamp {
-    glint_key key; ///< of what they were made from. Equal keys: equal pixels; all zero: unknown
+    glint_key key; ///< key of their inputs. Equal keys mean equal pixels; all zero: unknown
     uint64_t codes; ///< equal in two images of one size and tone: equal codes; 0: unknown
     uint64_t base; ///< of a base of adaptive sampling: equal in two of one size, equal pixels; of the picture over it: equal pixels of
                    ///< the base, and the same of them chosen; 0: unknown, or neither
@@ -55,7 +55,7 @@ static inline size_t glint_image_stamps(const glint_image *image)
 /// "ambient"; "d:lamp_x" of the image's derivatives, "light:key" of its light passes; NULL: there is no such pass.
 const char *glint_plane_name(const glint_image *image, glint_pass pass, char room[GLINT_PLANE_NAME_SIZE]);
 
-/// The planes of a pass, of a derivative or of a light pass; those of one that was not kept are NULL, or all are.
+/// Returns the planes of a pass, a derivative or a light pass; NULL for planes that are not stored.
 float *const *glint_image_planes(const glint_image *image, glint_pass pass);
 
 /// Bytes of its planes and codes.

@@ -61,7 +61,7 @@ double glint_srgb_decode(double encoded)
 
 float glint_tone_gain(const glint_tone_desc *desc) { return (float)glint_pow(2, desc->exposure); }
 
-/// Of light after exposure.
+/// Applies the curve to light after exposure.
 static double code_of(const glint_tone_desc *desc, double linear)
 {
     double y = glint_tone_curve_value(desc->curve, linear);

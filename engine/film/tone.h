@@ -23,7 +23,7 @@ glint_status glint_tone_check(const glint_tone_desc *desc, glint_error *error);
 
 bool glint_tone_same(const glint_tone_desc *a, const glint_tone_desc *b);
 
-/// What light is multiplied by: 2^exposure, rounded to float.
+/// Returns the factor of light: 2^exposure, rounded to float.
 float glint_tone_gain(const glint_tone_desc *desc);
 
 /// The curve, 0 .. 1, and the light at which it reaches y (+inf: nowhere). tone_curve.c.

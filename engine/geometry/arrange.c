@@ -12,7 +12,7 @@
 #define CHUNK 4096 ///< primitives whose corners a worker moves at a time
 #define AHEAD 8 ///< primitives whose corners are on their way
 
-/// Which primitive comes to each place: those of the index, then those without an end, then repeats.
+/// Orders the primitives: those of the index first, then unbounded ones, then repeats.
 typedef struct arrangement {
     const glint_geometry *geometry;
     glint_prim *prims;

@@ -26,7 +26,7 @@ static inline float float_down(double x) { return -float_up(-x); }
 /// Numbers beyond this are as good as infinite, and differences of such floats are still finite.
 #define BOX_MAX 0x1p120
 
-/// A primitive's box in the index's frame: its middle, half of what it is wide, and that with all that it has to be larger by.
+/// Computes a primitive's box in the index's frame: its middle, half its size, and half its size with the margin.
 typedef struct placed_box {
     double center[3], half[3], loose[3];
 } placed_box;
@@ -42,7 +42,7 @@ static inline placed_box place_sphere(const glint_geometry_table *table, const g
     return box;
 }
 
-/// What a box has to be larger by, in the index's units: for rounding; for what a solid's inverse and the solid differ by; for
+/// Returns the margin of a box in the index's units: for rounding; for the difference between a solid and its inverse; for
 /// what a point may be off a triangle and still count as on it. That last is 13 slacks of the scene's coordinates at most:
 /// twice what surface states of the point, of two edges and a coordinate, and one of the corners as the point sees them.
 static double box_slack(const glint_geometry_table *table, const glint_prim *prim, double center, double half)

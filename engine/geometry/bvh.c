@@ -41,7 +41,7 @@ typedef struct builder {
     glint_node *nodes; ///< the finished tree
 } builder;
 
-/// What a node's slots become: sets of one node or more each, and sets whose records get a slot each.
+/// The contents of a node's slots: sets with one or more nodes each, and sets whose records get a slot each.
 typedef struct node_plan {
     glint_record_set sets[GLINT_NODE_WIDTH];
     double area[GLINT_NODE_WIDTH];

@@ -25,7 +25,7 @@ glint_box *glint_boxes_alloc(uint32_t count);
 void glint_boxes_free(glint_box *boxes, uint32_t count);
 
 /// Builds the tree over boxes[0 .. count); leaf slots hold the item of the box. Binned SAH, collapsed 16 wide. The
-/// tree is a function of the boxes and their order alone, not of the threads. No path is longer than GLINT_BVH_DEPTH nodes, whatever the
+/// tree depends only on the boxes and their order, not on the threads. No path is longer than GLINT_BVH_DEPTH nodes, whatever the
 /// boxes: a million at one place are halved by number. A node fills its slots from the first on, in the order of their
 /// centres along its widest axis; the child of an empty one is 0.
 ///

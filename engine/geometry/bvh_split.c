@@ -34,7 +34,7 @@ typedef struct cut {
     int bin; ///< first of the upper part
 } cut;
 
-/// What one worker does of a split, or of loading the boxes.
+/// The part of one worker in a split, or in loading the boxes.
 typedef struct glint_chunk {
     bins bins;
     bounds box; ///< loading: of the boxes
@@ -42,9 +42,9 @@ typedef struct glint_chunk {
     uint32_t begin, count; ///< in the set
 } chunk;
 
-/// What one worker does of a part whose records are still to come together.
+/// The part of one worker in moving records together.
 typedef struct piece {
-    bounds center[2]; ///< of what goes to the lower and to the upper part
+    bounds center[2]; ///< of the records that go to the lower and to the upper part
     uint32_t begin, count; ///< in the set
     uint32_t wrong, wrong_before; ///< how many are in the wrong part, here and in the part's pieces before
 } piece;
@@ -97,7 +97,7 @@ static inline void bounds_add_point(bounds *sum, v4 point)
     sum->upper = max4(point, sum->upper);
 }
 
-/// The box alone: an index is no number to compute with.
+/// Only the box: the fourth element is an index, not a number.
 static inline bounds record_box(const glint_record *record)
 {
     return (bounds) { (v4)((v4i)record->lower & (v4i) { -1, -1, -1, 0 }), record->upper };
@@ -234,7 +234,7 @@ static void find_wrong(void *context, size_t index, int worker)
     p->wrong = (uint32_t)count;
 }
 
-/// Has the wrong records of a piece of the lower part change places with those of the upper part that come at their numbers.
+/// Swaps misplaced records of a piece of the lower part with those of the upper part that have the same numbers.
 static void swap_wrong(void *context, size_t index, int worker)
 {
     (void)worker;
@@ -252,7 +252,7 @@ static void swap_wrong(void *context, size_t index, int worker)
     }
 }
 
-/// Adds the other chunks' bins to those of the first.
+/// Adds the bins of the other chunks to the first.
 static const bins *add_bins(chunk *chunks, size_t count)
 {
     bins *sum = &chunks[0].bins;

@@ -11,7 +11,7 @@ typedef struct glint_bounds {
     glint_float4 lower, upper; ///< the fourth lane means nothing
 } glint_bounds;
 
-/// A box on its way into the tree, a glint_box. lower[3] holds the bits of its item.
+/// A box before it is in the tree. lower[3] holds the bits of its item.
 typedef glint_bounds glint_record;
 
 /// Records that lie side by side.
@@ -19,7 +19,7 @@ typedef struct glint_record_set {
     glint_bounds box; ///< of the boxes
     glint_bounds center; ///< of their centres, which are halved so that no difference overflows
     uint32_t begin, count;
-    uint32_t splits; ///< by place, on the way here from the root
+    uint32_t splits; ///< by position, on the path from the root
 } glint_record_set;
 
 /// A split changes places of records that are in the wrong part: the first such of the lower with the first of the upper, and so on, so

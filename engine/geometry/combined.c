@@ -6,7 +6,7 @@ typedef struct corners {
     double lower[3], upper[3];
 } corners;
 
-/// Of a half-space, whose end is known where it is square to an axis.
+/// Bounds a half-space, which is bounded on one side if its plane is perpendicular to an axis.
 static corners box_behind(const glint_prim *plane)
 {
     corners box = { { 0 }, { 0 } };
@@ -19,7 +19,7 @@ static corners box_behind(const glint_prim *plane)
     return box;
 }
 
-/// Looser than the solid by what its inverse and rounding may differ by.
+/// Bounds a solid, with a margin for its inverse and rounding.
 static corners box_around(const glint_geometry *geometry, const glint_prim *part)
 {
     corners box = { { 0 }, { 0 } };
@@ -87,7 +87,7 @@ void glint_combined_box(const glint_geometry *geometry, const glint_combined *co
     }
 }
 
-/// What a set of parts needs to be something, and which of them can be it alone.
+/// The operands that a set operation needs, and those that may be the result on their own.
 typedef struct roles {
     uint64_t needs, alone;
 } roles;
@@ -129,7 +129,7 @@ static bool is_convex(const glint_geometry *geometry, const glint_prim *part)
     return form == GLINT_FORM_BOX || form == GLINT_FORM_BALL || form == GLINT_FORM_CYLINDER;
 }
 
-/// Whether a part may be joined by one operation after another: by the same, and what parts have in common is cut.
+/// Returns whether an operation can be merged with the one before: the same operation, or a cut from an intersection.
 static bool may_follow(uint8_t before, uint8_t operation)
 {
     return operation == before || (before == GLINT_COMBINE_INTERSECTION && operation == GLINT_COMBINE_DIFFERENCE);

@@ -34,7 +34,7 @@ void glint_face_init(glint_face *face, const glint_placing *place, const double 
     face->places = 0;
 }
 
-/// What the sums of the map are made of, which brings places of the shape's own space to the world.
+/// Returns the magnitude of the terms when the map takes points from the shape's own space to the world.
 static double moved_by(const glint_placing *place, int axis, const double own[3])
 {
     const double *row = place->map ? place->map->m[axis] : NULL;

@@ -18,7 +18,7 @@ void glint_place_point(const glint_placing *place, const double p[3], double out
 void glint_place_normal(const glint_placing *place, const double n[3], double out[3]);
 
 /// The plane through a point, square to a normal of any length. It is made of as little as describes it: where the normal is
-/// along an axis, of the point's coordinate on that axis alone.
+/// along an axis, of only the point's coordinate on that axis.
 void glint_face_init(glint_face *face, const glint_placing *place, const double normal[3], const double point[3]);
 /// Takes note of a surface on the face, within lower .. upper; in its own space no coordinate is beyond +-own.
 void glint_face_bound(glint_face *face, const glint_placing *place, const double lower[3], const double upper[3],

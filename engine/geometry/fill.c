@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Of a corner that smooth shading interpolates. Where the map keeps no angles, normals keep the lengths it gives them, in
-/// common units: what is between them is then the map of what is between them in the mesh's own space.
+/// Maps the normal of a corner for smooth shading. If the map does not preserve angles, normals keep their mapped lengths, in
+/// common units: interpolated normals are then the map of those interpolated in the mesh's own space.
 static void place_corner_normal(const glint_placing *place, const double n[3], double out[3])
 {
     double largest = 0;
@@ -67,7 +67,7 @@ static void name_shading_point(glint_geometry *geometry, const glint_prim *prim,
         geometry->shading_point_prims[shading_point] = prim->id;
 }
 
-/// A triangle that is square to an axis shares its plane with others, those of its own mesh before all.
+/// A triangle perpendicular to an axis shares its plane with others, first of all of its own mesh.
 static void share_face(glint_filler *f, glint_prim *prim, const glint_mesh *mesh, size_t i, const glint_placing *place)
 {
     double lower[3], upper[3], normal[3], own[3] = { 0, 0, 0 };

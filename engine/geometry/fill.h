@@ -1,4 +1,4 @@
-/// What fills a scene's primitives: fill.c, and fill_combined.c for combined solids. Internal.
+/// Fills the primitives of a scene: fill.c, and fill_combined.c for combined solids. Internal.
 #ifndef GLINT_FILL_H
 #define GLINT_FILL_H
 
@@ -25,7 +25,7 @@ typedef struct glint_filler {
 glint_status glint_fill_material(glint_list *materials, glint_material *material, uint32_t *out, glint_error *error);
 /// place: of the shape under all groups around it.
 void glint_fill_part(glint_filler *f, uint32_t part, glint_shape *shape, const glint_placing *place);
-/// What of a primitive is no place.
+/// The fields of a primitive that do not depend on its place.
 void glint_fill_dress(glint_filler *f, glint_prim *prim, uint32_t part, uint32_t material, uint32_t medium, bool two_sided);
 void glint_fill_solid(glint_filler *f, glint_prim *prim, const glint_shape_desc *desc, const glint_placing *place);
 /// turned: its corners are taken the other way round: under a map that mirrors, its front stays its front.

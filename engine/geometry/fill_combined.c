@@ -11,7 +11,7 @@ typedef struct maker {
     uint32_t medium; ///< number of its material
 } maker;
 
-/// What the parts that have no material are dressed as: it has one, or a part of it has.
+/// Finds the material for parts without one: the material of the whole, or of one of its parts.
 static const glint_shape *find_dress(const glint_shape *shape)
 {
     if (shape->dressed && shape->desc.kind != GLINT_SHAPE_GROUP)
@@ -133,7 +133,7 @@ static uint8_t operation_of(const glint_shape *shape)
                                                         : GLINT_COMBINE_UNION;
 }
 
-/// Adds what a shape is to a whole. dress: of what has no material of its own.
+/// Adds a shape to a combined solid. dress: the material for shapes without one.
 static glint_status add_to_whole(glint_filler *f, maker *m, glint_shape *shape, const glint_transform *around,
                                  const glint_shape *dress, bool turned)
 {

@@ -25,7 +25,7 @@ static bool is_repeat(const glint_geometry *geometry, uint32_t i, uint32_t other
     return memcmp(place, same, bytes) == 0; // the kind comes first: other counts differ there
 }
 
-/// Marks those of `count` primitives that are bit-equal to one before them. Their slots are on their way before the first is looked at.
+/// Marks those of `count` primitives that are bit-equal to an earlier one. Prefetches their slots first.
 static void mark_repeats(glint_geometry *geometry, uint32_t first, uint32_t count, place_slot *slots, size_t mask)
 {
     glint_key keys[PLACES];
@@ -68,7 +68,7 @@ static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
     return GLINT_OK;
 }
 
-/// Keys of where the primitives are, and of what they look like.
+/// Computes the keys of the primitives' places and materials.
 static void make_keys(glint_geometry *geometry)
 {
     enum { CHUNK = 32 };
@@ -113,7 +113,7 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/// Around the middle of what there is (the median, so that one giant does not draw it away), in units of the largest
+/// Around the middle of the primitives (the median, so that a single giant does not move it), in units of the largest
 /// length: floats lose least there.
 static void choose_frame(glint_geometry *geometry)
 {
@@ -151,7 +151,7 @@ static void choose_frame(glint_geometry *geometry)
     table->scale = largest > 0 && isfinite(largest) ? power_of_two_scale(largest) : 1;
 }
 
-/// Of what is not round, for segments to a light: a sphere around it is far larger.
+/// For segments to a light, marks primitives whose bounding sphere is much larger than themselves.
 static void keep_box(const glint_geometry *geometry, const glint_prim *prim)
 {
     glint_box box;
@@ -235,7 +235,7 @@ static void order_by_tree(const glint_geometry *geometry)
     }
 }
 
-/// The order of definition, but for triangles, which come first.
+/// Arranges primitives in order of definition, except that triangles come first.
 static glint_status make_order(const glint_geometry *geometry, glint_error *error)
 {
     glint_index *index = geometry->index;
@@ -303,7 +303,7 @@ glint_status glint_geometry_arrange(glint_geometry *geometry, glint_geometry_tab
     return status;
 }
 
-/// A tree of what is neither triangle nor plane.
+/// Builds a tree of the primitives that are neither triangles nor planes.
 static glint_status build_others(glint_geometry *geometry, glint_pool *pool, glint_error *error)
 {
     uint32_t count = 0;

@@ -35,8 +35,8 @@ typedef struct glint_part {
 struct glint_geometry {
     atomic_size_t references;
     glint_key revision; ///< of the shapes it was made from
-    glint_prim *prims; ///< in order of definition, and in that of the index once it is built
-    bool arranged; ///< the latter
+    glint_prim *prims; ///< in order of definition, and in the order of the index once it is built
+    bool arranged; ///< in the order of the index
     double (*corners)[3][3]; ///< of triangles, and the boxes of combined solids; in the order of the primitives
     uint32_t corner_count; ///< of these
     double (*planes)[4]; ///< what planes have beside a place
@@ -45,7 +45,7 @@ struct glint_geometry {
     glint_transform *maps; ///< of those that have one
     uint32_t part_count, whole_count; ///< whole_count: of those that are no part of a combined solid
     glint_corner_normals *normals; ///< of triangles that are shaded smoothly
-    glint_shading_points *shading_points; ///< of triangles whose light is worked out at sites
+    glint_shading_points *shading_points; ///< of triangles with light computed per face or vertex
     uint32_t *shading_point_prims; ///< id of the first triangle of each site
     uint32_t *places; ///< where the primitive of an id is, once arranged; NULL: there are no sites
     glint_solid *solids;
@@ -60,9 +60,9 @@ struct glint_geometry {
     uint32_t *unbounded;
     glint_list materials; ///< in order of first use; the scene's shapes own them
     glint_index *index;
-    glint_bvh others; ///< of what is neither triangle nor plane, built on first use
+    glint_bvh others; ///< of primitives that are neither triangles nor planes, built on first use
     bool has_others; ///< `others` is built
-    double thinnest; ///< least size of what is curved, world units; infinite: nothing is
+    double thinnest; ///< least size of curved primitives, world units; infinite: there are none
     uint32_t id_count; ///< primitives that were described, parts of combined solids and repeats included
     glint_geometry_table table; ///< for the kernels; without `nodes` until the index is built
     glint_key where, look; ///< of the places; of materials and sides
@@ -79,9 +79,9 @@ glint_geometry *glint_geometry_retain(glint_geometry *geometry);
 glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
                                   glint_error *error);
 /// The same for callers that do not walk the index: it is not built, and *table is without it unless it is there. The order of the
-/// primitives is that of the first of these two calls, and stays.
+/// primitives is set by the first of these two calls, and stays.
 glint_status glint_geometry_arrange(glint_geometry *geometry, glint_geometry_table *table, glint_error *error);
-/// An arranged geometry without its triangles: *table, with an index of the rest alone. *any: there is something.
+/// Makes *table from an arranged geometry without its triangles, with an index of the rest. *any: there are other primitives.
 glint_status glint_geometry_others(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table, bool *any,
                                    glint_error *error);
 
@@ -121,20 +121,20 @@ static inline bool glint_prim_in_tree(const glint_prim *prim)
 
 /// geometry/boxes.c: a sphere around a primitive becomes its filter's: its own, or that of its box, or a smaller one.
 void glint_prim_place_sphere(const glint_geometry_table *table, glint_prim *prim);
-/// What the filter knows of the axis of a solid that has such a sphere.
+/// The filter's data about the axis of a solid with such a sphere.
 void glint_prim_place_axis(const glint_geometry_table *table, const glint_prim *prim, glint_solid *solid);
 /// Its box in the index's frame, rounded outwards.
 void glint_prim_place_box(const glint_geometry_table *table, const glint_prim *prim, uint32_t item, glint_box *box);
-/// The boxes of what is in the tree, `count` of them, in the order of `prims`, which other threads may read. solids: without
+/// Computes the `count` boxes of the primitives in the tree, in the order of `prims`, which other threads may read. solids: without
 /// triangles. NULL: no memory.
 glint_box *glint_geometry_boxes(const glint_geometry *geometry, uint32_t count, bool solids, glint_pool *pool);
 /// geometry/arrange.c: puts the primitives into the order of the index, those without an end last; repeats are gone.
 glint_status glint_geometry_move(glint_geometry *geometry, glint_pool *pool, glint_error *error);
 
-/// geometry/hulls.c: makes the trees of closed meshes that are parts, or takes those of `last` (NULL: none) that are the same.
+/// geometry/hulls.c: makes the trees of closed meshes that are parts, or reuses equal trees of `last` (NULL: none).
 glint_status glint_geometry_hull_trees(glint_geometry *geometry, const glint_geometry *last, glint_error *error);
 void glint_geometry_release_hulls(glint_geometry *geometry);
-/// How a ray from a place crosses a triangle: 1: it goes out, -1: in, 0: past it, or the triangle is behind. Of a closed mesh the sum of
+/// Returns how a ray crosses a triangle: 1: outwards, -1: inwards, 0: it misses, or the triangle is behind. For a closed mesh the sum of
 /// all is how often the place is inside.
 int glint_prim_crossing(const glint_prim *triangle, const double from[3], const double d[3]);
 

@@ -60,7 +60,7 @@ static bool is_small(const grid_maker *maker, const glint_prim *prim, double way
     return maker->grid->directional || radius < WIDEST * distance;
 }
 
-/// Sets the axes along the mean way to what is small. False: there is too little, or it is all around.
+/// Sets the axes along the mean direction to small primitives. Returns false if there are too few, or if they are all around.
 static bool aim(grid_maker *maker)
 {
     glint_light_grid *grid = maker->grid;
@@ -98,7 +98,7 @@ static bool aim(grid_maker *maker)
 /// Where the light sees a sphere. False: too far to the side.
 ///
 /// A segment at (u, v) has a distance from the middle whose square is at least w0^2 (du^2 + dv^2) / (1 + u^2 + v^2), so that one
-/// that meets the sphere has du^2 + dv^2 <= (r / w0)^2 (1 + u^2 + v^2). The root of the latter is at most the middle's and
+/// that meets the sphere has du^2 + dv^2 <= (r / w0)^2 (1 + u^2 + v^2). The root of the right side is at most the middle's and
 /// the distance from there together, which bounds that distance.
 static bool see(const grid_maker *maker, const glint_prim *prim, uint32_t id, const double way[3], seen_sphere *out)
 {
@@ -157,7 +157,7 @@ static float mean_reach(const grid_maker *maker)
     return (float)(sum / maker->count);
 }
 
-/// What is larger than `limit` goes to the others. False: that is too much, and nothing has changed.
+/// Moves primitives larger than `limit` to the others. Returns false if there are too many, and changes nothing.
 static bool take_large(grid_maker *maker, float limit)
 {
     uint32_t large = 0, kept = 0;
@@ -281,12 +281,12 @@ static bool sort_by_depth(grid_maker *maker)
     return true;
 }
 
-/// What is written of a grid's entries.
+/// The state of writing a grid's entries.
 typedef struct grid_entries {
     uint32_t *place, *size, *id;
 } grid_entries;
 
-/// What a sphere's entries in all cells have in common.
+/// The common part of a sphere's entries in all cells.
 static uint32_t size_of(const glint_light_grid *grid, const seen_sphere *s)
 {
     const double steps = GLINT_GRID_STEPS * (double)grid->cells;
@@ -334,7 +334,7 @@ static void spread(const grid_maker *maker, uint32_t *next, const grid_entries *
     }
 }
 
-/// Memory for the entries and what the stage loads behind the last, in one piece, which begins at `place`.
+/// Allocates the entries, with padding that the stage loads behind the last one, in one block that begins at `place`.
 static bool make_entries(glint_light_grid *grid, uint64_t count, grid_entries *out)
 {
     const size_t length = (size_t)count + GLINT_GROUP;
@@ -404,6 +404,6 @@ void glint_light_grid_destroy(glint_light_grid *grid)
     if (!grid)
         return;
     free((void *)(uintptr_t)grid->begin);
-    free((void *)(uintptr_t)grid->place); // with what follows
+    free((void *)(uintptr_t)grid->place); // with the following entries
     free(grid);
 }

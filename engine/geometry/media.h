@@ -1,4 +1,4 @@
-/// What a ray is inside of: the transparent materials whose surfaces it has gone in through and not yet out of. Internal.
+/// The media that contain a ray: transparent materials that it has entered and not yet left. Internal.
 #ifndef GLINT_MEDIA_H
 #define GLINT_MEDIA_H
 

@@ -1,4 +1,4 @@
-/// One primitive: made of what describes it, its place in numbers, the box around it.
+/// One primitive: made from its description, with its bounds.
 #include "engine/base/vec.h"
 #include "engine/geometry/prims.h"
 
@@ -96,7 +96,7 @@ static void solid_bounds(const glint_solid *solid, const double center[3], doubl
 {
     for (int c = 0; c < 3; c++) {
         const double *m = solid->forward[c], round = sqrt(m[0] * m[0] + m[1] * m[1]);
-        double low = -round, high = round; // a disk, and what the others have across
+        double low = -round, high = round; // a disk, and the cross-section of the others
         if (solid->form == GLINT_FORM_BALL)
             high = sqrt(vec_dot(m, m));
         else if (solid->form == GLINT_FORM_BOX)
@@ -210,7 +210,7 @@ static glint_transform unit_map(const glint_shape_desc *desc)
     return map;
 }
 
-/// What rounding is measured by: of the faces, and of the curved side, which is near 1 in each of the unit shape's directions.
+/// Computes the magnitudes for rounding errors: of the faces, and of the curved side, which is near 1 in each direction of the unit shape.
 static void bound_solid(const glint_prim *prim, const glint_placing *place, const glint_transform *unit,
                         glint_solid *solid, glint_face *faces)
 {

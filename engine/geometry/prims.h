@@ -1,4 +1,4 @@
-/// Primitives of what describes them, one by one; fill.c makes those of a scene. Internal.
+/// Makes single primitives from descriptions; fill.c makes all primitives of a scene. Internal.
 #ifndef GLINT_PRIMS_H
 #define GLINT_PRIMS_H
 
@@ -9,7 +9,7 @@ void glint_sphere_init(glint_prim *prim, const double center[3], double radius);
 /// room: for what a plane has beside a place, as long as the primitive.
 void glint_plane_init(glint_prim *prim, double room[4], const double point[3], const double normal[3],
                       const glint_placing *place);
-/// Of a ball, box, disk, cylinder, cone or torus; faces: room for those that it has. Returns how many these are.
+/// Makes a sphere, box, disk, cylinder, cone or torus; faces: memory for its faces. Returns their number.
 int glint_solid_init(glint_prim *prim, glint_solid *solid, const glint_shape_desc *desc, const glint_placing *place,
                      glint_face *faces);
 

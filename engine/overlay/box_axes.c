@@ -31,7 +31,7 @@ typedef struct edge {
 
 typedef struct box_axes {
     const glint_layout *layout;
-    double nearest; ///< depth of what is drawn
+    double nearest; ///< depth of the drawing
     rect texts[TEXTS_MAX]; ///< where there are some
     int count;
 } box_axes;
@@ -233,7 +233,7 @@ static bool overlap(const rect *a, const rect *b, double room)
     return a->low[0] < b->high[0] + room && b->low[0] < a->high[0] + room && a->low[1] < b->high[1] && b->low[1] < a->high[1];
 }
 
-/// Draws a text unless it would lie over another or outside of what pixels there are.
+/// Draws a text unless it would overlap another one or leave the picture.
 static void draw_text(box_axes *axes, const char *text, rect r)
 {
     const glint_layout *layout = axes->layout;

@@ -34,7 +34,7 @@ static void add_mark(const glint_layout *layout, bar *b, double value)
         b->marks.of[before].share = glint_log(value / desc->low) / glint_log(desc->high / desc->low);
 }
 
-/// Powers of ten, of few of them also twice and five times each; of many every second, third and so on. Of none, the ends.
+/// Returns powers of ten; if there are few, also twice and five times each; if many, every second, third and so on; if none, the ends.
 static void find_powers(const glint_layout *layout, bar *b)
 {
     static const double factors[] = { 1, 2, 5 };

@@ -1,4 +1,4 @@
-/// Tables of colour maps, of colormap.c alone: 256 colours from the lowest number to the highest, sRGB codes 0xRRGGBB.
+/// Tables of colour maps, only for colormap.c: 256 colours from the lowest number to the highest, sRGB values 0xRRGGBB.
 ///
 ///   VIRIDIS, MAGMA  N. Smith and S. van der Walt, 2015, CC0; as Matplotlib has them, rounded to codes
 ///   CIVIDIS         J. R. Nunez, C. R. Anderton and R. S. Renslow, "Optimizing colormaps with consideration for color vision

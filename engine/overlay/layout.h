@@ -1,4 +1,4 @@
-/// One overlay on its way into stamps. Internal.
+/// Lays out one overlay as stamps. Internal.
 #ifndef GLINT_OVERLAY_LAYOUT_H
 #define GLINT_OVERLAY_LAYOUT_H
 

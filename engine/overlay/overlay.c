@@ -101,7 +101,7 @@ static glint_status check_bar(const glint_overlay_desc *desc, glint_error *error
     return status;
 }
 
-/// What axes at a box do not have: they lie where the box does.
+/// Refuses fields that axes at a box do not have, because their place is the box.
 static glint_status check_unplaced(const glint_overlay_desc *desc, glint_error *error)
 {
     const struct {

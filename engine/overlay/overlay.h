@@ -1,4 +1,4 @@
-/// What is drawn over a finished picture: labels, colour bars, axes. Internal.
+/// Overlays, drawn over a finished picture: labels, colour bars, axes. Internal.
 ///
 ///     overlay.c    the described objects, checked
 ///     overlays.c   all of one frame, as a plan and its image hold them; their key
@@ -41,7 +41,7 @@ glint_status glint_overlays_take(const glint_scene *scene, int width, int height
                                  glint_overlays **out, glint_error *error);
 glint_overlays *glint_overlays_retain(glint_overlays *overlays); ///< NULL: nothing
 void glint_overlays_release(glint_overlays *overlays); ///< NULL: nothing
-/// Continues a key with all that their pixels are made from, but for the codes under them and the file's dpi.
+/// Continues a key with everything that the overlays' pixels depend on, except the pixel values under them and the file's dpi.
 glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key);
 
 /// A rectangle of one colour, as codes of one picture.
@@ -69,7 +69,7 @@ glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, vo
                                   void *context, glint_error *error);
 /// A colour bar by itself, on a sheet of `sides` pixels; its lengths are pixels.
 /// x, y    its upper left corner.
-/// stamps  out, added to: what it is drawn of; NULL: it is measured alone.
+/// stamps  out: the stamps are added here; NULL: only measures.
 /// size    out: across and down.
 void glint_colorbar_alone(const glint_overlay_desc *desc, glint_letters *letters, const int sides[2], int x, int y,
                           glint_stamps *stamps, int size[2]);

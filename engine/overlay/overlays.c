@@ -70,7 +70,7 @@ static glint_key place_key(const glint_overlay_desc *d, glint_key key)
     return glint_key_add_string(key, d->text);
 }
 
-/// Of axes at a box: where the camera has it, and their numbers.
+/// Axes at a box: its corners in the camera's view, and the numbers.
 static glint_key box_key(const glint_overlays *overlays, const glint_overlay_desc *d, glint_key key)
 {
     const glint_overlays_camera *c = &overlays->camera;

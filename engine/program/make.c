@@ -14,7 +14,7 @@
 typedef struct maker {
     uint32_t count;
     glint_ssa_node *nodes; ///< the builder's, of which some are fused
-    uint32_t *uses; ///< of each value, by what is needed; of a result that is not read 0
+    uint32_t *uses; ///< row of each needed value; 0 for results that are not read
     bool *needed; ///< first results
     uint32_t *order, length; ///< first results of operations, as they are run
     uint32_t *last; ///< position in the order where a value is read last; UNUSED: nowhere; length: it is an output
@@ -118,7 +118,7 @@ static void make_pairs(maker *m)
     }
 }
 
-/// Products of three, of what is in no sum.
+/// Fuses products of three values that are not part of a sum.
 static void make_products(maker *m)
 {
     for (uint32_t i = 0; i < m->count; i++)

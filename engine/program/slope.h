@@ -8,7 +8,7 @@
 
 typedef struct glint_slope_maker {
     glint_builder *builder;
-    uint32_t count; ///< values of the program itself; those of its derivatives follow
+    uint32_t count; ///< values of the program itself; values of its derivatives follow
     glint_value *given; ///< what each value was given so far; GLINT_SLOPE_NOTHING
     bool *varies; ///< depends on an input that counts
     glint_status status; ///< of the first failure; what is made after it means nothing
@@ -19,7 +19,7 @@ glint_value glint_slope_number(glint_slope_maker *s, double x);
 /// The result of an operation of three operands, or of fewer; the others are 0.
 glint_value glint_slope_op(glint_slope_maker *s, glint_op op, glint_value a, glint_value b, glint_value c);
 
-/// Adds to what a value was given, if it varies.
+/// Adds to the adjoint of a value, if it varies.
 void glint_slope_give(glint_slope_maker *s, glint_value to, glint_value what);
 /// Value i, of an operation, passes what it was given on to its operands, times its derivatives by them.
 void glint_slope_pass(glint_slope_maker *s, glint_value i);

@@ -149,7 +149,7 @@ static bool is_dynamic(const values *v, uint32_t value)
     return v->maker[value] != NO_VALUE && v->dynamic[v->maker[value]];
 }
 
-/// Who reads a value has it with what is kept, or by the second part, which then reads what makes it.
+/// A reader of a value gets it from the cache, or from the second part, which then needs the operands.
 static void add_reader(values *v, uint32_t value, uint32_t reader)
 {
     if (value != NO_VALUE && !is_dynamic(v, value))
@@ -179,7 +179,7 @@ static uint32_t make_graph(values *v, const uint32_t *outputs)
     return rest;
 }
 
-/// Names what is kept, and what the second part runs. False: it is too much, or nothing.
+/// Lists the cached values, and the instructions of the second part. Returns false if there are too many, or none.
 static bool find_sides(values *v)
 {
     for (uint32_t i = 0; i < v->code->length; i++)
@@ -231,7 +231,7 @@ static uint16_t take_row(bool *taken, uint32_t *most)
     return (uint16_t)row;
 }
 
-/// Gives an instruction's results rows, after those of operands that it is the last to read.
+/// Assigns rows to an instruction's results, after freeing the rows of operands that it is the last to read.
 static void place_results(values *v, uint32_t i, glint_instruction *to, bool *taken, uint32_t *most)
 {
     for (uint32_t k = 0; k < to->operands; k++) {

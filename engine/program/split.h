@@ -4,16 +4,16 @@
 
 #include "engine/program/program.h"
 
-/// The numbers and textures of both parts are the program's, and so are those of any other program of its structure.
+/// The numbers and textures of both parts are those of the program, or of any other program with its structure.
 typedef struct glint_split {
-    glint_program_code first; ///< its outputs are what is kept for the second
+    glint_program_code first; ///< its outputs are cached for the second part
     glint_program_code second; ///< its inputs are these, in their order
     uint32_t truths; ///< a bit a kept value: it is 0 or 1, but where it is made of NaN
-    uint32_t cost; ///< of what is kept and of what both parts run, as below
-    uint32_t saved; ///< of what the second part need not run; tenths of a nanosecond a point
+    uint32_t cost; ///< of the cached values and of the instructions of both parts, see below
+    uint32_t saved; ///< of the instructions that the second part skips, in tenths of a nanosecond per point
 } glint_split;
 
-/// Puts what depends on the numbers that are `changed`, a flag a number, into the second part. What else is there is found by a
+/// Puts everything that depends on the `changed` numbers (one flag per number) into the second part. The rest of the second part is found by a
 /// minimal cut: of all that can be kept, and run again, what takes the least time; of equals, what leaves the least to be run.
 ///
 /// Returns false without memory. *out is NULL where there is nothing to keep, or too much.

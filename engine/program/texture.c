@@ -60,7 +60,7 @@ static float *add_level(glint_texture *texture, uint32_t width, uint32_t height)
     return texels;
 }
 
-/// What each code stands for. NULL: out of memory.
+/// Returns the linear light of each pixel value. NULL: out of memory.
 static float *decoding(const glint_png *png, bool linear)
 {
     const int last = png->bits == 16 ? 65535 : 255;

@@ -130,7 +130,7 @@ double glint_light_sample_size(const glint_light_desc *desc)
 
 // ---- From the unit square to the surface ----
 
-/// What the maps need of a light besides its description.
+/// Constants of a light for the maps, besides its description.
 typedef struct surface {
     const glint_light_desc *desc;
     double normal[3], right[3], up[3]; ///< disk, polygon: unit
@@ -312,7 +312,7 @@ static void square_point(uint32_t i, uint32_t samples, bool cone, const double s
     square[1] -= floor(square[1]);
 }
 
-/// What a cone's sample is without the point that sees it.
+/// Computes the part of a cone's sample that does not depend on the point.
 static void cone_point(const double square[2], double place[3])
 {
     place[0] = square[0];

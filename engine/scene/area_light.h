@@ -11,13 +11,13 @@ glint_status glint_light_sample_check_polygon(const glint_light_desc *desc, glin
 /// Unit, to the side from which the corners run counter-clockwise.
 void glint_light_sample_polygon_normal(const glint_light_desc *desc, double normal[3]);
 
-/// Of the side or sides that shine; 0 for a light without a surface.
+/// Returns the area of the side or sides that shine; 0 for a light without a surface.
 double glint_light_sample_area(const glint_light_desc *desc);
 
 /// How far it reaches from its middle or a corner of it, about.
 double glint_light_sample_size(const glint_light_desc *desc);
 
-/// The whole light alone: its ball and box. For caps.
+/// Describes the whole light: its ball and box. For caps.
 void glint_light_sample_whole(const glint_light_desc *desc, glint_light_sample *out);
 
 /// How many patterns samples of a pixel take turns in: a power of two.

@@ -53,7 +53,7 @@ static glint_status find_closures(const glint_shape *part, glint_error *error)
     return status;
 }
 
-/// What is expected in place of something that has no inside, the part or what is in it: `found`; NULL: it has one.
+/// Returns the expectation for a message if a part, or something in it, has no inside (`found`); NULL: it has one.
 static const char *refusal_of(const glint_shape *part, const glint_shape **found)
 {
     *found = part;

@@ -153,7 +153,7 @@ static void fold_program(const program_field *field, glint_material_desc *desc)
     *program = NULL;
 }
 
-/// Of every number that a field has, -0 is 0: what is kept from one must serve the other.
+/// Normalises -0 to 0, so that both hash to the same key.
 static void drop_signs_of_zeros(glint_material_desc *desc)
 {
     EACH_FIELD(f)

@@ -87,7 +87,7 @@ static bool grow(builder *b)
     return good;
 }
 
-/// A number of a corner, or that of what stands for `none`: it is behind the others, and 0.
+/// Returns an index of a corner, or the index that stands for `none`: it comes after the others.
 static uint32_t number_or(uint32_t number, uint32_t none, size_t count)
 {
     return number == none ? (uint32_t)count : number;

@@ -1,5 +1,5 @@
 /// Ears of a polygon: corners that can be cut off, as no other corner lies in the triangle with both neighbours. The first one
-/// in the polygon's order is always cut. A corner that is no ear remembers one that is in its way, and is looked at again when
+/// in the polygon's order is always cut. A corner that is not an ear remembers a corner that prevents it, and is tested again when
 /// that one or a neighbour has gone; a tree over the corners finds those that are in the way.
 #include "engine/scene/mesh_ears.h"
 

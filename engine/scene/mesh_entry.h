@@ -1,4 +1,4 @@
-/// What the materials of .obj files are made of, while these are read. Internal to scene/.
+/// The materials of .obj files while they are read. Internal to scene/.
 #ifndef GLINT_MESH_ENTRY_H
 #define GLINT_MESH_ENTRY_H
 

@@ -1,4 +1,4 @@
-/// What the readers of mesh files share: a file read by lines or by bytes, arrays that grow, and what is read so far.
+/// Shared by the readers of mesh files: a file read by lines or by bytes, growing arrays, and the data read so far.
 /// Internal to scene/.
 #ifndef GLINT_MESH_FILE_H
 #define GLINT_MESH_FILE_H
@@ -81,7 +81,7 @@ char *glint_mesh_beside(const char *path, const char *name);
 
 typedef struct glint_mesh_library glint_mesh_library; ///< mesh_mtl.h
 
-/// What the numbers of a corner name.
+/// The arrays that the numbers of a corner refer to.
 typedef enum glint_mesh_index_kind {
     GLINT_MESH_OF_VERTEX,
     GLINT_MESH_OF_NORMAL,
@@ -89,7 +89,7 @@ typedef enum glint_mesh_index_kind {
     GLINT_MESH_OF_COUNT
 } glint_mesh_index_kind;
 
-/// What is passed over or replaced in a file; each kind is one warning.
+/// Things that are skipped or replaced in a file; each kind gives one warning.
 typedef enum glint_mesh_note_kind {
     GLINT_MESH_NOTE_FACE, ///< a face of fewer than 3 corners
     GLINT_MESH_NOTE_VERTEX, ///< a face with a vertex that is not finite
@@ -114,9 +114,9 @@ typedef struct glint_mesh_reader {
     glint_mesh_text text;
     const glint_mesh_desc *desc;
     glint_mesh_array vertices, normals, uv, corners, corner_normals, sizes;
-    glint_mesh_array corner_uv; ///< .obj: of the corners; none: those of the vertices, or none
+    glint_mesh_array corner_uv; ///< .obj: indices of the corners; empty: those of the vertices, or none
     glint_mesh_array material_index; ///< of each face, where faces have materials of their own
-    glint_mesh_library *library; ///< .obj: the materials; NULL: those of `desc`
+    glint_mesh_library *library; ///< .obj: the materials; NULL: the materials of `desc`
     glint_mesh_array colors; ///< sRGB codes of red, green and blue, of each vertex or face; none: there are none
     bool colors_of_faces; ///< not of vertices
     glint_mesh_array
@@ -124,7 +124,7 @@ typedef struct glint_mesh_reader {
     struct {
         size_t index, line;
     } far[GLINT_MESH_OF_COUNT]; ///< .obj: the largest number that named nothing so far, from 0, and its line; 0: none
-    glint_mesh_array materials; ///< of `colors`: glint_material *, owned; none: those of `desc`
+    glint_mesh_array materials; ///< materials of `colors`: glint_material *, owned; empty: the materials of `desc`
     glint_mesh_set places; ///< .stl: of the vertices
     bool has_normals;
     glint_mesh_note notes[GLINT_MESH_NOTE_COUNT];

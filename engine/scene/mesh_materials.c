@@ -104,7 +104,7 @@ glint_status glint_mesh_library_begin(glint_mesh_library *library, const char *n
 
 // ---- Pictures ----
 
-/// What a material has where its picture cannot be read.
+/// The field of a material whose picture cannot be read.
 static const char *const map_instead[GLINT_MAP_COUNT] = { "its Kd", "its Ks", "its d", "no relief" };
 
 /// The picture of a material; *out NULL, after a warning: there is none.
@@ -168,7 +168,7 @@ static void polish(glint_mesh_entry *e)
     vec_copy(e->desc.mirror, e->desc.specular);
 }
 
-/// The fields of a material. Of what is seen through, d of the light is the surface's own.
+/// Fills the fields of a material. If it is transparent, the surface's own light counts with the factor d.
 static void finish_fields(glint_mesh_library *library, glint_mesh_entry *e)
 {
     const bool is_dull = e->illum < 2;

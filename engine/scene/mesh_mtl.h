@@ -20,7 +20,7 @@ glint_status glint_mesh_find_grey(const glint_texture *texture, bool *grey, glin
 /// NULL: out of memory.
 glint_mesh_library *glint_mesh_library_create(void);
 void glint_mesh_library_free(glint_mesh_library *library); ///< NULL: nothing
-/// mtllib: reads the materials of a file, or of several; `names` is the rest of the line. What cannot be read is a warning.
+/// mtllib: reads the materials of a file, or of several; `names` is the rest of the line. A file that cannot be read gives a warning.
 glint_status glint_mesh_library_read(glint_mesh_library *library, const glint_mesh_reader *reader, const char *names);
 /// usemtl: the faces that follow have this material.
 void glint_mesh_library_use(glint_mesh_library *library, const char *name);

@@ -1,4 +1,4 @@
-/// What the readers of meshes warn about, and normals that are none.
+/// Warnings of the readers of meshes, and normals of length 0.
 #include "engine/scene/mesh_file.h"
 
 #include "engine/base/vec.h"

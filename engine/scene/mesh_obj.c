@@ -1,4 +1,4 @@
-/// Wavefront .obj files, a line at a time: nothing but the vertices, normals, coordinates and faces read so far is kept.
+/// Reads Wavefront .obj files line by line: memory holds only the vertices, normals, coordinates and faces read so far.
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/mesh_mtl.h"

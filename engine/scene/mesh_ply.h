@@ -22,7 +22,7 @@ typedef enum glint_ply_type {
     GLINT_PLY_TYPE_COUNT
 } glint_ply_type;
 
-/// What a property is to a mesh. The first ones are numbers of a vertex, of a face the colours alone.
+/// The meaning of a property for a mesh. The first ones are numbers of a vertex; a face has only the colours.
 typedef enum glint_ply_role {
     GLINT_PLY_X,
     GLINT_PLY_Y,

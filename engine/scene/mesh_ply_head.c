@@ -185,7 +185,7 @@ static bool has_colors(const glint_ply_element *e, glint_ply_type *type)
     return count == 3;
 }
 
-/// Finds the colours that count, those of faces before those of vertices; a material of the script stands for all.
+/// Chooses the colours: faces before vertices. A material of the script replaces all of them.
 static void find_colors(const glint_mesh_reader *r, glint_ply_head *h)
 {
     bool any = false;

@@ -1,4 +1,4 @@
-/// What smooth shading needs of a mesh: normals of its vertices, and where light is worked out once for several faces.
+/// Data of a mesh for smooth shading: normals of its vertices, and the points where light is computed once for several faces.
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/objects.h"

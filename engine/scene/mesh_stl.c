@@ -63,7 +63,7 @@ typedef struct state {
     double corners[3][3];
 } state;
 
-/// A line of a facet, or one between facets. What stands behind a solid is passed over, up to the next one.
+/// Reads a line of a facet, or between facets. Text after a solid is skipped, up to the next one.
 static glint_status read_statement(glint_mesh_reader *r, const char *at, state *s)
 {
     char expected[32];

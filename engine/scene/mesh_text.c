@@ -1,4 +1,4 @@
-/// What the readers of mesh files share: arrays that grow, and the lines of a file.
+/// Shared by the readers of mesh files: growing arrays, and the lines of a file.
 #include "engine/scene/mesh_file.h"
 
 #include "engine/base/open.h"

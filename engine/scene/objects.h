@@ -1,4 +1,4 @@
-/// What the described objects hold. Internal to the engine; nothing below engine/ itself includes it.
+/// The structures of the described objects. Internal to the engine; nothing below engine/ itself includes it.
 #ifndef GLINT_OBJECTS_H
 #define GLINT_OBJECTS_H
 
@@ -36,15 +36,15 @@ typedef struct glint_mesh {
     uint32_t (*triangles)[3]; ///< numbers of vertices
     size_t vertex_count, triangle_count;
     double (*normals)[3]; ///< unit, or 0: none; NULL: there are none
-    uint32_t (*triangle_normals)[3]; ///< numbers of normals; NULL: those of the vertices
+    uint32_t (*triangle_normals)[3]; ///< indices of normals; NULL: the same as of the vertices
     double (*uv)[2]; ///< coordinates on a picture; NULL: there are none
-    uint32_t (*triangle_uv)[3]; ///< numbers of these; NULL: those of the vertices
+    uint32_t (*triangle_uv)[3]; ///< indices of these; NULL: the same as of the vertices
     glint_key uv_key; ///< of both
     size_t *uv_missing; ///< of each material, the first face that has a corner without, from 1; 0: none
     uint32_t *faces; ///< the face each triangle was cut from, from 0; NULL: each is a face
     size_t face_count;
-    uint32_t (*shading_points)[3]; ///< of gouraud shading: numbers of what a vertex, a normal and a material are together;
-                                   ///< NULL: those of the vertices
+    uint32_t (*shading_points)[3]; ///< gouraud shading: one index for each combination of vertex, normal and material;
+                                   ///< NULL: the same as of the vertices
     size_t shading_point_count; ///< 0: not counted yet
     double center[3], radius, segments; ///< of a sphere of triangles; segments 0: it is none
     double bend; ///< see glint_mesh_bend; 0: none, or not looked for yet
@@ -63,7 +63,7 @@ struct glint_shape {
     size_t probed; ///< the level that search supposed
     uint64_t checked; ///< a group: the last revision given to any shape when its children were looked at
     uint64_t children_hash; ///< of their revisions then
-    bool dressed; ///< it was given a material, which is not that of what it is a part of
+    bool dressed; ///< it has a material of its own, not that of the whole
     double lower[3], upper[3]; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: a box around them
     double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each
     uint32_t *index; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: material of each sphere or triangle, or NULL
@@ -106,7 +106,7 @@ void glint_shape_changed(glint_shape *shape);
 uint64_t glint_shape_revision(glint_shape *shape);
 
 bool glint_transform_is_identity(const glint_transform *t);
-/// Whether it keeps angles, but for rounding, and by what it multiplies lengths.
+/// Returns whether a map preserves angles up to rounding, and the factor of lengths.
 bool glint_transform_similar(const glint_transform *t, double *factor);
 void glint_transform_point(const glint_transform *t, const double p[3], double out[3]);
 void glint_transform_linear(const glint_transform *t, double out[3][3]);
@@ -114,7 +114,7 @@ void glint_transform_linear(const glint_transform *t, double out[3][3]);
 double glint_linear_cofactors(double m[3][3], double out[3][3]);
 glint_status glint_check_transform(const char *name, const glint_transform *t, glint_error *error);
 
-/// Whether a pattern is numbers alone, 0 .. most, which then can stand in its place; one of them stands for all three. Others
+/// Returns whether a pattern consists only of numbers, 0 .. most, which can replace it; one number stands for all three. Others
 /// are run, so that those that are out of range become what a pattern's are, and are counted.
 bool glint_pattern_numbers(const glint_program *program, double most, double out[3]);
 

@@ -4,7 +4,7 @@
 
 #define UNKNOWN 0xfffdu
 
-/// Reads one character of UTF-8; a byte that begins none is taken alone.
+/// Reads one character of UTF-8; an invalid byte counts as one character.
 static uint32_t next_code(const uint8_t **at)
 {
     uint32_t first = *(*at)++;

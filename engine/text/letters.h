@@ -16,7 +16,7 @@ glint_status glint_letters_open(glint_letters **out, glint_error *error);
 void glint_letters_close(glint_letters *letters); ///< NULL: nothing
 /// Whether there was no memory for something: text that was measured or drawn is not as it should be.
 bool glint_letters_lost(const glint_letters *letters);
-/// Of what the pixels of text depend on beside the text: the font, and the library's version.
+/// Returns what the pixels of text depend on besides the text: the font, and the version of the library.
 glint_key glint_letters_key(const glint_letters *letters);
 
 /// "FreeType 2.12.1"; a static string; NULL: this build has none.
