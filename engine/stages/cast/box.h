@@ -66,7 +66,7 @@ INNER void R(into_box)(const R(box_slabs) * slabs, vr *t, rm *hit, rm *missed)
 
 // ---- Rays from one eye ----
 
-/// What a box is to them. 1 / t where they come to a face is a constant times how fast they rise over it: they go in by the
+/// The constants of a box for the rays. 1 / t at a face is a constant times the speed at which the ray approaches it: rays enter by the
 /// least of these numbers of the faces that the eye is before, and out by the greatest of the others.
 typedef struct R(eye_slabs) {
     real height[3]; ///< of the eye over the face in front, where it is before one
@@ -94,7 +94,7 @@ static inline void R(see_slabs)(const real height[6], R(eye_slabs) * eye)
     }
 }
 
-/// As into_box; *per_way: 1 / t, but for rounding.
+/// Like into_box; *per_way: 1 / t, up to rounding.
 INNER void R(into_eye_box)(const R(eye_slabs) * eye, const vr rise[3], vr *t, vr *per_way, rm *hit, rm *missed)
 {
     const vr zero = r_set(0);

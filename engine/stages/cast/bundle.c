@@ -1,4 +1,4 @@
-// Camera rays, and what bundles of rays hit: rays of one eye, parallel ones, and those through a lens.
+// Camera rays, and hits of bundles of rays: from one eye, parallel, and through a lens.
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/cast.h"
 #include "engine/stages/cast/pixels.h"

@@ -24,7 +24,7 @@ static inline void R(pixel_axis)(double first, const double step[GLINT_GROUP], d
 static const _Alignas(64) double R(lane_x)[GLINT_GROUP] = { 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3 };
 static const _Alignas(64) double R(lane_y)[GLINT_GROUP] = { 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 };
 
-/// Directions from one eye are sums of what the column says and what the row says.
+/// Directions from one eye are the sum of a column's part and a row's part.
 static void R(camera_perspective)(const glint_camera_args *args)
 {
     _Alignas(64) real s[GLINT_GROUP];
@@ -44,7 +44,7 @@ static void R(camera_perspective)(const glint_camera_args *args)
     }
 }
 
-/// Of pixels wherever they are: each row of groups has whole directions, to which the column adds nothing, not even a sign.
+/// For pixels at any position: each row of groups has complete directions, and the column adds nothing, not even a sign.
 static void R(camera_pixels)(const glint_camera_args *args)
 {
     _Alignas(64) real s[GLINT_GROUP], t[GLINT_GROUP];
@@ -92,7 +92,7 @@ INNER void R(lens_perspective)(const glint_camera_args *args, const real *shift,
         }
 }
 
-/// One of an orthographic camera, whose rays are there but for that.
+/// Computes one component for an orthographic camera; the other parts of the rays are known.
 INNER void R(lens_orthographic)(const glint_camera_args *args, const real *shift, const real *bend, uint32_t g)
 {
     const size_t at = (size_t)g * GLINT_GROUP;

@@ -233,7 +233,7 @@ static void R(cast_prims)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_
         R(cast_prims_as)(tile, false, leaf, node, seen, mask);
 }
 
-/// A node's primitives wait until the next node has been looked into: their memory is on its way meanwhile.
+/// A node's primitives are tested after the next node has been visited, while their memory is prefetched.
 static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
@@ -285,7 +285,7 @@ static int R(open_planes)(R(tile_cast) * tile, uint32_t *next, R(candidate) * ca
     return found;
 }
 
-/// Of a scene with few primitives.
+/// Casts in a scene with few primitives.
 static void R(cast_few)(const glint_cast_args *args, const R(cast_view) * view)
 {
     R(tile_cast) tile;
@@ -306,7 +306,7 @@ static void R(cast_few)(const glint_cast_args *args, const R(cast_view) * view)
     R(cast_first)(&tile, list, count, may);
 }
 
-/// Of a scene with many.
+/// Casts in a scene with many primitives.
 static void R(cast_many)(const glint_cast_args *args)
 {
     const glint_geometry_table *geometry = args->geometry;

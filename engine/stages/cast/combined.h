@@ -19,7 +19,7 @@
 typedef struct R(stretches) {
     vr t[2][GLINT_PARTS_MAX];
     uint32_t triangle[2][GLINT_PARTS_MAX][VR]; ///< of meshes: by which they come in and go out
-    vr known; ///< up to where all this is told: a mesh may have more
+    vr known; ///< end of the known intervals: a mesh may have more
     uint64_t live; ///< parts that have some, and are of the program
     uint32_t length; ///< of the program; 0: these rays meet nothing
     const uint8_t *program; ///< the whole's, or what these rays leave of it, in `own`
@@ -100,7 +100,7 @@ static inline unsigned R(vector_lanes)(const uint32_t *list, uint32_t wanted)
     return lanes;
 }
 
-/// Makes the program of a vector of rays: that of the whole without what none of them is in. That leaves little of many parts.
+/// Makes the program for a vector of rays: the program of the whole without parts that none of the rays enters. Often few parts remain.
 static void R(leave_parts)(const glint_combined *whole, uint64_t live, R(stretches) * s)
 {
     uint32_t begin[GLINT_PARTS_MAX]; // of the code of each set so far; such that has none is empty
@@ -153,7 +153,7 @@ typedef struct R(whole_rays) {
     unsigned inward, lanes; ///< those that go into it there; those that are wanted
 } R(whole_rays);
 
-/// Of a mesh, which is the parts from j on. from: what is no further has been dealt with; 0: nothing has. Returns which have some.
+/// Finds the intervals of a mesh, which uses the parts from j on. from: intervals up to here are done; 0: none. Returns the rays that have some.
 static uint64_t R(stretches_of_hull)(const glint_geometry_table *table, const glint_prim *part, uint32_t j,
                                      const R(whole_rays) * w, unsigned lanes, vr from, R(stretches) * s)
 {
@@ -180,7 +180,7 @@ static inline bool R(starts_on)(const uint32_t *on, uint32_t first, uint32_t cou
     return starts;
 }
 
-/// Of a part that has more than one stretch, or where rays start on some part: those are `starts`; of the others `lanes` are wanted.
+/// Finds the intervals of a part that has several, or whose rays start on some part (`starts`); of the other rays, `lanes` are needed.
 /// Returns whether any ray is in it.
 static __attribute__((noinline)) bool R(stretch_of_part)(const glint_geometry_table *table, const glint_prim *part, uint32_t index,
                                                          const R(whole_rays) * w, unsigned lanes, bool starts, vr t[2])
@@ -200,7 +200,7 @@ static __attribute__((noinline)) bool R(stretch_of_part)(const glint_geometry_ta
     return any || (own & into);
 }
 
-/// lanes: those of w->lanes that are not done with; from: see above.
+/// lanes: the unfinished ones of w->lanes; from: see above.
 static void R(find_stretches)(const glint_geometry_table *table, const glint_combined *whole, const R(whole_rays) * w,
                               unsigned lanes, vr from, R(stretches) * s)
 {
@@ -232,7 +232,7 @@ static void R(find_stretches)(const glint_geometry_table *table, const glint_com
     R(make_program)(whole, live, s);
 }
 
-/// What holds next to places on rays, of one set.
+/// The state of one set next to positions on rays.
 typedef struct R(change) {
     rm before, after; ///< the ray is in it
     vr part; ///< whose surface the change is, where there is one
@@ -370,7 +370,7 @@ static unsigned R(next_change)(const glint_geometry_table *table, const glint_co
     return lanes & ~told;
 }
 
-/// Keeps hits of part j, of a mesh those of its triangles.
+/// Stores hits of part j; for a mesh those of its triangles.
 static void R(keep_part)(const glint_cast_args *args, const glint_combined *whole, const R(stretches) * s, uint32_t j,
                          size_t at, rm mine, vr t)
 {
@@ -448,7 +448,7 @@ static bool R(cast_combined_vector)(const glint_cast_args *args, const glint_com
     return (w.lanes && R(cast_combined)(args, whole, at, &w)) || any;
 }
 
-/// Decides it for the rays of a group in `near`. Returns whether any hit was kept.
+/// Decides a combined solid for the rays of a group in `near`. Returns whether any hit was stored.
 static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const glint_prim *prim, unsigned near)
 {
     const glint_combined *whole = &args->geometry->combined[prim->item];

@@ -1,9 +1,9 @@
-// What rays hit that have nothing in common.
+// Hits of single rays that have nothing in common.
 #include "engine/stages/cast/parallel.h"
 #include "engine/stages/cast/rays.h"
 #include "engine/stages/cast/together.h"
 
-/// Of a scene with many.
+/// Casts in a scene with many primitives.
 static void R(cast_many_rays)(const glint_cast_args *args)
 {
     _Alignas(64) float local[3][GLINT_GROUP];

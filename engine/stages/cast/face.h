@@ -5,7 +5,7 @@
 
 #include "engine/stages/simd/real.h"
 
-/// 0 in place of what rounding may have made of 0.
+/// Returns 0 for a value that rounding may have made of 0.
 static inline vr R(unless_within)(vr x, vr bound) { return r_select(r_le(r_max(x, -x), bound), r_set(0), x); }
 
 /// The height of a place over a face.

@@ -206,12 +206,12 @@ static void R(walk_hull)(R(hull_rays) * rays, const glint_hull *hull, unsigned l
     }
 }
 
-/// Of one ray: where it is inside, and the triangles by which it comes in and goes out.
+/// The intervals of one ray inside a mesh, with the triangles where it enters and leaves.
 typedef struct R(ray_within) {
     int count;
     real t[2][GLINT_HULL_PARTS];
     uint32_t triangle[2][GLINT_HULL_PARTS];
-    real known; ///< what is told of it is told up to here
+    real known; ///< end of the known intervals
 } R(ray_within);
 
 /// A ray that starts on the mesh goes into it or not, and what is ahead may tell another: then it goes out, or in, where it starts.

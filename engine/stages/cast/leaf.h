@@ -103,7 +103,7 @@ static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_scree
     return mask | edge_on;
 }
 
-/// The cells, where pixels lie anywhere, that a triangle may show in: seen edge-on, those of its box. False: it shows in none.
+/// Finds the cells that a triangle may show in, for pixels at any position; edge-on, the cells of its box. Returns false if there are none.
 static inline bool R(cells_of_triangle)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, const node_on_screen *seen, int slot,
                                         screen_cells *out)
 {

@@ -27,7 +27,7 @@ INNER vr R(exact_power)(const vr f[3], vr r2, vr r2_low)
 #endif
 }
 
-/// What of a sphere its radius says, found once for many rays; of anything else nothing.
+/// The constant of a sphere's radius, computed once for many rays; unused for other primitives.
 typedef struct R(ball) {
     vr scale, r2, r2_low;
 } R(ball);
@@ -184,7 +184,7 @@ static unsigned R(rays_to_box)(const R(ray_group) * rays, float (*inverse)[GLINT
         }
         inside |= (~fm_bits(f_lt(leave * f_set(1 + WALK_SLACK), enter)) & ((1u << VF) - 1)) << i;
     }
-    return GLINT_REAL == 64 ? inside : 0xffff; // where float decides, nothing is kept from it
+    return GLINT_REAL == 64 ? inside : 0xffff; // if float decides, nothing is rejected here
 }
 
 // ---- The decision ----
@@ -201,7 +201,7 @@ static unsigned R(wins_tie)(const glint_prim *prims, uint32_t id, const uint32_t
     return wins;
 }
 
-/// Keeps the nearest of what was and `t` in the lanes of `hit`.
+/// Stores `t` in the lanes of `hit` where it is nearer than the current hit.
 INNER void R(keep_nearest)(const glint_cast_args *args, size_t at, uint32_t id, rm hit, vr t)
 {
     real *best_t = (real *)args->t + at;
@@ -225,7 +225,7 @@ static inline void R(offset)(const vr origin[3], const glint_prim *prim, vr f[3]
     }
 }
 
-/// What all rays from one origin know of a primitive: f, and c of a sphere or the height over a plane.
+/// The constants of a primitive for all rays from one origin: f, and c of a sphere or the height over a plane.
 static inline vr R(offset_constant)(const vr f[3], const glint_prim *prim)
 {
     if (prim->kind == GLINT_PRIM_SPHERE)
@@ -288,7 +288,7 @@ static inline float R(farthest)(const glint_cast_args *args, size_t at)
     return group_highest(far) * (1 + 0x1p-22f);
 }
 
-/// What float arithmetic adds to the rounding of the walk, in the index's units.
+/// The rounding error that float arithmetic adds in the traversal, in the index's units.
 static inline float R(walk_slack)(const glint_geometry_table *geometry)
 {
 #if GLINT_REAL == 64

@@ -15,7 +15,7 @@
 /// a rounding off each, differences and products six more, quotient and square root three.
 #define NEAREST_SLACK 0x1p-20f
 
-/// Rays of which float says what they meet first, and what is to be decided about them.
+/// Rays whose first hit float has found, and the decisions that remain.
 typedef struct R(ray_pairs) {
     _Alignas(64) real origin[3][GLINT_RAY_PAIRS], direction[3][GLINT_RAY_PAIRS];
     _Alignas(64) real center[3][GLINT_RAY_PAIRS], scale[GLINT_RAY_PAIRS];
@@ -137,7 +137,7 @@ INNER fm R(way_to_ball)(const R(float_rays) * rays, const glint_prim *prim, vf *
     return near;
 }
 
-/// What a group may meet first.
+/// The possible first hits of a group.
 typedef struct R(first_met) {
     _Alignas(64) float way[GLINT_GROUP], next[GLINT_GROUP];
     _Alignas(64) uint32_t prim[GLINT_GROUP];
@@ -191,7 +191,7 @@ static inline void R(cast_spheres)(const glint_cast_args *args, uint32_t g, cons
 
 // ---- Rays on their way through the index ----
 
-/// What walks need of a group's rays besides.
+/// Further data of a group's rays for traversal.
 typedef struct R(lone_rays) {
     _Alignas(64) float inverse[3][GLINT_GROUP], length[GLINT_GROUP],
         per_a[GLINT_GROUP]; ///< of d: 1 / d, |d|, 1 / |d|^2
@@ -212,7 +212,7 @@ static inline void R(load_lone_rays)(const R(ray_group) * rays, R(lone_rays) * o
     }
 }
 
-/// What the rays of a group may meet first of what they have come upon, in the index's units.
+/// The possible first hits of a group's rays so far, in the index's units.
 typedef struct R(first_balls) {
     _Alignas(64) float far[GLINT_GROUP]; ///< what is met is not beyond
     float way[2][GLINT_GROUP],
@@ -379,7 +379,7 @@ static inline void R(note_balls)(const glint_node *node, unsigned mask, const R(
     }
 }
 
-/// What remains to be decided of a group.
+/// The remaining decisions of a group.
 static inline void R(pair_first)(const glint_cast_args *args, size_t at, unsigned lanes, const R(first_balls) * first,
                                  R(ray_pairs) * pairs)
 {

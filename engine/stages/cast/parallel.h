@@ -63,7 +63,7 @@ static void R(aim_parallel)(const glint_cast_args *args, R(tile_cast) * tile, R(
     tile->parallel = tile->deep = true;
 }
 
-/// Whether rays of a lens may meet a plane; those of an orthographic camera may.
+/// Returns whether rays of a lens may hit a plane; rays of an orthographic camera may.
 static inline bool R(lens_sees_plane)(const R(tile_cast) * tile, const glint_prim *prim)
 {
     const glint_camera_args *camera = tile->args->camera;

@@ -47,7 +47,7 @@ static void R(cast_to_pixels)(R(tile_cast) * tile, const R(candidate) * candidat
             R(decide_pixels)(tile, candidate, 0, (int)g, args->active[g]);
 }
 
-/// Of a scene with few primitives.
+/// Casts in a scene with few primitives.
 static void R(cast_few_to_pixels)(const glint_cast_args *args, const R(cast_view) * view, const glint_camera_args *around)
 {
     const R(candidate) * list[GLINT_FIRST_CANDIDATES];
@@ -129,7 +129,7 @@ static void R(aim_pixels)(const glint_cast_args *args, const glint_camera_args *
             tile->far[y][x] = -HUGE_VALF;
 }
 
-/// Of a scene with many primitives. around: the camera, were its pixels all those from the first to the last.
+/// Casts in a scene with many primitives. around: the camera for all pixels from the first to the last.
 static void R(cast_many_to_pixels)(const glint_cast_args *args, const glint_camera_args *around)
 {
     R(tile_cast) tile;
@@ -156,7 +156,7 @@ static void R(cast_many_to_pixels)(const glint_cast_args *args, const glint_came
 
 // ---- Of any number ----
 
-/// Of pixels wherever they are.
+/// Casts for pixels at any position.
 static void R(cast_pixels)(const glint_cast_args *args)
 {
     const glint_camera_args *camera = args->camera;

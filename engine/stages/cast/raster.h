@@ -22,7 +22,7 @@ static inline unsigned raster_box(const glint_raster_entry *entry, int x, int y)
     return columns * 0x1111u & rows;
 }
 
-/// What the triangles of a tile have in common.
+/// Data shared by the triangles of a tile.
 typedef struct R(raster_tile) {
     const glint_raster_args *args;
     int across;

@@ -52,7 +52,7 @@ static inline rm R(way_back)(const glint_solid *solid, const glint_prim *prim, c
     return hit;
 }
 
-/// Whether a ray that goes through the surface may meet it again; a part of a combined solid is met by way of that alone.
+/// Returns whether a ray that passes through the surface may hit it again. A part of a combined solid is hit only through that solid.
 static inline bool R(has_inside)(const glint_geometry_table *table, uint32_t id)
 {
     if (id >= table->prim_count)
@@ -92,7 +92,7 @@ static inline void R(cast_on_own)(const glint_cast_args *args, uint32_t g)
     }
 }
 
-/// Decides one primitive for the lanes of a group in `near`. Returns whether any hit was kept.
+/// Decides one primitive for the lanes of a group in `near`. Returns whether any hit was stored.
 static inline bool R(decide_rays)(const glint_cast_args *args, uint32_t g, uint32_t id, unsigned near)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -203,7 +203,7 @@ static inline void R(make_ray_group)(const glint_cast_args *args, uint32_t g, fl
         R(narrow)((const real *)args->direction[k] + at, rays->direction[k]);
 }
 
-/// Starts a group with what it meets without the index: what it is in, and what has no end. False: it has no rays.
+/// Starts a group with the hits found without the index: of primitives that contain the origins, and of unbounded ones. Returns false without rays.
 static inline bool R(begin_rays)(const glint_cast_args *args, uint32_t g, float local[3][GLINT_GROUP],
                                  R(ray_group) * rays)
 {
@@ -260,7 +260,7 @@ static void R(decide_rest)(const glint_cast_args *args, uint32_t g, const R(few_
     }
 }
 
-/// Of a scene with few primitives.
+/// Casts in a scene with few primitives.
 static void R(cast_few_rays)(const glint_cast_args *args)
 {
     _Alignas(64) float local[3][GLINT_GROUP];

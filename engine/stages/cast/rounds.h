@@ -106,7 +106,7 @@ static inline unsigned R(begins_off_plane)(const glint_geometry_table *table, vr
     return rm_bits(r_lt(far * (r_set(5) * spread + r_set(2) * size), R(abs)(h)));
 }
 
-/// What is known of VR pairs of ray and triangle, a bit each.
+/// The results of VR pairs of ray and triangle, one bit each.
 typedef struct R(round_lanes) {
     _Alignas(64) real t[VR]; ///< ways to the planes of the corners
     unsigned at; ///< the line is at the triangle, give or take what the ray's beginning is off by: others do not meet
@@ -331,7 +331,7 @@ static __attribute__((noinline)) void R(walk_in_rounds)(const glint_cast_args *a
     }
 }
 
-/// Of an index that has spheres alone: one ray walks on, by float.
+/// Continues the traversal of one ray in float, in an index with spheres only.
 static void R(walk_lone_ray)(const glint_cast_args *args, int lane, R(rounds) * rounds)
 {
     const glint_geometry_table *geometry = args->geometry;

@@ -6,7 +6,7 @@
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
 
-/// A triangle's plane, in the table's units, and what rounding may make of heights over it.
+/// A triangle's plane in the table's units, and the rounding error of heights over it.
 typedef struct R(flat) {
     real m[3], size[3], corner[3][3];
 } R(flat);
@@ -33,7 +33,7 @@ static inline R(flat) R(flat_of)(const glint_prim *prim, double scale)
     return out;
 }
 
-/// The height of a place over the plane, and what rounding may make of it.
+/// Computes the height of a point over the plane, and its rounding error.
 static inline real R(height_over)(const R(flat) * flat, const real at[3], real *rounding)
 {
     real q[3];
@@ -105,7 +105,7 @@ static inline bool R(reaches)(const R(flat) * flat, real way, const R(flat) * ot
     return false;
 }
 
-/// What rounding may have moved a point of the triangle by, a component.
+/// Returns the rounding error of a point of the triangle, per component.
 static inline real R(point_slack_of)(const R(flat) * flat, const real o[3])
 {
     real f = 0, g = 0, p = 0;

@@ -156,7 +156,7 @@ INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_n
     }
 }
 
-/// Apart, so that it takes no registers from what all other surfaces do.
+/// A separate function, so that it takes no registers from the code for other surfaces.
 static __attribute__((noinline)) void R(cast_boxed)(R(tile_cast) * tile, const glint_node *node,
                                                     const node_on_screen *seen, int slot)
 {

@@ -35,7 +35,7 @@ static inline void R(unit_offset)(const glint_solid *solid, const glint_prim *pr
     R(to_unit)(solid, away, out);
 }
 
-/// What rays know of a solid by where they start.
+/// The constants of a solid that depend on the rays' origins.
 typedef struct R(solid_start) {
     vr f[3]; ///< from the centre, where the shape is the unit one; of a box nothing
     const vr *place; ///< where they start
@@ -134,7 +134,7 @@ typedef struct R(quadratic) {
     rm ahead, along; ///< b >= 0; along the axis of a cylinder: all of it or nothing
 } R(quadratic);
 
-/// Of a ball (three axes) or cylinder (two). places: of the solid.
+/// Computes the roots for a sphere (three axes) or cylinder (two). places: of the solid.
 INNER R(quadratic) R(quadratic_of)(const vr f[3], const vr e[3], bool ball, double places)
 {
     const vr zero = r_set(0), one = r_set(1);
@@ -344,7 +344,7 @@ static inline void R(onto_plane)(const glint_solid *solid, rm flat, const vr fac
 }
 
 /// Brings a point next to the unit shape's surface onto it. which: the face, as in span; flat: it is one. g: the outward normal
-/// there; face: that of the face.
+/// there; face: the number of the face.
 INNER void R(onto_unit)(uint32_t form, vr which, rm flat, vr k[3], vr g[3], vr face[3])
 {
     const bool round = form != GLINT_FORM_BOX && form != GLINT_FORM_DISK;
@@ -367,7 +367,7 @@ INNER void R(onto_unit)(uint32_t form, vr which, rm flat, vr k[3], vr g[3], vr f
 }
 
 /// The faces of a box that rays are on at t: of each the height there is nothing but rounding. which: as in span. Returns whether
-/// each of `lanes` is on one alone: that is the face that t was made of.
+/// each of `lanes` is on only one: the face that t was computed from.
 INNER bool R(faces_at)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], vr t, unsigned lanes, vr *which)
 {
     const vr share = r_set(GLINT_REAL == 64 ? 0x1p-40 : 0x1p-14), zero = r_set(0), one = r_set(1);
@@ -397,7 +397,7 @@ INNER void R(normal_of)(const glint_solid *solid, const vr g[3], vr n[3])
         n[c] = n[c] / length;
 }
 
-/// What is known of a box's faces, low x first: normals, found when the first ray meets each.
+/// The normals of a box's faces, low x first, computed when the first ray hits each.
 typedef struct R(box_faces) {
     unsigned known; ///< a bit each
     real normal[6][3];

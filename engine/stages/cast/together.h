@@ -15,10 +15,10 @@
 
 #define GLINT_FEW_LANES 3 ///< rays; so many or fewer walk each on its own
 
-/// Bounds of what boxes_of_lone_ray does for any ray of a group. Along an axis that some go up and some down nothing is known.
+/// Bounds of the tests of boxes_of_lone_ray for all rays of a group. Along an axis with both signs of direction, there is no bound.
 typedef struct R(common_way) {
     float enter[3], leave[3]; ///< what is subtracted of the sides by which rays enter and leave
-    float gentle[3], steep[3]; ///< inverse directions of least and of largest size; the latter may be infinite
+    float gentle[3], steep[3]; ///< inverse directions with the least and the largest magnitude; the largest may be infinite
     int first[3], last[3]; ///< where these sides are in a node, in floats
 } R(common_way);
 
@@ -82,7 +82,7 @@ static inline void R(find_common_way)(const R(common_walk) * walk, unsigned lane
 }
 
 /// Which boxes some ray may enter before `far`; depth: no ray enters a box before that. Rounding keeps the order of numbers, so each
-/// product bounds those of all rays, rounded as they are.
+/// product bounds the products of all rays, with the same rounding.
 static inline unsigned R(boxes_on_way)(const glint_node *node, const R(common_way) * way, float far,
                                        float depth[GLINT_NODE_WIDTH])
 {
@@ -124,7 +124,7 @@ static inline unsigned R(rays_in_slot)(const glint_node *node, int slot, const R
     return inside;
 }
 
-/// Notes the sphere in a slot of a node with those of `lanes` that may enter it, or begin in it: as meet_balls and note_ball.
+/// Records the sphere in a slot of a node for those of `lanes` that may enter it or begin in it, like meet_balls and note_ball.
 static inline void R(note_ball_of_group)(const glint_node *node, int slot, const R(common_walk) * walk, unsigned lanes,
                                          R(first_balls) * first)
 {
@@ -190,7 +190,7 @@ static inline void R(add_lanes_to_round)(const R(common_walk) * walk, uint32_t i
 
 // ---- The walk ----
 
-/// What the rays in `lanes` come upon in a slot of a node, which holds a primitive.
+/// Tests the rays in `lanes` against the primitive in a slot of a node.
 static inline void R(meet_slot)(const glint_cast_args *args, uint32_t g, const glint_node *node, int slot,
                                 const R(common_walk) * walk, unsigned lanes, R(rounds) * rounds)
 {
@@ -290,7 +290,7 @@ static inline void R(begin_together)(const glint_cast_args *args, size_t at, con
         f_store(walk->stack[0].depth + i, f_set(0));
 }
 
-/// The nearest of what was left is on top.
+/// The nearest remaining node is on top.
 static inline void R(turn_stack)(R(node_stack) * stack)
 {
     for (int i = 0, j = stack->height - 1; i < j; i++, j--) {

@@ -27,14 +27,14 @@ typedef struct R(torus_line) {
     vr from, per, length, begin; ///< t = from + s per, per = 1 / length; s of t = 0
     vr reach; ///< beyond -reach .. reach there is nothing
     vr bend, lean;
-    rm near; ///< lines that come near the torus; of others nothing but this and what is above means anything
+    rm near; ///< lines that come near the torus; for others, only this and the fields above are defined
     vr turn[3], gap[3], beyond[3]; ///< in order; where there is but one the others are at infinity, outside
     vr begin_gap;
     rm on, inward; ///< rays that begin on the surface; of these, that go in
     rm past[3]; ///< turns that are behind where rays begin
 } R(torus_line);
 
-/// How rays begin that leave the torus: which do, and which of them go in.
+/// Rays that leave the torus: which do, and which of them go inwards.
 typedef struct R(torus_start) {
     rm leaves, inward;
 } R(torus_start);
@@ -134,7 +134,7 @@ INNER rm R(passes_tube)(const R(torus_line) * l, vr within)
     return rm_andnot(rm_from_bits((1u << VR) - 1), out);
 }
 
-/// Of rays from f on along e, where the torus is the unit one: all up to `near`.
+/// Finds the roots of rays from f along e, in the space of the unit torus, up to `near`.
 static inline void R(aim_at_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start,
                                    R(torus_line) * l)
 {

@@ -6,12 +6,12 @@
 #include "engine/stages/cast/face.h"
 #include "engine/stages/simd/real.h"
 
-/// What a ray sees of a triangle.
+/// A triangle in the space of a ray.
 typedef struct R(seen_edges) {
-    vr e[3]; ///< weights of the corners, but for a common factor
+    vr e[3]; ///< weights of the corners, up to a common factor
     vr dz; ///< the direction's largest component
     vr depth; ///< weighted sum of the corners along that axis
-    vr reach; ///< sum of the absolute values of what e was made of; written on request
+    vr reach; ///< sum of the absolute values of the terms of e; written on request
 } R(seen_edges);
 
 static inline vr R(abs)(vr x) { return r_max(x, -x); }
@@ -82,7 +82,7 @@ static inline rm R(within)(const R(seen_edges) * edges, vr reach)
     return rm_or(r_le(-reach, r_min(r_min(e[0], e[1]), e[2])), r_le(r_max(r_max(e[0], e[1]), e[2]), reach));
 }
 
-/// Whether the ray passes between the corners along both axes of what it sees, give or take `reach`; X and Y as in
+/// Returns whether the ray passes between the corners along both axes of its space, within `reach`; X and Y as in
 /// edges_along.
 static rm R(between_corners)(vr p[3][3], const vr d[3], vr reach)
 {
@@ -135,7 +135,7 @@ static inline rm R(meet_seen)(const R(seen_edges) * edges, vr p[3][3], const vr 
     return rm_and(R(passes)(edges, p, d), r_lt(r_set(0), *t));
 }
 
-/// The same of its corners alone.
+/// The same from its corners only.
 static inline rm R(meet_triangle)(vr p[3][3], const vr o[3], const vr d[3], vr scale, const glint_face *face, vr *t)
 {
     const R(seen_edges) edges = R(see_edges)(p, d, false);
@@ -185,7 +185,7 @@ static inline void R(triangle_normal)(const glint_prim *prim, double scale, doub
 
 static inline vr R(largest)(const vr v[3]) { return r_max(r_max(R(abs)(v[0]), R(abs)(v[1])), R(abs)(v[2])); }
 
-/// The point where rays from `from` meet a triangle, the weights of its corners there, and what rounding made of it.
+/// Computes the point where rays from `from` hit a triangle, the weights of its corners there, and the rounding error.
 static inline void R(triangle_point)(vr corner[3][3], double scale, const vr from[3], const vr d[3], vr w[3],
                                      vr point[3], vr *slack)
 {
@@ -203,7 +203,7 @@ static inline void R(triangle_point)(vr corner[3][3], double scale, const vr fro
     *slack = r_set(GLINT_POINT_SLACK) * ((R(largest)(f) + R(largest)(g)) + R(largest)(point));
 }
 
-/// The normal between those of the corners, on the side of `facing`, the geometric one turned to the viewer.
+/// Computes the interpolated normal, on the side of `facing`, the geometric normal on the viewer's side.
 static inline void R(smooth_normal)(vr corner[3][3], const vr w[3], const vr flat[3], const vr facing[3], vr out[3])
 {
     for (int k = 0; k < 3; k++)

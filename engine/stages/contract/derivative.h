@@ -57,7 +57,7 @@ typedef struct glint_derivative_points {
     const double *slope[3][3]; ///< of the three; slope[0][0] NULL: all are 0
 } glint_derivative_points;
 
-/// What of a material programs give, for a group: numbers beside those of glint_derivative_material.
+/// The results of a material's programs for a group, in addition to the numbers of glint_derivative_material.
 enum {
     GLINT_DERIVED_DIFFUSE, ///< three, by which the material's are multiplied; and so of the next
     GLINT_DERIVED_SPECULAR = 3,
@@ -76,7 +76,7 @@ typedef struct glint_derivative_source {
     const double *position[3]; ///< directional: the unit vector towards it
     const double *normal[3]; ///< of its surface; read of radiant ones
     const double *weight; ///< share of it that reaches the point; NULL: 1
-    const double *tint[3], *tint_slope[3]; ///< what is left of its colours on the way; tint[0] NULL: all
+    const double *tint[3], *tint_slope[3]; ///< transmitted share of its colours; tint[0] NULL: all
     bool radiant; ///< with cos' / distance^2
     bool both; ///< radiant: to both sides
 } glint_derivative_source;
@@ -123,7 +123,7 @@ typedef struct glint_bend_args {
 typedef struct glint_slope_args {
     const glint_derivative_light *light;
     const glint_derivative_material *material;
-    const glint_derivative_planes *planes; ///< of what programs give; NULL: they give nothing
+    const glint_derivative_planes *planes; ///< results of programs; NULL: none
     const glint_derivative_points *points;
     const glint_derivative_source *source;
     unsigned lanes; ///< a bit each

@@ -4,9 +4,9 @@
 
 #include "engine/stages/contract/light.h"
 
-// ---- vertex: light that was worked out once for a face or a vertex ----
+// ---- vertex: light that was computed once for a face or a vertex ----
 
-/// What all lights together add to the two terms at a site.
+/// The light of all lights together at a face or vertex, for two terms.
 typedef struct glint_shading_point_light {
     float term[2][3]; ///< diffuse, specular; finite
 } glint_shading_point_light;
@@ -24,7 +24,7 @@ typedef struct glint_vertex_args {
     const void *origin[3], *direction[3];
     double *sum[2][3]; ///< in and out: added to where wanted; NULL: there is no such term
 } glint_vertex_args;
-// The arithmetic: ref/triangle.h, in double; the weights are those of surface.
+// The arithmetic: ref/triangle.h, in double; the weights are the same as in surface.
 
 // caps: the share left is 1, times that of each primitive, in the table's order. Of two balls that do not meet, the one with the
 // shorter tangent is before the other. The arithmetic: ref/caps.h, by G. Oat and P. Sander, "Ambient aperture lighting", I3D
@@ -38,9 +38,9 @@ typedef struct glint_bounce_args {
     const glint_camera_args *camera; ///< the rays, of a perspective camera; NULL: their directions are in direction
     const void *direction[3], *normal[3]; ///< real; the normal as surface gives it
     const void *ratio; ///< real, > 0: refractive index on the ray's side of the surface over that beyond it
-    void *reflected[3], *refracted[3]; ///< out, real, unit but for rounding
+    void *reflected[3], *refracted[3]; ///< out, real, of length 1 up to rounding
     void *reflectance; ///< out, real: of a dielectric and unpolarised light, 0 .. 1
-    uint16_t *total; ///< out: of the wanted lanes, those of total internal reflection, whose `refracted` means nothing
+    uint16_t *total; ///< out: those of the wanted lanes with total internal reflection, whose `refracted` is undefined
 } glint_bounce_args;
 // Written where wanted. Groups without a wanted lane get total = 0 and nothing else; other lanes hold anything.
 // The arithmetic: ref/real.h, by Snell and Fresnel.
@@ -53,7 +53,7 @@ typedef struct glint_scatter_args {
     const void *normal[3]; ///< real, unit
     const uint32_t *number, *order, *digits[2]; ///< one a ray: a point of a sequence, and that sequence's seed
     uint32_t further; ///< points that all rays are beyond their `number`
-    void *direction[3]; ///< out, real, unit but for rounding and 2e-9
+    void *direction[3]; ///< out, real, of length 1 up to rounding and 2e-9
 } glint_scatter_args;
 // Groups without a wanted lane are not written; in others, lanes that are not wanted hold anything.
 // A point (u, v) of the unit square is chosen as glint_sequence_flipped does, in double: equal areas of the square get equal
@@ -126,7 +126,7 @@ typedef struct glint_shade_args {
     float *film[GLINT_TERM_COUNT][3]; ///< out when sum is NULL: the terms; NULL where it is not needed
     float *beauty[3]; ///< out when sum is NULL
 } glint_shade_args;
-// What a light adds to a term is float; terms are added up in double:
+// A light's contribution to a term is float; terms are added up in double:
 // background where active and not hit, ambient where hit, then each light in order. The arithmetic: ref/shade.h; GGX and Beckmann
 // with Smith's masking, whose Beckmann form is that of B. Walter et al., EGSR 2007. The samples of joined lights are added up
 // first, in order, in float from 0. Products of colours, and what planes say, are made in double; a highlight is 0 below
@@ -205,7 +205,7 @@ typedef struct glint_differences {
 /// of the lower 16 bits on the code is one more (65536: never). The last entry is top's.
 #define GLINT_TONE_FIRST 0x3800u ///< upper bits of 2^-15; floats below have code 0
 
-/// What spares most look-ups: an estimate of the code with a fraction, and how far it is to be trusted.
+/// Avoids most look-ups: an estimate of the pixel value with a fraction, and its error bound.
 typedef struct glint_tone_fit {
     float knee, slope, base; ///< x < knee: v = slope x + base
     float scale[16], power[6], offset; ///< others: v = scale[e & 15] P(m) + offset; x = m 2^(e - 127), m in [1, 2),
@@ -221,9 +221,9 @@ typedef struct glint_tone_args {
     float gain; ///< > 0: what light is multiplied by
     float white, top; ///< light above `white` is clipped; above `top` (at most `white`) all codes are that of `top`
     const uint32_t *table;
-    const glint_tone_fit *fit; ///< NULL: the table alone. The codes are the same with either
+    const glint_tone_fit *fit; ///< NULL: use only the table. The pixel values are the same with either
     uint8_t *codes; ///< out: red, green, blue of the first lane of group 0
-    size_t stride; ///< bytes from a row of pixels to the next. No byte but those of active lanes is written
+    size_t stride; ///< bytes from a row of pixels to the next. Only bytes of active lanes are written
     uint64_t *clipped, *nonfinite; ///< added to: active lanes with a channel > white; with one of beauty that
         ///< is not finite
 } glint_tone_args;

@@ -39,7 +39,7 @@ typedef struct glint_camera_args {
 
 // ---- cast: the nearest hit of each ray ----
 
-/// What a camera sees of a table from wherever on its picture: made by the first call, of use to those after it.
+/// The part of a table that a camera sees from any part of its picture: computed by the first call, and used by later ones.
 typedef struct glint_cast_view {
     _Alignas(64) unsigned char room[8128]; ///< the kernels' own
     bool made; ///< false before the first call
@@ -53,7 +53,7 @@ typedef struct glint_cast_args {
     const glint_camera_args *camera; ///< cast_bundle: the rays; cast_rays: the camera whose tile they are, orthographic
         ///< or with a lens, or NULL
     glint_cast_view *view; ///< in_sight and cast_bundle only: shared by calls of one thread whose geometry, and whose
-        ///< camera but for tile and offset, are the same; NULL: nothing is shared
+        ///< camera except for tile and offset, are the same; NULL: nothing is shared
     const void *origin[3], *direction[3]; ///< cast_rays only: real, one a ray
     const uint32_t *leaving; ///< cast_rays only: the primitive that each ray starts on, or GLINT_MISS; NULL: none of
         ///< them does
@@ -71,7 +71,7 @@ typedef struct glint_cast_args {
 #define GLINT_ROOT_STEPS 64 ///< to a root, at most; halving alone takes 52
 #define GLINT_NEAR_SHARED_EDGE \
     0x1p-10 ///< of the scene: rays that are in a triangle's plane further than this stay there
-// in_sight reads active, geometry, camera and view alone: false: no ray of the camera's tile can hit anything; then
+// in_sight reads only active, geometry, camera and view: false: no ray of the camera's tile can hit anything; then
 // cast_bundle reads no directions.
 // The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it where 0 < t < inf and (t < best, or t == best and its
 // id is lower). Index and filter are free to reject what the decision below would miss, and no more.
@@ -110,11 +110,11 @@ typedef struct glint_raster_args {
     const glint_raster_entry *entries; ///< in any order; the nearer first, the faster
     uint32_t entry_count;
 } glint_raster_args;
-// As cast, with the triangles of the entries in place of all primitives.
+// Like cast, with the triangles of the entries instead of all primitives.
 
 // ---- surface: point, normal and material of each hit ----
 
-/// A box around points, in the world, and what they are on.
+/// A box around points in world space, and the primitives that they are on.
 typedef struct glint_point_box {
     double lower[3], upper[3]; ///< lower > upper: there is none
     uint32_t only; ///< the primitive that all of them are on, none seen from behind; GLINT_MISS: not known
@@ -138,7 +138,7 @@ typedef struct glint_surface_args {
     uint32_t *material; ///< out
     uint16_t *back; ///< out: lanes seen from behind (from inside), whose normal was turned to the viewer
     uint16_t *dark; ///< out: of these, lanes of one-sided surfaces: ambient only
-    void *slack; ///< out, real: bound of what rounding moved the point by off its triangle, a component; may be NULL,
+    void *slack; ///< out, real: bound of the point's rounding error off its triangle, per component; may be NULL,
         ///< as where there are no triangles
     glint_point_box *box; ///< out: of all hits' points; may be NULL
 } glint_surface_args;
@@ -146,7 +146,7 @@ typedef struct glint_surface_args {
 // and material = 0. Where it is not NULL, `slack` of lanes that hit no triangle is
 // -(point_slack |point|_max): as large as what rounding may have moved the point by, and told apart by its sign. Points of a face
 // or plane that is square to an axis of the world are exactly there.
-// Of points alone, which are not of a mixed table, `box` and `slack` are NULL, and material, back and dark are not written.
+// If only points are computed, not for a mixed table, `box` and `slack` are NULL, and material, back and dark are not written.
 // The arithmetic: ref/real.h, ref/triangle.h, ref/solid.h. Of a sphere that is close, the normal is as long as it should be but
 // for F^2 + 8 roundings, F = |origin - center| / radius: the error of t at a point that is seen at an angle i goes along the
 // ray, and grows as 1 / cos i does. From further away it is brought to its length, from afar made of the line's distance from

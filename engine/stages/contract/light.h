@@ -42,7 +42,7 @@ typedef struct glint_light_sample {
     double lower[3], upper[3]; ///< a box around the whole light
     uint32_t emission;
 } glint_light_sample;
-/// Of a point's distance to the centre: so near to the ball's surface it is on it.
+/// Relative to a point's distance from the centre: a point this near to the sphere's surface is on it.
 #define GLINT_CONE_SLACK_DOUBLE 0x1p-40
 #define GLINT_CONE_SLACK_FLOAT 0x1p-18
 // GLINT_EMIT_CONE: cone_sample.h, for each lane in double whatever real is. A point on the surface sees the half of the ball
@@ -60,7 +60,7 @@ typedef struct glint_light_args {
     const uint16_t *dark;
     bool directional;
     double position[3]; ///< of the light; directional: the unit vector towards it; not read of area lights
-    const double *place[GLINT_LIGHT_CHUNK]; ///< of several lights without samples or a cone, which are alike but for it:
+    const double *place[GLINT_LIGHT_CHUNK]; ///< for several similar lights without samples or a cone, which differ only in it:
         ///< the position of each; place[0] NULL: there is one light, at `position`
     double
         scale; ///< a power of two that brings distances to the light, of radiant lamps their size, near 1; 1 where that is

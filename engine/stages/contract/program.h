@@ -104,7 +104,7 @@ typedef struct glint_program_args {
 typedef struct glint_unit_args {
     uint32_t group_count;
     const glint_camera_args *camera; ///< perspective, of doubles: d = -(across + down) of `groups`; NULL: of to and from
-    const uint32_t *groups; ///< those of the camera's
+    const uint32_t *groups; ///< as in the camera's arguments
     const double *to[3]; ///< 16 numbers a group
     const double *place; ///< x, y, z that are `to` of every lane; NULL: not one place
     const double *from[3]; ///< 16 numbers a group; NULL: d = to
@@ -122,6 +122,6 @@ typedef struct glint_choose_args {
     float *plane; ///< out
 } glint_choose_args;
 
-// What each operation is stands in glint.h; the arithmetic and its order in ref/program.h and ref/pattern.h.
+// glint.h describes each operation; ref/program.h and ref/pattern.h have the arithmetic and its order.
 
 #endif

@@ -42,13 +42,13 @@ typedef struct glint_prim {
     float filter_center[3]; ///< of a sphere around it: (center - reference) * scale, in the index's frame
     float filter_bound; ///< >= its radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf; triangle:
                         ///< of its box, where the box has on each side 13 GLINT_POINT_SLACK_DOUBLE extent scale besides
-    uint32_t medium; ///< index in the material table: of what light is in that has gone in through it; a part: of its whole
+    uint32_t medium; ///< index in the material table: the medium entered through it; for a part: of its whole
     union {
         double center[3]; ///< sphere, solid: centre; plane: a point of it
         struct {
             double (*corner)[3]; ///< triangle: three; combined, hull: the middle of its box, the box's lower and its upper corner, -inf
                 ///< and inf where it has no end
-            uint32_t shading_points; ///< triangle: index in sites, GLINT_MISS: its light is worked out for each sample
+            uint32_t shading_points; ///< triangle: index in sites, GLINT_MISS: its light is computed for each sample
         };
     };
     union {
@@ -84,7 +84,7 @@ static inline double glint_sphere_r2(const glint_prim *prim)
     return r * r;
 }
 
-/// What rounding took away from it.
+/// The rounding error of the number above.
 static inline double glint_sphere_r2_low(const glint_prim *prim)
 {
     const double r = prim->radius * glint_sphere_scale(prim);
@@ -112,7 +112,7 @@ typedef struct glint_corner_normals {
     double normal[3][3];
 } glint_corner_normals;
 
-/// Where the light on a triangle is worked out once for all its samples: its corners, or its face three times.
+/// The points of a triangle whose light is computed once for all samples: its corners, or its face three times.
 typedef struct glint_shading_points {
     uint32_t at[3];
 } glint_shading_points;
@@ -125,13 +125,13 @@ typedef enum glint_form {
     GLINT_FORM_CYLINDER,
     GLINT_FORM_CONE,
     GLINT_FORM_DISK,
-    GLINT_FORM_TUBE, ///< a cylinder's and a cone's side alone, which has no inside
+    GLINT_FORM_TUBE, ///< only the side of a cylinder or cone, which has no inside
     GLINT_FORM_FUNNEL,
     GLINT_FORM_TORUS
 } glint_form;
 
 /// The plane of a flat face. Whatever was described in one plane, along two axes of one map or by one place and normal, has
-/// the same numbers here, but for the sign of the normal: all of it is met at the same t.
+/// the same numbers here, except for the sign of the normal: all of them are hit at the same t.
 typedef struct glint_face {
     double normal[3]; ///< unit
     double at[3]; ///< a place of the plane
@@ -144,8 +144,8 @@ typedef struct glint_solid {
     double inverse[3][3], forward[3][3]; ///< rows
     const glint_face *faces; ///< box: of low x, high x, low y, high y, low z, high z; cylinder, cone, disk and the open forms:
         ///< of low z, high z (of a disk they are one); ball, torus: none. Normals point from low to high
-    double places; ///< ball, cylinder, cone: bound of what x^2 + y^2 - 1 and the like are made of where a place is on the side;
-        ///< torus: of what the distance from the circle in the middle of its tube is made of
+    double places; ///< sphere, cylinder, cone: bound of the terms of x^2 + y^2 - 1 (or similar) for points on the side;
+        ///< torus: bound of the terms of the distance from the circle in the middle of its tube
     double tube; ///< torus: radius of its tube where that circle's is 1, above 0 and below 1
     float lower[3], upper[3]; ///< a box around it, in the index's frame and rounded outwards; of a part: not known
     float axis[3], thick; ///< cylinder, cone and open forms that are longer than wide: the line through the centre along this, which is
@@ -157,7 +157,7 @@ typedef struct glint_solid {
 #define GLINT_SIMPLE_PARTS 8 ///< of one whose program is simple, at most
 #define GLINT_HULL_PARTS 4 ///< of these a closed mesh is as many: the stretches of a ray within it that are held at a time
 
-/// What the program of a combined solid has beside numbers of parts.
+/// Operations in the program of a combined solid, besides numbers of parts.
 enum {
     GLINT_COMBINE_UNION = GLINT_PARTS_MAX, ///< of the two sets before it, like the next two
     GLINT_COMBINE_INTERSECTION,
@@ -202,7 +202,7 @@ static inline int glint_axis_along(const double v[3])
     return x + y + z != 1 ? 3 : x ? 0 : y ? 1 : 2;
 }
 
-/// A share of what a height is made of: rounding moves it by no more, and what is nearer to a face is on it.
+/// Relative to the terms of a height: the bound of its rounding error. Points nearer to a face are on it.
 #define GLINT_ON_FACE_DOUBLE 0x1p-50
 #define GLINT_ON_FACE_FLOAT 0x1p-21
 
@@ -247,7 +247,7 @@ static inline bool glint_solid_holds(const glint_solid *solid, const double cent
     }
 }
 
-/// What rays meet: the surfaces, of bit-equal ones the first, and the index over those that have an end. Its frame is (x - reference) * scale.
+/// The surfaces that rays hit (the first of bit-equal ones), and the index over the bounded ones. Its frame is (x - reference) * scale.
 typedef struct glint_geometry_table {
     const glint_prim *prims; ///< triangles first, and those and the others in the order of the index, so that neighbours in space are
         ///< neighbours in memory; after them the parts of combined solids and the triangles of those that are meshes, which are not counted
@@ -265,10 +265,10 @@ typedef struct glint_geometry_table {
     const glint_hull *hulls; ///< NULL: there are none
     const glint_face *faces; ///< of triangles
     const glint_shading_points *shading_points;
-    uint32_t shading_point_count; ///< 0: all light is worked out for each sample
+    uint32_t shading_point_count; ///< 0: all light is computed for each sample
 } glint_geometry_table;
 
-/// What the stages before shade find out for a material's specular term.
+/// The input of a material's specular term from the stages before shade.
 typedef enum glint_highlight {
     GLINT_HIGHLIGHT_NONE,
     GLINT_HIGHLIGHT_PHONG,
@@ -276,7 +276,7 @@ typedef enum glint_highlight {
     GLINT_HIGHLIGHT_FACETS ///< of microfacets: the stages `view` and `facet`
 } glint_highlight;
 
-/// What shade makes of that.
+/// The kind of highlight that shade computes from it.
 typedef enum glint_lobe {
     GLINT_LOBE_POWER,
     GLINT_LOBE_POWER_COSINE, ///< times n.l
@@ -284,7 +284,7 @@ typedef enum glint_lobe {
     GLINT_LOBE_BECKMANN
 } glint_lobe;
 
-/// What of a material differs from sample to sample, a bit each: it is then read from planes, see glint_shade_planes.
+/// The fields of a material that differ between samples, one bit each: they are read from planes, see glint_shade_planes.
 enum {
     GLINT_PLANE_DIFFUSE = 1,
     GLINT_PLANE_AMBIENT = 2,
@@ -296,7 +296,7 @@ enum {
 };
 
 typedef struct glint_shade_material {
-    double diffuse[3], specular[3]; ///< of what is in planes: what the plane is multiplied by
+    double diffuse[3], specular[3]; ///< for fields in planes: the factor of the plane
     double ambient[3]; ///< ka * Ia
     float shininess;
     float least; ///< of (r.v)^2 or (n.h)^2: below it the highlight is 0 for certain; 0: wherever that is not known

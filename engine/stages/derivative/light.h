@@ -9,7 +9,7 @@
 #include "engine/stages/program/exact.h"
 #include "engine/stages/simd/elementary.h"
 
-// What has slopes: each kernel is compiled for some sets of these.
+// The inputs with slopes: each kernel is compiled for some sets of these.
 enum {
     SLOPES_BENT = 1, ///< points, normals and ways to the eye
     SLOPES_TURNED = 2, ///< where a light is, and where it is aimed
@@ -22,12 +22,12 @@ typedef struct seen_lanes {
     vs point[3], normal[3], eye[3];
 } seen_lanes;
 
-/// What a group knows of a light at VD of its lanes.
+/// The data of a light for VD lanes of a group.
 typedef struct shine_lanes {
     vs way[3]; ///< unit, towards the light
     vs cosine; ///< n.l
     vs distance; ///< directional: infinite
-    vs weight; ///< by distance, cone and surface, and what of it reaches
+    vs weight; ///< by distance, cone and surface, and the transmitted share
     bool weighs; ///< else the weight is 1
 } shine_lanes;
 
@@ -63,7 +63,7 @@ INNER vs spot_cone(const glint_derivative_light *light, const unsigned slopes, c
     return s_mul(step, s_pow(c, s_of(other, light->exponent)));
 }
 
-/// What a radiant surface leaves by how it lies and how far it is.
+/// Computes the weight of a surface with radiance, from its orientation and distance.
 INNER vs surface_weight(const glint_derivative_source *source, const vs way[3], vs length2, vs distance, int i)
 {
     vs normal[3];
@@ -75,7 +75,7 @@ INNER vs surface_weight(const glint_derivative_source *source, const vs way[3], 
     return s_div(m, s_mul(length2, distance));
 }
 
-/// What is left of the weight by distance and cone.
+/// Computes the attenuation by distance and cone.
 INNER vs weaken(const glint_derivative_light *light, const shine_lanes *s, const unsigned slopes)
 {
     const bool any = slopes, other = slopes & SLOPES_OTHER;
@@ -118,7 +118,7 @@ INNER shine_lanes find_shine(const glint_derivative_light *light, const glint_de
     return s;
 }
 
-/// What a program gives of number `which`, or `own`.
+/// Returns the program's result for number `which`, or `own`.
 INNER vs take_plane(const glint_derivative_planes *planes, int which, const unsigned slopes, int i, vs own)
 {
     const bool other = slopes & SLOPES_OTHER;
@@ -198,7 +198,7 @@ INNER void lobe_lanes(const glint_derivative_material *material, vs alpha, const
     *grazing = s_keep(true, s_select(there, s_mul(lobe, s_mul(s_mul(mm, mm), m)), zero));
 }
 
-/// What a light's and a material's colours have in common.
+/// The common factors of a light's and a material's colours.
 typedef struct shared_colors {
     vs diffuse[3], specular[3], grazing[3];
 } shared_colors;
@@ -218,7 +218,7 @@ INNER shared_colors share_colors(const glint_slope_args *args, const unsigned sl
     return out;
 }
 
-/// What a light leaves on VD lanes, in channel c.
+/// Adds the light on VD lanes, in channel c.
 INNER vs left_of(const glint_slope_args *args, const shared_colors *k, const shine_lanes *s, vs specular, vs grazing,
                  const unsigned slopes, int c, int i)
 {

@@ -10,7 +10,7 @@
 #include "engine/stages/shade/shade.h"
 #include "engine/stages/simd/elementary.h"
 
-/// All samples of a frame, and what is the same in every group.
+/// All samples of a frame, and the data shared by every group.
 typedef struct samples_frame {
     const glint_shade_args *sample;
     uint32_t count;
@@ -27,7 +27,7 @@ static inline float mean_of_equal(const samples_frame *frame, double term)
     return (float)(frame->inverse > 0 ? sum * frame->inverse : sum / (double)frame->count);
 }
 
-/// What one light's share of a term is in a channel: factor times kd Id or ks Is, and what microfacets add to that.
+/// Computes one light's contribution to a term in a channel: factor times kd Id or ks Is, plus that of microfacets.
 typedef struct light_share {
     const float *factor, *grazing; ///< grazing NULL: nothing
     float color, rise;

@@ -31,11 +31,11 @@ typedef struct R(pixel_groups) {
     _Alignas(64) float s[GLINT_TILE_GROUPS][GLINT_GROUP], t[GLINT_TILE_GROUPS][GLINT_GROUP]; ///< places of the rays
     uint64_t in_cell[PIXEL_ROWS][SCREEN_ACROSS]; ///< groups with a ray in it, a bit each
     _Alignas(64) uint32_t cell[GLINT_TILE_GROUPS][GLINT_GROUP]; ///< of each ray: SCREEN_ACROSS times the row, and the column
-    uint16_t turns[GLINT_TILE_GROUPS]; ///< lanes whose cell is another than that of the lane before; the first is
+    uint16_t turns[GLINT_TILE_GROUPS]; ///< lanes whose cell differs from the previous lane's, including the first
     float far[GLINT_TILE_GROUPS]; ///< as of a tile's groups
 } R(pixel_groups);
 
-/// The tile's pixels as the filter sees them, and what is hit so far.
+/// The tile's pixels in the form for the filter, and the hits so far.
 typedef struct R(tile_cast) {
     const glint_cast_args *args;
     screen_view view; ///< its cells are the groups
@@ -56,7 +56,7 @@ typedef struct R(tile_cast) {
     _Alignas(64) float far[GLINT_TILE_HEIGHT / GLINT_PIXEL_CELL][SCREEN_ACROSS]; ///< of each group, or cell, the farthest
 } R(tile_cast);
 
-/// A primitive that some of the tile's rays may hit, and what it is to all of them.
+/// A primitive that some of the tile's rays may hit, with its constants for all of them.
 typedef struct R(candidate) {
     const glint_prim *prim;
     uint32_t id;
@@ -219,7 +219,7 @@ static void R(make_triangle_filter)(const R(tile_cast) * tile, R(candidate) * ca
     candidate->limit = edge_on ? HUGE_VALF : (float)limit + FLT_MIN;
 }
 
-/// By the sphere around it. Where float decides, nothing is kept from it.
+/// Tests the sphere around it. If float decides, nothing is rejected.
 static inline void R(make_solid_filter)(const glint_cast_args *args, R(candidate) * candidate)
 {
     const glint_geometry_table *geometry = args->geometry;
@@ -245,7 +245,7 @@ static inline void R(make_plane_filter)(const R(tile_cast) * tile, R(candidate) 
     candidate->limit = 1e-5f * tile->longest;
 }
 
-/// What the decision needs.
+/// The data for the decision.
 static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candidate) * candidate)
 {
     const glint_prim *prim = candidate->prim = &args->geometry->prims[id];
@@ -391,7 +391,7 @@ static bool R(decide_torus)(const R(tile_cast) * tile, const R(candidate) * cand
     return any;
 }
 
-/// Decides one candidate for the lanes of group (x, y) in `near`. Returns whether any hit was kept.
+/// Decides one candidate for the lanes of group (x, y) in `near`. Returns whether any hit was stored.
 INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y, unsigned near)
 {
     const glint_cast_args *args = tile->args;

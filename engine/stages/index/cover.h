@@ -34,7 +34,7 @@ INNER bool R(is_round)(const R(candidate) * candidate)
 
 // ---- What a candidate is to groups ----
 
-/// Of a sphere with the eye outside.
+/// Covers a sphere with the eye outside.
 static inline void R(make_sphere_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
 {
     const glint_camera_args *camera = tile->args->camera;
@@ -110,7 +110,7 @@ INNER void R(filter_at)(const R(candidate) * candidate, const R(patches) * at, v
             (f_set(candidate->base[k]) + at->s * f_set(candidate->along_s[k])) + at->t * f_set(candidate->along_t[k]);
 }
 
-/// The least and the most of an edge within a group, from what it is in the middle.
+/// Computes the least and the largest value of an edge function within a group, from the value in the middle.
 INNER float R(edge_sway)(const R(candidate) * candidate, int j)
 {
     return 4 * (fabsf(candidate->along_s[j]) + fabsf(candidate->along_t[j]));

@@ -63,7 +63,7 @@ static inline int last_column(screen_cells cells) { return cells >> 8 & 255; }
 static inline int first_row(screen_cells cells) { return cells >> 16 & 255; }
 static inline int last_row(screen_cells cells) { return (int)(cells >> 24); }
 
-/// What the screen shows of a node's boxes.
+/// The boxes of a node on the screen.
 typedef struct node_on_screen {
     _Alignas(64) float middle[3][GLINT_NODE_WIDTH]; ///< in the frame
     _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< least w
@@ -181,7 +181,7 @@ static inline screen_entry entry_of_root(const screen_view *view)
 /// Bits first .. last.
 static inline unsigned bit_range(int first, int last) { return last < first ? 0 : (2u << last) - (1u << first); }
 
-/// Of some columns of a row, those in which something as far away as `near` still matters.
+/// Returns the columns of a row in which something at the distance `near` still matters.
 static inline unsigned behind_in_row(const float (*far)[SCREEN_ACROSS], int row, float near, unsigned columns)
 {
     unsigned behind = 0;
@@ -201,7 +201,7 @@ static inline bool any_behind(const float (*far)[SCREEN_ACROSS], float near, scr
     return false;
 }
 
-/// Of each row, the columns in which something as far away as a node still matters; none where the node does not show.
+/// Finds, for each row, the columns in which something at the distance of a node still matters; none where the node does not show.
 typedef struct rows_behind {
     uint16_t columns[SCREEN_DOWN + 3];
 } rows_behind;

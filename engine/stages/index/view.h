@@ -9,7 +9,7 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// What glint_cast_view has room for.
+/// The capacity of glint_cast_view.
 typedef struct R(cast_view) {
     bool few; ///< all primitives are candidates; false: nothing below is there
     int count;
@@ -65,7 +65,7 @@ static void R(make_view)(const glint_cast_args *args, R(cast_view) * view)
     view->spread = picture.spread;
 }
 
-/// What is there already, or what this call makes in `own`.
+/// Returns the existing view, or the one that this call makes in `own`.
 static const R(cast_view) * R(view_of)(const glint_cast_args *args, glint_cast_view *own)
 {
     glint_cast_view *view = args->view ? args->view : own;

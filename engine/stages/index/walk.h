@@ -201,13 +201,13 @@ static inline void count_tests(uint64_t *tests, unsigned lanes)
 
 // ---- Solids ----
 
-/// Whether it is a side alone.
+/// Returns whether it is only a side.
 static inline bool is_open(const glint_solid *solid)
 {
     return solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_FUNNEL;
 }
 
-/// Whether it may be met again by what leaves it outward, and throw a shadow on itself: of all solids only the torus.
+/// Returns whether a ray that leaves it outwards may hit it again, so that it casts a shadow on itself: of all solids only the torus.
 static inline bool is_torus(const glint_geometry_table *table, const glint_prim *prim)
 {
     return prim->kind == GLINT_PRIM_SOLID && table->solids[prim->item].form == GLINT_FORM_TORUS;

@@ -7,7 +7,7 @@
 #include "engine/stages/light/light_sample.h"
 #include "engine/stages/simd/real.h"
 
-/// What the samples of VD points have in common.
+/// The common data of the samples of VD points.
 typedef struct R(cone) {
     vd point[3], away[3]; ///< away: to the ball's centre, in the light's units
     vd axis[3], tangent[3], bitangent[3];

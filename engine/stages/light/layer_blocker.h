@@ -70,12 +70,12 @@ static inline void R(add_segment)(R(layers) * l, const glint_prim *prim, uint32_
 
 // ---- The filter ----
 
-/// Segments of a run: what may be blocked, and what surely is.
+/// Segments of a run: those that may be blocked, and those that certainly are.
 typedef struct layer_lanes_met {
     unsigned near, certain;
 } layer_lanes_met;
 
-/// What the segments of a run are tested against.
+/// The primitive that the segments of a run are tested against.
 typedef struct R(layer_blocker) {
     const layer_prim *at;
     const glint_prim *prim;

@@ -32,7 +32,7 @@ typedef struct R(layers) {
     uint32_t open; ///< segments
     R(beam_batch) batch;
     _Alignas(64) real light[3][GLINT_GROUP]; ///< of the batch: the samples,
-    _Alignas(64) real direction[3][GLINT_GROUP], slack[GLINT_GROUP]; ///< and what found the points
+    _Alignas(64) real direction[3][GLINT_GROUP], slack[GLINT_GROUP]; ///< and the rays that hit the points
 } R(layers);
 
 /// Grows two bounds by the places of lanes.

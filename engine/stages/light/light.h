@@ -9,7 +9,7 @@
 #include "engine/stages/light/light_sample.h"
 #include "engine/stages/simd/real.h"
 
-/// What one light or sample does to a group.
+/// The results of one light or sample for a group.
 typedef struct R(lit_group) {
     _Alignas(64) real along[GLINT_GROUP]; ///< n.l, in the light's units
     _Alignas(64) real distance2[GLINT_GROUP];
@@ -40,7 +40,7 @@ INNER vr R(blinn_parts)(const vr n[3], const vr l[3], const vr d[3], vr l2, vr a
     return nh;
 }
 
-/// What the samples of a light have in common: the surfaces of one group, and one vector of its lanes.
+/// The common data of a light's samples: the surfaces of one group, and one vector of its lanes.
 typedef struct R(lit_point) {
     unsigned phong, blinn; ///< lanes by the highlight of their material
     _Alignas(64) float least[GLINT_GROUP]; ///< of their material, where highlights are spared; else 0

@@ -41,7 +41,7 @@ INNER void R(put_ball)(const glint_prim *prim, unsigned lanes, R(ball_lanes) * b
     }
 }
 
-/// Finds the spheres of the lanes in `hits`, and what light and walk know by them. Returns false where some are of another kind.
+/// Finds the spheres of the lanes in `hits`, and their constants. Returns false if some are of another kind.
 INNER bool R(find_balls)(const glint_surface_args *surface, const glint_light_args *light, size_t at, unsigned hits,
                          R(surface_walk) * walk, R(ball_lanes) * balls, R(lit_point) * point)
 {

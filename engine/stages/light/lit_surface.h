@@ -20,14 +20,14 @@ typedef struct R(lit_whole) {
     unsigned lit, back, some; ///< lanes
 } R(lit_whole);
 
-/// What all groups of a call read, as real; in memory as what is seen is.
+/// The data that all groups of a call read, as real, in memory.
 typedef struct R(lit_call) {
     real position[3], scale;
     bool scaled;
     R(surface_walk) walk;
 } R(lit_call);
 
-/// What a call says of all its groups, as constants.
+/// The constants of a call for all its groups.
 typedef struct R(lit_wants) {
     bool normals, slack;
 } R(lit_wants);

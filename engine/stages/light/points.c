@@ -51,7 +51,7 @@ INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_
     R(say_brightest)(light, 0, group.brightest);
 }
 
-/// Apart, so that it takes no registers from what balls and planes need.
+/// A separate function, so that it takes no registers from the code for spheres and planes.
 static __attribute__((noinline)) void R(lit_mixed)(const glint_surface_args *surface, const glint_light_args *light)
 {
     R(lit_surfaces)(surface, light, true, true);

@@ -14,7 +14,7 @@
 #include "engine/stages/occlude/grid.h"
 #include "engine/stages/simd/real.h"
 
-/// What is left to test of a group.
+/// The remaining tests of a group.
 typedef struct R(soft_group) {
     unsigned near[GLINT_OCCLUDERS]; ///< lanes, for each occluder of the tile's list
     unsigned any_near; ///< lanes that are near one
@@ -29,7 +29,7 @@ typedef struct R(soft_occluder) {
     int side; ///< of a plane: 1, all of the light is in front; -1, behind; 0, neither
 } R(soft_occluder);
 
-/// All of the light, and what the groups of one call share besides the tile.
+/// The whole light, and the data that the groups of one call share besides the tile.
 typedef struct R(whole_light) {
     float middle[3], radius; ///< of the ball
     double scale; ///< of the index's frame
@@ -91,7 +91,7 @@ static void R(place_soft_light)(const R(shadow_tile) * tile, R(whole_light) * li
     }
 }
 
-/// Lanes by what an occluder is to them.
+/// Lanes by the effect of an occluder.
 typedef struct R(soft_lanes) {
     unsigned apart; ///< it is between the point and no part of the light
     unsigned hidden; ///< between the point and all of it
@@ -159,7 +159,7 @@ static inline R(soft_lanes) R(sort_by_ball)(const R(whole_light) * light, const 
     return out;
 }
 
-/// What the tile's occluders are to the lanes of a group.
+/// Classifies the tile's occluders for the lanes of a group.
 static R(soft_group)
     R(sort_group)(const R(shadow_tile) * tile, const R(whole_light) * light, R(shadow_group) * group, unsigned lanes)
 {

@@ -26,7 +26,7 @@ typedef struct R(soft_gloss) {
     _Alignas(64) float least[GLINT_GROUP]; ///< of (r.v)^2 or (n.h)^2: at less, shade sees no highlight
 } R(soft_gloss);
 
-/// VF lanes of a group, and what the samples so far have brought them.
+/// VF lanes of a group, with the light of the samples so far.
 typedef struct R(soft_point) {
     vr point[SOFT_PARTS][3], normal[SOFT_PARTS][3]; ///< plain: the point in the light's units
     vr direction[SOFT_PARTS][3], a[SOFT_PARTS], nv[SOFT_PARTS]; ///< where some lane is glossy
@@ -34,7 +34,7 @@ typedef struct R(soft_point) {
     unsigned reached;
 } R(soft_point);
 
-/// What all groups of a call share.
+/// Data shared by all groups of a call.
 typedef struct R(soft_call) {
     const glint_soft_args *args;
     R(shadow_tile) tile;

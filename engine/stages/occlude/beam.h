@@ -35,7 +35,7 @@ static bool make_beam_axes(const double away[3], const double along[3], screen_v
 
 // ---- Triangles ----
 
-/// Which cells each triangle may show in: seen edge-on, those of its box. Returns the slots of `mask` that show in any.
+/// Finds the cells that each triangle may show in; edge-on, the cells of its box. Returns the slots of `mask` that show in any.
 static unsigned cells_of_leaf(const screen_view *view, const node_on_screen *seen, const leaf_on_screen *shown,
                               unsigned mask, uint32_t cells[GLINT_NODE_WIDTH])
 {

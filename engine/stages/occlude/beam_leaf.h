@@ -51,7 +51,7 @@ static inline void R(close_points)(R(beam) * beam, const uint16_t *from, unsigne
         far[stale] = R(farthest_in)(beam, stale);
 }
 
-/// What is known of the point at `at`, as lane n of these arrays. Triangles need the ray that found it.
+/// Loads the point at `at` into lane n of these arrays. Triangles need the ray that hit it.
 static inline void R(copy_point)(const glint_occlude_args *args, uint32_t at, bool triangle, int n, real *const point[3],
                                  real *const direction[3], real *slack)
 {
@@ -92,7 +92,7 @@ static inline void R(load_beam_leaf)(const R(beam) * beam, unsigned mask, R(beam
 
 // ---- The decision ----
 
-/// Of VR pairs from number i on, those whose point has the triangle between it and the light.
+/// Returns those of VR pairs, from number i on, whose triangle lies between point and light.
 static unsigned R(pairs_blocked)(const R(beam) * beam, int i)
 {
     const R(beam_leaf) *leaf = &beam->leaf;

@@ -13,7 +13,7 @@
 
 /// Points on their way to a decision: one surface, up to a group of points that need not be neighbours.
 typedef struct R(beam_batch) {
-    glint_occlude_args args; ///< of the call, with these points in place of the tile's
+    glint_occlude_args args; ///< arguments of the call, with these points instead of the tile's
     _Alignas(64) real point[3][GLINT_GROUP];
     uint16_t back;
     uint16_t from[GLINT_GROUP]; ///< index in the beam
@@ -26,7 +26,7 @@ typedef struct R(beam_batch) {
 
 #define GLINT_BEAM_RUNS 128 ///< more are paired before the next triangle is looked at
 
-/// Of VF points one after another in the beam those that something may keep from the light.
+/// Returns those of VF consecutive points in the beam that may have an occluder.
 typedef struct R(near_points) {
     uint16_t first, near;
     uint16_t own, slot; ///< of a triangle: those that are on it, and its slot
@@ -58,7 +58,7 @@ typedef struct R(beam) {
     _Alignas(64) float far[BEAM_DOWN][SCREEN_ACROSS]; ///< largest w of each cell's open points
     R(beam_batch) batch;
     R(beam_leaf) leaf;
-    R(near_points) run[GLINT_BEAM_RUNS + 1 + GLINT_TILE_SAMPLES / VF + BEAM_DOWN]; ///< found, and not paired with what they are near
+    R(near_points) run[GLINT_BEAM_RUNS + 1 + GLINT_TILE_SAMPLES / VF + BEAM_DOWN]; ///< found, and not yet paired with their occluders
     int runs;
 } R(beam);
 

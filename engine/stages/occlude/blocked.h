@@ -31,7 +31,7 @@ typedef struct R(occluder) {
     R(light_sides) sides;
 } R(occluder);
 
-/// What the groups of one call share.
+/// Data shared by the groups of one call.
 typedef struct R(shadow_tile) {
     const glint_occlude_args *args;
     light_place light; ///< of an area light, all of it
@@ -417,7 +417,7 @@ static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const gl
     return rm_bits(R(plane_blocks)(outside, inside, R(point_constant)(f, prim)));
 }
 
-/// Lanes of a group by what float says of their segments and a sphere.
+/// Lanes of a group by the float test of their segments and a sphere.
 typedef struct R(sphere_lanes) {
     unsigned near; ///< it may meet them
     unsigned within; ///< of these, it has some point of the segment inside for certain
@@ -458,7 +458,7 @@ static R(sphere_lanes) R(sort_by_sphere)(const R(shadow_tile) * tile, const R(ra
 #endif
 }
 
-/// Of the lanes in `wanted`, those whose segments pass near a solid, or one that is combined: by its box.
+/// Returns those of `wanted` whose segments pass near the box of a solid or combined solid.
 static unsigned R(segments_near)(const R(shadow_tile) * tile, const glint_prim *prim, R(shadow_group) * group, unsigned wanted)
 {
     const glint_geometry_table *table = tile->args->geometry;

@@ -15,7 +15,7 @@
 #if GLINT_REAL == 64
 
 #define GRID_FAR 0x1p20 // of directional light, in the index's units: from farther away a place is not known well enough
-#define GRID_REACH (GLINT_GRID_RADIUS * GLINT_GRID_RADIUS * (1 + 0x1p-20f)) // steps^2 in the square of a unit of radius, with what rounding takes
+#define GRID_REACH (GLINT_GRID_RADIUS * GLINT_GRID_RADIUS * (1 + 0x1p-20f)) // steps^2 in the square of a unit of radius, with the rounding error
 #define GRID_BIAS 0x1p23f // whole numbers below this are the lower bits of floats from this on
 
 /// Points that may be blocked, and how far each has come.
@@ -280,7 +280,7 @@ static void grid_decide(const glint_occlude_args *args, const grid_pairs *pairs,
     points->live_count = 0;
     for (uint32_t first = 0; first < pairs->count; first += VD) {
         const uint32_t there = pairs->count - first < VD ? pairs->count - first : VD;
-        for (uint32_t n = 0; n < VD; n++) { // lanes without a pair have that of the first
+        for (uint32_t n = 0; n < VD; n++) { // lanes without a pair use the first one
             const uint32_t pair = first + (n < there ? n : 0), at = points->at[pairs->point[pair]];
             const glint_prim *prim = &args->geometry->prims[pairs->id[pair]];
             for (int k = 0; k < 3; k++) {

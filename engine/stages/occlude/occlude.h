@@ -91,7 +91,7 @@ static void R(find_occluders)(R(shadow_tile) * tile, uint32_t only)
     }
 }
 
-/// Whether all of the light is outside the sphere or solid for certain, by what the filter knows.
+/// Returns whether the whole light is certainly outside the sphere or solid, by the filter's data.
 static inline bool R(light_outside)(const R(shadow_tile) * tile, const glint_prim *prim)
 {
     const bool ball = prim->kind == GLINT_PRIM_SPHERE || prim->kind == GLINT_PRIM_SOLID;
@@ -173,7 +173,7 @@ static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const double (*place)
     return open;
 }
 
-/// Walks with the segment of one lane. What it comes upon is tested against all lanes that are open.
+/// Traverses the index with the segment of one lane. The primitives found are tested against all unoccluded lanes.
 static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP], R(shadow_group) * group,
                              int lane, unsigned open)
 {

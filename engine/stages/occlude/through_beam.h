@@ -70,7 +70,7 @@ static inline void R(add_to_batch)(R(beam) * beam, const glint_prim *prim, uint3
 
 // ---- The filter ----
 
-/// What stands between points and light, perhaps.
+/// The possible occluders between points and light.
 typedef struct R(beam_blocker) {
     const glint_prim *prim;
     uint32_t id;

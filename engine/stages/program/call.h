@@ -60,7 +60,7 @@ static inline vd d_horner(const double *c, int count, vd x)
 }
 #define D_HORNER(name, x) d_horner(name, (int)(sizeof name / sizeof *name), x)
 
-/// Replaces lanes of y by what a scalar function makes of those of a and b.
+/// Replaces lanes of y by a scalar function of the lanes of a and b.
 static __attribute__((noinline)) vd d_each(vd y, unsigned lanes, vd a, vd b, double (*function)(double, double))
 {
     _Alignas(64) double out[VD], x[2][VD];

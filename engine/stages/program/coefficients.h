@@ -70,7 +70,7 @@
 #define GLINT_HASH_B 0xaf1d35c9u
 #define GLINT_HASH_C 0xc7a94e6bu
 
-/// Of noise: one over what Perlin's gradients reach at most, 1.03635382 at (0.3553, 0.4815, 0.5), rounded down.
+/// Noise: one over the largest value of Perlin's gradients, 1.03635382 at (0.3553, 0.4815, 0.5), rounded down.
 #define GLINT_NOISE_SCALE 0.9649
 
 #endif

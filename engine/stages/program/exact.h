@@ -36,7 +36,7 @@ static inline vd d_mod(vd a, vd b)
     return d_select(apart, m + b, m);
 }
 
-/// The same where b is a power of two and `inverse` is 1 / b: but for lanes that hardly occur, one product is rounded.
+/// The same if b is a power of two and `inverse` is 1 / b: except in rare lanes, a single product is rounded.
 static inline vd d_mod_power(vd a, vd b, vd inverse)
 {
     const vd size = d_abs(a), rest = a - d_floor(a * inverse) * b;

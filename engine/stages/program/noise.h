@@ -16,7 +16,7 @@ static inline vq q_times(vq x, uint32_t factor) { return q_mul(x, q_set(factor))
 /// A whole number modulo 2^32.
 static inline vq q_word(vd whole) { return d_bits(whole + d_set(GLINT_ROUNDER_DOUBLE)); }
 
-/// What a sum of products by GLINT_HASH_X, _Y, _Z and _SEED is as a number without a pattern.
+/// Mixes a sum of products by GLINT_HASH_X, _Y, _Z and _SEED into a number without a pattern.
 static inline vq q_hash(vq sum) { return q_fold(q_times(q_fold(sum), GLINT_HASH_A)); }
 
 static inline vq q_hash_word(vq h, vq word, uint32_t factor) { return q_fold(q_times(q_xor(h, word), factor)); }
@@ -45,7 +45,7 @@ static inline vd d_odd(vd whole) { return whole - d_set(2) * d_floor(d_set(0.5) 
 OP_KERNEL(hash, OP_ABC, d_hash(a, b, c))
 static inline dm d_below(vd x, double limit) { return d_lt(d_abs(x), d_set(limit)); }
 
-/// Of whole parts that have a last bit of 1, it is that bit of their sum.
+/// Returns the lowest bit of the sum of whole parts.
 static inline vd d_parity(vd a, vd b, vd c)
 {
     if (dm_bits(dm_and(d_below(a, 0x1p51), dm_and(d_below(b, 0x1p51), d_below(c, 0x1p51)))) != D_ALL)
@@ -162,7 +162,7 @@ static void op_noise3(const op_call *call)
     }
 }
 
-/// What a step along an axis adds, the other two axes between corners.
+/// Computes the contribution of a step along an axis, interpolated along the other two.
 INNER vd noise_across(const noise_place *at, const vd corner[8], int axis)
 {
     const int step = 1 << axis, a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;

@@ -125,7 +125,7 @@ static void note_odd(const output *out)
         out->args->odd[g] |= (uint16_t)(find_odd(output_of(out, g)) & out->args->wanted[g]);
 }
 
-/// Of a whole call. `watched`, a constant: returns whether all are reflectances.
+/// Checks the results of a whole call. `watched`, a constant: returns whether all are valid reflectances.
 INNER bool store_lanes(const output *out, const bool watched, float *to)
 {
     const size_t step = out->step, count = (size_t)out->args->group_count * GLINT_GROUP;
@@ -340,7 +340,7 @@ static bool is_checker(const glint_program_args *args, checker *to)
     return true;
 }
 
-/// The parity and what follows, in one pass without rows: the common pattern.
+/// Computes a checker in one pass without rows: the parity and the operations after it.
 static void end_checker(const checker *by)
 {
     const glint_program_args *args = by->args;

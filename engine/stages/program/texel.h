@@ -8,7 +8,7 @@
 #include "engine/stages/program/exact.h"
 #include "engine/stages/simd/elementary.h"
 
-/// Of one level: what four texels are read and how they are weighed.
+/// One level of a texture: the four texels to read, and their weights.
 typedef struct texel_place {
     _Alignas(64) double x[VD], y[VD]; ///< of the first of them, -1 .. side - 1
     _Alignas(64) double fx[VD], fy[VD];

@@ -69,7 +69,7 @@ static NAME(stretch) NAME(stretch_of)(const glint_geometry_table *geometry, uint
                              : NAME(within_part)(geometry, part, origin, direction);
 }
 
-/// What holds of a set next to a place on a ray.
+/// The state of a set next to a position on a ray.
 typedef struct NAME(change) {
     bool before, after; ///< the ray is in it
     uint32_t part; ///< whose surface the change is, where there is one
@@ -93,7 +93,7 @@ static NAME(change) NAME(combine)(uint8_t operation, NAME(change) a, NAME(change
     return out;
 }
 
-/// What a ray has to do with a combined solid.
+/// A ray and its combined solid.
 typedef struct NAME(passing) {
     const glint_geometry_table *geometry;
     const glint_combined *whole;
@@ -167,7 +167,7 @@ static REAL NAME(combined_t)(const glint_geometry_table *geometry, const glint_p
     return best < INFINITY ? best : 0;
 }
 
-/// Of a segment from a point of some surface to the light.
+/// Returns whether a segment from a surface point to the light is blocked.
 static bool NAME(combined_blocks)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) position,
                                   uint32_t i)
 {

@@ -39,7 +39,7 @@ static glint_dual dual_cone(const glint_derivative_light *light, const glint_dua
     return falls ? dual_mul(step, dual_power(c, light->exponent)) : step;
 }
 
-/// Of a light that is somewhere: its way is not unit yet.
+/// For a light at a position: its direction is not normalised yet.
 static void come_near(const glint_derivative_source *source, dual_shine *s, int i)
 {
     const glint_dual length2 = dual_dot(s->way, s->way);
@@ -133,7 +133,7 @@ static glint_dual dual_beckmann(glint_dual alpha, glint_dual sine2, glint_dual l
     return dual_mul(spread, dual_div(dual_scale(l, 0.25), dual_either(d.value > 0x1p-126, d, dual(0x1p-126, 0))));
 }
 
-/// Of microfacets; *grazing: that times Schlick's (1 - v.h)^5.
+/// Computes the microfacet term; *grazing: times Schlick's (1 - v.h)^5.
 static glint_dual dual_lobe(const glint_derivative_material *m, glint_dual alpha, const dual_shine *s, const dual_ways *w,
                             glint_dual *grazing)
 {
@@ -166,7 +166,7 @@ static glint_dual dual_plane(const glint_derivative_planes *planes, int which, i
     return planes && planes->value[which] ? dual_at(planes->value[which], planes->slope[which], i) : own;
 }
 
-/// What a material sends of a light's channel c to the eye.
+/// Returns the light of channel c that a material reflects to the eye.
 static glint_dual dual_left(const glint_slope_args *args, const dual_shine *s, glint_dual specular, glint_dual grazing, int c,
                             int i)
 {

@@ -72,7 +72,7 @@ static double between_corners(const double at[8], const double f[3])
     return between_two(f[2], near, far);
 }
 
-/// What a step along one axis adds to it; the other two between corners.
+/// Returns the contribution of a step along one axis, interpolated along the other two.
 static double across_corners(const double at[8], const double f[3], int axis)
 {
     const int step = 1 << axis, a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
@@ -112,7 +112,7 @@ static double op_noise(double x, double y, double z, uint32_t seed, double *slop
 
 // ---- cells -------------------------------------------------------------------------------------------------------
 
-/// From the point to that of a cube: `x`: where the cube begins, from the point.
+/// Returns the vector from the point to the point of a cube. `x`: from the point to the cube's corner.
 static void to_feature(const uint32_t cube[3], const double x[3], double d[3])
 {
     static const uint32_t factor[3] = { GLINT_HASH_B, GLINT_HASH_C, GLINT_HASH_X };

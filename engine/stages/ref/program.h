@@ -167,7 +167,7 @@ static double op_highlight(double x, double s)
 
 // ---- the interpreter ---------------------------------------------------------------------------------------------
 
-/// Of the operations with one result. a .. c: the operands.
+/// Computes the operations with one result. a .. c: the operands.
 static double op_of_one(glint_op op, double a, double b, double c)
 {
     switch (op) {

@@ -1,5 +1,5 @@
 /// The scalar reference: every stage of stages.h for one sample at a time, in the order written there and with nothing
-/// borrowed from the vector bodies. What this file and a vector body disagree about is a mistake in one of them.
+/// borrowed from the vector bodies. A difference between this file and a vector body is a mistake in one of them.
 #include "engine/base/sequence.h"
 #include "engine/stages/program/coefficients.h"
 #include "engine/stages/simd/coefficients.h"
@@ -301,7 +301,7 @@ static void tone(const glint_tone_args *args)
 
 // ------------------------------------------------------------------------------------------------------------------
 
-// Of one precision, a line each.
+// The entries of one precision, one per line.
 #define GEOMETRY_STAGES(real) \
     { \
         .camera = camera_##real, .in_sight = in_sight_##real, .cast_bundle = cast_bundle_##real, \

@@ -84,7 +84,7 @@ static bool add_factors(const glint_shade_args *args, const glint_shade_light *l
 /// A light's share of a term is float; the term is a sum in double.
 static float share_of(float factor, double color) { return factor * (color < FLT_MAX ? (float)color : FLT_MAX); }
 
-/// A reflectance at a sample: that of the table, times what a plane has.
+/// Returns a reflectance at a sample: the table's value, times the plane's.
 static double reflectance(const glint_shade_material *material, unsigned which, double table, const float *plane,
                           uint32_t i, double light)
 {

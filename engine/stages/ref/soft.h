@@ -1,6 +1,6 @@
 // The reference of soft_light, for one REAL; included by ref.c after ref/real.h: the stages one after the other.
 
-/// What light and occlude find for each sample.
+/// The results of light and occlude for each sample.
 typedef struct NAME(soft_rows) {
     uint16_t lit[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS], open[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
     float cosine[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES], attenuation[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES];

@@ -186,7 +186,7 @@ static bool NAME(triangle_blocks)(const glint_occlude_args *args, const glint_pr
 
 // ---- cast ----
 
-/// The height of a place over a triangle's plane, and what rounding may make of it.
+/// Computes the height of a point over a triangle's plane, and its rounding error.
 static REAL NAME(height)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) at, REAL *rounding)
 {
     NAME(vec3) q = NAME(sub)(at, NAME(rounded)(prim->corner[0]));

@@ -81,7 +81,7 @@ INNER void find_factors(const glint_shade_args *args, const glint_shade_material
         add_factors(args, material, NULL, specular, g, factors);
 }
 
-/// What a material makes of a light's colour; finite, so that nothing of it is nothing.
+/// The product of a material's and a light's colour; finite, so that 0 times it is 0.
 static inline float share_color(double reflectance, double light)
 {
     const double color = reflectance * light;
@@ -102,7 +102,7 @@ static inline uint32_t sharing_lights(const light_factors *factors, int term)
     return term ? factors->shiny : (1u << factors->count) - 1;
 }
 
-/// kd Id, ks Is and what microfacets add to these, of a material and all lights of a call: groups after each other often show one.
+/// kd Id, ks Is and the microfacets' factors of a material and all lights of a call, cached because consecutive groups often show one material.
 typedef struct light_colors {
     const glint_shade_args *of; ///< NULL: none yet
     const glint_shade_material *material;
@@ -156,7 +156,7 @@ INNER void add_lights(const light_factors *factors, const light_colors *colors, 
     }
 }
 
-/// One vector of the sum of all lights' shares, rounded. Of one light it is the share itself. `facets` is a constant.
+/// Computes one vector of the rounded sum of all lights' contributions; for one light, its contribution. `facets` is a constant.
 INNER void sum_lights(const light_factors *factors, const light_colors *colors, const bool facets, int term, int i, vf sum[3])
 {
     const uint32_t lights = sharing_lights(factors, term), more = lights & (lights - 1);
@@ -258,7 +258,7 @@ static inline void add_material(const glint_shade_args *args, const glint_shade_
             add_term(material, factors, colors, to, whole, lanes, term, i);
 }
 
-/// The material of the first of some lanes of a group, and which of them have it.
+/// Finds the material of the first of some lanes of a group, and the lanes that have it.
 static inline const glint_shade_material *material_of(const glint_shade_args *args, size_t at, unsigned *lanes)
 {
     const uint32_t index = args->only ? *args->only : args->material[at + (unsigned)__builtin_ctz(*lanes)];

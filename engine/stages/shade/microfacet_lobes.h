@@ -37,7 +37,7 @@ static inline vf beckmann_lobe(vf alpha, vf sine2, vf l, vf v)
     return (((e / c) / c) * (f_set(1) / aa)) * ((f_set(0.25f) * l) / f_max(d, f_set(FLT_MIN)));
 }
 
-/// Stores what a light gives, or adds it to what is there.
+/// Stores a light's contribution, or adds it to the stored value.
 static inline void put_share(float *to, bool add, vf share)
 {
     if (add)

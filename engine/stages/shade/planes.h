@@ -17,7 +17,7 @@ static inline vf plane_color(const float *plane, double light)
     return f_min(f_join(halves[0] * d_set(light), halves[1] * d_set(light)), f_set(FLT_MAX));
 }
 
-/// One vector of a factor times its colour; plane NULL: that of the table.
+/// Computes one vector of a factor times its colour; plane NULL: the colour of the table.
 static inline vf plane_product(const float *factor, const float *plane, double constant, double light)
 {
     const vf color = plane ? plane_color(plane, constant * light) : f_set(share_color(constant, light));
@@ -202,7 +202,7 @@ INNER void whole_channel(const glint_shade_args *args, const channel_numbers *by
     }
 }
 
-/// Those of the last group, which are often those of the next.
+/// Products of the last group, which the next group often shares.
 typedef struct plane_numbers {
     const glint_shade_material *material; ///< NULL: none yet
     const glint_shade_light *light; ///< NULL: none reaches it

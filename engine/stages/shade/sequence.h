@@ -31,7 +31,7 @@ static inline void flip_drawn(uint32_t x[DRAWN], const uint32_t seed[DRAWN])
     }
 }
 
-/// The second coordinate's bits, lowest first, from those of the place. Bit i of the place stands for (1 + x)^i modulo 2; halves
+/// Computes the second coordinate's bits, lowest first, from the bits of the index. Bit i of the index stands for (1 + x)^i modulo 2; halves
 /// are parted by (1 + x)^16 = 1 + x^16, and so on down.
 static inline void second_drawn(uint32_t x[DRAWN])
 {

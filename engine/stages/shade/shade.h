@@ -57,7 +57,7 @@ static inline void finish_terms(const group_terms *terms, float *const film[][3]
         }
 }
 
-/// What no surface makes: the background where nothing is hit, and 0 for the rest.
+/// Writes the background where nothing is hit, and 0 in the other terms.
 static inline void start_direct(const glint_shade_args *args, uint32_t g, group_terms *terms)
 {
     const unsigned empty = args->active[g] & ~(unsigned)args->hits[g];

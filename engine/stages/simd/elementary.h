@@ -113,7 +113,7 @@ static inline float group_highest(const float x[GLINT_GROUP])
     return f_max_all(most);
 }
 
-/// Widens an interval of lanes by those of `bits`.
+/// Widens an interval of lanes by the lanes in `bits`.
 static inline void widen(const float x[GLINT_GROUP], unsigned bits, vf *least, vf *most)
 {
     for (int i = 0; i < GLINT_GROUP; i += VF) {

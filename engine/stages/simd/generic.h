@@ -12,7 +12,7 @@
 
 #define VF 4
 #define VD 2
-// What is loaded and stored through a cast pointer may alias, as Intel's own types may.
+// Loads and stores through a cast pointer may alias, as with Intel's own types.
 typedef float vf __attribute__((vector_size(16), may_alias));
 typedef double vd __attribute__((vector_size(16), may_alias));
 typedef uint32_t vi __attribute__((vector_size(16), may_alias));

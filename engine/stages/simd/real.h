@@ -71,7 +71,7 @@
 #define GLINT_SPHERE_CLOSE GLINT_SPHERE_CLOSE_FLOAT
 #endif
 
-/// VF lanes of real as floats. What is stored as real and read as float comes by this: a wide load of what narrower
+/// Loads VF lanes of real as floats. Data stored as real and read as float is loaded this way: a wide load of data from narrower
 /// stores left would wait until they are in the cache.
 static inline vr R(load_wide)(const float *p)
 {

@@ -3,7 +3,7 @@
 
 #include "engine/stages/simd/entries.h"
 
-// Of one precision.
+// The entries of one precision.
 #define GEOMETRY_STAGES(real) \
     { \
         .camera = GLINT_ENTRY(camera_##real), .in_sight = GLINT_ENTRY(in_sight_##real), .cast_bundle = GLINT_ENTRY(cast_bundle_##real), \

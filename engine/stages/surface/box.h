@@ -40,7 +40,7 @@ static void R(view_box)(const glint_solid *solid, const real f[3], R(box_view) *
     }
 }
 
-/// Sorts rays by the face that they are on at t. Returns whether each of `lanes` is on one alone: that is the face that t was
+/// Sorts rays by the face that they are on at t. Returns whether each of `lanes` is on only one: the face that t was
 /// made of. level: view->level, a constant.
 INNER bool R(lanes_on_faces)(const glint_solid *solid, const R(box_view) * view, const bool level, const vr d[3], vr t,
                              unsigned lanes, unsigned on[6])

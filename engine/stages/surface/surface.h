@@ -74,7 +74,7 @@ static inline void R(see_prim)(const glint_surface_args *args, uint32_t id, R(se
     seen->range = R(range_of)(seen->f);
 }
 
-/// One, and what is known of it.
+/// One primitive and its constants.
 typedef struct R(seen_slot) {
     R(seen_prim) prim;
     R(box_view) view; ///< where it is a box; of another solid the heights
@@ -83,7 +83,7 @@ typedef struct R(seen_slot) {
 
 #define SEEN_SLOTS 4 ///< a tile's groups come back to the same few
 
-/// What is known while the groups of a tile are gone through.
+/// State while iterating over the groups of a tile.
 typedef struct R(surface_walk) {
     uint32_t only; ///< the only primitive so far, GLINT_MISS: none
     bool several, turned; ///< there are others; some lane is seen from behind
@@ -128,7 +128,7 @@ INNER void R(find_on_solid)(const glint_surface_args *args, R(seen_slot) * slot,
         n[k] = -n[k];
 }
 
-/// Of lanes from i on those in `lanes`; what the others get is of no use.
+/// Computes those of the lanes from i on that are in `lanes`; others are undefined.
 INNER void R(find_lanes)(const glint_surface_args *args, R(seen_slot) * slot, R(group_directions) directions, size_t at,
                          int i, unsigned lanes, bool mixed, R(found) * found)
 {
@@ -174,7 +174,7 @@ INNER void R(find_lanes)(const glint_surface_args *args, R(seen_slot) * slot, R(
     }
 }
 
-/// Of a vector of a group that shows several triangles.
+/// Computes one vector of a group that shows several triangles.
 INNER void R(find_mesh_lanes)(const glint_surface_args *args, R(mesh_group) * mesh, R(group_directions) directions,
                               size_t at, int i, R(found) * found)
 {
@@ -197,7 +197,7 @@ INNER void R(find_mesh_lanes)(const glint_surface_args *args, R(mesh_group) * me
         found->normal[k] = r_select(rm_from_bits(smooth), curved[k], found->normal[k]);
 }
 
-/// A box around points. What is not a number stays outside.
+/// A box around points. NaN is ignored.
 typedef struct R(point_box) {
     vr least[3], most[3];
 } R(point_box);
@@ -234,7 +234,7 @@ static void R(write_box)(R(point_box) box, glint_point_box *out)
     }
 }
 
-/// What a call finds: each way is compiled by itself.
+/// The outputs of a call: each combination is compiled separately.
 typedef enum R(surface_way) {
     R(MIXED), ///< there are triangles or solids
     R(BALLS_AND_PLANES),

@@ -1,4 +1,4 @@
-// vertex: what was worked out at the corners of a triangle, or once for its face, in each sample. Contract: stages.h.
+// vertex: interpolates light computed at the corners of a triangle, or once for its face, at each sample. Contract: stages.h.
 #ifndef GLINT_SURFACE_VERTEX_H
 #define GLINT_SURFACE_VERTEX_H
 
