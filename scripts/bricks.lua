@@ -1,7 +1,7 @@
 -- A wall of bricks whose relief is nowhere: a bump is a height that only the light sees.
 --
 -- One function lays the bricks; the colour reads where it is mortar, and the bump reads the same as a height. The
--- engine differentiates the height's program, so that normals tilt as those of the relief would, without a step size.
+-- engine differentiates the height's program, so that normals tilt exactly as on the relief, without a step size.
 -- The silhouette stays flat, and so do shadows: look along the edge. `--set height=0` shows the wall as it is.
 --     glint scripts/bricks.lua -o bricks.mp4
 local glint = require "glint"

@@ -37,7 +37,7 @@ local function die()
   return glint.difference(parts)
 end
 
--- Its holes end where it does: cutters may be flush with what they cut.
+-- Its holes end where it does: cutters may be flush with the part that they cut.
 local function flange()
   local body = glint.union { glint.cylinder { base = { 0, 0, 0 }, top = { 0, 0.4, 0 }, radius = 1.6 },
     glint.cylinder { base = { 0, 0.4, 0 }, top = { 0, 1.5, 0 }, radius = 0.8 },

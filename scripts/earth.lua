@@ -1,6 +1,6 @@
 -- A globe from a picture that the script paints itself.
 --
--- The continents are noise on a sphere, worked out point by point in plain Lua: the operations of patterns take
+-- The continents are noise on a sphere, computed point by point in plain Lua: the operations of patterns take
 -- numbers, too. The picture goes to a PNG file, glint.texture reads it, and it is laid around the ball by its uv. The
 -- sea shines and land does not, since the highlight is a pattern of the same picture; clouds are noise of the point,
 -- drawn when the frame is. `--set file=globe.png` takes a picture of your own.

@@ -14,7 +14,7 @@ local brass = glint.material { diffuse = { 0.5, 0.34, 0.12 }, specular = { 0.7, 
 local tiles = glint.pattern(function(p) return glint.mix(0.16, 0.42, glint.checker(p * 0.5)) end)
 local floor = glint.material { diffuse = tiles }
 
--- ---- The flight: at each time where the eye is, and what it looks at ----
+-- ---- The flight: position and target of the camera at each time ----
 
 local eye = glint.keys {
   { 0, { 0, 2, 22 } }, { 0.3, { -2.2, 1.2, 11 } }, { 0.55, { 2, 3.5, 3 } }, { 0.8, { -1, 2.6, -6 } },

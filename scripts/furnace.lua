@@ -3,7 +3,7 @@
 -- Across: a direction, from straight above (left) to the horizon (right). Up: the share of light from everywhere that
 -- leaves that way (thick), and the share of light from there that leaves to everywhere (thin), the white line at 1.
 -- Nothing passive rises above it: plain Phong does, without bound where light falls in low. Where thick and thin
--- differ, light cannot be followed backwards: plain Phong is not reciprocal. Of the other three one hides the other.
+-- differ, light cannot be followed backwards: plain Phong is not reciprocal. In the plot, one of the other three hides another.
 --     red Phong, s = 1   orange Phong, s = 8   green normalised Phong, s = 8
 --     blue GGX, roughness 0.5   violet Beckmann, roughness 0.5
 --     glint scripts/furnace.lua

@@ -7,7 +7,7 @@
 --     glint scripts/indirect.lua                                   4 pictures: 0, 1, 2 and 6 bounces
 --     glint scripts/indirect.lua --set samples=256                 less noise: the error falls with the root or faster
 --     glint scripts/indirect.lua --set ambient=0                   what is cut off is lost: least at 6 bounces
---     glint scripts/indirect.lua -f 4 --passes diffuse,indirect    what the lamp gives, and what the room gives back
+--     glint scripts/indirect.lua -f 4 --passes diffuse,indirect    light from the lamp, and light from the room
 -- Look at: the ceiling, which the lamp does not reach; red and green on floor, ceiling and box; corners, which go dark
 -- by themselves; the ball, whose shaded side is lit by the floor.
 local glint = require "glint"

@@ -1,4 +1,4 @@
--- What a figure says of itself: a title, the time, a colour bar and the axes, drawn over the picture.
+-- Text on a figure: a title, the time, a colour bar and the axes, drawn over the picture.
 --     glint scripts/labels.lua -o film.mp4
 --     glint scripts/labels.lua -f 1 --size 2400x1500 --dpi 300 --set size=9    letters of 9 points in print
 --     glint scripts/labels.lua -f 1 --set map=coolwarm

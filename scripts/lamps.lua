@@ -3,7 +3,7 @@
 -- What they see is its radiance: with `radiance` L a lamp shows pi L color, so that a white matt surface with lamp all
 -- around it shows the same. With `intensity` I it shows color I A(D), D its radius: a lamp that falls off as 1/d^2
 -- looks like what lights the same from afar, one that does not fall off as bright as the white surface that it lights.
--- A lamp throws no shadow of itself, and one that has one side is seen from there alone.
+-- A lamp casts no shadow of itself, and a one-sided lamp is visible only from that side.
 --     glint scripts/lamps.lua                              a ball, a panel and a window, in a mirror and through glass
 --     glint scripts/lamps.lua --set visible=false          the same light, from nowhere
 --     glint scripts/lamps.lua --passes background,mirror   seen lamps are of the background, mirrored ones of mirror

@@ -1,4 +1,4 @@
--- What triangles make of a sphere: the exact one on the left, then meshes of 8, 16 and 64 segments, above with
+-- A sphere and its approximations by triangles: the exact one on the left, then meshes of 8, 16 and 64 segments, above with
 -- normals of the sphere at the vertices ("phong"), below with one normal a face ("faceted"). Smooth normals hide the
 -- facets inside; nothing hides the outline.
 local glint = require "glint"

@@ -1,4 +1,4 @@
--- What mirrors and glass add to the local colour of a surface: mirror times the light along the mirrored ray, and
+-- Mirrors and glass add to the local colour of a surface: mirror times the light along the mirrored ray, and
 -- transmission times the light along the refracted ray.
 --
 --   glint scripts/mirror_and_glass.lua                        # a mirror, clear glass, green glass, and polished paint

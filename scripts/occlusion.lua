@@ -1,5 +1,5 @@
 -- Shape without lamps: ambient light that is dim where little of the sky is open, as viewers of particles draw it.
---     glint scripts/occlusion.lua -f 2                      all of the sky; frame 1 is without, 3 of what is near
+--     glint scripts/occlusion.lua -f 2                      all of the sky; frame 1 is without occlusion, 3 only by near surfaces
 --     glint scripts/occlusion.lua -f 3 --set distance=1.5   what is farther away than this closes nothing
 --     glint scripts/occlusion.lua -f 2 --set samples=256    less noise; further samples of a pixel do it too
 -- A porous body: balls of a lattice, thrown about, less those in some round pores.

@@ -3,12 +3,12 @@
 --
 --     flat      one evaluation of lights, shadows and material at the middle of each face
 --     Gouraud   one at each vertex, and between them by barycentric coordinates
---     Phong     one for each sample, with a normal between those of the vertices
+--     Phong     one for each sample, with a normal interpolated between the vertices
 -- Above, the highlight is on a vertex: Gouraud spreads what it finds there over the faces around, as a star. Below, the
 -- lamp has moved by half a face: the highlight is between the vertices, none of them sees it, and Gouraud has lost it.
 -- Phong shading has the sphere's own highlight in both. The outline stays a polygon, whatever the shading.
 --     glint scripts/shading.lua                       shading_sheet.png, and each picture by itself
---     glint scripts/shading.lua --set segments=64     more vertices: what is left of all this
+--     glint scripts/shading.lua --set segments=64     more vertices: the differences almost vanish
 local glint = require "glint"
 
 local P = glint.params {

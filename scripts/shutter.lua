@@ -1,4 +1,4 @@
--- What a shutter sees that stays open: balls on three orbits, the inner ones faster, and a lamp that circles above.
+-- An open shutter: balls on three orbits, the inner ones faster, and a lamp that circles above.
 --     glint scripts/shutter.lua -o shutter.mp4
 --     glint scripts/shutter.lua -f 1 --set shutter=0                # an instant
 --     glint scripts/shutter.lua -f 1 --set shutter=1 --set times=64 # a whole frame's time, finely
@@ -29,7 +29,7 @@ local scene = glint.scene {
     material = glint.material { diffuse = { 0.62, 0.6, 0.56 }, specular = 0.5, shininess = 90 } },
 }
 
--- Of each: the orbit's radius, turns in one of the outer ball's, the ball's radius and colour.
+-- For each ball: the orbit's radius, its turns during one of the outer ball's, the ball's radius and colour.
 local orbits = {
   { 2.3, 3, 0.45, { 0.78, 0.2, 0.14 } },
   { 3.6, 2, 0.55, { 0.85, 0.6, 0.12 } },

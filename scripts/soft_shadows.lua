@@ -1,6 +1,6 @@
--- What a lamp's size does to shadows, and what it takes to see it without noise.
+-- The size of a lamp makes shadows soft, and samples make them smooth.
 --
--- A point casts hard shadows. Of a lamp with a surface some points see a part: the penumbra, wider for larger lamps and
+-- A point casts hard shadows. Some points see only a part of a lamp with a surface: the penumbra, wider for larger lamps and
 -- for a shadow that falls far. The engine looks at `samples` points of the lamp, other ones for each
 -- pixel of a block of 4 x 4 and for each of the 4 samples of a pixel here: few give noise, never bands.
 --     glint scripts/soft_shadows.lua                       12 pictures: radius 0 0.6 1.8 across, samples 1 4 16 64 down

@@ -4,7 +4,7 @@
 --     ambient    what a surface shows where no lamp reaches it:  ka * Ia
 --     diffuse    matt light, by the angle between normal n and the direction to the lamp l:  kd * Id * (n.l)
 --     specular   the highlight, by the angle between the mirrored light r and the eye v:  ks * Is * (r.v)^shininess
--- Look at one term alone, then at their sum:
+-- Look at a single term, then at their sum:
 --     glint scripts/workshop.lua --set step=ambient
 --     glint scripts/workshop.lua --set step=diffuse
 --     glint scripts/workshop.lua --set step=specular

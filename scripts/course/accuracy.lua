@@ -1,4 +1,4 @@
--- What accuracy costs: rays a pixel against jagged edges, rays to the lamp against grainy shadows.
+-- The cost of accuracy: rays per pixel against jagged edges, rays to the lamp against grainy shadows.
 local glint = require "glint"
 
 local P = glint.params {

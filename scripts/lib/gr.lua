@@ -19,7 +19,7 @@
 --   gr.csg(name, a, "+"|"*"|"-", b)  gr.csg(a, b, "diff")  gr.csg(name, "union")  gr.csg(name)  the same
 --   csg:setCSGType("u"|"i"|"d")  csg:set_csg_children(a, b, "UNION"|"INTERSECT"|"DIFFERENCE")  node:add_children(a, b)
 --   gr.material({kd}, {ks}, shininess)
---   gr.material({kd}, {ks}, shininess, r, t, n)         and what else may follow: bindings/README.md has the forms
+--   gr.material({kd}, {ks}, shininess, r, t, n)         further forms are in the manual
 --   gr.reflective_material(...)  gr.material_refl(...)  gr.material_refr(...)  gr.reflective()  gr.refractive(n)
 --   gr.perlin_material({a}, {b}, {ks}, shininess)       two colours, mixed by noise
 --   gr.texture(file, u, v)  gr.texture(file, {ks}, shininess)  gr.texture_material(...)  gr.texture_map(file)
@@ -60,7 +60,7 @@ local pairs, select = pairs, select
 local gr = { options = options }
 gr.__index = gr
 
--- What the dialect's objects hold, by the objects: scenes see tables with nothing in them.
+-- The data of the dialect's objects, by object: scenes see empty tables.
 local nodes, materials, lights, pictures, reliefs = {}, {}, {}, {}, {}
 for _, kept in ipairs { nodes, materials, lights, pictures, reliefs } do setmetatable(kept, { __mode = "k" }) end
 
@@ -216,7 +216,7 @@ for call, operation in pairs(operations.calls) do
   end
 end
 
--- What may follow, the size of a ball around it, is of no use here.
+-- A further argument, the size of a ball around it, is not used.
 function gr.csg(name, a, sign, b)
   if nodes[name] then return new_combined("csg", operations.of("csg", sign), "csg", name, a) end
   if a == nil then return new_combined("csg", nil, name) end
@@ -265,7 +265,7 @@ function gr.set_material(self, material)
   node.material = materials[material] or check.refuse("set_material", "material", "material", material)
 end
 
--- What gr.texture gave, or the name of a file; across, down: how often.
+-- A result of gr.texture, or the name of a file; across, down: repetitions.
 local function picture_of(call, value, across, down)
   local known = pictures[value]
   if known and across == nil then return known end

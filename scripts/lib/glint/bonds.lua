@@ -3,7 +3,7 @@
 --     set:add_frame(xyz.frame "caffeine.xyz")
 --     scene:add(bonds.new(set))       -- before set:spheres(), which takes the set's data away
 -- Each half of a bond has the material of its atom. Cells as wide as the longest bond hold the atoms, so that each
--- looks at its neighbours alone: the time grows with the number of atoms.
+-- looks only at its neighbours: the time grows with the number of atoms.
 -- In a periodic box (that of a LAMMPS frame is known, for others give it: box = { size = { 10, 10, 10 } }) atoms are
 -- joined across its faces, too: each to the nearest image of the other, by a half that sets out from it and ends in the
 -- middle of the bond, outside the box. box = false leaves these out.
@@ -80,7 +80,7 @@ function bonds.each(x, y, z, reach, closest, found)
   end
 end
 
--- The box to look across: that of the options, else the frames'; nil when nothing repeats.
+-- Returns the periodic box: from the options, otherwise from the frames; nil when nothing repeats.
 local function box_of(set, options)
   local box = options.box
   if box == nil then
@@ -118,7 +118,7 @@ end
 --- The bonds of a set of glint.particles, as one group; nil when there are none.
 ---@param set table
 ---@param options? { radius: number, tolerance: number, distance: number, box: table|false }  radius of the cylinders
---- (default 0.15); tolerance in angstroms (default 0.45); distance, the longest bond of any two in place of covalent
+--- (default 0.15); tolerance in angstroms (default 0.45); distance, the longest bond of any two instead of covalent
 --- radii; box, see glint.box: across whose periodic faces bonds are made (default: the box of the frames, if any)
 ---@return table? group
 ---@return integer count  of bonds

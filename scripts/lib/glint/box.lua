@@ -17,7 +17,7 @@ local function three(value, name, kind)
   return value
 end
 
---- A whole box of what was given; raises where something is missing or wrong.
+--- Returns a complete box from the given fields; raises when something is missing or wrong.
 ---@param given table
 ---@param name string  for messages
 function box.check(given, name)
@@ -153,7 +153,7 @@ local function margins(b, reach)
 end
 
 --- The repetitions of points inside the box that lie within `reach` of it: calls found(i, x, y, z) with the number of a
---- point and the place of its image. Of each two opposite steps, by p, q, r sides and by -p, -q, -r, one is taken.
+--- point and the place of its image. Only one of two opposite steps is taken, p, q, r or -p, -q, -r.
 ---@param b table
 ---@param n integer  how many points; the lists may be longer, and grow meanwhile
 ---@param x number[]  places, brought back into the box

@@ -24,7 +24,7 @@ local function words(line)
   return list
 end
 
--- What one colour is: 255, or 1 where numbers have fractions, 65535 of 16 bits.
+-- The value of full colour: 255, or 1 if numbers have fractions, 65535 with 16 bits.
 local function most_of(code)
   return ({ f = 1, d = 1, H = 65535 })[code] or 255
 end

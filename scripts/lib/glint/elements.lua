@@ -78,7 +78,7 @@ local NAMES = { CA = "C", CD = "C", CE = "C", CF = "C", CM = "C", HE = "H", HF =
 local SITES = { BQ = true, DA = true, DU = true, DUM = true, TV = true, VC = true, VS = true, VAC = true }
 
 --- The symbol that a label begins with: of an atom with a number or charge (C13, Fe+3, O2-, 13C), of a place (CB, HG11,
---- OW) or of a force field (C_R, C.ar). Nil when it is the label of no element, as that of a ghost atom (Xx, Bq, EP).
+--- OW) or of a force field (C_R, C.ar). Nil when it is not the label of an element, such as a ghost atom (Xx, Bq, EP).
 ---@param label string
 function elements.of_label(label)
   local symbol = elements.symbol(label)

@@ -12,7 +12,7 @@
 --     }
 --     print(found.values.lamp_x, found.uncertainty.lamp_x, found.converged)
 -- The uncertainty of a number is its standard deviation, as far as the differences that are left are independent noise:
--- how well the picture tells the number. Of a .png the values at full white, which are clipped, are left out.
+-- how well the picture determines the number. Values of a .png at full white are clipped, and left out.
 local glint = require "glint"
 local fit = {}
 
@@ -33,7 +33,7 @@ local function numbers_of(picture, pass)
   return list
 end
 
--- The target's numbers, and which of them count: those that are not clipped.
+-- Returns the target's numbers, and flags for those that count because they are not clipped.
 local function read_target(target)
   local is_png = type(target) == "string" and target:lower():match "%.png$"
   local picture = type(target) == "string" and glint.read_image(target) or target
@@ -136,7 +136,7 @@ local function by_name(names, v)
   return out
 end
 
--- Standard deviations: the variance of what is left, through the inverse of the normal equations.
+-- Standard deviations: the variance of the residual, times the inverse of the normal equations.
 local function uncertainties(e, count)
   local inverted, out = inverse(e.a), {}
   local variance = e.sum / math.max(e.used - count, 1)

@@ -1,7 +1,7 @@
--- What the readers of atoms and points have in common: files of one or several frames, read one atom at a time.
+-- Shared by the readers of atoms and points: files of one or several frames, read one atom at a time.
 --     for frame in xyz.frames(path) do for label, x, y, z, radius in frame:atoms() do ... end end
--- A frame has number (from 1), count (nil where the format does not say it ahead), and what its format tells. Atoms
--- that a script does not look at are read over, and checked all the same. Nothing is kept: a file of any size takes
+-- A frame has number (from 1), count (nil if the format does not give it first), and the data of its format. Atoms
+-- that a script does not read are skipped, but checked all the same. Nothing is stored: a file of any size takes
 -- the memory of a line. Columns by name come after the radius, numbers where they are numbers, else text:
 --     for label, x, y, z, radius, charge, speed in frame:atoms("q", "speed") do ... end
 -- frame.columns lists the names. A film has the frames of a file in any order, as the pictures call for them:
@@ -50,7 +50,7 @@ function frame:fail(expected, got)
   self.source:fail(expected, got)
 end
 
--- What is captured of a line, as numbers where it can be.
+-- Returns the captures of a line, as numbers if possible.
 local function values(...)
   local list = { ... }
   for i = 1, select("#", ...) do list[i] = list[i] and lines.value(list[i]) end
@@ -93,7 +93,7 @@ function frames.name_columns(fields, names, pick)
   fields.pick = pick or frames.words(fields.places)
 end
 
--- What is left of a frame.
+-- Skips the rest of a frame.
 local function read_over(last)
   if not last or last.is_done then return end
   repeat until last.next_atom() == nil
@@ -187,7 +187,7 @@ function film:close()
   self.source:close()
 end
 
---- One frame of what a reader's frames() iterates over. Raises when there are fewer.
+--- Returns one frame of a reader's frames(). Raises when there are fewer.
 ---@param path string
 ---@param each function
 ---@param number integer  from 1. Default 1

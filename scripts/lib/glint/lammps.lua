@@ -31,7 +31,7 @@ local function bounds(source, what, count)
   return list
 end
 
--- A cell whose sides lie anyhow: abc origin. Its box, too, where they lie as those of a box.
+-- A cell with sides in any direction (abc origin), and its box if the sides are aligned like a box.
 local function read_cell(source, kinds, frame)
   local rows, origin = {}, {}
   for i, side in ipairs { "a", "b", "c" } do
@@ -141,7 +141,7 @@ local function read_atom(source, frame, columns, options)
   return label_of(source, columns, list, options), x, y, z, radius
 end
 
--- What stands below each ITEM line, up to the atoms.
+-- Reads the lines below each ITEM line, up to the atoms.
 local function read_header(source, line, frame)
   while true do
     local item = line and line:match "^ITEM:%s*(.-)%s*$"

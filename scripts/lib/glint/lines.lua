@@ -12,7 +12,7 @@ local LONGEST = 40 -- characters of a line that an error shows
 local LINE_MAX = 1 << 20 -- bytes
 local BLOCK = 1 << 16 -- bytes that are read at once
 
--- What other programs write and no reader here takes: by the ending of a file's name, and by its first bytes.
+-- Formats of other programs that no reader here takes: by the ending of a file's name, and by its first bytes.
 local ENDINGS = {
   cif = "CIF", mmcif = "mmCIF", bcif = "BinaryCIF", mmtf = "MMTF", mol2 = "Tripos MOL2", sdf = "SDF",
   mol = "an MDL molfile", gro = "a GROMACS structure", g96 = "a GROMOS structure", cube = "a Gaussian cube",
@@ -68,7 +68,7 @@ function lines.open(path)
   return setmetatable({ path = path, number = 0, file = file, block = "", at = 1, base = 0, line_at = 0 }, source)
 end
 
--- A block whose lines end in LF or CRLF: the same bytes, but for carriage returns without LF after them, which become
+-- A block whose lines end in LF or CRLF: the same bytes, except for carriage returns without LF after them, which become
 -- line ends, and for several before one LF, which are one line end.
 local function end_lines(block)
   if not block:find "\r[^\n]" then return block end
@@ -158,7 +158,7 @@ function lines.number(text)
   return tonumber(text) or tonumber((text:gsub("^(%s*[+-]?[%d.]+)[dD]?([+-]?%d+%s*)$", "%1e%2")))
 end
 
---- What a field holds: a number where it is one, else its text.
+--- Returns a field as a number if it is one, otherwise as text.
 ---@param text string
 function lines.value(text)
   return tonumber(text) or text:find(".", 1, true) and lines.number(text) or text

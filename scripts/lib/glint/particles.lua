@@ -5,7 +5,7 @@
 -- A label is a kind of options.kinds, an element (color and radius from glint.elements; C13, Fe+3 and CB begin with
 -- one), "type1" ... "type999" (a palette, radius 0.5: LAMMPS's reduced units) or "point" (grey, radius 0.5). Other
 -- labels in a file, as of ghost atoms, are one kind, "ghost" (pink, radius 0.5), with a warning a file.
--- Colours by a column of the file, in place of the kinds':
+-- Colours by a column of the file, instead of by kind:
 --     local set = particles.new { color_by = { column = "speed", map = "viridis" } }     -- also low, high: its range
 -- Memory: numbers are packed in chunks, there is no table for each sphere. A sphere takes 36 bytes (20 as "f32"), twice
 -- that for the moment in which spheres() puts the chunks together. Then the engine has it: some 260 bytes a sphere from
@@ -51,7 +51,7 @@ end
 
 --- An empty set.
 --- The options: kinds, { [label] = { color, radius } } before the known ones (radius 0.5 by default; `material` may
---- stand in place of color); scale, what the kinds' radii are multiplied by (default 1); radius, of every kind instead;
+--- replace color); scale, a factor for the kinds' radii (default 1); radius, for every kind instead;
 --- material, fields for each material such as { specular = 0.3 }; format, "f64" (default) or "f32" for half the memory;
 --- color_by, { column, map, low, high, missing }: spheres have the colour of their value in a map of glint.colormap
 --- (default viridis) from low to high (default: the lowest and highest value there is), in 256 steps; a missing value
@@ -209,7 +209,7 @@ local function put_value(self, value)
   self.lowest, self.highest = math.min(self.lowest, value), math.max(self.highest, value)
 end
 
--- Adds a sphere. Returns false, what was expected and what was got when it cannot be.
+-- Adds a sphere. On failure, returns false, the expectation, and the actual value.
 local function put(self, frame, label, x, y, z, radius, value, code)
   local kind = self.kinds[label] or kind_of(self, label, frame)
   if not kind then
@@ -273,8 +273,8 @@ local function add_colored(self, frame)
   return self
 end
 
---- Adds the atoms of a frame that a reader gave; points of a cloud with colours have these. What cannot be added is an
---- error with file and line. A box the frame has is kept, for glint.bonds.
+--- Adds the atoms of a frame from a reader; points of a coloured cloud keep their colours. An atom that cannot be added is an
+--- error with file and line. The frame's box is stored for glint.bonds.
 ---@return table set  the same
 function set:add_frame(frame)
   if frame.box then keep_box(self, frame.box) end

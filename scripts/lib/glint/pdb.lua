@@ -1,7 +1,7 @@
 -- PDB: the ATOM and HETATM records of the Protein Data Bank's format 3.3, by columns. Each MODEL is a frame.
 --     for label, x, y, z in pdb.frame "1crn.pdb":atoms() do ... end
--- The element is that of columns 77-78, and where these are empty that of the atom's name (columns 13-16) and residue.
--- Of atoms at alternate locations the first one is taken, whatever column 17 calls it. The massless places of a water
+-- The element comes from columns 77-78, or if these are empty from the atom's name (columns 13-16) and residue.
+-- If an atom has alternate locations, the first one is taken, whatever column 17 calls it. The massless places of a water
 -- (EPW, MW) are passed over. CRYST1 gives frame.cell = { origin, a, b, c } and frame.box (glint.box). Other records
 -- are passed over. The other fields are there by name, frame:atoms("chain", "bfactor"): serial, name, resname, chain,
 -- resseq, occupancy, bfactor, element, charge.
@@ -83,7 +83,7 @@ local function read_atom(source, fields, line)
 end
 
 -- Whether an atom is to be taken: of an atom at alternate locations the first, and of a residue that is one of several
--- kinds the atoms of the first kind. What is kept is the residue at hand, and all atoms that have alternate locations.
+-- kinds the atoms of the first kind. Only the current residue, and all atoms with alternate locations, are stored.
 local function is_first(fields, line)
   local name, alternate, kind = line:sub(13, 16), line:sub(17, 17), line:sub(18, 20)
   local place = line:sub(22, 27) .. line:sub(73, 76)
@@ -137,7 +137,7 @@ local function cell_of(source, line)
   return { origin = box.low, a = sides[1], b = sides[2], c = sides[3] }, box
 end
 
--- Records before a frame's atoms: its model and its cell, or that of the frame before it. The first record that is
+-- Records before a frame's atoms: its model and its cell, or the cell of the frame before. The first record that is
 -- neither is given back.
 local function read_head(source, number, fields)
   local cells = source.cells or {}

@@ -27,7 +27,7 @@ local function read_atom(source, frame, index)
   return label, source:number_of(x, "x"), source:number_of(y, "y"), source:number_of(z, "z")
 end
 
--- What stands between quotation marks or brackets at `from` of a text, and where the rest begins. Nil: they do not end.
+-- Returns the text between quotation marks or brackets at `from`, and the position after them. Nil: they do not end.
 local function enclosed(text, from)
   local mark = text:sub(from, from)
   if mark == '"' or mark == "'" then
@@ -126,7 +126,7 @@ local function periodic_of(source, fields)
   return list
 end
 
--- The cell of a frame, and its box where the sides lie as those of a box.
+-- Returns the cell of a frame, and its box if the sides are aligned like a box.
 local function find_cell(source, fields)
   local text = fields.keys.lattice
   if not text then return end

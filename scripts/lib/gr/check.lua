@@ -1,6 +1,6 @@
 -- The arguments of the dialect's calls, as the course's glue code takes them: numeric strings pass for numbers, vectors
 -- have exactly n entries, arguments too many are ignored. Errors name the function, the argument and the value, and
--- stand at the scene's line. The libraries' functions are kept here: a scene may overwrite the globals.
+-- stand at the scene's line. The libraries' functions are stored here, because a scene may overwrite the globals.
 local glint = require "glint"
 local check = {}
 
@@ -126,7 +126,7 @@ function check.vector(call, argument, value, n, least)
   return out
 end
 
---- A new table of 3 numbers, of length 1 along those of the value.
+--- Returns a new table: the value normalised to length 1.
 function check.direction(call, argument, value)
   local out = check.vector(call, argument, value, 3)
   local most = max(abs(out[1]), abs(out[2]), abs(out[3]))

@@ -1,7 +1,7 @@
 -- Which of the course's two generations a scene is from, by its text. In the first (Lua 5.0 and 5.1) transforms were
 -- multiplied on the right, "post", in the second (from about 2015) on the left, "pre".
 --
--- What gr.mesh is given tells most: tables in the first, the name of a file in the second. Then table.unpack, which the
+-- The arguments of gr.mesh tell most: tables in the first, the name of a file in the second. Then table.unpack, which the
 -- first did not have; then a bare `unpack(` or a `require`, which the second had no use for. Neither: the second.
 local check = require "gr.check"
 local files = require "gr.files"
@@ -44,7 +44,7 @@ local function bare(text)
   return concat(out)
 end
 
--- What the second argument of the call whose parenthesis opens before `at` begins with.
+-- Returns the beginning of the second argument of the call whose parenthesis opens before `at`.
 local function second_argument(text, at)
   local depth = 0
   while at <= #text do
@@ -93,7 +93,7 @@ local function by_words(whole)
   return (not serves_both and says_unpack(text) or not modern and requires(text)) and 1 or nil
 end
 
---- What the meshes say and what the words say: each 1, 2 or nil.
+--- Returns the generation by meshes and by words: each 1, 2 or nil.
 function generation.of_text(source)
   local text = bare(source)
   return by_meshes(text), by_words(text)

@@ -1,4 +1,4 @@
--- Lights: the course's points, and what its variants have for lamps with a surface. Each point of a surface shines as a
+-- Lights: the course's point lights, and its variants' lamps with a surface. Each point of a surface shines as a
 -- point light does, to all sides, and the lamp is their mean.
 local check = require "gr.check"
 check.own_source()
@@ -86,7 +86,7 @@ local function parallelogram(call, corner, a, n, b, m, colour, falloff, ...)
   return "polygon_light", fields
 end
 
---- What makes a lamp of the arguments of gr.area_light: the name of a function of glint, and its fields.
+--- Turns the arguments of gr.area_light into the name of a function of glint, and its fields.
 function lamp.area(call, place, second, third, fourth, ...)
   if type(place) ~= "table" then
     check.raise("gr.%s: {position}, {colour}, {fall-off}, radius expected, got %s first: this is another variant of "
@@ -97,7 +97,7 @@ function lamp.area(call, place, second, third, fourth, ...)
   return ball(call, place, second, third, fourth, ...)
 end
 
---- The same of those of gr.rect_light.
+--- The same for gr.rect_light.
 function lamp.rectangle(call, middle, width, depth, colour, falloff, samples, ...)
   middle = check.vector(call, "middle", middle, 3)
   width, depth = check.above(call, "width", width, 0), check.above(call, "depth", depth, 0)

@@ -1,4 +1,4 @@
--- What few variants lay on shapes: pictures of normals, and noise.
+-- Layers on shapes that few variants have: pictures of normals, and noise.
 local check = require "gr.check"
 local normal_map = require "gr.normal_map"
 local surface = require "gr.surface"
@@ -6,7 +6,7 @@ check.own_source()
 
 local pairs, setmetatable, type = pairs, setmetatable, type
 
---- Adds the calls to gr. shape_of(call, node): what it holds of a shape; methods: the metatable of what they make.
+--- Adds the calls to gr. shape_of(call, node): the data of a shape; methods: the metatable of the objects made here.
 return function(gr, shape_of, methods)
   local maps, grains = setmetatable({}, { __mode = "k" }), setmetatable({}, { __mode = "k" })
 
@@ -38,7 +38,7 @@ return function(gr, shape_of, methods)
     return object
   end
 
-  -- What numbers it was made of, or come here, is each variant's own.
+  -- Each variant uses its own numbers for it.
   function gr.set_perlin(self, kind)
     local node = shape_of("set_perlin", self)
     if not grains[kind] then check.number("set_perlin", "kind", kind) end

@@ -37,7 +37,7 @@ local function frexp(x)
   return m, e
 end
 
--- Of Lua 5.1: what the calling file defines from here on goes into a table of this name.
+-- As in Lua 5.1: definitions of the calling file from here on go into a table of this name.
 local function module(name, ...)
   local space = package.loaded[name]
   if type(space) ~= "table" then

@@ -1,4 +1,4 @@
--- Models: the `v`, `vt` and `f` lines of .obj files, as the course's hosts and those of textures read them. Normals are
+-- Models: the `v`, `vt` and `f` lines of .obj files, as the course's programs read them, with textures. Normals are
 -- dropped, and so is every other line. `require "readobj"` gives the course's function where the scene has no such
 -- file.
 local check = require "gr.check"

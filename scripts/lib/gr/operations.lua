@@ -1,4 +1,4 @@
--- What the variants of the dialect call the operations of combined solids.
+-- Names for the operations of combined solids in the variants of the dialect.
 local check = require "gr.check"
 check.own_source()
 local operations = {}

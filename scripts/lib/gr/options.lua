@@ -1,10 +1,10 @@
--- What the course left open, as fields of gr.options: they are checked as they are set.
+-- Choices that the course left open, as fields of gr.options, which are checked when they are set.
 --
 --   order       "pre" or "post": how transforms are multiplied; nil, the default: as the scene's generation does
 --   pixel       where in its pixel a ray passes, 0 (the corner) or 0.5
 --   specular    "phong" or "blinn"
 --   plane       the square of gr.plane(name): "xz" or "xy" of edge 1 around the origin, "xz-2" or "xy-2" of edge 2,
---               "xz-corner" or "xy-corner" of edge 1 from the origin on; nil, the default: "xz", and told of
+--               "xz-corner" or "xy-corner" of edge 1 from the origin on; nil, the default: "xz", with a warning
 --   axis        "x", "y" or "z": of gr.cylinder and gr.cone
 --   background  {r, g, b} from 0 on, "r,g,b", or "#rrggbb", the codes of the picture
 local check = require "gr.check"

@@ -2,7 +2,7 @@
 --
 -- The graph is walked at every call, so that what was called on a shared node shows under all its parents. Each place
 -- where a shape shows is a glint shape of its own that lives as long as the node: a picture of the same places as the
--- last one is the same glint scene, with what has changed set anew.
+-- last one is the same glint scene, with the changes applied.
 local check = require "gr.check"
 local generation = require "gr.generation"
 local glint = require "glint"
@@ -56,7 +56,7 @@ local function count_shapes(root)
   return count
 end
 
--- 1 or 2 by what the meshes in the graph were made of, nil without meshes.
+-- Returns 1 or 2 by the kind of the graph's meshes, nil without meshes.
 local function generation_of_meshes(count)
   local found
   for node in pairs(count) do
@@ -137,7 +137,7 @@ local function try(change, ...)
   if type(result) ~= "string" or not result:find "flattens space" then fail(result) end
 end
 
--- The material of a place: that of the node, with what lies on the shape.
+-- Returns the material of a place: the node's, with the layers of the shape.
 local function shade_of(node, map)
   local bare = node.kind == "mesh" and not mesh.has_coordinates(node.model)
   local record = node.material or surface.plain(node.picture)
@@ -219,7 +219,7 @@ local function check_parts(node)
   end
 end
 
--- One solid of what is under each of the node's parts.
+-- Makes one solid from the shapes under each of the node's parts.
 function combine(node, order, count, map, dressed)
   check_parts(node)
   local own = node.material or node.picture
@@ -239,7 +239,7 @@ end
 
 -- ---- The scene ----
 
-local last = { members = {} } -- the scene of the last picture, and what is in it
+local last = { members = {} } -- the scene of the last picture, and its objects
 
 local function has_members(members)
   if not last.scene or #members ~= #last.members then return false end

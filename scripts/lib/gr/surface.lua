@@ -1,4 +1,4 @@
--- What surfaces are: materials with what the variants of the dialect add, and pictures and reliefs that lie on them. A
+-- Surfaces: materials with the additions of the dialect's variants, and pictures and reliefs on them. A
 -- record says it in plain fields; surface.shade makes the glint.material of a record at one place of a shape.
 local check = require "gr.check"
 local files = require "gr.files"
@@ -18,7 +18,7 @@ local HEIGHT = 0.05 -- of a relief's white above its black, over the shape's siz
 
 local photos = {} -- by the name that the scene gives
 
--- Codes are colours as they are, as those of the dialect's own pictures.
+-- Pixel values are linear colours, as in the dialect's own pictures.
 local function read_photo(call, name)
   name = check.text(call, "file", name)
   if photos[name] then return photos[name] end
@@ -65,7 +65,7 @@ end
 local function is_share(x) return x >= 0 and x <= 1 end
 local function is_index(x) return x > 1 and x <= INDEX_MAX end
 
--- Glass by its index alone: how much it mirrors follows from that.
+-- Glass given only by its index, from which its reflectance follows.
 local function make_glass(record, index) record.transmission, record.ior, record.fresnel = 1, index, true end
 
 -- One number: a reflectivity or an index. A plain 1 is in some scenes what makes every material opaque.
@@ -143,7 +143,7 @@ local function model_of(shininess)
   return (options.specular == "blinn" or shininess == 0) and "blinn_phong" or "phong"
 end
 
---- A record of the course's three arguments, and of what follows them.
+--- A record of the course's three arguments, and of those after them.
 function surface.record(call, kd, ks, shininess, ...)
   local record = { kd = check.vector(call, "kd", kd, 3, 0), ks = check.vector(call, "ks", ks, 3, 0) }
   record.shininess = check.at_least(call, "shininess", shininess, 0)
@@ -170,7 +170,7 @@ function surface.glass(record, call, index)
   make_glass(record, index)
 end
 
---- A surface hides that share of what lies behind it, and has as much of its own light; index: of refraction.
+--- A surface hides that share of the light behind it, and has as much of its own light; index: of refraction.
 function surface.hide(record, call, share, index)
   record.opacity = check.at_least(call, "opacity", share, 0)
   if record.opacity > 1 then check.refuse(call, "opacity", "number 0 .. 1", share) end
@@ -244,7 +244,7 @@ local function scale_of(map)
   return abs(determinant) ^ (1 / 3)
 end
 
-local kept = setmetatable({}, { __mode = "k" }) -- materials, by record and by what lies on the shape
+local kept = setmetatable({}, { __mode = "k" }) -- materials, by record and by the layers of the shape
 local NONE = {}
 
 local function part(all, key)
@@ -252,7 +252,7 @@ local function part(all, key)
   return all[key]
 end
 
--- When a bump is the same, and what makes it: of normals it depends on shape and map, of a relief on its size.
+-- Returns the key and the maker of a bump: with normals it depends on shape and map, with a relief on its size.
 local function bump_on(relief, picture, node, map)
   local normals = node.normals
   if normals then return tostring(map), function() return normal_map.bump(normals, node, map) end end
@@ -260,7 +260,7 @@ local function bump_on(relief, picture, node, map)
   return scale, function() return relief and bump_of(relief, picture, scale) end
 end
 
---- The glint.material of a record on a node's shape, under what lies on that alone, where the map has put it.
+--- Returns the glint.material of a record on a node's shape, with the layers of only this shape, at its place.
 -- bare: the shape has no coordinates for pictures and reliefs.
 function surface.shade(record, node, map, bare)
   local picture, relief = node.picture or record.picture, node.relief or record.relief
