@@ -2,7 +2,7 @@
 //
 //     glint.animation { scene = s, frames = 120, fps = 24, cyclic = true, frame = function(t, n) ... end }
 //
-// t = (n-1)/frames when cyclic, else (n-1)/(frames-1), and 0 for a single frame. `frame` may depend on t and n alone:
+// t = (n-1)/frames when cyclic, else (n-1)/(frames-1), and 0 for a single frame. `frame` must depend only on t and n:
 // it is called for the selected frames only, so that one frame must not build on another. While the camera's shutter is open it
 // is called for several t around the frame's own, and for that one last.
 #include <math.h>

@@ -166,7 +166,7 @@ static void get(const void *object, void *desc)
     memcpy(d->focus.point, d->camera.focus_point, sizeof d->focus.point);
 }
 
-// What the engine takes.
+// Returns the engine's description of the camera.
 static glint_camera_desc described(const desc_type *d)
 {
     glint_camera_desc camera = d->camera;

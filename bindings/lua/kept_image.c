@@ -1,4 +1,4 @@
-// The image that scene:render returns for a file that was kept: rendered when the script first looks at it.
+// The image that scene:render returns for a file that is already there. It is rendered when the script first reads it.
 //
 // Most scripts never do, and a resumed loop then costs nothing. At the first look the userdata becomes an image like
 // any other: it is a glintL_box with a plan behind it.

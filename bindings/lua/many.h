@@ -4,7 +4,7 @@
 
 #include "bindings/value/glintL.h"
 
-/// Of one constructor, whose table is the first argument: its words, and places on its stack that are free for this.
+/// The names of a constructor, whose table is the first argument, and free positions on its stack.
 typedef struct glintL_many {
     const char *object, *each; ///< "spheres", "sphere"
     int material, materials, index; ///< the fields

@@ -381,7 +381,7 @@ static glintL_box *begin(lua_State *L)
     return box;
 }
 
-// The materials of a file live as long as the mesh, with what a script puts into their fields.
+// The materials of a file live as long as the mesh, and keep the script's changes of their fields.
 static void keep_materials(lua_State *L, const glint_shape *shape)
 {
     glint_material *const *list;

@@ -66,14 +66,14 @@ static int list_fields(lua_State *L)
     return 1;
 }
 
-// _other_kind(path): "device", "pipe", "socket" or "folder" where it is one. For scripts/lib alone.
+// _other_kind(path): "device", "pipe", "socket" or "folder" if it is one. Only for scripts/lib.
 static int other_kind(lua_State *L)
 {
     lua_pushstring(L, glintL_other_kind(luaL_checkstring(L, 1)));
     return 1;
 }
 
-// _warn(message): the run's warning, without a position. For scripts/lib alone.
+// _warn(message): the run's warning, without a position. Only for scripts/lib.
 static int warn(lua_State *L)
 {
     glintL_run_warn(glintL_get_run(L), "%s", luaL_checkstring(L, 1));

@@ -1,4 +1,4 @@
-// glint.ease and glint.keys: numbers that move with a frame's time. Sums and products alone, so that all machines agree.
+// glint.ease and glint.keys: numbers that move with a frame's time. Only sums and products, so that all machines agree.
 #include "bindings/value/glintL.h"
 
 #include <math.h>
@@ -144,7 +144,7 @@ static uint32_t value_size(lua_State *L, const char *path, bool *is_list)
     return (uint32_t)size;
 }
 
-/// The value on top, like that of the first key.
+/// Checks that the value on top has the kind of the first key's value.
 static void read_value(lua_State *L, const char *path, const track *k, double *out)
 {
     bool is_list;

@@ -1,4 +1,4 @@
-// One parameter of glint.params: its default and limits, and what --set makes of it.
+// One parameter of glint.params: its default and limits, and its value from --set.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

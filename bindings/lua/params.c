@@ -14,7 +14,7 @@ typedef struct params_box {
     void *self; // see glintL_job
 } params_box;
 
-// ---- The list of all, and what a picture says of them ----
+// ---- The list of all parameters, and their entries in a picture's file ----
 
 void glintL_push_params(lua_State *L)
 {
@@ -124,7 +124,7 @@ static lua_Integer push_names(lua_State *L)
     return count;
 }
 
-// Puts the spec on top into the list, in place of one of the same name; pops it.
+// Puts the spec on top into the list, replacing one of the same name; pops it.
 static void list_spec(lua_State *L, const char *name, int list)
 {
     lua_Integer count = luaL_len(L, list), at = 1;

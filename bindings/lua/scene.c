@@ -115,7 +115,7 @@ static void release(void *object) { glint_scene_release(object); }
 // ---- Objects in and out ----
 
 // Keeps the userdata at `value` as long as the scene at `index`, or lets go of it; by the address of its object.
-// Returns whether it was kept before.
+// Returns whether it was stored before.
 static bool keep_object(lua_State *L, int index, const void *object, int value)
 {
     lua_getiuservalue(L, index, 1);
@@ -142,7 +142,7 @@ static void drop_object(lua_State *L, int index, const void *object)
     lua_pop(L, 1);
 }
 
-// What a scene holds; two of the three are NULL.
+// An element of a scene; two of the three are NULL.
 typedef struct member {
     glint_shape *shape;
     glint_light *light;
@@ -302,7 +302,7 @@ typedef struct ray {
     double origin[3], direction[3];
 } ray;
 
-// Casts the ray and pushes the shape it hits, or nil. Of a shape no userdata stands for any more the box is made
+// Casts the ray and pushes the shape it hits, or nil. If no userdata exists any more for a shape, its box is made
 // first and the ray cast again: making it may run a finalizer, which may change the scene.
 static bool cast_ray(lua_State *L, const ray *r, glint_hit *out)
 {

@@ -48,7 +48,7 @@ static const glintL_field DISK_FIELDS[] = {
     { .name = NULL },
 };
 
-// Of cylinders and cones.
+// Fields of cylinders and cones.
 static const glintL_field ROUND_FIELDS[] = {
     { .name = "base", .kind = GLINTL_VECTOR, .offset = AT(base), .required = true },
     { .name = "top", .kind = GLINTL_VECTOR, .offset = AT(top), .required = true },
@@ -135,7 +135,7 @@ static int push_corner(lua_State *L, bool upper)
 static int get_min(lua_State *L) { return push_corner(L, false); }
 static int get_max(lua_State *L) { return push_corner(L, true); }
 
-// Of spheres and meshes.
+// Methods of spheres and meshes.
 static const luaL_Reg MANY_GETTERS[] = {
     { "count", get_count }, { "materials", get_materials }, { "min", get_min }, { "max", get_max }, { NULL, NULL },
 };

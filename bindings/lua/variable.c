@@ -78,7 +78,7 @@ bool glintL_dual_function(lua_State *L, const char *name)
     return false;
 }
 
-// Calls Lua's own function, the first upvalue, with what came.
+// Calls Lua's own function, the first upvalue, with the same arguments.
 static int call_plain(lua_State *L)
 {
     lua_pushvalue(L, lua_upvalueindex(1));

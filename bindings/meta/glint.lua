@@ -110,7 +110,7 @@ local material = {}
 ---@return glint.reflection
 function material:evaluate(geometry) end
 
---- Gives the object back at once instead of when it is collected. What holds it (a shape, a scene) goes on using it.
+--- Gives the object back at once instead of when it is collected. Objects that hold it (a shape, a scene) keep using it.
 function material:close() end
 
 ---@param fields glint.material_fields
@@ -536,7 +536,7 @@ function glint.group(fields) end
 ---@class glint.combined_fields: glint.shape_fields
 ---@field [integer] glint.shape  its parts: spheres, boxes, capped cylinders and cones, tori, planes, closed meshes, combined solids and groups of these
 
---- What is in any part.
+--- Everything inside any part.
 --- One solid of several: its parts, 1 .. 64 in all, where a torus counts twice and a closed mesh four times. A plane is the half-space behind it, a group what any of it is. A part shows only where
 --- it bounds the whole, with its own material or, without one, the whole's, which is that of its first part that has one where it is not
 --- given; light inside has the `ior` and `absorption` of that. The whole is one object. `two_sided` of parts means nothing.
@@ -559,8 +559,8 @@ function union:close() end
 ---@return glint.union
 function glint.union(fields) end
 
---- What is in all parts.
---- See glint.union for its parts, their materials and what is inside.
+--- Everything inside all parts.
+--- See glint.union for parts, their materials and the inside.
 ---@class glint.intersection: glint.combined_fields
 ---@field count integer  how many parts it was given; only read
 local intersection = {}
@@ -580,8 +580,8 @@ function intersection:close() end
 ---@return glint.intersection
 function glint.intersection(fields) end
 
---- What is in the first part and in none of the others. Where one of these ends at a face of the first, that face is open.
---- See glint.union for its parts, their materials and what is inside.
+--- Everything inside the first part and outside the others. Where one of these ends at a face of the first, that face is open.
+--- See glint.union for parts, their materials and the inside.
 ---@class glint.difference: glint.combined_fields
 ---@field count integer  how many parts it was given; only read
 local difference = {}
@@ -603,7 +603,7 @@ function glint.difference(fields) end
 
 -- ---- Overlays: labels, colour bars, axes ----
 
---- What is drawn over a finished picture: in .png files of beauty alone, not in other passes and not in .pfm, .npy and .exr.
+--- Drawn over a finished picture: only in .png files of beauty, not in other passes and not in .pfm, .npy and .exr.
 --- Lengths in points are dpi / 72 pixels where `dpi` is set, else pixels.
 ---@class glint.overlay_fields
 ---@field at? "top left"|"top"|"top right"|"left"|"center"|"right"|"bottom left"|"bottom"|"bottom right"|number[]  where it is, or {x, y} in shares of the room it leaves within the margin. Default of a label "top left", a colour bar "right", axes "bottom left"
@@ -701,7 +701,7 @@ function glint.ambient_occlusion(fields) end
 ---@class glint.scene: glint.scene_fields
 local scene = {}
 
---- Adds a shape, light or overlay, numbered after those of its kind that are there. Raises when it is there already.
+--- Adds a shape, light or overlay, numbered after the others of its kind. Raises when it is in the scene already.
 ---@generic T: glint.shape|glint.light|glint.overlay|glint.ambient_occlusion
 ---@param object T
 ---@return T object  the same
@@ -735,7 +735,7 @@ function scene:objects() end
 ---@return "skipped"? reason
 function scene:render(options) end
 
---- Gives the scene and what only it holds back at once.
+--- Frees the scene, and everything that only it holds, at once.
 function scene:close() end
 
 ---@param fields glint.scene_table
@@ -763,7 +763,7 @@ function glint.scene(fields) end
 --- of that group or name; "light:ambient": the light that no lamp sends; "light:*": all of these
 ---| "outline"  # 1 where objects end, hide each other or have an edge, else 0; one number, at the pixel's centre
 
---- What a frame and its file are to be. What the command line says beats it.
+--- Options of a frame and its file. The command line takes precedence.
 ---@class glint.render
 ---@field width? integer  pixels, 1 .. 65535. Default 1280
 ---@field height? integer  pixels, 1 .. 65535. Default 720
@@ -863,7 +863,7 @@ function glint.params(list) end
 ---@return glint.dual
 function glint.variable(name, value) end
 
---- The number alone.
+--- The plain number.
 ---@param x glint.dual|number
 ---@return number
 function glint.value(x) end
@@ -920,13 +920,13 @@ function glint.sweep(fields) end
 -- ---- Patterns and shaders ----
 
 -- A function that says what a material is at a point, or what one light leaves there. It is called once a frame, with
--- symbols in place of numbers; what it does to them is written down as a program, which runs at the speed of a kernel
+-- symbols instead of numbers; its operations on them are recorded as a program, which runs at the speed of a kernel
 -- with the bits of plain Lua. Loops and calls are unrolled; variables outside may change from frame to frame. What is
 -- not known yet cannot be compared: `a < b`, `==`, `#`, `..` and math.sin of a symbol raise, and say what to write. `if`,
 -- `and` and `or` cannot raise; a function of a new form is run by plain Lua at 64 points, too, and must give what the
 -- program gives. A branch that none of them takes is not seen.
 
---- Three numbers or symbols: p, s.n, and what is made of them. `a + b`, `a - b`, `a * b`, `a / b`, `a % b`, `a // b`, `a ^ b`
+--- Three numbers or symbols: p, s.n, and results computed from them. `a + b`, `a - b`, `a * b`, `a / b`, `a % b`, `a // b`, `a ^ b`
 --- and `-a` work component by component; either side may be a number or a symbol. Where an operation takes a vector, a
 --- table with x, y and z or a list of three will do.
 ---@class glint.triple
@@ -976,7 +976,7 @@ function triple:unpack() end
 --- A number, a symbol, a vector, a table {x, y, z} of numbers and symbols, or (of operations by name) the name of a colour.
 ---@alias glint.values glint.triple|glint.vector|number[]|number|string
 
---- What a function knows of a point.
+--- The inputs of a function at a point.
 ---@class glint.surroundings
 ---@field p glint.triple  the point in its shape's own space, before the shape's transform and those of its groups. On planes with an axis as normal and on faces of boxes that component is the face's own number exactly
 ---@field world glint.triple  the point in world space
@@ -994,7 +994,7 @@ function triple:unpack() end
 
 --- A colour or a number at each point. Of a material's fields diffuse, ambient, specular, mirror, transmission, shininess,
 --- roughness, bump and opacity take one, of a scene's background. `#pattern` is the length of its program, `tostring(pattern)` the program; `pattern(p, s)`
---- calls the function. NaN and what is below 0 count as 0.
+--- calls the function. NaN and negative values count as 0.
 ---@class glint.pattern
 local pattern = {}
 
@@ -1007,7 +1007,7 @@ function pattern:evaluate(at) end
 ---@return glint.pattern
 function glint.pattern(f) end
 
---- What one light leaves at each point: the diffuse part, and the specular one or nothing. It is a material's `model`, and
+--- The light that a point reflects from one lamp: the diffuse part, and optionally the specular one. It is a material's `model`, and
 --- called where n.l > 0. Ambient light stays the engine's.
 ---@class glint.shader
 local shader = {}
@@ -1060,7 +1060,7 @@ function glint.colormap(map, low, high, scale, missing) end
 
 -- ---- Operations ----
 
--- Of numbers, with the same bits on every machine; inside a pattern of symbols, with the same bits again. Those of
+-- For numbers, with the same bits on every machine; inside a pattern for symbols, with the same bits again. Those of
 -- numbers take vectors, too, component by component; a number with a vector counts for each component. The results of
 -- less and its like are 1 and 0; as a condition every number but 0 is true.
 
@@ -1088,7 +1088,7 @@ function glint.unit(a) end
 ---@return glint.triple
 function glint.reflect(d, n) end
 
---- Of three numbers or symbols, or of one value for all of them.
+--- From three numbers or symbols, or from one value for all of them.
 ---@param x glint.values
 ---@param y? number
 ---@param z? number
@@ -1265,12 +1265,12 @@ function glint.smoothstep(a, b, x) end
 ---@return any
 function glint.clamp(x, a, b) end
 
---- Of radians.
+--- The argument is in radians.
 ---@param a glint.values
 ---@return any
 function glint.sin(a) end
 
---- Of radians.
+--- The argument is in radians.
 ---@param a glint.values
 ---@return any
 function glint.cos(a) end
@@ -1327,7 +1327,7 @@ function glint.acos(a) end
 ---@return any
 function glint.highlight(cosine, shininess) end
 
---- Gradient noise: smooth, -1 .. 1, 0 at whole numbers. Of a vector, or of x, y and z.
+--- Gradient noise: smooth, -1 .. 1, 0 at whole numbers. Takes a vector, or x, y and z.
 ---@param p glint.values
 ---@return number
 function glint.noise(p, y, z) end

@@ -1,4 +1,4 @@
-// What a function reads of a point: p, and the fields of s.
+// The inputs of a function at a point: p, and the fields of s.
 #include "bindings/pattern/pattern.h"
 
 #include <string.h>
@@ -61,7 +61,7 @@ static void push_field(lua_State *L, const glintL_trace *trace, const field *f)
 
 void glintL_push_point(lua_State *L) { push_field(L, glintL_current_trace(L), &FIELDS[0]); }
 
-// 1: s, 2: the field's name. The field is kept in s.
+// 1: s, 2: the field's name. The field is stored in s.
 static int read_surroundings(lua_State *L)
 {
     const glintL_trace *trace = glintL_current_trace(L);

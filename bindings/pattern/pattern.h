@@ -52,7 +52,7 @@ typedef struct glintL_trace {
     glint_builder *builder;
     const double *point; ///< GLINT_INPUT_COUNT numbers; NULL: symbols
     bool is_shader;
-    bool has_power; ///< `^` was met whose bits are not those of C's pow
+    bool has_power; ///< `^` was used with other bits than C's pow
     glintL_choices choices;
     glintL_choices *before; ///< of the same function: a choice that was not used there is false; NULL: none is
     uint64_t serial; ///< no two of a Lua state have the same
@@ -87,14 +87,14 @@ glintL_term glintL_read_term(lua_State *L, int index, const char *path);
 /// A vector in one argument, or three numbers; returns the index after it.
 int glintL_read_place(lua_State *L, int index, const char *path, glintL_term out[3]);
 void glintL_push_term(lua_State *L, glintL_term term);
-void glintL_push_choice(lua_State *L, glintL_term term); ///< as glintL_push_term, of what is 0 or 1; see glintL_trace.before
+void glintL_push_choice(lua_State *L, glintL_term term); ///< like glintL_push_term, for a value that is 0 or 1; see glintL_trace.before
 void glintL_push_operand(lua_State *L, const glintL_operand *operand);
 
 // ---- symbol.c, triple.c ----
 
 /// The metamethods of arithmetic, of symbols, triples and vectors.
 void glintL_set_arithmetic(lua_State *L);
-/// Those that symbols and triples share: arithmetic, and what raises.
+/// Metamethods shared by symbols and triples: arithmetic, and those that raise.
 void glintL_set_operators(lua_State *L);
 /// Three numbers are pushed as a vector.
 void glintL_push_triple(lua_State *L, const glintL_term v[3]);
@@ -111,13 +111,13 @@ void glintL_read_inputs(lua_State *L, int index, bool is_shader, double inputs[G
 
 // ---- trace.c ----
 
-/// What a traced function gave, as a userdata on the stack that holds a reference to the program.
+/// The result of a traced function, as a userdata on the stack that holds a reference to the program.
 typedef struct glintL_traced {
     glint_program *program;
     bool has_power;
 } glintL_traced;
 
-/// What runs a function: the end of the script's Lua code on the way up, see glintL_traced_place.
+/// Runs a function. It marks the end of the script's Lua code on the call stack, see glintL_traced_place.
 int glintL_call_function(lua_State *L);
 /// Calls the function of the pattern at `index` and pushes what it gave; the 64 points are looked at when its structure is new.
 /// As a background a texture goes around, whatever it does at its border elsewhere.

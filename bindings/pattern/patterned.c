@@ -193,7 +193,7 @@ void glintL_trace_material(lua_State *L, int index)
 typedef struct entry {
     const glint_material *material;
     lua_Integer place; // of its userdata in a list
-    size_t met; // its turn among those of the scene, from 1; 0: it is in another
+    size_t met; // its number among the scene's backgrounds, from 1; 0: it belongs to another scene
 } entry;
 
 typedef struct entries {
@@ -251,7 +251,7 @@ static entries *push_entries(lua_State *L)
     return all;
 }
 
-// The scene's own; it has a table of its own, too, of what they gave.
+// The scene's own patterns, with a table of their programs.
 static void trace_background(lua_State *L, const glint_scene *scene)
 {
     const int top = lua_gettop(L);

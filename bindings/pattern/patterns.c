@@ -1,4 +1,4 @@
-// What of patterns the module opens, and what values have to know of them.
+// Opens the module's functions for patterns, and tells other values about them.
 #include "bindings/pattern/pattern.h"
 
 static const luaL_Reg METHODS[] = {

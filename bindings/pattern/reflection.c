@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-// A number as a frame would take it: NaN and what is below 0 are 0.
+// Returns a number as a frame takes it: NaN and negative values become 0.
 static double reflectance(double x) { return x > 0 ? fmin(x, 0x1p100) : 0; }
 
 static glint_status run(const glint_program *program, const double inputs[GLINT_INPUT_COUNT], double *out, size_t count,

@@ -47,7 +47,7 @@ static void read_file(lua_State *L, char out[4096])
         run->reporter.reads(run->reporter.context, out);
 }
 
-// What the texture's fields read as, in a table that is its user value 1.
+// The texture's fields for reading, in a table that is its user value 1.
 static void keep_fields(lua_State *L, const arguments *a, const glint_texture *texture)
 {
     lua_createtable(L, 0, 6);

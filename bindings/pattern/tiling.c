@@ -33,7 +33,7 @@ static glintL_term mean_of_wave(lua_State *L, glintL_term x, glintL_term share, 
     return glintL_apply3(L, GLINT_OP_CLAMP, mean, number(0), number(1));
 }
 
-// Of the wave that is 1 in every even unit and -1 in every odd one.
+// The integral of the wave that is 1 in every even unit and -1 in every odd one.
 static glintL_term mean_sign(lua_State *L, glintL_term x, glintL_term width)
 {
     const glintL_term half = mul(L, number(0.5), x), narrow = mul(L, number(0.5), width);

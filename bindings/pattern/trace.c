@@ -1,4 +1,4 @@
-// A function of a script called with symbols, and what it gives as a program.
+// Calls a function of a script with symbols, and makes a program of its results.
 #include "bindings/pattern/pattern.h"
 
 #include <stdio.h>
@@ -11,7 +11,7 @@
 // A call as Lua holds it, so that an error leaves no builder behind.
 typedef struct session {
     glintL_trace trace;
-    size_t count; // of what the function gave: 1 or 3 of a pattern, 3 or 6 of a shader
+    size_t count; // number of results: 1 or 3 for a pattern, 3 or 6 for a shader
     glintL_term terms[6];
 } session;
 
@@ -62,7 +62,7 @@ static bool has_place(const char *text)
     return false;
 }
 
-// What to write for a function of Lua that wants a number.
+// Returns what to write instead of a function of Lua that needs a number.
 static const char *push_own_function(lua_State *L, const char *text)
 {
     const char *name = glintL_push_name_after(L, text, "bad argument #1 to '");
@@ -73,7 +73,7 @@ static const char *push_own_function(lua_State *L, const char *text)
     return lua_pushliteral(L, "a symbol has no number yet; write glint's own function, glint.sin(x) for math.sin(x)");
 }
 
-// Lua's own messages about symbols, with what to write instead.
+// Extends Lua's own messages about symbols by what to write instead.
 static int explain(lua_State *L)
 {
     const glintL_trace *trace = glintL_current_trace(L);
@@ -296,7 +296,7 @@ static glint_status finish(session *s, glint_program **out, glint_error *error)
     return status ? status : glint_builder_finish(s->trace.builder, values, s->count, out, error);
 }
 
-// The picture itself, by what is there as s.uv.
+// A texture used directly, at s.uv.
 static glint_status finish_picture(glint_builder *builder, const glint_texture *texture, glint_program **out,
                                    glint_error *error)
 {

@@ -158,7 +158,7 @@ static const luaL_Reg METHODS[] = {
     { NULL, NULL },
 };
 
-// What the table itself does not have: r, g, b and u, v, the numbers 1, 2, 3, and methods.
+// Looks up fields that the table itself does not have: r, g, b and u, v, the numbers 1, 2, 3, and methods.
 static int read_field(lua_State *L)
 {
     static const char letters[] = "rgbuv", places[] = "01201";

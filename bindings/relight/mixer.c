@@ -58,7 +58,7 @@ static void print_title(FILE *out, const char *text)
             fputc(*text, out);
 }
 
-// What stands for @NAME@ in the page, but the pixels.
+// Returns the replacement of @NAME@ in the page, except for the pixels.
 static void print_value(FILE *out, const char *name, const cli_options *options, const relight_mix *mix,
                         const char *file, const glint_image *image)
 {

@@ -1,4 +1,4 @@
-/// glint relight: pictures and a page of what light passes add up to. Private to bindings/.
+/// glint relight: pictures and a page made of light passes. Private to bindings/.
 #ifndef GLINT_RELIGHT_H
 #define GLINT_RELIGHT_H
 

@@ -139,7 +139,7 @@ static int raise_failure(lua_State *L, glintL_run *run)
     return glintL_error(L, PATH "%s", run->interrupted ? "interrupted" : run->message);
 }
 
-// Gives what was rendered to the handle at `first`, or the plan of what was kept to the one after it; leaves the one
+// Gives the rendered image to the handle at `first`, or the plan of an existing file to the one after it; leaves the one
 // that got something on top. Does not raise.
 static glint_status fill_handle(lua_State *L, int first, const glint_scene *scene, glintL_work *work, bool open,
                                 glint_error *error)

@@ -20,7 +20,7 @@ typedef struct glintL_made_text {
 } glintL_made_text;
 
 /// Runs the modules in order, each called with one table that has json(value) and base64(bytes) and takes their functions;
-/// then calls function `function` of that table with what `push` has pushed (it may raise), and keeps the string it
+/// then calls function `function` of that table with the values pushed by `push` (it may raise), and stores the string it
 /// returns. False: `message` says why. To be dropped in any case.
 bool glintL_make_text(const glintL_carried *modules, size_t count, const char *function,
                       void (*push)(lua_State *L, const void *context), const void *context, glintL_made_text *out,
@@ -28,7 +28,7 @@ bool glintL_make_text(const glintL_carried *modules, size_t count, const char *f
 void glintL_drop_text(glintL_made_text *text);
 /// Writes a file that appears whole or not at all.
 glint_status glintL_write_text(const char *path, const void *text, size_t size, glint_error *error);
-/// Pushes on `to` a copy of the value at `index` of `from`, tables and what is in them included; other objects as nil.
+/// Pushes on `to` a copy of the value at `index` of `from`, including tables and their contents; other objects become nil.
 void glintL_copy_value(lua_State *from, int index, lua_State *to);
 /// `out` has room for 4 bytes for each 3 of `size`, rounded up. Returns how many were written.
 size_t glintL_base64(const uint8_t *from, size_t size, char *out);

@@ -1,4 +1,4 @@
-// Passes d:NAME: which variables a frame is derived by, and what its scene's objects keep of their slopes.
+// Passes d:NAME: finds the variables of a frame's derivatives, and the slopes stored in the scene's objects.
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +22,7 @@ bool glintL_wants_variable(const glintL_run *run, const char *name)
     return false;
 }
 
-// What the C API calls a field that Lua has in degrees.
+// Returns the C API's name of a field that Lua has in degrees.
 static const char *engine_name(const glintL_field *field)
 {
     if (field->kind != GLINTL_DEGREES)

@@ -6,7 +6,7 @@
 
 // ---- film.c: films of a run ----
 
-/// A film and its frames. While a run renders it they are kept in the folder PATH.frames, so that nothing is lost when
+/// A film and its frames. While a run renders it, the frames are in the folder PATH.frames, so that nothing is lost when
 /// the run is interrupted or no film can be made; the folder goes when the film is there.
 typedef struct glintL_film {
     struct glintL_film *next;
@@ -34,7 +34,7 @@ void glintL_films_destroy(glintL_film *films);
 /// Whether the files are whole and go together: size, bits and transfer; when `strict`, also what they were made by.
 /// False: the message names the one that does not.
 bool glintL_film_check_files(const glintL_film *film, bool strict, char message[GLINTL_MESSAGE_SIZE]);
-/// Makes a film of its files. Returns the exit code; the message says what failed. What was not finished is gone.
+/// Makes a film of its files. Returns the exit code; the message says what failed. Incomplete files are removed.
 int glintL_film_make(glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE]);
 
 /// Reports that `done` frames are in the film.

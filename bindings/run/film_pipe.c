@@ -214,7 +214,7 @@ static int wait_for(const encoder *e, bool stop)
     return status;
 }
 
-// What ffmpeg printed, the last of it, on one line.
+// Returns the end of ffmpeg's output, on one line.
 static void read_said(FILE *said, char *out, size_t room)
 {
     long size = ftell(said);

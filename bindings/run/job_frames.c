@@ -1,4 +1,4 @@
-// A list of jobs frame by frame, in any order: its walk, and what axes its frames lie on.
+// Renders a list of jobs frame by frame, in any order, and knows the axes of its frames.
 #include <stdio.h>
 #include <string.h>
 

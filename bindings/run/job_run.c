@@ -1,4 +1,4 @@
-// animation:run{...} and sweep:run{...}: the frames of one job, from a script. What the command line says still wins.
+// animation:run{...} and sweep:run{...}: renders the frames of one job from a script. The command line still takes precedence.
 #include <stdio.h>
 #include <string.h>
 
@@ -87,7 +87,7 @@ static int run_protected(lua_State *L)
     return 0;
 }
 
-// Runs the list at `list`, which holds the job at 1 alone, as `request` says; the run and the job are as before afterwards.
+// Runs the list at `list`, whose only element is the job at 1, as `request` says; the run and the job are then as before.
 // Does not raise.
 static bool run_as(lua_State *L, glintL_run *run, int list, const glintL_request *request, const glintL_render *render)
 {

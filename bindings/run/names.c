@@ -16,7 +16,7 @@
 
 #define DIGITS_MAX 18 // widest place for a number
 
-// What stands in a pattern at `text`, which begins with '%' or '#'.
+// Parses the placeholder in a pattern at `text`, which begins with '%' or '#'.
 typedef struct place {
     size_t length; // of the pattern; 0: wrong
     int digits; // -1: a plain sign

@@ -21,7 +21,7 @@ static uint64_t hash_path(const char *path)
     return hash ? hash : 1;
 }
 
-// What distinguishes the file's picture from others: its key, or the frame where the file has none.
+// Returns the identity of the file's picture: its key, or the frame if the file has none.
 static uint64_t hash_picture(const glintL_file *file, int64_t index)
 {
     uint64_t hash = 0xcbf29ce484222325u;

@@ -120,7 +120,7 @@ static const char *swept_line(const file *a, const char *line, size_t name_lengt
     return glintL_find_line(glint_picture_text(a->picture, "glint:sweep"), line, name_length, &length);
 }
 
-// Whether every line of a's text is one of b's too, but for what a sweep changes.
+// Returns whether every line of a's text is also in b's, except for the values that a sweep changes.
 static bool match_lines(const file *a, const file *b, const char *keyword, char *message)
 {
     const char *lines = glint_picture_text(a->picture, keyword);

@@ -193,7 +193,7 @@ glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work)
     record->stats = work->stats;
     record->film = work->film;
     memcpy(record->derivative, work->render.derivative, sizeof record->derivative);
-    record->pixel_count = (double)work->stats.pixels; // of a frame that is kept none, and nothing is counted
+    record->pixel_count = (double)work->stats.pixels; // none if the frame's file is kept; then nothing is counted
     const char *lights = glint_plan_render_desc(work->plan)->light_passes;
     size_t light_count = 0;
     while (glint_plan_light_pass(work->plan, light_count))

@@ -80,7 +80,7 @@ const char *const *glintL_render_choices(int field) { return field >= 0 ? detail
 
 static bool is_number(const detail *what) { return what->sort == WHOLE || what->sort == REAL || what->sort == BITS; }
 
-// What is allowed, for messages.
+// Returns the allowed values, for messages.
 static void describe(const detail *what, char out[256])
 {
     size_t used = 0;
@@ -195,7 +195,7 @@ static bool add_derivative(glintL_render *to, const char *name)
     return true;
 }
 
-// Adds a pass to those of `to`; of a frame they are set together.
+// Adds a pass to `to`. The passes of a frame are set together.
 static bool add_pass(glintL_render *to, const char *name, size_t length)
 {
     char copy[GLINTL_PASS_NAME_SIZE];

@@ -1,4 +1,4 @@
--- The page of a sheet: sheet.html with its @NAMES@ filled in, but for the pictures, where a zero byte stands.
+-- The page of a sheet: sheet.html with its @NAMES@ filled in, except for the pictures, which are marked by a zero byte.
 local the = ...
 
 local function html(text) return (text:gsub("[<&]", { ["<"] = "&lt;", ["&"] = "&amp;" })) end

@@ -97,7 +97,7 @@ static bool add_value(glintL_axis *axis, size_t cell, char *value)
     return true;
 }
 
-// Fills an axis with what the cells have for `name`. False: out of memory.
+// Fills an axis with the cells' values of `name`. Returns false when out of memory.
 static bool fill_axis(const glintL_sheet *sheet, const glintL_axes *axes, const char *keyword, const char *name,
                       size_t name_length, glintL_axis *out)
 {

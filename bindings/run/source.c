@@ -1,5 +1,5 @@
-// What a script's text is known by: a hash over it and the Lua modules it has required, whatever their order and place.
-// Frames of one film come from one text, which their keys alone, one for each frame, cannot tell.
+// The identity of a script's text: a hash of it and of the Lua modules it has required, whatever their order and place.
+// The frames of one film come from one text, and their keys cannot show that, because each frame has its own.
 #include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>

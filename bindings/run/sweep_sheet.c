@@ -87,7 +87,7 @@ void glintL_sweep_check_sheet(lua_State *L, int index)
     }
 }
 
-// What the sheet is made of; the strings are kept by the table `kept` on the stack.
+// The contents of the sheet; the table `kept` on the stack owns the strings.
 typedef struct lists {
     char **files, **places, **labels;
 } lists;

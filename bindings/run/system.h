@@ -1,4 +1,4 @@
-/// What operating systems have under different names, or not at all. Each function takes Linux's way there and a portable
+/// Functions that operating systems have under different names, or not at all. Each uses Linux's function there and a portable
 /// one elsewhere (macOS, the BSDs); GLINT_PORTABLE, from `make PORTABLE=1`, takes the portable one on Linux, too, for tests.
 #ifndef GLINT_L_SYSTEM_H
 #define GLINT_L_SYSTEM_H
@@ -42,7 +42,7 @@ void glintL_cond_init(pthread_cond_t *cond);
 /// Bytes that cannot be guessed. False: there are none to be had.
 bool glintL_random(void *bytes, size_t size);
 
-/// Numbers of this thread keep their points, whatever locale is set later (not on NetBSD, which has locales of processes alone).
+/// Numbers of this thread keep their points, whatever locale is set later (not on NetBSD, whose locales belong to processes).
 void glintL_keep_points(void);
 
 /// The folder of the program that runs, "/usr/bin/", links followed; `started_as` is its argv[0]. False: it cannot be told.

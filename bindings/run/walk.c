@@ -48,7 +48,7 @@ void glintL_run_default_name(const glintL_run *run, char pattern[GLINTL_PATH_SIZ
     snprintf(pattern, GLINTL_PATH_SIZE, "%.*s.png", length ? (int)length : 5, length ? run->script : "frame");
 }
 
-// What the job's pictures are called, by the command line or else by the script.
+// Returns the name pattern of the job's pictures, from the command line, otherwise from the script.
 static const char *output_of(const glintL_run *run, const glintL_job *job)
 {
     const char *text = run->request.render_text[glintL_render_find("output")];

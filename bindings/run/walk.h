@@ -11,7 +11,7 @@ typedef struct glintL_walk {
     int list, job_index; // on the stack; the job is on top of it
     lua_Integer settled; // jobs of the list that left the scene as they leave it
     const glintL_job *job;
-    glintL_render render; // with what the command line says
+    glintL_render render; // with the options of the command line
     double time; // of the moment that is built
     char pattern[GLINTL_PATH_SIZE];
     glintL_naming naming;
@@ -49,7 +49,7 @@ bool glintL_walk_render(glintL_walk *walk, int64_t n, int64_t number);
 glintL_walk *glintL_push_walk(lua_State *L, int index, glintL_run *run);
 /// Draws the sheet of a sweep whose first frame has that number, when it has one. False: the run has failed.
 bool glintL_walk_make_sheet(glintL_walk *walk, int64_t first);
-/// Plans frame n of the job at hand, at `walk`, with what decides its keys. NULL: it cannot be planned; the run says nothing of it.
+/// Plans frame n of the current job, at `walk`, for its keys. NULL: it cannot be planned; no message is printed.
 glint_plan *glintL_walk_probe(void *walk, int64_t n);
 /// Adds the axes of the job at hand: a sweep's own, of an animation its frames.
 void glintL_walk_add_axes(glintL_walk *walk, glintL_order *order);

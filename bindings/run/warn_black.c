@@ -1,4 +1,4 @@
-// A run whose pictures are all black: why, and what helps. The first of them is looked into, once it is seen to be black; a
+// Explains a run whose pictures are all black. The first picture is examined once it is known to be black; a
 // picture with light in it ends the search, so that a run of others pays for nothing.
 #include <math.h>
 #include <stdio.h>

@@ -243,7 +243,7 @@ bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radi
     return all.radius > 0 && isfinite(all.radius);
 }
 
-// Whether a mirror or something transparent or with holes is among a shape's materials, or those of a group; counts what it looks at.
+// Returns whether a shape, or a shape of a group, has a mirror, a transparent material or holes; counts the shapes visited.
 static bool any_shows_through(lua_State *L, const glint_shape *shape, int *count)
 {
     glint_material *const *list;
@@ -334,7 +334,7 @@ static void look_for_inner_light(const look *l, const glint_shape_desc *shape, c
 }
 
 // Faces throw shadows, normals shade: where a light grazes a face that the normals have turned towards it, the face is dark to
-// its edge. Of spheres of triangles alone: their faces are a number in the script, those of a model are as they come.
+// its edge. Only for spheres of triangles: the script chooses their number of faces, but not that of a model.
 static void look_for_bends(const look *l, const glint_shape *shape, const ball *b)
 {
     char name[160];
@@ -438,7 +438,7 @@ static void look_at(lua_State *L, void *context)
         look_into(L, l, shape, &here, &count);
 }
 
-// Which frames make use of what their camera says of a lens.
+// Finds out which frames use their camera's lens.
 static void note_focus(glintL_run *run, const glint_camera_desc *camera)
 {
     run->has_aperture = run->has_aperture || camera->aperture > 0;

@@ -23,7 +23,7 @@ static const char MADE, DULL;
 
 // ---- Said once ----
 
-// What tells a message from others: not the frame that it begins with.
+// Returns the part of a message that identifies it, without the frame that it begins with.
 static const char *gist_of(const char *message)
 {
     const size_t digits = strncmp(message, "frame ", 6) == 0 ? strspn(message + 6, "0123456789") : 0;

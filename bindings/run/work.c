@@ -146,7 +146,7 @@ glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, gl
     return status;
 }
 
-// Whether an earlier frame of this run is on its way to one of the work's files.
+// Returns whether an earlier frame of this run is still being written to one of the work's files.
 static bool is_awaited(const glintL_run *run, const glintL_work *work)
 {
     for (const glintL_record *record = run->head; record; record = record->next)

@@ -136,7 +136,7 @@ int glintL_bad_key(lua_State *L, const char *path, int index)
     return glintL_error(L, "%s%sname of a field expected, got %s", path, *path ? ": " : "", got);
 }
 
-// What is read here keeps no slope.
+// Values read here lose their slopes.
 static void refuse_dual(lua_State *L, int index, const char *path)
 {
     if (glintL_to_dual(L, index))

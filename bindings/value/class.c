@@ -162,7 +162,7 @@ static const glintL_field *writable_field(lua_State *L, const glintL_class *clas
 }
 
 // Reading a table allocates, which may run a finalizer of the script that changes or closes the object: its description is
-// got again, and what was read put into that.
+// fetched again, and the value is put into that.
 static void *read_nested(lua_State *L, const glintL_class *class, const glintL_field *field, description *desc)
 {
     description fields = *desc;

@@ -300,7 +300,7 @@ bool glintL_read_duals(lua_State *L, int index, const char *path, bool is_color,
     return true;
 }
 
-// What an object keeps of a field: the value's slopes as it was assigned, in the engine's units.
+// Stores a field's slopes in an object, as assigned, in the engine's units.
 typedef struct slopes {
     glintL_dual of[3]; // of each component
 } slopes;

@@ -148,7 +148,7 @@ static void read_distance(lua_State *L, int index, const char *path, glintL_dist
     glintL_refuse(L, -1, path, "number > 0 or {x, y, z}");
 }
 
-// What push_nested gave is read from the table behind it.
+// Reads a table pushed by push_nested from the table behind it.
 static void read_nested(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
 {
     if (!lua_istable(L, index))

@@ -1,4 +1,4 @@
-/// What the files of the binding share. The engine has never heard of Lua; nothing here is seen below bindings/.
+/// Shared by the files of the binding. The engine knows nothing about Lua, and uses nothing from here.
 ///
 /// An object of the engine travels as a full userdata `glintL_box` holding one reference. Assigning a field copies
 /// the description, changes one member and hands it back to the engine, which checks it: the object is unchanged
@@ -48,7 +48,7 @@ typedef struct glintL_field {
     bool required; ///< in the constructor's table
     const struct glintL_field *nested; ///< GLINTL_NESTED
     void (*begin_nested)(void *desc); ///< GLINTL_NESTED: writes the defaults of its fields
-    /// Of a glint_program * that stands in the number's place where the field has a pattern (an enum: a shader); read as
+    /// Offset of a glint_program * that replaces the number if the field has a pattern (an enum: a shader); read as
     /// NULL, and set when a frame is planned. The object's userdata keeps the pattern under the field's name. 0: none
     size_t program_offset;
     void (*read)(lua_State *L, int index, const char *path, void *desc); ///< GLINTL_CUSTOM: raises for a wrong value
@@ -61,13 +61,13 @@ typedef struct glintL_field {
 void glintL_push_position(lua_State *L);
 /// Raises `message` with the position of the Lua code that called.
 int glintL_error(lua_State *L, const char *format, ...);
-/// Raises "<path>.<message>" for an engine error; `path` may be "" (the message alone). Does nothing for GLINT_OK.
+/// Raises "<path>.<message>" for an engine error; `path` may be "" (only the message). Does nothing for GLINT_OK.
 void glintL_check_status(lua_State *L, const char *path, const glint_error *error, glint_status status);
 /// Reads the value at `index` into the field of `desc`; raises "<path>.<field>: ... expected, got ...".
 void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc);
 /// Pushes the field's value as Lua sees it.
 void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc);
-/// Puts in place of the table on top of the stack an empty one that reads as it does: assigning to a part of what was read from an
+/// Replaces the table on top of the stack by an empty one that reads like it: assigning to a part of a value read from an
 /// object's field of this name would not reach the object, and raises.
 void glintL_freeze(lua_State *L, const char *name);
 /// Reads every key of the table at `index`; raises on an unknown key (naming the nearest known one), a non-string key
@@ -141,7 +141,7 @@ int glintL_find_variable(lua_State *L, const char *name);
 const char *glintL_near_variable(lua_State *L, const char *name);
 /// lua/variable.c: the same, and from the first one on `math` takes dual numbers.
 void glintL_make_variable(lua_State *L, const char *name, double value);
-/// What glint's elementary function of that name gives for the dual number at 1; false, and nothing pushed: it is none.
+/// Pushes the result of glint's elementary function of that name for the dual number at 1; returns false, and pushes nothing, for other names.
 bool glintL_dual_function(lua_State *L, const char *name);
 /// Pushes a dual number, or a number where it has no slope.
 void glintL_push_dual(lua_State *L, const glintL_dual *d);
@@ -205,7 +205,7 @@ int glintL_cross(lua_State *L);
 int glintL_length(lua_State *L);
 int glintL_unit(lua_State *L);
 int glintL_reflect(lua_State *L);
-/// Where the function begins that is traced: "scene.lua:12: ". NULL: `reached`, met on the way up from an error, is not
+/// Returns the place of the traced function: "scene.lua:12: ". NULL: `reached`, found on the call stack of an error, is not
 /// the C function that calls it.
 const char *glintL_traced_place(lua_State *L, lua_CFunction reached);
 /// Raises while a pattern's function runs: `what` would change the scene meanwhile.
@@ -218,7 +218,7 @@ void glintL_keep_source(lua_State *L, int index, const glintL_field *field, int 
 void glintL_keep_closed(lua_State *L, int index);
 /// Calls the functions of the patterns of all materials in the scene, and gives the materials their programs.
 void glintL_trace_scene(lua_State *L, const glint_scene *scene);
-/// Calls those of one material, whose userdata is at `index`.
+/// Calls the functions of one material, whose userdata is at `index`.
 void glintL_trace_material(lua_State *L, int index);
 /// Where material:evaluate looks. The vectors need not be unit.
 typedef struct glintL_geometry {
@@ -263,19 +263,19 @@ void glintL_push_remembered(lua_State *L, const void *object);
 void glintL_push_object(lua_State *L, const char *type, void *object);
 /// Keeps the value at `value` alive as long as the userdata at `index`, under `key` (the name of a field).
 void glintL_keep(lua_State *L, int index, const char *key, int value);
-/// Pushes what is kept under `key`; false, and nothing pushed, when there is nothing.
+/// Pushes the value stored under `key`; returns false, and pushes nothing, if there is none.
 bool glintL_push_kept(lua_State *L, int index, const char *key);
 /// Tells the collector that the userdata just made stands for so many bytes it cannot see, so that a loop that drops
 /// images does not fill the memory. May run the collector.
 void glintL_charge(lua_State *L, size_t bytes);
 
-/// What one sort of object looks like to a script.
+/// The script's view of one class of objects.
 typedef struct glintL_variant {
     const char *name; ///< "point_light": the path in messages
     const glintL_field *fields; ///< ends with a NULL name
     const char *place; ///< the vector field that `x`, `y` and `z` are parts of; NULL: none
     const luaL_Reg *getters; ///< fields that are only read: functions of the object; NULL: none
-    const luaL_Reg *methods; ///< besides those of the class; NULL: none
+    const luaL_Reg *methods; ///< in addition to the class's; NULL: none
 } glintL_variant;
 
 /// How the objects of one type are read and written. `desc` is a copy of the description, of at most
@@ -312,9 +312,9 @@ void glintL_open_class(lua_State *L, const glintL_class *type);
 /// Lists a sort of object, its fields and its methods in glint._fields(), which the test of meta/glint.lua reads.
 /// `methods` may be NULL.
 void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL_Reg *methods);
-/// The same for a variant of a class, with what every object has.
+/// The same for a variant of a class, with the methods of every object.
 void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *type);
-/// What glint._fields() returns: variant -> name -> "field" or "method".
+/// The result of glint._fields(): variant -> name -> "field" or "method".
 void glintL_push_listed(lua_State *L);
 /// Pushes what messages call the object at `index` ("plane", "closed shape"); false, and nothing pushed, when it is
 /// not of a class.
@@ -376,7 +376,7 @@ typedef struct glintL_render {
 
 // ---- state.c: what is being run. One per lua_State, in the registry; plain Lua has one with no options ----
 
-/// What the command line (or :run{}) requests. Strings are owned by the run.
+/// The request of the command line (or :run{}). The run owns the strings.
 typedef struct glintL_run glintL_run;
 glintL_run *glintL_get_run(lua_State *L); ///< NULL only before glintL_open_run
 void glintL_open_run(lua_State *L); ///< makes one, which the state owns, where there is none

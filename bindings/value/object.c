@@ -5,7 +5,7 @@
 
 #include "bindings/value/glintL.h"
 
-static const char TRACING; // its address is the registry's key of what patterns do
+static const char TRACING; // its address is the registry's key of the patterns' functions
 
 #define OBJECT_BYTES 1024 // about what the engine keeps of a sphere, a light or a material
 

@@ -53,7 +53,7 @@ const char *glintL_nearer(const char *name, const char *best, const char *candid
     return farness(name, candidate) < limit ? candidate : best;
 }
 
-// What other programs call a thing, and what it is called here; the first that the object has is meant.
+// Names in other programs and names here; the first name that the object has is meant.
 static const char *const MEANINGS[][2] = {
     { "color", "diffuse" },
     { "colour", "diffuse" },

@@ -1,4 +1,4 @@
--- What a script has in a browser beyond the Lua of --untrusted: files in memory, glint's modules and those given to it.
+-- Additions to the Lua of --untrusted for scripts in a browser: files in memory, glint's modules and given modules.
 local carried, collect, io, os = ...
 local _G, loaded, glint = _G, {}, require "glint"
 local load, error, type, rawget = load, error, type, rawget

@@ -1,6 +1,6 @@
 // The module for browsers and Node: one job in the memory of WebAssembly. worker.mjs calls the functions here.
 //
-// The files of the job are those of a file system in memory. The script runs once for each set of parameters, and its frames
+// The files of the job are in a file system in memory. The script runs once for each set of parameters, and its frames
 // are rendered as glint watch renders them, with one renderer, so that unchanged parts are reused.
 #include <emscripten.h>
 #include <inttypes.h>
