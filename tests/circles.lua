@@ -21,7 +21,7 @@ for _, object in ipairs(arg) do
 end
 assert(#files > 0, "objects of the engine expected")
 
--- What each file calls, directly or through others.
+-- The files that each file calls, directly or through others.
 local function reach(from)
     local found, left = {}, { from }
     while #left > 0 do

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What glint needs on Debian, and how to get it.
+# The packages that glint needs on Debian, and their installation.
 #   deps.sh need          says what the build lacks, and fails; installs nothing
 #   deps.sh WHAT ...      installs what is missing, through apt: build, test, bench (comparing speeds), films (the test with
 #                         ffmpeg and Chromium), rock (the test of the rockspec), farm (the test of scripts/farm), arm64

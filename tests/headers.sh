@@ -48,7 +48,7 @@ refused() {
 refused "little-endian machines" -U__BYTE_ORDER__ -D__BYTE_ORDER__=__ORDER_BIG_ENDIAN__
 refused "without excess precision" -U__FLT_EVAL_METHOD__ -D__FLT_EVAL_METHOD__=2
 refused "same bits" -ffast-math
-# Of machines' own compilers, where they are there.
+# With other compilers of the machine, if they exist.
 if echo | ${CC:-cc} -m32 -E - >/dev/null 2>&1; then
     refused "without excess precision" -m32 -mfpmath=387 -mno-sse
 fi

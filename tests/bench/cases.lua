@@ -119,7 +119,7 @@ local measurements = {
   { "g.phong.lamp", "glint", "frame pattern=phong derivative=lamp" },
   { "g.phong.eye", "glint", "frame pattern=phong derivative=eye" },
 
-  -- patterns and shaders: the kernel alone; the floor of the workshop; all of it by Phong as a program
+  -- patterns and shaders: only the kernel; the floor of the workshop; everything with Phong as a program
   { "g.program", "glint", "program" },
   { "h.program", "hand", "program" },
   { "l.program", "lua", "" },

@@ -1,7 +1,7 @@
 /// Embree 3, used as one uses it for speed: packets of sixteen rays, and for spheres user geometry with our own
 /// AVX-512 kernel of one sphere against sixteen rays, which is several times faster than Embree's native spheres. Meshes
-/// are Embree's native triangles. Shading, samples and bands are those of the hand-written program. What its callbacks
-/// leave out (a ray that starts inside a sphere, normals of what is later hidden) is in its favour.
+/// are Embree's native triangles. Shading, samples and bands are as in the hand-written program. Cases that its callbacks
+/// leave out (a ray that starts inside a sphere, normals of hits that are later hidden) are in its favour.
 ///
 ///   embree frame scene=NAME [threads=N] [samples=N] [shadows=0] [area=1]    ms: build, render
 ///   embree picture out=FILE scene=...

@@ -1,4 +1,4 @@
-/// Indirect light by Embree 3, one ray at a time: its native spheres, rtcIntersect1 and rtcOccluded1 in place of the plain program's
+/// Indirect light by Embree 3, one ray at a time: its native spheres, rtcIntersect1 and rtcOccluded1 instead of the plain program's
 /// loop over all of them.
 ///
 ///   embree_lone frame indirect=SAMPLES scene=1k    ms

@@ -54,7 +54,7 @@ static glint_renderer *renderer_or_exit(const bench_options *options)
     return renderer;
 }
 
-/// What takes this long need not be measured: the driver reads that and goes on.
+/// A frame that takes this long is not measured: the driver reads that and continues.
 static void give_up(int signal)
 {
     (void)signal;
@@ -63,7 +63,7 @@ static void give_up(int signal)
     _exit(written > 0 ? 0 : 1);
 }
 
-/// Peak of the process without this program's own scene, the film within; and what its spheres are as doubles, with a number of a
+/// Prints the peak memory of the process without this program's own scene, including the film; and the size of its spheres as doubles, with a
 /// material each.
 static void say_memory(const bench_scene *scene)
 {
@@ -159,7 +159,7 @@ void side_run_stages(const bench_options *options)
     side_scene_free(&scene);
 }
 
-/// Frames of a job in a row, each rendered anew by one renderer and with what it kept by another, which sees several times of it
+/// Frames of a job in a row, each rendered afresh by one renderer and with reuse by another, which sees several times of it
 /// where the options say so.
 void side_run_reuse(const bench_options *options)
 {

@@ -3,7 +3,7 @@
 ///   glint_side frame scene=NAME [lamps=N] [threads=N] [samples=N] [shadows=0] [indirect=N] [isa=NAME] [float=1] [pattern=NAME]
 ///   glint_side build scene=1M [threads=N]                ms of the index, and of a scene's first (small) frame
 ///   glint_side stages [isa=NAME]                         ns a pixel
-///   glint_side reuse change=light|sphere|shininess|number [pattern=NAME]  ms of a frame anew, and of one from what was kept
+///   glint_side reuse change=light|sphere|shininess|number [pattern=NAME]  ms of a frame without and with reuse
 ///   glint_side job change=light|sphere|shininess out=FOLDER [threads=N] [reuse=0] [float=1]
 ///   glint_side encode out=FOLDER
 ///   glint_side program                                   ns a point of patterns and a shader, by the kernel alone

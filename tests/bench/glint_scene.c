@@ -303,7 +303,7 @@ static glint_render_desc frame_desc(const bench_options *options)
     return d;
 }
 
-/// What the derivative changes: a step of the eye or the lamp to the right, or of the exponent of all that shines. Returns how many
+/// Sets the derivative's parameter: a step of the eye or the lamp to the right, or of the exponent of all shiny materials. Returns the number
 /// fields that are.
 static size_t find_slopes(const side_scene *s, const char *derivative, glint_slope *out)
 {

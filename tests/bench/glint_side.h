@@ -1,4 +1,4 @@
-/// glint's side of the table, by its public API alone.
+/// glint's side of the table, through its public API only.
 #ifndef GLINT_BENCH_GLINT_SIDE_H
 #define GLINT_BENCH_GLINT_SIDE_H
 
@@ -40,7 +40,7 @@ void side_run_encode(const bench_options *options);
 void side_run_job(const bench_options *options);
 /// A program of bench_options.pattern, to be released; `number`, 0 .. 1: the darker of its colours. NULL: "none".
 glint_program *side_program_create(const char *pattern, double number);
-/// The kernel of programs alone, which no public function runs.
+/// Only the kernel of programs, which no public function runs.
 void side_run_program(const bench_options *options);
 
 #endif

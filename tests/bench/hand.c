@@ -25,7 +25,7 @@ enum { SPHERE_MAX = 16 };
 
 typedef struct hand_scene {
     int count;
-    float from_eye[SPHERE_MAX][3], eye_power[SPHERE_MAX]; ///< centre - eye; its square minus that of the radius
+    float from_eye[SPHERE_MAX][3], eye_power[SPHERE_MAX]; ///< centre - eye; its square minus the radius's square
     float center[SPHERE_MAX][3], square_radius[SPHERE_MAX];
     vf x, y, z, inverse_radius; ///< tables by sphere
     vi material;

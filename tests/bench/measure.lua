@@ -52,7 +52,7 @@ local function run(command)
   return values
 end
 
--- One measurement, once: its values go to the end of their samples. What refuses is not asked again.
+-- Runs one measurement once and appends its values to their samples. A side that refuses is not asked again.
 local function measure(m, folder)
   local arguments = m[3]:gsub("%$OUT", folder)
   local values, why = run(m.command .. " " .. arguments)

@@ -1,4 +1,4 @@
-/// What one run of a side measures, from words like `frame scene=1k threads=2 shadows=0`, and how it says what it found.
+/// The options of one run of a side, from words like `frame scene=1k threads=2 shadows=0`, and the output of its results.
 #ifndef GLINT_BENCH_OPTIONS_H
 #define GLINT_BENCH_OPTIONS_H
 
@@ -8,13 +8,13 @@
 typedef struct bench_options {
     const char *mode; ///< "frame", "job", ...: the first word
     const char *scene; ///< of scenes.h; default "workshop"
-    const char *isa; ///< glint alone; NULL: the best
+    const char *isa; ///< only glint; NULL: the best
     const char *out; ///< a file or folder to write to
     const char *with; ///< a file to compare with
     const char *change; ///< of a job: "light", "sphere", "shininess", "number" (of the pattern) or "none" (default)
-    const char *pattern; ///< "checker", "octaves" or "marble" of the first material, or "phong": a shader in place of the model
+    const char *pattern; ///< "checker", "octaves" or "marble" of the first material, or "phong": a shader instead of the model
         ///< of all; for POV-Ray "checker" and "marble", or "checker-function" and "marble-function". "none" (default)
-    const char *derivative; ///< a pass by it: "eye", "lamp" or "shininess"; glint alone. "none" (default)
+    const char *derivative; ///< a pass by it: "eye", "lamp" or "shininess"; only glint. "none" (default)
     int threads; ///< default 1
     int samples; ///< a pixel; default 1
     int indirect; ///< ways of indirect light a pixel, of one bounce; default 0
@@ -25,7 +25,7 @@ typedef struct bench_options {
     bool shadows; ///< default true
     bool lens; ///< the scene's lens is open; for glint and POV-Ray alone
     bool area; ///< 16 samples of a sphere light instead of a point light
-    bool adaptive; ///< all samples only where neighbours differ by more than a tenth; for glint and POV-Ray alone, of 16
+    bool adaptive; ///< all samples only where neighbours differ by more than a tenth; only for glint and POV-Ray, of 16
 } bench_options;
 
 /// Ends the program with a message when a word is not understood.

@@ -1,4 +1,4 @@
-/// What the two packet tracers written here, hand.c and embree.c, have in common: the scene in vectors of sixteen, and the
+/// Shared by the two packet tracers written here, hand.c and embree.c: the scene in vectors of sixteen, and the
 /// frame in bands of four rows.
 #ifndef GLINT_BENCH_PACKET_H
 #define GLINT_BENCH_PACKET_H
@@ -21,7 +21,7 @@ typedef struct packet_hit {
 typedef struct packet_scene {
     bench_scene plain;
     bench_options options;
-    vec eye, corner, right, down; ///< of the camera; `corner` is that of the block (0, 0), at the pixels' own corners
+    vec eye, corner, right, down; ///< of the camera; `corner` belongs to block (0, 0), at the pixels' own corners
     float sample[64][2], sample_weight; ///< where in a pixel the samples lie, and one over their number
     float light[3];
     vf diffuse[3], ambient[3], specular, shininess; ///< tables by material

@@ -58,7 +58,7 @@ static void povray_light(const bench_scene *s, const bench_options *o, const dou
     puts(o->shadows ? " }" : " shadowless }");
 }
 
-/// Of the first material. What glint's programs of these names show, but for the noise's own shapes: glint's `p` is above
+/// The first material. Shows the same as glint's programs of these names, except for the shapes of noise: glint's `p` is above
 /// POV-Ray's by the floor's radius, a whole number. f_noise3d is 0 .. 1.
 static void povray_pigment(const bench_material *p, const char *pattern)
 {

@@ -15,7 +15,7 @@ typedef struct picture {
 /// Makes the codes of one band; `use` of packet_frame, with the picture as user.
 void picture_tone(void *out, int y, const packet_band *band);
 
-/// What one thread needs for writing PNGs.
+/// The state of one thread that writes PNGs.
 typedef struct picture_writer picture_writer;
 
 picture_writer *picture_writer_create(void);

@@ -1,4 +1,4 @@
-/// What an hour's plain C makes of indirect light: every ray against every sphere, one at a time, in double.
+/// Indirect light in plain C, as written in an hour: every ray against every sphere, one at a time, in double.
 ///
 ///   plain frame indirect=SAMPLES [scene=workshop]    ms; one bounce, without highlights, which the ways are blind to
 #include "tests/bench/plain_path.h"

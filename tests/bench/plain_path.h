@@ -1,4 +1,4 @@
-/// Indirect light one ray at a time, as an hour's plain C has it: a ray of the eye, a shadow, and from what it meets some ways
+/// Indirect light one ray at a time, in plain C, as written in an hour: a ray of the eye, a shadow, and from its hit some paths
 /// over the hemisphere, as dense as their cosine. The program that includes this defines `nearest`.
 #ifndef GLINT_BENCH_PLAIN_PATH_H
 #define GLINT_BENCH_PLAIN_PATH_H
@@ -49,7 +49,7 @@ static void plain_scatter(const double n[3], uint64_t *state, double out[3])
         out[c] = x * a[c] + y * b[c] + h * n[c];
 }
 
-/// A point of a sphere, and what the lamp does there.
+/// A point of a sphere, and its light from the lamp.
 typedef struct plain_point {
     double at[3], normal[3], lit;
     size_t sphere;

@@ -213,7 +213,7 @@ static void make_floor(bench_scene *s, size_t count)
     set3(s->light, 9, 20, 6);
 }
 
-/// The floor, and what of its material is on it, mirrors.
+/// Makes the floor, and everything of its material, a mirror.
 static void make_mirror_floor(bench_scene *s, size_t count)
 {
     make_floor(s, count);
@@ -228,7 +228,7 @@ static void make_glass_floor(bench_scene *s, size_t count)
         s->materials[i] = (bench_material) { .transmission = 0.9F };
 }
 
-/// Solids of one kind that stand on the floor in place of its spheres.
+/// Solids of one kind that stand on the floor instead of spheres.
 static void make_solids(bench_scene *s, size_t count, bench_solid_kind kind)
 {
     uint64_t state = 7 * count;

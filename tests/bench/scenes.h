@@ -24,7 +24,7 @@ typedef enum bench_solid_kind {
     BENCH_TIP ///< a cone
 } bench_solid_kind;
 
-/// For glint and POV-Ray alone.
+/// Only for glint and POV-Ray.
 typedef struct bench_solid {
     bench_solid_kind kind;
     uint32_t material;
@@ -47,7 +47,7 @@ typedef struct bench_scene {
     float eye[3], at[3], fov_y_degrees;
     float lens_radius, lens_focus; ///< of a lens, where one is called for; for glint and POV-Ray alone
     float height; ///< above 0: of an orthographic view, world units; for glint and POV-Ray alone
-    float light[3], light_radius; ///< a white light; the radius is that of the area light
+    float light[3], light_radius; ///< a white light; the radius belongs to the area light
     float ambient[3], background[3];
 } bench_scene;
 
@@ -63,7 +63,7 @@ typedef struct bench_scene {
 ///   inside                   100,000 spheres around the eye
 ///   cloud17k                 17,000 spheres
 ///   molecule                 1,000 balls, 1,000 rods and 250 tips
-///   mesh, mesh100k           500,000 and 100,000 triangles; levelmesh: the latter, an orthographic view
+///   mesh, mesh100k           500,000 and 100,000 triangles; levelmesh: 100,000 in an orthographic view
 ///   glassmesh                20,000 triangles, of glass
 bool bench_scene_create(const char *name, bench_scene *out);
 void bench_scene_free(bench_scene *scene);

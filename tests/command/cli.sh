@@ -121,7 +121,7 @@ script stubborn 'while true do pcall(function() while true do end end) end'
 script slow 'local g, S = require "glint", require "scene"
 return g.animation { scene = S.scene, frames = 400, width = 1600, height = 1200, samples = 64, frame = function(t) S.lamp.x = t end }'
 
-# Every kind of light and surface. Frames depend on what is kept of those before: the first half moves a light, the second
+# Every kind of light and surface. Frames depend on cached results of earlier ones: the first half moves a light, the second
 # a mesh.
 cat >everything.lua <<'END'
 local glint = require "glint"
@@ -854,7 +854,7 @@ comparing() {
     clean
 }
 
-# Numbers of a pattern that change one by one and together, and a camera that goes and comes back: what was kept for fewer
+# Numbers of a pattern that change one by one and together, and a camera that goes and comes back: results cached for fewer
 # numbers is met again after there was no room for what more of them need.
 little_memory() {
     script knobs 'local glint = require "glint"

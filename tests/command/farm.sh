@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # scripts/farm: the shards of a job by GNU parallel, and by a Slurm array over two nodes of which one dies in the
-# middle. The pictures must be complete and byte for byte those of one machine. SLURM_CLUSTER names a program that sets
+# middle. The pictures must be complete and equal one machine's, byte for byte. SLURM_CLUSTER names a program that sets
 # up a Slurm of two nodes on this machine (start, kill, stop); without it that part is skipped.
 . tests/command/prelude.sh
 slurm=$work/slurm

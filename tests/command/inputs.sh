@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What has no end, keeps its reader waiting or says that it is larger than it is, given wherever a file is read: refused at once, and
+# Files that have no end, keep their reader waiting or claim to be larger than they are, wherever a file is read: refused at once, and
 # with little memory.
 . tests/command/prelude.sh
 cd "$work" || exit 1
@@ -29,7 +29,7 @@ printf "$ply" 1000000000 >begun.ply && truncate -s 15G begun.ply
 printf "$ply" 4000000000 >claims.ply
 { head -c 80 /dev/zero && printf '\1\2\3\4'; } >claims.stl
 
-# What a run may take of memory: a sanitizer maps terabytes.
+# The memory limit of a run: a sanitizer maps terabytes.
 limited() {
     if [[ $build = *-asan ]]; then "$@"; else (ulimit -v $memory_kib && exec "$@"); fi
 }

@@ -56,7 +56,7 @@ for ((i = 0; i < kills; i++)); do
 done 2>/dev/null
 result $bad "$kills kills left $left hidden files, and the next run none"
 
-# What is not such a file's stays: of a process that lives, of another host and not old, of another name.
+# Other files stay: of a living process, of another host if not old, of another name.
 host=$(uname -n)
 sleep 60 &
 alive=$!

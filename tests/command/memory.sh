@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests of memory. What a run holds on to does not grow with the scenes, meshes and frames that have gone. A script
+# Tests of memory. A run's memory does not grow with the scenes, meshes and frames that have gone. A script
 # reads its own process's resident bytes after a full collection: the least of the second tenth of its rounds is held
 # against the least of the last tenth (what malloc has not given back yet comes and goes by a megabyte). Prints TAP.
 set -u

@@ -1,4 +1,4 @@
-# What the tests of the command share; each sources it first, from the top of the checkout, and ends with `totals`. Sets
+# Shared by the tests of the command; each sources it first, from the top of the checkout, and ends with `totals`. Sets
 # root, build, glint and GLINT (the command), work (a folder that goes with the test), and counts checks.
 # shellcheck shell=bash disable=SC2034
 set -u

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `glint publish` without a browser: what the page holds, and what is refused. tests/web/pages.mjs opens such a page in one.
+# `glint publish` without a browser: the contents of the page, and refused options. tests/web/pages.mjs opens such a page in one.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 mkdir web data other

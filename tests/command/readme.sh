@@ -100,7 +100,7 @@ lines=$(wc -l <"$root/README.md")
 [ "$lines" -le 200 ] || { echo "not ok - README.md has $lines lines, more than a first look takes (200)"; bad=1; }
 cd "$work/README.md" || exit 1
 
-# The study's plot is drawn as the one in README, by today's hand: the same but for what is measured.
+# The study's plot is drawn like the one in README: only the measured values differ.
 style() { sed -n '1,/<\/style>/p' "$1"; }
 plot=$root/scripts/pictures/cost.svg
 if [ -s price/plot.svg ] && cmp -s <(style price/plot.svg) <(style "$plot") && grep -q "='samples 64: " price/plot.svg; then

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Films by the real ffmpeg, and animated PNG and sheets as pages in Chromium: make check-films. What is not installed is
+# Films by the real ffmpeg, and animated PNG and sheets as pages in Chromium: make check-films. Missing programs are
 # skipped, and says so. Prints each check that fails, then "N passed, N failed, N skipped".
 . tests/command/prelude.sh
 
@@ -130,7 +130,7 @@ JS
     dump moved.html
 }
 
-# Presses the picture of the grid that has this place, and reads the grid and what the page shows.
+# Clicks the picture at this place of the grid, and reads the grid and the page.
 press() { # PAGE PLACE
     sed 's|</html>||' "$1" >pressed.html
     cat >>pressed.html <<JS

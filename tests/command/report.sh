@@ -17,7 +17,7 @@ browse() {
 
 "$GLINT" cost "$script" --size 160x90 --quick --report page --quiet >table || exit 1
 
-# What a reader would do, noted at the end of the document.
+# Does what a reader would do, and notes the results at the end of the document.
 cat >act.html <<'HTML'
 <script>
 window.addEventListener("load", () => {

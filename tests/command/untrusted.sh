@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# --untrusted: what a hostile script tries, and what becomes of it.
+# --untrusted: the attempts of a hostile script, and their results.
 . tests/command/prelude.sh
 export ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0 # which traces processes
 cd "$work" || exit 1
@@ -48,7 +48,7 @@ result $? "without -o: into the working directory"
 timeout 30 "$glint" explain scene.lua --untrusted >out 2>err && grep -q cast out
 result $? "explain"
 
-# ---- What is there, and what is not ----
+# ---- Available and missing functions ----
 
 script 'for _, gone in ipairs { "io", "debug", "package", "dofile", "loadfile", "xpcall", "collectgarbage", "warn" } do' \
     'assert(_G[gone] == nil, gone) end' \

@@ -1,4 +1,4 @@
-/// What a process can still do behind the walls of --untrusted, once it runs whatever code it likes: each attack is a function that
+/// Attacks of a process inside the sandbox of --untrusted that runs arbitrary code: each attack is a function that
 /// returns 0 when it succeeds, else an errno. Prints TAP. To be run in a folder of its own.
 #include "bindings/command/untrusted.h"
 
@@ -129,7 +129,7 @@ static int writes_scattered(void)
     return file < 0 ? 0 : errno_of(writev(file, &piece, 1));
 }
 
-// What a render does must go on working.
+// Rendering must still work.
 static int works(void)
 {
     struct iovec nothing = { (void *)"", 0 };

@@ -175,7 +175,7 @@ scene 'objects = { glint.sphere { center = { 0, 0, 0 }, radius = 1, transform = 
     'lamp.position = { 2, 1.5, 0 }'
 silent "of an ellipsoid nothing is said"
 
-# Of random scenes, perspective and parallel: where a sphere is said to be unseen, taking it away changes no pixel.
+# Random scenes, perspective and parallel: if a sphere is reported as unseen, removing it changes no pixel.
 cat >random.lua <<'END'
 local glint = require "glint"
 local P = glint.params { seed = 1 }
@@ -371,7 +371,7 @@ for script in "$root"/scripts/*.lua; do
 done
 # ---- Black pictures ----
 
-black() { # LINE: the objects, and what changes the rest
+black() { # LINE: the objects, and changes of the rest
     {
         echo 'local glint = require "glint"'
         echo 'local camera, ambient = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, 0'

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The page of glint watch in headless Chromium, spoken to over its debugging pipe (messages end in a zero byte): the
 # picture shows, a save replaces it, an error covers it and goes, a warning stands below, frames scrub, sliders set parameters,
-# one out of range is told. Skips aloud where there is no Chromium.
+# one out of range is reported. Skips with a message without Chromium.
 set -u
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}
 chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || {

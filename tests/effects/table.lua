@@ -31,7 +31,7 @@ local function counted(row, called)
   return row.rays and tonumber(text:match(('"%s":(%%d+)'):format(row.rays))) + found or found
 end
 
---- Instructions within tiles, or of all where a picture of that ending is written, by function, and all together. Of a copy
+--- Instructions within tiles, or in total if a picture with that ending is written, by function and altogether. For a copy
 --- without notes for debuggers: valgrind does not read all that clang writes there, and the symbols have the names.
 local function traced(folder, row, ending)
   local file, bare = os.tmpname(), os.tmpname()

@@ -1,4 +1,4 @@
-/// Small PNG files for tests, written by libpng alone.
+/// Small PNG files for tests, written only by libpng.
 #ifndef GLINT_PNG_CASE_H
 #define GLINT_PNG_CASE_H
 

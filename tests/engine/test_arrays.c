@@ -27,7 +27,7 @@ static glint_image *make_planes(uint32_t passes)
     return image;
 }
 
-/// What a file holds of a value: colours are finite, distances as they are.
+/// The value as stored in a file: colours are finite, distances unchanged.
 static float expected(glint_pass pass, float value)
 {
     if (glint_pass_channels(pass) == 1)
@@ -189,7 +189,7 @@ static void test_exr(void **state)
     glint_image_release(image);
 }
 
-/// The bytes are those of the image alone.
+/// The bytes depend only on the image.
 static void test_exr_again(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/// Deflate in bands of rows: whatever was kept from the picture before, the file is that of a fresh encode.
+/// Deflate in bands of rows: whatever was cached from the picture before, the file equals that of a fresh encoder.
 #include "tests/engine/cases/image_case.h"
 #include "tests/engine/cases/random.h"
 
@@ -124,7 +124,7 @@ static void test_bands_repeat(void **state)
     glint_bands_destroy(NULL);
 }
 
-/// What is equal in size and stamps but not in tone or encoding is another picture.
+/// A picture with equal size and stamps but another tone or encoding is another picture.
 static void test_bands_tone(void **state)
 {
     (void)state;
@@ -182,7 +182,7 @@ static void test_bands_alpha(void **state)
     glint_bands_destroy(bands);
 }
 
-/// A pass without stamps in between neither takes from what is kept nor displaces it.
+/// A pass without stamps in between neither uses the cache nor displaces it.
 static void test_bands_other_pass(void **state)
 {
     (void)state;

@@ -136,7 +136,7 @@ static void every_magnitude(uint32_t i, uint32_t count, double center[3], double
     *radius = center[0] / 100;
 }
 
-/// Zeros of both signs, which compare equal: which of them a box keeps must not depend on the threads.
+/// Zeros of both signs, which compare equal: the one stored in a box must not depend on the threads.
 static void signed_zeros(uint32_t i, uint32_t count, double center[3], double *radius)
 {
     points(i, count, center, radius);
@@ -218,7 +218,7 @@ static bool same_box(const glint_box *a, const glint_box *b)
 
 static glint_box walk_node(walk *w, uint32_t index, int depth);
 
-/// Checks a slot that is not empty; returns the box of what is below it.
+/// Checks a slot that is not empty; returns the box of everything below it.
 static glint_box walk_slot(walk *w, uint32_t child, int depth)
 {
     if (!(child & GLINT_NODE_PRIM))
@@ -229,7 +229,7 @@ static glint_box walk_slot(walk *w, uint32_t child, int depth)
     return w->boxes[prim];
 }
 
-/// Checks a node and all below it; returns the box of what is in it.
+/// Checks a node and everything below it; returns the box of its contents.
 static glint_box walk_node(walk *w, uint32_t index, int depth)
 {
     assert_true(index < w->bvh->node_count);
@@ -255,7 +255,7 @@ static glint_box walk_node(walk *w, uint32_t index, int depth)
     return box;
 }
 
-/// Every box once, every stored box exactly that of what is below it, every node reached once, no path too long.
+/// Every box once, every stored box exactly the box of everything below it, every node reached once, no path too long.
 static walk check_tree(const glint_bvh *bvh, const glint_box *boxes, uint32_t count)
 {
     walk w = { .bvh = bvh, .boxes = boxes, .count = count, .seen = calloc(count, 1) };
@@ -270,7 +270,7 @@ static walk check_tree(const glint_bvh *bvh, const glint_box *boxes, uint32_t co
     return w;
 }
 
-/// What the build sorts and frees: the boxes with their numbers.
+/// The boxes with their numbers, which the build sorts and frees.
 static glint_box *numbered(const glint_box *boxes, uint32_t count)
 {
     glint_box *copy = glint_boxes_alloc(count);
@@ -377,7 +377,7 @@ static void test_threads(void **unused)
     }
 }
 
-/// What a random ray through the root visits of a tree whose nodes are cubes with 16^k boxes each.
+/// The nodes that a random ray through the root visits in a tree whose nodes are cubes with 16^k boxes each.
 static double visits_of_cubes(uint32_t count)
 {
     double visits = 1;
@@ -388,7 +388,7 @@ static double visits_of_cubes(uint32_t count)
     return visits;
 }
 
-/// The fewest nodes are (count - 1) / 15, all full; the fewest visits are about those of cubes.
+/// The fewest nodes are (count - 1) / 15, all full; the fewest visits are about as many as with cubes.
 static void test_quality(void **unused)
 {
     (void)unused;
@@ -420,7 +420,7 @@ static void test_giant(void **unused)
     free(boxes);
 }
 
-/// Each request for memory fails in turn: the build says so, and leaves its output alone.
+/// Each request for memory fails in turn: the build reports it, and does not touch its output.
 static void test_out_of_memory(void **unused)
 {
     (void)unused;

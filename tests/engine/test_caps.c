@@ -1,4 +1,4 @@
-/// Soft shadows in closed form: the covered part of a light against its integral, every instruction set, and what has rays
+/// Soft shadows in closed form: the covered part of a light against its integral, every instruction set, and lights that need rays
 /// all the same.
 #include <setjmp.h>
 #include <stdarg.h>
@@ -59,7 +59,7 @@ static float diffuse_at(const glint_image *image, int x, int y)
 
 // ---- The covered part, by the integral ----
 
-/// What a ball covers of a light, seen from the origin: the light's disk in the sky ring by ring.
+/// The part of a light that a ball covers, seen from the origin: the light's disk in the sky, ring by ring.
 static long double covered(const double light[3], double light_radius, const double ball[3], double radius)
 {
     enum { RINGS = 20000 };
@@ -76,7 +76,7 @@ static long double covered(const double light[3], double light_radius, const dou
     const long double g = atan2l(sqrtl(cross2), dot);
     for (int i = 0; i < RINGS; i++) {
         const long double t = s * (i + 0.5L) / RINGS;
-        // sin^2 of half of what an angle is off: cos x = cos t cos g + sin t sin g cos f
+        // sin^2 of half an angle's error: cos x = cos t cos g + sin t sin g cos f
         const long double half = sinl((t - g) / 2), over = sinl(a / 2) * sinl(a / 2) - half * half;
         const long double share = over / (sinl(t) * sinl(g));
         const long double f = share <= 0 ? 0 : share >= 1 ? PI : 2 * asinl(sqrtl(share));

@@ -1,4 +1,4 @@
-/// A few of many things move, come or go, and what the others show is kept: frame after frame must have the bits of a fresh one.
+/// A few of many things move, come or go, and results of the others are reused: frame after frame must have the bits of a fresh one.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -281,7 +281,7 @@ static void some_things_move(void **unused)
     assert_true(casts > 0.5 * frames && shadows > (first ? 0.4 : 0.65) * frames);
 }
 
-// ---- What lies between a light and what a tile shows ----
+// ---- Between a light and the points of a tile ----
 
 /// A place that a tile shows, in the box.
 static bool random_seen(const glint_plan *plan, uint32_t column, uint32_t row, const glint_point_box *box, double out[3])

@@ -1,4 +1,4 @@
-/// What the tests of random edits seldom come to: what is kept must have the bits of a fresh frame where cameras, scenes,
+/// Cases that random edits seldom reach: reused results must have the bits of a fresh frame when cameras, scenes,
 /// other objects of the same triangles, distances beyond all measure, or more than memory has room for take turns.
 #include <setjmp.h>
 #include <stdarg.h>
@@ -160,7 +160,7 @@ static void add_ground(stand *s)
     add(s->scene, ground);
 }
 
-/// A pass asks for the points of the first sample alone, where light is kept: they are not the box of the tile.
+/// A pass requests only the points of the first sample, while light is cached: they are not the box of the tile.
 static void a_box_begun(void **unused)
 {
     (void)unused;
@@ -221,7 +221,7 @@ static void another_order(void **unused)
     free_stand(&s);
 }
 
-/// What is at hand of a mesh underflows in the frame of a table that reaches so far.
+/// A nearby mesh underflows in the frame of a table that reaches so far.
 static void far_beyond(void **unused)
 {
     (void)unused;
@@ -313,7 +313,7 @@ static void other_objects(void **unused)
     free_stand(&s);
 }
 
-/// What balls leave of a light, one times the other in the order of the index, is next to halfway between two floats: these of
+/// The visible share of a light behind several balls, multiplied in the order of the index, is next to halfway between two floats: these of
 /// thirty were searched for. Another ball, far away, changes the order.
 static void shares_in_another_order(void **unused)
 {
@@ -362,7 +362,7 @@ static void look_from_above(stand *s)
     assert_int_equal(glint_camera_set(s->camera, &desc, NULL), GLINT_OK);
 }
 
-/// One of very many moves: the others' hits are kept, of any camera. Where all move and then one again, that is found out.
+/// One of very many moves: the others' hits are reused, with any camera. If all move and then one again, reuse starts again.
 static void one_of_a_crowd(void **unused)
 {
     (void)unused;

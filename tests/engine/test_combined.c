@@ -56,7 +56,7 @@ static glint_shape *new_whole(glint_shape_kind kind)
     return made(&d);
 }
 
-// ---- Random wholes, and what they are ----
+// ---- Random combined solids ----
 
 enum { MOST_NODES = 128 };
 
@@ -627,7 +627,7 @@ static glint_shape *grid_part(const double place[3], glint_shape_kind kind)
     return made(&d);
 }
 
-/// So many wholes of few parts that tiles find them by the index, among boxes: what is worked out for the eye once holds for all rays.
+/// So many combined solids of few parts that tiles find them by the index, among boxes: data computed once for the eye holds for all rays.
 static void many_small_wholes(void **unused)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_BOX, GLINT_SHAPE_BOX, GLINT_SHAPE_SPHERE,
@@ -692,7 +692,7 @@ static glint_shape *cube(double size, double x)
     return made(&d);
 }
 
-/// What is the solid by way of sets: with itself, with all, without what is elsewhere, without what is not all.
+/// Set operations that give the solid again: with itself, with everything, without something elsewhere, without the complement of everything.
 static glint_shape *same_solid(glint_shape *solid, uint32_t way)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_UNION, GLINT_SHAPE_INTERSECTION, GLINT_SHAPE_DIFFERENCE,
@@ -917,7 +917,7 @@ static void halves_are_whole(void **unused)
     }
 }
 
-/// What is taken away from itself is not there, whatever it is and from wherever it is looked at.
+/// A solid minus itself is empty, whatever it is and from wherever it is seen.
 static void nothing_is_left(void **unused)
 {
     (void)unused;

@@ -1,4 +1,4 @@
-/// The encoder's bytes depend on the picture alone, wherever its memory lies: a bucket of ISA-L's hash table depends on the stream's
+/// The encoder's bytes depend only on the picture, wherever its memory lies: a bucket of ISA-L's hash table depends on the stream's
 /// address, and deflate.c takes addresses that all give the right one.
 #include <setjmp.h>
 #include <stdarg.h>
@@ -101,7 +101,7 @@ static void test_buckets(void **state)
     }
 }
 
-/// What is kept from band to band shows in none of them, with more buckets than there are streams to keep.
+/// The state kept between bands affects none of them, with more buckets than streams.
 static void test_memory(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/// Backgrounds that a program gives, through glint.h alone: what is counted, what of a frame runs again, what is refused; and
-/// patterns of numbers alone, within a field's range and beyond it.
+/// Backgrounds computed by a program, through glint.h only: counts, stages that run again, refused values; and
+/// patterns that are plain numbers, within a field's range and beyond it.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -105,7 +105,7 @@ static glint_status set_background(world *w, glint_program *program)
     return status;
 }
 
-/// What pixel x, y shows.
+/// The value of pixel x, y.
 static double render(world *w, int x, int y)
 {
     glint_render_desc desc = glint_render_desc_default();
@@ -180,7 +180,7 @@ static void test_reuse(void **state)
     release_world(&w);
 }
 
-/// NaN, and numbers out of range, are told of with a direction at which they are.
+/// NaN, and numbers out of range, are reported with a direction where they occur.
 static void test_odd(void **state)
 {
     (void)state;
@@ -215,7 +215,7 @@ static void test_refused(void **state)
 
 // ---- Patterns of numbers alone ---------------------------------------------------------------------------------------
 
-/// In range they are a plain colour; out of it they are run, are 0, and are told of.
+/// In range they are a plain colour; out of range they run, become 0, and are reported.
 static void test_numbers(void **state)
 {
     (void)state;

@@ -390,7 +390,7 @@ static glint_bytes claim(uint32_t width, uint32_t height, uint32_t frames, size_
     return file;
 }
 
-/// What a file claims is held against its bytes before memory is taken.
+/// A file's claims are compared with its size before memory is allocated.
 static void test_claims(void **state)
 {
     (void)state;

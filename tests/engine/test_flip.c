@@ -1,4 +1,4 @@
-/// FLIP against a naive walk over the paper's formulas in two dimensions, values worked out by hand, and properties;
+/// FLIP against a naive walk over the paper's formulas in two dimensions, values computed by hand, and properties;
 /// the other measures of a reference on pictures whose errors are known.
 #include "engine/compare/flip.h"
 #include "tests/engine/cases/image_case.h"

@@ -41,7 +41,7 @@ static void set_lattice_triangle(glint_prim *prim, const glint_prim *last)
     } while (!(length3(n) > 0));
 }
 
-/// Upright, its axes along those of the world in any order.
+/// Upright, with axes parallel to the world's in any order.
 static void set_lattice_solid(test_scene *scene, uint32_t i)
 {
     glint_solid *solid = &scene->solids[i];
@@ -118,7 +118,7 @@ static double off_unit(uint32_t form, double tube, const double k[3])
     }
 }
 
-/// What the reference hits is where it says; it is right by itself, then.
+/// The reference's hits are where it says, so it is right on its own.
 static void check_hits(const ray_case *c)
 {
     const test_array *t = wanted_array("t"), *prim = wanted_array("prim");

@@ -1,4 +1,4 @@
-/// Open cylinders and cones against 113-bit arithmetic: what rays meet, from outside and within, and what has light.
+/// Open cylinders and cones against 113-bit arithmetic: hits of rays, from outside and within, and light.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

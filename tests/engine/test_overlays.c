@@ -1,4 +1,4 @@
-/// Labels, colour bars and axes: which codes they leave, where, and what they leave alone.
+/// Labels, colour bars and axes: the pixel values that they write, where, and those that they do not touch.
 #include "tests/engine/cases/image_case.h"
 
 #include "engine/overlay/overlay.h"

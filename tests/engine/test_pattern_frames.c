@@ -537,7 +537,7 @@ static void test_shader(void **state)
 
 // ---- Reuse ------------------------------------------------------------------------------------------------------------
 
-/// a sin(b p.x) + c p.y, or with another operation in place of the sine: what is changed one by one.
+/// a sin(b p.x) + c p.y, or with another operation instead of the sine: numbers changed one by one.
 typedef struct wave {
     double a, b, c;
     bool other;
@@ -638,7 +638,7 @@ static void test_reuse(void **state)
         OK(glint_renderer_create(&options, &renderer, &error));
         for (uint32_t turn = 0; turn < 5 * WAVES * 4; turn += case_step()) {
             edit(turn, waves, material, &w);
-            for (int again = 0; again < 2; again++) { // what stays is kept from the second frame on
+            for (int again = 0; again < 2; again++) { // unchanged results are cached from the second frame on
                 glint_image *reused = render_with(renderer, &w, NULL), *fresh = render(&w, NULL, 2);
                 check_same(reused, fresh, "reused", (int)turn);
                 glint_image_release(reused);
@@ -737,7 +737,7 @@ static double share_reused(const glint_frame_stats *stats, const char *stage)
     return -1;
 }
 
-/// A moved light does not run the pattern; a changed number leaves hits, light and shadows alone; without a program there is no
+/// A moved light does not run the pattern; a changed number does not affect hits, light and shadows; without a program there is no
 /// such stage.
 static void test_stages(void **state)
 {

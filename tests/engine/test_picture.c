@@ -1,4 +1,4 @@
-// What a picture may be asked to be besides its codes: alpha, outline. Against its definition, and the picture without it.
+// Options of a picture: alpha, outline. Compared with their definitions, and with the picture without them.
 #include "tests/engine/cases/image_case.h"
 
 #include <stdlib.h>
@@ -117,7 +117,7 @@ static void test_alpha_passes(void **state)
     free_world(&w);
 }
 
-/// What a mirror shows of the background stays.
+/// The background in a mirror stays.
 static void test_alpha_mirror(void **state)
 {
     (void)state;
@@ -254,7 +254,7 @@ static void test_bytes_again(void **state)
 
 // ---- Outline --------------------------------------------------------------------------------------------------------
 
-/// A pixel's own line by what it and its neighbours hit: only true where shapes are smooth and hide nothing of their own.
+/// A pixel's line from the hits of it and its neighbours: only right for smooth shapes that hide nothing of themselves.
 static bool ends_here(const glint_image *image, int x, int y)
 {
     static const int steps[4][2] = { { 1, 0 }, { 0, 1 }, { -1, 0 }, { 0, -1 } };
@@ -269,7 +269,7 @@ static bool ends_here(const glint_image *image, int x, int y)
     return false;
 }
 
-/// Of two balls the ends, and nothing within them.
+/// The outlines of two balls, and nothing inside them.
 static void test_outline_objects(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/// Programs: the builder, and what its programs give.
+/// Programs: the builder, and the results of its programs.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -253,7 +253,7 @@ static void test_keys(void **state)
         glint_program_release(p[i]);
 }
 
-/// Of the three results of noise3 the second alone; and a row that is read to its end in another's place.
+/// Only the second of the three results of noise3; and a row reused after its last reader.
 static void test_results(void **state)
 {
     (void)state;

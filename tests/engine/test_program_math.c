@@ -396,7 +396,7 @@ static void test_noise_slopes(void **state)
     }
 }
 
-/// Distances grow as fast as one moves: slopes of length 1, and what differences say.
+/// Distances grow as fast as one moves: slopes of length 1, equal to differences.
 static void test_cell_slopes(void **state)
 {
     (void)state;

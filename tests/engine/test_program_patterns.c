@@ -162,7 +162,7 @@ static void test_gradients(void **state)
 }
 
 /// A distance grows no faster than one moves, and the next point is no nearer than the nearest: this holds where no point
-/// is overlooked, and fails at the borders of what was searched where one is.
+/// is overlooked, and fails at the borders of the search if one is.
 static void test_cells(void **state)
 {
     (void)state;

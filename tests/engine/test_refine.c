@@ -1,4 +1,4 @@
-/// The choice of adaptive sampling: its kernels on every instruction set against the scalar reference, and what is chosen by estimates
+/// The choice of adaptive sampling: its kernels on every instruction set against the scalar reference, and the choice by estimates
 /// of codes against what is chosen by the codes.
 #include "tests/engine/cases/stage_case.h"
 
@@ -122,7 +122,7 @@ static void estimate_case(int precision, bool odd)
     }
 }
 
-/// Numbers of a line that are often those of another, and its codes near the bounds.
+/// Numbers of a line that often equal another line's, and pixel values near the bounds.
 static void fill_line(float *const line[GLINT_DIFFER_VALUES], bool odd)
 {
     for (uint32_t i = 0; i < GLINT_DIFFER_LENGTH; i++) {
@@ -190,7 +190,7 @@ static void test_kernels(void **unused)
     run_cases(2000, 24000, differ_case);
 }
 
-// ---- A picture of codes alone, of whose base no light is kept ----
+// ---- A picture with pixel values only, whose base stores no light ----
 
 /// Balls over a floor, under a lamp of this strength.
 static glint_scene *make_balls(double strength)

@@ -179,7 +179,7 @@ static void set_region(double out[4])
 #define SKIES 3 ///< the first two differ in a number alone
 static glint_program *skies[SKIES];
 
-/// Of a direction's height, and of where it is in a picture of all of them.
+/// From a direction's height, and from its position in a picture of all directions.
 static void make_skies(void)
 {
     for (int k = 0; k < SKIES; k++) {
@@ -333,7 +333,7 @@ static void edit_shape(world *w)
     glint_shape_set(shape, &d, NULL);
 }
 
-/// What is in focus may not be behind the eye: such a camera becomes a pinhole.
+/// The focus must not be behind the eye: such a camera becomes a pinhole.
 static void keep_focus(glint_camera_desc *c)
 {
     const double *point = c->has_focus_point ? c->focus_point : c->at;
@@ -561,7 +561,7 @@ static double seconds(void)
 }
 
 /// Renders after each of many edits with two renderers, one of which forgets everything. adaptive: most frames take all samples of
-/// some pixels alone.
+/// only some pixels.
 static void edits(size_t memory, int threads, glint_hits_choice hits, bool adaptive, double limit_s)
 {
     world w;
@@ -738,7 +738,7 @@ static void go_back(world *w)
     assert_int_equal(glint_shape_set(w->shapes[4], &place, NULL), GLINT_OK);
 }
 
-/// Frames of a few places and colours that come back in any order, so that all that is kept of one is met again.
+/// Frames of a few places and colours that come back in any order, so that all cached results of one are used again.
 static void frames_that_come_back(void **unused)
 {
     (void)unused;
@@ -889,7 +889,7 @@ static void hits_are_read_or_found_anew(void **unused)
     unsetenv("GLINT_HITS");
     move_the_light(GLINT_HITS_MEASURED, 0, 9, &stats);
     assert_true(stats.hits_kept + stats.hits_anew > 0 && stats.hits_kept_us > 0 && stats.hits_anew_us > 0);
-    move_the_light(GLINT_HITS_MEASURED, 0.1, 9, &stats); // those of the first sample of each pixel
+    move_the_light(GLINT_HITS_MEASURED, 0.1, 9, &stats); // the values of the first sample of each pixel
     assert_true(stats.hits_kept + stats.hits_anew > 0 && stats.hits_kept_us > 0 && stats.hits_anew_us > 0);
     setenv("GLINT_HITS", "anew", 1);
     move_the_light(GLINT_HITS_MEASURED, 0, 5, &stats);

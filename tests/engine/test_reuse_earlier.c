@@ -164,7 +164,7 @@ static void a_lamp_that_goes_around(void **unused)
         set_lamp(&s, 0, frame % 7 - 3);
         set_color(&s, 0.01 * frame);
         check(&s, frame);
-        if (frame >= 14) { // the first time they are seen, and the second they are kept
+        if (frame >= 14) { // the first time they are seen; the second time they are cached
             assert_true(reused(&s, "light") == 1);
             assert_true(reused(&s, "occlude") == 1);
         }
@@ -240,7 +240,7 @@ static void change(stand *s)
         s->render.samples = 4;
 }
 
-/// What comes back must be of the same pixels, surfaces and samples, also where it was set aside between other frames.
+/// Results that return must belong to the same pixels, surfaces and samples, also when stored between other frames.
 static void come_back(size_t memory, int frames)
 {
     stand s;

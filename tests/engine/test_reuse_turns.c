@@ -1,5 +1,5 @@
 /// Frames that differ in what reuse must look at beyond the objects: another number of samples, another order of the index,
-/// more lights than are kept, a background alone. Each equals the same frame rendered afresh.
+/// more lights than are cached, only a background. Each equals the same frame rendered afresh.
 #include "engine/glint.h"
 
 #include <setjmp.h>
@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-enum { LIGHTS = 70 }; // more than are kept
+enum { LIGHTS = 70 }; // more than are cached
 
 typedef struct stand {
     glint_scene *scene;
@@ -113,13 +113,13 @@ static void other_samples(void **state)
         s.render.samples = samples[i];
         const double sum = check(&s);
         assert_true(sum != last);
-        last = turn_light(&s); // of what was kept
+        last = turn_light(&s); // of cached results
         assert_true(last != sum);
     }
     free_stand(&s);
 }
 
-/// What is seen is kept by the places of primitives, and an index puts them in other places.
+/// Hits are cached by the positions of primitives, and an index changes their positions.
 static void an_index_that_comes_later(void **state)
 {
     (void)state;

@@ -201,7 +201,7 @@ static glint_image *render(const glint_scene *scene, const glint_render_desc *r,
     return image;
 }
 
-/// Pixels that differ in any bit of any pass; *hits: those of `a` where something is hit.
+/// Counts pixels that differ in any bit of any pass; *hits: pixels of `a` with a hit.
 static int differing(const glint_image *a, const glint_image *b, int *hits)
 {
     static const glint_pass passes[] = { GLINT_PASS_BEAUTY, GLINT_PASS_DEPTH, GLINT_PASS_NORMAL, GLINT_PASS_OBJECT_ID };
@@ -279,7 +279,7 @@ static void same_on_every_instruction_set(void **unused)
     }
 }
 
-/// One renderer, in turn with and without an index, in either order: what is kept of a frame fits the next.
+/// One renderer, in turn with and without an index, in either order: cached results of a frame fit the next.
 static void in_turn(void **unused)
 {
     (void)unused;
@@ -322,7 +322,7 @@ static bool has_effect(const glint_plan *plan, const char *name)
     return false;
 }
 
-/// Without triangles there is nothing to be scanned; few of them are cast with what is beside them, and scanned when they
+/// Without triangles there is nothing to scan; few of them are cast with the other primitives, and scanned when they
 /// are alone and nobody asks for an index. A wrong word is refused.
 static void only_triangles(void **unused)
 {

@@ -1,4 +1,4 @@
-/// Programs in two parts, and frames in which numbers of programs change: what is kept gives a fresh frame's bits.
+/// Programs in two parts, and frames in which numbers of programs change: cached values give a fresh frame's bits.
 #include "engine/program/split.h"
 #include "engine/film/image.h"
 #include "engine/frame/renderer.h"
@@ -113,7 +113,7 @@ static glint_split *split_by(const glint_value *outputs, size_t count, double wh
     return split;
 }
 
-/// A board whose colour changes: one bit is kept, and the choices are run again, also those that do not change.
+/// A board whose colour changes: one bit is cached, and the choices run again, also those that do not change.
 static void test_board(void **state)
 {
     (void)state;
@@ -132,7 +132,7 @@ static void test_board(void **state)
     glint_program_release(program);
 }
 
-/// Marble whose colours change: its noise is kept as one number, not the three that are mixed by it.
+/// Marble whose colours change: its noise is cached as one number, not the three that are mixed by it.
 static void test_marble(void **state)
 {
     (void)state;
@@ -152,7 +152,7 @@ static void test_marble(void **state)
     glint_program_release(program);
 }
 
-/// A scale: the point itself would be kept, all of it; and nothing of what is no more than numbers.
+/// A scale: the whole point would be cached, and no constants.
 static void test_scale(void **state)
 {
     (void)state;
@@ -405,7 +405,7 @@ static void check_same(const glint_image *a, const glint_image *b, uint32_t roun
                 fail_msg("round %u, frame %u: pass %s differs", round, frame, glint_pass_name((glint_pass)pass));
 }
 
-/// Tiles of the last frame whose first parts' values are kept.
+/// Tiles of the last frame with cached results of first parts.
 static long kept_tiles(const glint_renderer *renderer)
 {
     const glint_reuse *reuse = &renderer->reuse;
@@ -478,8 +478,8 @@ static recipe *board_world(world *w)
     return r;
 }
 
-/// Numbers of a board in turn. What its scale changes is too much to keep; and when it is the colour that changes again,
-/// what was kept is of another scale. A colour that becomes less than nothing is reported as ever.
+/// Numbers of a board in turn. A changing scale needs too much to cache; and when the colour changes again,
+/// the cached values belong to another scale. A negative colour is reported as usual.
 static void test_turns(void **state)
 {
     (void)state;
@@ -513,7 +513,7 @@ static void test_turns(void **state)
     release_world(&w);
 }
 
-/// Exponents by which a board of highlights is multiplied: neither is kept once that is done.
+/// Exponents that multiply a board of highlights: neither is cached after that.
 static void test_normalized(void **state)
 {
     (void)state;

@@ -180,7 +180,7 @@ static void leaving_case(int precision, bool odd)
         if (prim->kind == GLINT_PRIM_TRIANGLE)
             leave_triangle(&c, i, prim);
         if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_PLANE)
-            continue; // the latter takes no heed of where the ray starts
+            continue; // the last one ignores the ray's origin
         random_unit(direction);
         along3(prim->center, prim->kind == GLINT_PRIM_SPHERE ? prim->radius : 0, direction, point);
         put3(c.origin, precision, i, point);
@@ -241,7 +241,7 @@ static void move_tile(ray_case *c)
     shoot_camera(c);
 }
 
-/// Tiles of one picture, each with what the calls before it left.
+/// Tiles of one picture, each with the data of earlier calls.
 static void cast_tiles(ray_case *c)
 {
     static glint_cast_view views[sizeof tested / sizeof *tested];
@@ -523,7 +523,7 @@ static void make_hits(ray_case *c, bool odd)
     }
 }
 
-/// What surface reads; returns how many lanes there are.
+/// Makes the input of surface; returns the number of lanes.
 static uint32_t make_surface_case(ray_case *c, glint_surface_args *args, int precision, bool odd, bool mixed)
 {
     start_rays(c, (ray_kind)below(RAY_KINDS), precision);
@@ -584,7 +584,7 @@ static void surface_case(int precision, bool odd)
     end_rays(&c);
 }
 
-/// Points alone: those that are found with normals, of the lanes that are asked for.
+/// Only points: equal to those computed with normals, in the requested lanes.
 static void points_case(int precision, bool odd)
 {
     static _Alignas(64) double points[3][GLINT_TILE_SAMPLES], normals[3][GLINT_TILE_SAMPLES];

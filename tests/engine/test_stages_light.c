@@ -127,7 +127,7 @@ static void make_lamps(glint_light_args *args, glint_light_sample *lamps, double
     }
 }
 
-/// Several lights that are alike but for where they are.
+/// Several lights that differ only in their positions.
 static void make_alike(glint_light_args *args, double (*place)[3])
 {
     args->sample_count = 1 + below(GLINT_LIGHT_CHUNK);
@@ -140,7 +140,7 @@ static void make_alike(glint_light_args *args, double (*place)[3])
     }
 }
 
-/// A light's arguments but for what it writes; returns how many lanes there are.
+/// Makes a light's arguments without outputs; returns the number of lanes.
 static uint32_t make_light_case(glint_light_args *args, glint_camera_args *camera, glint_spot *spot, int precision,
                                 bool odd)
 {
@@ -252,7 +252,7 @@ static double ulps(float got, long double want)
     return fabs((double)(((long double)got - want) / ldexpl(1, ilogbl(want) - 23)));
 }
 
-/// Worst error in units of the last place of a float result, as a sum of what can happen. Near 1: f rounded to float 1,
+/// Worst error in units of the last place of a float result, as a sum of possible errors. Near 1: f rounded to float 1,
 /// the last sum of the polynomial 0.7, the terms before it 0.2, the last product 0.5, the polynomial 0.34. Below, worst
 /// just under sqrt(1/2): x rounded to float 1.02, the last sum 0.5, the rest, of numbers half as large, 0.87.
 #define MAX_ULP_LOG2 2.75

@@ -5,7 +5,7 @@
 
 enum { CASES = 3000 };
 
-/// What the primitives of a case and its light are.
+/// The primitives and the light of a case.
 typedef enum shadow_kind {
     SHADOWS, ///< any
     SHADOWS_OF_SMALL, ///< small spheres in the main
@@ -53,7 +53,7 @@ static double place_light(shadow_case *c)
 
 static glint_light_sample lamps[GLINT_LIGHT_CHUNK];
 
-/// Of sample s and a lane: a place on the light, or where it is in the cones.
+/// For sample s and a lane: a position on the light, or in the cones.
 static void place_sample(const shadow_case *c, const double axis[3], double radius, uint32_t s, int lane)
 {
     double out[3];
@@ -105,7 +105,7 @@ static void place_lamps(shadow_case *c, double distance)
     }
 }
 
-/// What a tile sees lies together more often than not; else its shaft holds half the scene.
+/// The points of a tile are usually close together; otherwise its shaft would hold half the scene.
 static void place_points(shadow_case *c, double light_distance)
 {
     const scene_plan *plan = &c->plan;
@@ -134,7 +134,7 @@ static void place_points(shadow_case *c, double light_distance)
         add_line(&c->plan, plan->middle, (const double[3]) { 0, 0, 1 }, plan->size);
 }
 
-/// A point of a triangle, and what rounding may have made of it, as surface says.
+/// A point of a triangle, and its rounding error, as in surface.
 static void place_on_triangle(shadow_case *c, uint32_t i, const glint_prim *prim)
 {
     const double slack = c->precision == GLINT_DOUBLE ? GLINT_POINT_SLACK_DOUBLE : GLINT_POINT_SLACK_FLOAT;

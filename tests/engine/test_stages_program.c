@@ -290,7 +290,7 @@ static void test_random_programs(void **state)
     run_cases(CASES, 42000, random_program);
 }
 
-/// Code with a few bytes of another in it: the check lets through what can be run, and what it lets through is run.
+/// Code with a few bytes of another program: the check accepts code that can run, and accepted code is run.
 static void damaged_program(int precision, bool odd)
 {
     (void)precision;

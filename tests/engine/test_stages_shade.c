@@ -14,7 +14,7 @@ static void random_color(double color[3])
         color[c] = grey >= 0 ? grey : one_in(6) ? 0 : one_in(10) ? power_of_ten(-40, 40) : between(0, 2);
 }
 
-/// What light and occlude hand over: numbers only in the groups that were lit, before shadows.
+/// The results of light and occlude: numbers only in the groups that were lit, before shadows.
 static void make_shade_light(glint_shade_light *light, const uint16_t *hits, uint32_t groups)
 {
     uint32_t n = groups * GLINT_GROUP;
@@ -133,7 +133,7 @@ static void make_shade_lights(glint_shade_args *args, glint_shade_light *lights,
     }
 }
 
-/// What a sample shows: of several materials, or of one in most groups, which may be known.
+/// The materials of a sample: several, or one in most groups, which may be known.
 static void make_shade_hits(glint_shade_args *args, uint32_t material_count)
 {
     static const uint32_t only = 0;
@@ -277,7 +277,7 @@ static double ulps(float got, long double want)
     return fabs((double)(((long double)got - want) / ldexpl(1, ilogbl(want) - 23)));
 }
 
-/// Worst error in units of the last place of a float result, as a sum of what can happen: the last sum 0.5, the product
+/// Worst error in units of the last place of a float result, as a sum of possible errors: the last sum 0.5, the product
 /// before it 0.25, its factor 0.25, the terms before that 0.1, and the polynomial's 2e-8 at most 0.34.
 #define MAX_ULP_EXP2 1.5
 

@@ -1,5 +1,5 @@
 /// Meshes, solids, transforms and groups: the same pictures on every instruction set, no ray between neighbours, no light by an edge and no shadow on a
-/// flat mesh by itself, distances and normals against 113-bit arithmetic, .obj files and what is wrong with them.
+/// flat mesh by itself, distances and normals against 113-bit arithmetic, .obj files and their faults.
 #include "engine/glint.h"
 
 #include <float.h>
@@ -514,7 +514,7 @@ static void triangles_against_oracle(void **unused)
         if (!hit || least < -tolerance)
             continue;
         hits++;
-        // t is that of a point of the triangle, off by what its weights are off
+        // t belongs to a point of the triangle, with the error of its weights
         assert_true(fabs(got.t - (double)t) <= (8 * DBL_EPSILON + tolerance * size / far) * (double)t);
         for (int c = 0; c < 3; c++)
             assert_true(fabs(got.normal[c] - (double)(n[c] / length)) <= 16 * DBL_EPSILON / thin);

@@ -64,7 +64,7 @@ static void write_four(void)
     write_png(path, 2, 2, PNG_COLOR_TYPE_RGB_ALPHA, 8, 0, four);
 }
 
-/// Codes of the caller are those of a file.
+/// Pixel values of the caller equal those of a file.
 static void test_memory(void **state)
 {
     (void)state;
@@ -248,7 +248,7 @@ static void test_files(void **state)
     glint_texture_release(NULL);
 }
 
-/// The key is that of the texels and how they are read; a program keeps its texture.
+/// The key depends on the texels and how they are read; a program retains its texture.
 static void test_keys(void **state)
 {
     (void)state;

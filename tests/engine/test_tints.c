@@ -1,4 +1,4 @@
-/// Bounds of what tints shadows: no ray that meets one is thought clear, and most that meet none are.
+/// Bounds of transparent occluders: no ray that hits one is classified as clear, and most others are.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -107,7 +107,7 @@ static void test_rays(void **unused)
     assert_true((double)sum.told < 1.25 * (double)sum.met);
 }
 
-/// What is not a number is not thought clear.
+/// NaN is not classified as clear.
 static void test_odd(void **unused)
 {
     (void)unused;

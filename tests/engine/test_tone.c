@@ -84,7 +84,7 @@ typedef struct tone_case {
     glint_tone_args args;
 } tone_case;
 
-/// What a call wrote: the picture of the tile with room between and around its rows, and the counts.
+/// The output of a call: the picture of the tile with space between and around its rows, and the counts.
 typedef struct tone_result {
     uint8_t codes[(GLINT_TILE_HEIGHT + 2) * STRIDE_MOST];
     uint64_t clipped, nonfinite;

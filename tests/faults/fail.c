@@ -29,7 +29,7 @@ __attribute__((constructor)) static void read_environment(void)
     at = number ? atol(number) : 0;
     goes_on = getenv("FAULT_ON") != NULL;
     count_fd = fd ? atoi(fd) : -1;
-    alloc_count = 0; // what the loader has allocated is not told of
+    alloc_count = 0; // allocations of the loader are not reported
 }
 
 __attribute__((destructor)) static void tell_count(void)
@@ -71,7 +71,7 @@ int posix_memalign(void **out, size_t boundary, size_t size)
     return block ? 0 : ENOMEM;
 }
 
-// ---- What a file on its way is made with ----
+// ---- Calls that write a file ----
 
 static bool no_space(void)
 {

@@ -1,5 +1,5 @@
-/// What the fuzzers share. libFuzzer calls LLVMFuzzerTestOneInput with bytes of its own making; a crash, a sanitizer's
-/// report, a false FUZZ_CHECK or an input of more than ten seconds is a finding, and its bytes are kept.
+/// Shared by the fuzzers. libFuzzer calls LLVMFuzzerTestOneInput with bytes of its own making; a crash, a sanitizer's
+/// report, a false FUZZ_CHECK or an input of more than ten seconds is a finding, and its bytes are saved.
 #ifndef GLINT_TESTS_FUZZ_H
 #define GLINT_TESTS_FUZZ_H
 

@@ -1,4 +1,4 @@
-/// Bytes that begin as a PNG does go to its decoder and its scanner, others to the PFM's. What both readers of a PNG
+/// Bytes that begin as a PNG does go to its decoder and its scanner, others to the PFM's. Data that both readers of a PNG
 /// accept has one size, and the decoded codes are all there; a PFM is what it was after it has been written and read.
 #include "engine/file/pfm.h"
 #include "engine/file/png.h"

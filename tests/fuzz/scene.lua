@@ -1,4 +1,4 @@
--- Bytes as choices: objects with fields of every kind and size, edits of them, and small pictures. What is made or set is good or
+-- Bytes as choices: objects with fields of every kind and size, edits of them, and small pictures. Objects and fields are good or
 -- refused with a message; a picture is rendered or refused; an error of Lua's own from inside the module is a finding.
 local glint = require "glint"
 
@@ -85,7 +85,7 @@ local function refused(message)
   end
 end
 
--- What is given to begin with is good, so that most of what is changed is still an object.
+-- The first values are good, so that most changed objects are still valid.
 local GOOD = {
   sphere = { center = { 0, 0, 0 }, radius = 1 }, plane = { point = { 0, -1, 0 }, normal = { 0, 1, 0 } },
   box = { min = { -1, -1, -1 }, max = { 1, 1, 1 } }, disk = { center = { 0, 0, 0 }, normal = { 0, 1, 0 }, radius = 1 },
@@ -103,7 +103,7 @@ local GOOD = {
   ambient_occlusion = { samples = 2 }, label = { text = "a" }, colorbar = { map = "magma", low = 0, high = 1 }, axes = {},
 }
 
--- What may be a part of a combined solid, and some that may not.
+-- Shapes that may be parts of a combined solid, and some that may not.
 local PARTS = { "sphere", "box", "torus", "cylinder", "cone", "plane", "disk", "mesh", "group", "union", "difference" }
 
 local function field_value(field, made)

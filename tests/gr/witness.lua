@@ -1,4 +1,4 @@
--- A plain renderer of the gr dialect, written from its formulas alone: one ray a pixel, every shape tried, one after the
+-- A plain renderer of the gr dialect, written only from its formulas: one ray per pixel, every shape tried, one after the
 -- other. It knows nothing of glint and checks no arguments; tests/lua/test_gr.lua sets its pictures beside the engine's.
 --
 --   witness.run(path, order, options) -> list of pictures { file, width, height, codes = function(x, y, dx, dy) }

@@ -69,7 +69,7 @@ static void no_radius(void)
 NAIVE(naive_float, float, sqrtf)
 NAIVE(naive_double, double, sqrt)
 
-/// What a light gives to the floor, in both precisions, against a closed form, `share` of which it may be off.
+/// The light on the floor, in both precisions, against a closed form, with a relative error of `share`.
 static void compare(const char *id, const char *what, const glint_light_desc *light, double width, double share,
                     hard_values *shown)
 {
@@ -212,7 +212,7 @@ static void check_noise(double away, double degrees, double most)
     hard_row("cone", what, &shown, right);
 }
 
-/// Of what is below a ball's cone, all of which the floor sees.
+/// For shapes below a ball's cone, all of which the floor sees.
 static void noise(void)
 {
     hard_test("cone", "noise of a ball by radiance");
@@ -229,7 +229,7 @@ static void noise(void)
 // ---- Shadows ----
 
 typedef struct shadow {
-    double light, height, ball, between; ///< radius and height of the light; of what is between
+    double light, height, ball, between; ///< radius and height of the light; of the occluder
 } shadow;
 
 /// The share of the light that reaches the floor at x, by 1024 samples: 0 in the umbra, 1 beyond the penumbra.

@@ -1,6 +1,6 @@
-/// The named cases of one ray and one object, and what lies near them: each case again with axes swapped and turned,
+/// The named cases of one ray and one object, and their neighbourhood: each case again with axes swapped and turned,
 /// scaled, moved and with other lengths of the direction. --table prints one line a case: what is true, what the engine
-/// finds in double and in float, and what the textbook's formula finds.
+/// finds in double and in float, and the result of the textbook's formula.
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/judge.h"
 #include "tests/hard/oracle/naive.h"

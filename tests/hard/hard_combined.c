@@ -99,7 +99,7 @@ static double distance(const double a[3], const double b[3])
     return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
 }
 
-/// The way to what the ray meets; infinite: it meets nothing.
+/// The distance to the ray's hit; infinite: no hit.
 static double depth_of(glint_shape *whole, const hard_ray *ray, glint_precision precision)
 {
     glint_error error;
@@ -314,7 +314,7 @@ static void boxes_of_triangles(void)
 // ---- A lens ----
 
 /// A pixel that looks past the edge of a black wall at half the way to the focus, by 4,096 samples: where the edge is at a share
-/// `edge` of what the lens sees there, the rest of the lens sees a white world.
+/// `edge` of the lens's view there; the rest of the lens sees a white world.
 static double seen_past(double edge, glint_precision precision)
 {
     static const double white[3] = { 1, 1, 1 };

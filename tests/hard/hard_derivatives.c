@@ -12,7 +12,7 @@
 /// How sphere and floor are described: as they are, as parts of combined solids, under a transform.
 typedef enum dress { BARE, PARTS, TURNED, DRESSES } dress;
 
-/// A sphere over a floor under one light: what the derivatives are by, each as three numbers, and what stays as it is.
+/// A sphere over a floor under one light: the parameters of derivatives, each as three numbers, and the constants.
 typedef struct world {
     quad diffuse[3], ambient[3], specular[3], shininess[3], roughness[3], f0[3];
     quad color[3], intensity[3], light_ambient[3], light_diffuse[3], light_specular[3], attenuation[3], position[3],
@@ -140,7 +140,7 @@ static quad cone(const world *w, const quad l[3])
     return c > 0 ? x * x * (3 - 2 * x) * powf128(c, w->exponent[0]) : 0;
 }
 
-/// What the light adds at a point.
+/// The light at a point.
 static void add_light(const world *w, const quad p[3], const quad n[3], const quad v[3], bool on_floor, quad out[3])
 {
     quad l[3], strength = w->intensity[0], specular[3];

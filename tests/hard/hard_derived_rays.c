@@ -1,5 +1,5 @@
-/// Derivatives of what mirrors and glass show against central differences of the formulas in 113 bits: by what surfaces send on, by
-/// what moves, and by what rays find.
+/// Derivatives of pictures in mirrors and glass against central differences of the formulas in 113 bits: by mirror and transmission, by
+/// motion, and by the surfaces that rays hit.
 #include "tests/hard/oracle/slopes.h"
 
 #include <string.h>
@@ -9,7 +9,7 @@
 #define DEPTH 3
 #define NEAR ((quad)1e-18) ///< a ray that starts on a surface is no nearer to another one
 
-/// What the first ball is made of.
+/// The material of the first ball.
 typedef enum stuff { MIRROR, GLASS, PANE, VARNISH, STUFFS } stuff; ///< pane: glass without Fresnel's formula; varnish: a solid by it
 
 /// A ball that sends rays on and a matt one over a floor that mirrors.
@@ -75,7 +75,7 @@ static int nearest(const world *w, const quad o[3], const quad d[3], quad *far)
     return found;
 }
 
-/// What of the lamp's light in channel c comes to a point.
+/// The lamp's light in channel c that reaches a point.
 static quad reach(const world *w, const quad p[3], const quad l[3], quad distance, int c)
 {
     quad t[2], left = 1;
@@ -107,7 +107,7 @@ static quad local_light(const world *w, int what, const quad p[3], const quad n[
 
 static quad trace(const world *w, const quad o[3], const quad d[3], bool inside, int depth, int c);
 
-/// What the ball sends on at p, where n is turned to the ray.
+/// The light that the ball reflects and transmits at p, where n is turned to the ray.
 static quad send_on(const world *w, const quad p[3], const quad n[3], const quad d[3], bool inside, int depth, int c)
 {
     const bool glass = w->stuff == GLASS || w->stuff == PANE, fresnel = w->stuff == GLASS || w->stuff == VARNISH;

@@ -1,4 +1,4 @@
-/// Derivatives by what sees a scene against central differences of the formulas in 113 bits: of perspective and orthographic cameras,
+/// Derivatives by the camera against central differences of the formulas in 113 bits: of perspective and orthographic cameras,
 /// with and without a lens, and of light that fades with the distance, from outside and from within what absorbs.
 #include "tests/hard/oracle/slopes.h"
 
@@ -12,7 +12,7 @@
 
 typedef enum look { PINHOLE, SQUARE, LENS, SQUARE_LENS, LOOKS } look;
 
-/// A ball over a floor before a background; around everything, in some worlds, a ball of what absorbs.
+/// A ball over a floor before a background; in some worlds inside an absorbing ball.
 typedef struct world {
     quad eye[3], at[3], up[3], fov[3], height[3], aperture[3], focus[3], focus_point[3];
     quad ball[3], radius[3], point[3], position[3], diffuse[3], shininess[3], background[3], ambient[3], absorption[3];
@@ -122,7 +122,7 @@ static void color_of(const world *w, int x, int y, quad out[3])
     const quad ball = meet_ball(w, o, d), floor = (w->point[1] - o[1]) / d[1];
     const bool on_ball = ball > 0 && !(floor > 0 && floor < ball);
     const quad way = on_ball ? ball : floor, share = (way - w->cue_near[0]) / (w->cue_far[0] - w->cue_near[0]);
-    for (int c = 0; c < 3; c++) // the far side of what absorbs has faded
+    for (int c = 0; c < 3; c++) // the far side of the absorbing ball has faded
         out[c] = w->veil && w->cue && w->own_color ? w->cue_color[c] : w->veil && !w->cue ? 0 : w->background[c];
     if (!(way > 0))
         return;

@@ -35,7 +35,7 @@ static glint_material *facets(bool beckmann, double roughness, double f0)
 NAIVE(naive_float, float, cosf)
 NAIVE(naive_double, double, cos)
 
-/// What float may lose: roundings of 2^-24, and as many of Beckmann's exponent, whose cosine is 1 less a squared sine; and
+/// The error of float: roundings of 2^-24, and as many of Beckmann's exponent, whose cosine is 1 less a squared sine; and
 /// the rounding of the directions, which moves the half vector by 2^-52 or, in float, by 2^-22, and the lobe by that over
 /// its width.
 static double allowed(bool beckmann, double roughness, double want, double tangent, bool in_float)
@@ -60,7 +60,7 @@ static double half_tangent(const double n[3], const double l[3], const double v[
     return across / along;
 }
 
-/// One pair of directions by `evaluate` and in a frame of double; returns the larger share of what is allowed.
+/// One pair of directions by `evaluate` and in a frame of double; returns the larger error, relative to the allowed one.
 static double compare(bool beckmann, double roughness, double f0, const double n[3], const double l[3],
                       const double v[3], hard_values *shown)
 {

@@ -11,7 +11,7 @@
 
 typedef struct tally {
     uint64_t rays, hits, close, wrong;
-    double worst_ulp, worst_t, worst_normal; ///< the latter two as shares of what is allowed
+    double worst_ulp, worst_t, worst_normal; ///< the last two relative to the allowed error
 } tally;
 
 static void report(const char *name, const tally *sum)
@@ -36,7 +36,7 @@ static void note(tally *sum, const judgement *j, bool hit)
     sum->worst_normal = fmax(sum->worst_normal, j->normal_share);
 }
 
-/// Counts a wrong answer, with what is needed to ask for it again.
+/// Counts a wrong answer, with the input to repeat it.
 static void complain(const char *about, const hard_ray *ray, const judgement *j, const truth *want, bool hit,
                      const glint_hit *got)
 {
@@ -114,7 +114,7 @@ static bool same_sphere(const hard_sphere *a, const hard_sphere *b)
     return a->r == b->r && a->c[0] == b->c[0] && a->c[1] == b->c[1] && a->c[2] == b->c[2];
 }
 
-/// All in one shape, or each its own; then the index of the shape is that of the sphere.
+/// All in one shape, or each its own; then the index of the shape equals the sphere's.
 static void add_many(glint_scene *scene, const hard_sphere *spheres, int count, glint_shape *shapes[MANY], bool as_one)
 {
     for (int i = 0; i < count && !as_one; i++)

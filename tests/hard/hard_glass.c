@@ -239,7 +239,7 @@ static void depth(void)
 
 // ---- Total reflection ----
 
-/// What comes through a rod of glass along x, one unit thick, into which a ray goes at 45 degrees by one end: out by the
+/// The light through a rod of glass along x, one unit thick, which a ray enters at 45 degrees through one end: out of the
 /// other, after `reflections`.
 static double through_rod(int reflections, double transmission, double mirror, glint_precision precision)
 {

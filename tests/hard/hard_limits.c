@@ -1,4 +1,4 @@
-/// Pictures at the edge of what may be asked for: scenes scaled by powers of two, numbers near the largest, the longest
+/// Pictures at the limits of valid input: scenes scaled by powers of two, numbers near the largest, the longest
 /// sides, the most lights, the most spheres, nothing at all; each instruction set and number of threads.
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/still.h"
@@ -204,7 +204,7 @@ static void check_finite(uint64_t scenes)
     }
 }
 
-/// What is above the largest float is written as the largest float.
+/// Values above the largest float are written as the largest float.
 static void check_written(void)
 {
     hard_test("finite", "what is written");
@@ -324,7 +324,7 @@ static void check_size(glint_shape_kind kind, bool mapped, double size, double d
     glint_scene_release(scene);
 }
 
-/// What is smaller than 1e-150 of its distance, or in the world, is refused with the reason; up to there all is met.
+/// Shapes smaller than 1e-150 of their distance, or in the world, are refused with the reason; all others are hit.
 static void check_small(void)
 {
     hard_test("S25", "the smallest spheres and solids, the farthest");

@@ -55,7 +55,7 @@ static void check_known(void)
     }
 }
 
-/// What 113 bits decide, and what they leave open, on the rays of the fuzz.
+/// The rays of the fuzz that 113 bits decide, and those that they leave open.
 static void check_quick(uint64_t count)
 {
     hard_test("oracle", "113 bits against 400");

@@ -1,6 +1,6 @@
 /// Whole pictures against 113-bit arithmetic: nine still lifes that differ in how far apart their numbers are. In double
 /// no pixel may show a wrong object, a wrong shadow or a colour more than one 8-bit code off; in float none of those whose
-/// numbers span four digits, and next to none of random ones. What float and the textbook's formulas get wrong is printed.
+/// numbers span four digits, and next to none of random ones. The errors of float and of the textbook's formulas are printed.
 #include "tests/hard/oracle/still.h"
 
 #include <math.h>

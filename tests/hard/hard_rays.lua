@@ -1,5 +1,5 @@
--- One ray, one reflection, as scripts ask for them. The whole list of hard cases, with what lies near them, is in
--- hard_cases.c and hard_shading.c; here are those that would show a number bent on its way through Lua.
+-- One ray, one reflection, as scripts ask for them. The whole list of hard cases, with their neighbourhoods, is in
+-- hard_cases.c and hard_shading.c; here are cases that would show a number changed by Lua.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -46,7 +46,7 @@ local function check_hit(id, hit, origin, direction, center, radius, t, normal)
   near(id .. ": t", hit.t, t, 1e-13 * t)
   for c = 1, 3 do
     near(("%s: normal[%d]"):format(id, c), hit.normal[c], normal[c], allowed)
-    -- the point lies where t says; its own rounding is of the size of what it is computed from
+    -- the point lies where t says; its own rounding is relative to its terms
     local size = math.abs(origin[c]) + math.abs(t * direction[c]) + radius + math.abs(center[c])
     near(("%s: point[%d]"):format(id, c), hit.point[c], origin[c] + t * direction[c], 1e-12 * size)
   end

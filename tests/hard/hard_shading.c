@@ -77,7 +77,7 @@ static const reflection_case cases[] = {
       { -1.5, 0.86602540378443865, 1 },
       NAN,
       0.5 },
-    // grazing light, which the eye looks into: h is what is left of l + v
+    // grazing light from the front: h is a difference, l + v
     { "P15",
       "Blinn, h of length 2e-5",
       true,
@@ -262,7 +262,7 @@ static void sweep_shininess(uint64_t count)
 
 // ---- Codes ----
 
-/// One row of pixels of these linear values: spheres that an orthographic camera sees one a pixel, lit by ambient alone.
+/// One row of pixels of these linear values: spheres that an orthographic camera sees one a pixel, lit only by ambient light.
 static glint_image *row_of(const double *values, int count)
 {
     static const double one[3] = { 1, 1, 1 }, none[3] = { 0 };

@@ -164,7 +164,7 @@ static grazed graze(void)
 
 static double length_of(const double v[3]) { return hypot(hypot(v[0], v[1]), v[2]); }
 
-/// What the engine says against the bound; *share: how much of it the error of t is.
+/// Compares the engine with the bound; *share: the error of t relative to the bound.
 static const char *judge_grazed(const grazed *g, bool hit, const glint_hit *got, tally *sum, double *share)
 {
     const truth want = true_plane(&g->ray, &g->plane);

@@ -169,7 +169,7 @@ static hard_ray ray_of(const ring *r, const double o[3], const double toward[3])
     return ray;
 }
 
-/// What is wrong with the engine's answer; NULL: nothing.
+/// Returns the fault of the engine's answer; NULL: none.
 static const char *judge(const solid_truth *want, bool hit, const glint_hit *got)
 {
     const double ulps = 4 * (nextafter(fabs(want->t), HUGE_VAL) - fabs(want->t));

@@ -40,7 +40,7 @@ local function read_meta(path)
   return classes, functions
 end
 
--- A class's own fields and those of its parents.
+-- The fields of a class and of its parents.
 local function all_fields(classes, name, into)
   into = into or {}
   for field in pairs(classes[name].fields) do into[field] = true end

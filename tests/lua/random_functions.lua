@@ -74,7 +74,7 @@ return function(random)
     return { value.x, value.y, value.z }
   end
 
-  --- The pattern's value at a point drawn at random, or nil and what is wrong with it.
+  --- The pattern's value at a random point, or nil and its fault.
   local function compare(f, text)
     local pattern = glint.pattern(function(p, s) return f(p, s) end)
     local point = random_point()

@@ -1,9 +1,9 @@
--- What the Lua tests share: where the module is, checks that are counted, and the line of totals that run.sh reads.
+-- Shared by the Lua tests: the path of the module, checks that are counted, and the line of totals that run.sh reads.
 package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
 
 local tally = { passed = 0, failed = 0 }
 
--- Counts a check; a failed one is told with the format's text and the line it is on.
+-- Counts a check; a failed one is reported with the format's text and its line.
 function tally.check(ok, format, ...)
   if ok then
     tally.passed = tally.passed + 1

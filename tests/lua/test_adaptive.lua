@@ -1,4 +1,4 @@
--- Adaptive sampling: every pixel is that of the picture with all samples or of the picture with one, chosen by the rule,
+-- Adaptive sampling: every pixel equals the picture with all samples or the picture with one, chosen by the rule,
 -- across the borders of tiles too; and one picture by every way to render it.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check

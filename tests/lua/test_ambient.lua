@@ -92,7 +92,7 @@ function tests.it_is_a_number_by_every_way_to_shade()
   end
 end
 
--- What ambient has beyond diffuse lights others: a floor before a wall without end that glows by E gets kd E / 2, as half of the
+-- The excess of ambient over diffuse lights others: a floor before a wall without end that glows by E gets kd E / 2, as half of the
 -- cosine-weighted directions meet it.
 function tests.it_lights_others()
   local glow = 0.5
@@ -105,7 +105,7 @@ function tests.it_lights_others()
   near(image:pixel(0, 0), 0.8 * glow / 2, 2e-3, "half of the sky glows")
 end
 
--- A changed number of the pattern runs what reads it; the picture is that of a fresh renderer.
+-- A changed number of the pattern runs the stages that read it; the picture equals a fresh renderer's.
 function tests.a_changed_number_shows()
   local k = 0.25
   local material = glint.material { diffuse = 0.5, ambient = glint.pattern(function(p) return k + 0 * p.x end) }

@@ -1,4 +1,4 @@
--- Mirrors and glass against closed forms: one ray and what it must meet, energy, depth, absorption, tinted shadows; and
+-- Mirrors and glass against closed forms: one ray and its hits, energy, depth, absorption, tinted shadows; and
 -- one picture by every way to render it.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
@@ -249,7 +249,7 @@ do -- whatever shape the glass has: the way out is what Beer's law takes, and a 
   end
 end
 
--- The light's way, too: a light in the same glass as the point it lights, in another one than it, or the point alone. By Beer's
+-- The light's path, too: a light in the same glass as the lit point, in another glass, or only the point in glass. By Beer's
 -- law exp(-absorption x way inside); the eye's own way inside is taken off beforehand.
 do
   local a = { 0.5, 0, 2 }
@@ -429,7 +429,7 @@ for _, precision in ipairs { "double", "float" } do
   end
 end
 
--- ---- From inside absorbing glass: called for by the eye, and the same with and without reuse -------------------------------
+-- ---- From inside absorbing glass: needed because of the eye, and the same with and without reuse -------------------------------
 
 local POOL = [[
 local glint = require "glint"

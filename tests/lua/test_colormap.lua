@@ -156,7 +156,7 @@ local function codes_of(image, options)
   return codes
 end
 
--- A colour is that of the grey which stands there without a map; depth's background is black.
+-- A colour corresponds to the grey without a map; the background of depth is black.
 function tests.passes_in_colours()
   local x = glint.variable("x", 1)
   local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 0.1,

@@ -70,7 +70,7 @@ function tests.planes_are_half_spaces()
   hit_is(down(glint.scene { wedge }, 2, 7), 11, { s, s, 0 }, "a roof")
 end
 
--- A ray is inside of a torus twice: what is left of it on one side, and its hole.
+-- A ray is inside a torus twice: the rest of the torus on one side, and its hole.
 function tests.tori()
   local ring = glint.torus { center = { 0, 0, 0 }, axis = { 0, 1, 0 }, major = 2, minor = 0.5 }
   local groove = glint.scene { glint.difference { box({ -4, -1, -4 }, { 4, 0, 4 }), ring } }
@@ -178,7 +178,7 @@ function tests.glass()
 end
 
 -- Turned at will, in matt, mirrors and glass, under a soft light: halves are the whole, a cutter may end in the face it cuts,
--- and what has an opacity of 0 is not there; to the last bit.
+-- and shapes with opacity 0 are invisible; to the last bit.
 function tests.pictures()
   local map = glint.translate(0.2, 0.1, 0) * glint.rotate({ 1, 2, 3 }, 37)
   local function picture(shape)

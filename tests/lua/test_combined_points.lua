@@ -1,4 +1,4 @@
--- Random nested combined solids of all parts against the membership of points, worked out here on its own: a ray from a point outside
+-- Random nested combined solids of all parts against the membership of points, computed here independently: a ray from a point outside
 -- meets nothing before it comes to a point inside, and the other way round. Half of them have their numbers on a lattice, so that faces
 -- coincide and rays run along them; places whose surroundings are both in and out say nothing, and are boundaries that may be met.
 local tally = dofile "tests/lua/tally.lua"

@@ -1,4 +1,4 @@
--- glint cost from outside: its rows, what they must say of each other, and what it does with bad input.
+-- glint cost from outside: its rows, their relations, and bad input.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local build = os.getenv "BUILD" or "build"
@@ -282,7 +282,7 @@ local odd = study("odd", still("odd.lua", matt, [[samples = 9, precision = "floa
 check(find(odd, "samples", 9).default and find(odd, "samples", 16) and find(odd, "precision", "float").default,
   "the script's own values are in their places")
 
--- Samples are those of a lens, too: its blur is what the first ones lack.
+-- Samples are also points of a lens: few of them lack its blur.
 local lens = study("lens", write("lens.lua", (read "film.lua":gsub("at = { 0, 0.5, 0 }", "%0, aperture = 0.6, focus = 3")))
   .. " --knobs samples")
 check(find(lens, "samples", 1).rmse > 3 * find(lens, "samples", 16).rmse

@@ -1,4 +1,4 @@
--- Depth cue: every term by its formula, of every sample; what it leaves alone; wrong values.
+-- Depth cue: every term by its formula, for every sample; unaffected passes; wrong values.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"

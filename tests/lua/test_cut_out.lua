@@ -73,7 +73,7 @@ end
 
 local tests = {}
 
--- A surface that is nowhere changes no bit of what is behind it, nor of its light.
+-- An invisible surface changes no bit of the surfaces behind it, nor of their light.
 function tests.what_is_not_there_changes_nothing()
   local gone = glint.pattern(function(p) return glint.select(glint.less(p.y, 1e9), 0, 1) end)
   local lights = {
@@ -106,7 +106,7 @@ function tests.what_is_not_there_changes_nothing()
   end
 end
 
--- What shows in a hole is a part, which is no primitive that rays meet by itself.
+-- The surface in a hole is a part, which is not a primitive that rays hit on its own.
 function tests.combined_solids_are_seen_through_holes()
   local red, grey = glint.material { diffuse = "red" }, glint.material { diffuse = "grey" }
   local parts = {
@@ -271,7 +271,7 @@ function tests.a_label_shows_its_wall()
   check(seen.red > 50 and seen.blue > 10, "%d red, %d blue", seen.red, seen.blue)
 end
 
--- Mirrors, glass and indirect light: what is not there is not there for them, but for rounding.
+-- Mirrors, glass and indirect light: a hole is also a hole for them, except for rounding.
 function tests.other_rays_go_through_holes()
   local gone = glint.material { opacity = glint.pattern(function(p) return glint.select(glint.less(p.y, 1e9), 0, 1) end) }
   local changes = {

@@ -46,7 +46,7 @@ local function is(atom, ...)
   return true
 end
 
--- What reads a file of this text raises exactly FILE:LINE: the message.
+-- Reading a file with this text raises exactly FILE:LINE: the message.
 local function refuses(text, line, message, f)
   local path = write("bad", text)
   local ok, got = pcall(f, path)
@@ -211,7 +211,7 @@ function tests.points()
   refuses("x,y,z\n1,2,\"3\n", 2, 'a closing quote in this line expected, got "1,2,\\"3"', read_points)
 end
 
--- What frame:atoms(...) gives beyond the radius, of all atoms.
+-- The results of frame:atoms(...) after the radius, for all atoms.
 local function columns_of(frame, ...)
   local list = {}
   for _, _, _, _, _, a, b, c in frame:atoms(...) do list[#list + 1] = { a, b, c } end
@@ -423,7 +423,7 @@ function tests.particles()
     function(path) particles.new():add_frame(points.frame(path)) end)
 end
 
--- What is kept of an atom while a file is read: 36 bytes, not a table.
+-- Memory per atom while a file is read: 36 bytes, not a table.
 function tests.memory()
   local path = write("large.xyz", "50000\n" .. ("\nC 1 2.5 0"):rep(50000))
   collectgarbage()

@@ -36,7 +36,7 @@ local function raises(want, f, ...)
   check(not ok and tostring(message):find(want, 1, true), "<%s> expected, got <%s>", want, tostring(message))
 end
 
--- The warnings of what f does, as a list.
+-- The warnings of a call of f, as a list.
 local function warnings_of(f)
   local list, warn = {}, glint._warn
   glint._warn = function(message) list[#list + 1] = message end

@@ -165,7 +165,7 @@ function tests.area_lights_against_differences()
   end, 10, 1e-1)
 end
 
--- What programs give, which nothing of the derivative moves.
+-- Results of programs that the derivative does not change.
 function tests.beside_patterns_against_differences()
   local function compare(name, make)
     local at, h = 2, 1e-2
@@ -288,7 +288,7 @@ function tests.patterns_against_differences()
   end)
 end
 
--- Shaders, by what each reads and by their own numbers: nineteen pixels of twenty, which are no edges.
+-- Shaders, by their inputs and by their own numbers: nineteen of twenty pixels, which are not edges.
 function tests.shaders_against_differences()
   local h = 1e-3
   local function compare(name, at, make, more)
@@ -669,7 +669,7 @@ function tests.adaptive()
   end)
 end
 
--- What else is kept of a frame is the same with derivatives and without.
+-- Other cached results of a frame are the same with and without derivatives.
 function tests.beauty_is_as_without()
   local x, passes = glint.variable("x", 0.3), "beauty,diffuse,mirror,transmission"
   local function compare(absorption, shadows, samples)

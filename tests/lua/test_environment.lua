@@ -1,5 +1,5 @@
 -- Backgrounds that a picture or a function gives, by the direction in which rays leave the scene: each direction of a
--- picture of few pixels, its seam and its poles; what mirrors and glass show, with directions worked out here; indirect
+-- picture of few pixels, its seam and its poles; mirrors and glass, with directions computed here; indirect
 -- light under an even sky; and one picture by every way to render it.
 local tally = dofile "tests/lua/tally.lua"
 package.path = "scripts/lib/?.lua;" .. package.path
@@ -74,7 +74,7 @@ function tests.each_pixel_is_where_it_belongs()
   end
 end
 
--- What the manual's table says of a picture's columns.
+-- The manual's table of a picture's columns.
 function tests.axes_are_columns_of_the_table()
   local columns = picture_of(360, 180, function(x) return x // 2 end)
   local axes = { { { 0, 0, -1 }, 180 }, { { 1, 0, 0 }, 270 }, { { -1, 0, 0 }, 90 } }
@@ -368,7 +368,7 @@ end }
   os.remove(sky)
 end
 
--- What is planned, and told of it.
+-- The plan and its report.
 function tests.it_is_explained_and_counted()
   local function write(text)
     local file <close> = assert(io.open(script, "w"))

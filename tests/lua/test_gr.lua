@@ -1,4 +1,4 @@
--- The gr dialect: pictures against tests/gr/witness.lua pixel by pixel, both generations and how they are told apart,
+-- The gr dialect: pictures against tests/gr/witness.lua pixel by pixel, both generations and how they are distinguished,
 -- what the old Luas had, where files are found, the command's options, wrong input.
 local build = os.getenv "BUILD" or "build"
 local tally = dofile "tests/lua/tally.lua"

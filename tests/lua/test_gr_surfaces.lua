@@ -1,5 +1,5 @@
 -- The gr dialect's variants of surfaces: pictures and reliefs on them, mirrors and glass. The forms in which scenes say the
--- same make the same codes; what they are is known on paper. What means nothing is told of, once.
+-- same make the same codes; the values are known on paper. Meaningless arguments give one warning.
 local build = os.getenv "BUILD" or "build"
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
@@ -29,7 +29,7 @@ local function run(text, options)
   return said, tonumber(said:match "exit (%d+)\n$")
 end
 
--- The middle of the shape `s` that the text makes, which is 1 wide, looked at along -z in ambient light alone.
+-- The middle of the shape `s` that the text makes, which is 1 wide, seen along -z in ambient light only.
 local SIZE <const> = 16
 local function look(text, options)
   local said, code = run(text .. [[
@@ -209,7 +209,7 @@ function tests.glass_is_seen_through()
   }, options)
   same({ CUBE .. KD .. ", 0, 0.8, 1.33)", CUBE .. KD .. ", 1.33, 0.8)", CUBE .. KD .. ", 0, 0, 0.8, 1.33)",
     CUBE .. "m = gr.material_refr({0, 0, 0}, {0, 0, 0}, 0, 0.8, 1.33)" }, options)
-  -- All light is either mirrored or goes through: before an even background a ball of glass is that background, but for
+  -- All light is either mirrored or goes through: before an even background a ball of glass looks like the background, except for
   -- what is still within after 5 surfaces.
   local r = look("s = gr.sphere('s') s:scale(0.5, 0.5, 0.5) " .. KD .. ", 1.5)", options)(8, 8)
   check(r >= 101 and r <= 102, "glass before an even background: 102 expected, got %d", r)
@@ -334,7 +334,7 @@ function tests.lamps_have_a_surface()
   end
 end
 
--- What the forms say in other words is the same lamp; a further list of lights is part of the first.
+-- Different forms make the same lamp; a further list of lights is part of the first.
 function tests.lamps_of_several_forms_are_one()
   same {
     FLOOR:format "gr.rect_light({0.3, 0, 1}, 0.4, 0.2, {0.5, 0.4, 0.3}, {1, 0, 0}, 40)",
@@ -447,7 +447,7 @@ end
 
 -- ---- Normals ----
 
--- What a matt grey shows in ambient light of 1 and one light from l, where its normal is n.
+-- The value of a matt grey in ambient light of 1 and one light from l, where its normal is n.
 local function shade_of(n, l)
   local function unit(v) return (v[1] * v[1] + v[2] * v[2] + v[3] * v[3]) ^ 0.5 end
   local cosine = (n[1] * l[1] + n[2] * l[2] + n[3] * l[3]) / (unit(n) * unit(l))

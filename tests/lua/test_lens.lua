@@ -141,7 +141,7 @@ local function tiles(shift)
   return list
 end
 
--- What lies in the plane of focus has the bits of the pinhole's picture: a point of it is the same from all of the lens.
+-- Points in the plane of focus have the bits of the pinhole's picture: such a point looks the same from the whole lens.
 function tests.in_focus()
   for _, projection in ipairs { "perspective", "orthographic" } do
     for _, samples in ipairs { 1, 7, 16 } do
@@ -161,7 +161,7 @@ function tests.in_focus()
   end
 end
 
--- A camera that is told to look elsewhere has its focus there; one with a direction along it.
+-- A camera that looks elsewhere has its focus there; a camera with a direction has it along the direction.
 function tests.focus_follows()
   local view = camera { aperture = 0.5 }
   local scene = glint.scene { camera = view, ambient = 1, background = 0.2,
@@ -179,7 +179,7 @@ function tests.focus_follows()
   check(view.focus.z == 3, "the field reads as it was set")
 end
 
--- Depth, normal, object and outline are those of the ray through the middle of the lens: the pinhole's, with any samples.
+-- Depth, normal, object and outline belong to the ray through the middle of the lens: the pinhole's, with any samples.
 function tests.geometry_of_the_middle()
   for _, more in ipairs { { samples = 1 }, { samples = 5 }, { samples = 16, adaptive = 0.1 } } do
     for _, projection in ipairs { "perspective", "orthographic" } do
@@ -201,7 +201,7 @@ function tests.geometry_of_the_middle()
   end
 end
 
--- A highlight is that of the way to each point of the lens: its mean over the disk, here by a fine grid of it.
+-- A highlight is computed for each point of the lens: here its mean over a fine grid on the disk.
 function tests.highlights()
   local shiny = glint.material { model = "phong", diffuse = 0, specular = 1, shininess = 40 }
   local lamp, aperture = { 1, 2, 6 }, 2
@@ -291,7 +291,7 @@ function tests.hard_places()
   end
 end
 
--- Samples are taken again where the blur shows, and nowhere inside of what is in focus.
+-- More samples are taken where the blur shows, and nowhere inside sharp areas.
 function tests.adaptive()
   local function scene(aperture)
     local s = glint.scene { camera = camera { aperture = aperture, focus = 10 }, ambient = 0.2,

@@ -1,5 +1,5 @@
 -- Lights have a grid of the spheres before them where a frame is large enough to pay for it: small parts of a picture, which have
--- none, are those of the whole, bit by bit.
+-- none, equal the whole, bit for bit.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"

@@ -108,7 +108,7 @@ end
 
 -- ---- One plain lamp, whose light is found with the surface ----
 
--- What a lamp of intensity 2 gives to a point: n.l / (c0 + c1 d + c2 d^2) on paper.
+-- The light of a lamp of intensity 2 at a point: n.l / (c0 + c1 d + c2 d^2) on paper.
 local function given(hit, place, c)
   local l, d = {}, 0
   for k = 1, 3 do

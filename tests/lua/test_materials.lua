@@ -111,7 +111,7 @@ local function random_pair()
   return above(math.max(math.random(), 1e-3), 7 * math.random()), above(math.max(math.random(), 1e-3), 7 * math.random())
 end
 
--- What float arithmetic may lose: roundings of 2^-24, and as many of the exponent where there is one. A power below 2^-40
+-- The error of float arithmetic: roundings of 2^-24, and as many of the exponent where there is one. A power below 2^-40
 -- is 0. Beckmann's exponent has the squared cosine of the half vector as 1 less the squared sine, one rounding of 1.
 local function definitions()
   math.randomseed(4)
@@ -336,7 +336,7 @@ end
 
 local GLINT = os.getenv("GLINT") or "build/glint"
 
--- What the command prints of a script that renders three frames while `change` is made.
+-- The command's output for a script that renders three frames while `change` is made.
 local function stages_of(change)
   local path = os.tmpname()
   local file <close> = assert(io.open(path, "w"))

@@ -1,4 +1,4 @@
--- Meshes from files: every kind gives the same triangles; materials of .obj files by face; what is wrong is told, wherever a
+-- Meshes from files: every kind gives the same triangles; materials of .obj files by face; faults are reported, wherever a
 -- file ends.
 local build = os.getenv "BUILD" or "build"
 local tally = dofile "tests/lua/tally.lua"

@@ -16,7 +16,7 @@ local function write(name, ...)
   return path
 end
 
--- Warnings are the command's: it loads the mesh, and what it prints without the path is what a test wants.
+-- Warnings come from the command: it loads the mesh, and a test compares its output without the path.
 local function warnings_of(path)
   local script = write("try.lua", ("local glint = require 'glint' glint.mesh { file = %q }"):format(path))
   local pipe = assert(io.popen(("'%s' '%s' -o none 2>&1"):format(os.getenv "GLINT" or build .. "/glint", script)))

@@ -64,7 +64,7 @@ function tests.dots_and_colons()
   wrong("sin: write glint.sin with a dot, not with a colon", "glint:sin(1)")
 end
 
--- The place is that of the pattern's function, not of what rendered.
+-- The place is the pattern's function, not the call that rendered.
 function tests.patterns_of_one_number_have_a_place()
   local code = "local three = glint.pattern(function(p) return { p.x, 1, 1 } end)\n"
     .. "scene:add(glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material { shininess = three, specular = 1 } })\n"

@@ -1,4 +1,4 @@
--- glint.ease and glint.keys: values on paper, ends, vectors and lists, cycles, splines, and what they refuse.
+-- glint.ease and glint.keys: values on paper, ends, vectors and lists, cycles, splines, and refused values.
 package.path = "tests/lua/?.lua;" .. package.path
 local glint = require "glint"
 local tally = require "tally"

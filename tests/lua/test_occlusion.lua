@@ -64,7 +64,7 @@ function tests.balls()
   near(open_at(0, 0, { floor(), ball }), 1 - 1 / 2.5 ^ 2, NOISE, "a ball above")
 end
 
--- Of a wall without end, at d, what is within L: the part of the unit disk beyond c = d / L.
+-- For an infinite wall at d, the part within L: the part of the unit disk beyond c = d / L.
 function tests.distance()
   local half_space = glint.plane { point = { 0, 0, 0 }, normal = { 1, 0, 0 }, material = matt }
   for _, c in ipairs { 0.1, 0.5, 0.9 } do
@@ -117,7 +117,7 @@ function tests.materials()
   check(open_at(1, 0, { floor(glint.material { diffuse = 0.5, ambient = 0 }) }) == 0, "no ambient light of the material")
 end
 
--- What a mirror shows of it.
+-- Seen in a mirror.
 function tests.mirror()
   local mirror = glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0, mirror = 0.5 } }
   local ceiling = glint.plane { point = { 0, 4, 0 }, normal = { 0, -1, 0 }, material = matt }

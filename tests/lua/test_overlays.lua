@@ -124,7 +124,7 @@ function tests.errors()
   raises("scene.overlay: not in the scene", scene.remove, scene, l)
 end
 
--- What is there of a picture: with a label another file, the same light; without it what it was.
+-- With a label, a picture is another file with the same light; without it, it is as before.
 -- A logarithmic bar has powers of ten at equal distances; colours of one's own lie along it.
 function tests.bars_of_ones_own()
   local function picture(fields)

@@ -74,7 +74,7 @@ end
 
 function tests.minus_0_is_0()
   local function lit(shininess) return (picture(make_scene(glint.material { specular = 0.3, shininess = shininess }))) end
-  local minus = lit(-0.0) -- first, so that nothing is kept of the other
+  local minus = lit(-0.0) -- first, so that nothing is cached of the other
   check(minus == lit(glint.pattern(function() return -0.0 end)), "as a pattern")
   check(minus == lit(0.0), "as 0")
 end
@@ -237,7 +237,7 @@ function tests.evaluate_runs_shaders()
   check(toon:evaluate(at).diffuse.x == 0, "a light behind the surface")
 end
 
--- Phong's model as a shader is the built-in one, but for what rounding to float leaves.
+-- Phong's model as a shader equals the built-in one, except for rounding to float.
 function tests.phong_as_a_shader_is_phong()
   local shader = glint.shader(function(s)
     return s.kd * s.light * s.n:dot(s.l), s.ks * s.light * glint.highlight((-s.l):reflect(s.n):dot(s.v), s.shininess)
@@ -272,7 +272,7 @@ function tests.a_bump_of_a_slope_tilts_the_normal()
   tally.near(lit({ diffuse = 0.8, bump = glint.pattern(function() return 3 end) }, -l), 0.8 * l.y, 1e-6, "a height without slope")
 end
 
--- What ambient light leaves of a pattern is in no table of numbers: frames that keep the rest must not keep that.
+-- The remaining ambient light of a pattern is not in a table of numbers: frames that reuse the rest must not reuse that.
 function tests.ambient_light_changes_what_patterns_show()
   local wave = glint.pattern(function(p) return 0.25 + glint.fract(p.x) / 2 end)
   local shader = glint.shader(function(s) return s.kd end)

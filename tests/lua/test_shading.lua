@@ -1,5 +1,5 @@
--- Flat and Gouraud shading against light worked out here, a face and a vertex at a time; what neighbours must not shadow,
--- and what a camera's move leaves as it is.
+-- Flat and Gouraud shading against light computed here, a face and a vertex at a time; neighbours must not shadow,
+-- and a moving camera does not change it.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -100,7 +100,7 @@ local function sheet()
   return model
 end
 
--- A turn around a random axis, then a way: three rows and what is added.
+-- A rotation around a random axis, then a translation: three rows and an offset.
 local function random_map(turned, way)
   if not turned then return { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, way } end
   local x = unit(vector(1))
@@ -159,7 +159,7 @@ local function light_sites(model, shading, eye)
   return out
 end
 
--- What a pixel that shows triangle `element` at `point` has of them.
+-- The interpolated value of a pixel that shows triangle `element` at `point`.
 local function expect(model, shading, sites, element, point, eye)
   local face = (element + 1) // 2
   local _, normal = centroid(model.faces[face])
@@ -298,7 +298,7 @@ function tests.corner_normals()
   check(shared ~= picture { vertices = corners, faces = faces }, "is not one of smooth corners")
 end
 
--- A vertex's normal may lean so far from the eye that it looks away from what lies halfway to the lamp: (n.h) < 0 and no
+-- A vertex's normal may lean so far from the eye that it points away from the halfway vector: (n.h) < 0 and no
 -- highlight, however broad.
 function tests.normals_that_look_away()
   local lean, v = unit { 2, 0, 1 }, unit { -8, 0, 1 }
@@ -317,7 +317,7 @@ function tests.normals_that_look_away()
   end
 end
 
--- Passes add up, samples meet in the mean, and one-sided backs have ambient light alone.
+-- Passes add up, samples meet in the mean, and one-sided backs have only ambient light.
 function tests.terms()
   local ball = glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 10, shading = "gouraud",
     material = glint.material { diffuse = 0.7, specular = 0.5, ambient = 0.3 } }
@@ -349,7 +349,7 @@ function tests.terms()
   end
 end
 
--- ---- What a frame calls for, and what it leaves as it was ----
+-- ---- The stages of a frame, and those that it reuses ----
 
 local scratch = os.getenv "SCRATCH" or os.tmpname() .. ".d"
 os.execute("mkdir -p '" .. scratch .. "'")
@@ -386,7 +386,7 @@ function tests.reuse()
     local script = MOVING:gsub("SHADING", case[1]):gsub("SPECULAR", case[2]):gsub("MOVE", case[3])
     local text, states = run(script), {}
     for state in text:gmatch '"vertex":"(%a+)"' do states[#states + 1] = state end
-    -- faces that come into sight are worked out then: nearly all were there
+    -- faces that come into sight are computed then: nearly all were there
     local last = states[3] == "partial" and "reused" or states[3]
     check(states[1] == "run" and last == case[4], "%s, specular %s, %s: %s", case[1], case[2], case[3],
       table.concat(states, " ") .. text:sub(1, 300))
@@ -407,7 +407,7 @@ function tests.called_for()
   check(text:find "flat shading" and text:find "vertex", "explain: %s", text)
 end
 
--- ---- Smooth normals of a mesh that is stretched: those of its own space, mapped ----
+-- ---- Smooth normals of a stretched mesh: interpolated in its own space, then mapped ----
 
 do
   local corners = { unit { 0.3, -0.2, 1 }, unit { -0.6, 0.1, 1 }, unit { 0.2, 0.7, 0.8 } }

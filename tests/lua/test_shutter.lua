@@ -100,7 +100,7 @@ end
 
 local function circle(t, height) return { 6 * math.cos(4 * t), height or 6, 6 * math.sin(4 * t) } end
 
--- ---- Lights alone: they add up ----
+-- ---- Only lights move: they add up ----
 
 local function place(light) return function(t) light.position = circle(t) end end
 local glass = glint.sphere { center = { 2.5, 1, 1 }, radius = 0.9, material = glint.material { diffuse = 0.1, transmission = 0.8, mirror = 0.1 } }
@@ -218,7 +218,7 @@ do
   local light = glint.point_light { position = { 5, 6, 5 } }
   local parts = room(light)
   local function is_gone(t) return t > 0.1 and t < 0.4 end
-  local frames = { -- of the lights alone, which add up otherwise; of a ball; of what nothing depends on at one of the times
+  local frames = { -- only lights move, which add up otherwise; a ball moves; nothing depends on the parameter at one of the times
     light = function(t) light.position = { 6 * v * (t + 0.1), 6, 5 } end,
     ball = function(t) parts.ball.center = { v * (t + 0.1), 1, 0 } end,
     gone = function(t) light.intensity = is_gone(t) and 1 or v * (t + 0.1) end,
@@ -279,7 +279,7 @@ local single = calls_of({ frames = 1 }, { shutter = 0.5, shutter_times = 2 })
 check(told(single[1]) == "0 0.125 0.375 0", "a single frame: %s", told(single[1]))
 check(told(calls_of({ frames = 2 }, { shutter = 0 })[2]) == "1", "closed: one call")
 
--- ---- Errors on the way ----
+-- ---- Errors ----
 
 do
   local parts = room(glint.point_light { position = { 5, 6, 5 } })

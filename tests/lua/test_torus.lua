@@ -1,4 +1,4 @@
--- glint.torus: what rays meet, what it shadows of itself, its coordinates, and what is refused.
+-- glint.torus: hits of rays, shadows on itself, coordinates, and refused values.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
@@ -82,7 +82,7 @@ function tests.transforms()
   check(hits > 100, "%d hits", hits)
 end
 
--- What is lit is what the light sees: a ray from there to the point meets nothing before it.
+-- Lit points are those that the light sees: a ray from the light to the point hits nothing before it.
 function tests.shadows_of_itself()
   local lamp, eye = { 7, 0.8, 2 }, { 1.5, 3, 5 }
   local size = { width = 96, height = 64, passes = { "diffuse", "depth" } }

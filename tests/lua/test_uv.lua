@@ -50,7 +50,7 @@ end
 
 local tests = {}
 
--- Triangles in a bent place, with coordinates of their own: by the areas of what the point cuts off.
+-- Triangles under a general map, with their own coordinates: by the areas that the point cuts off.
 function tests.between_corners_by_areas()
   local vertices = { { -2, -1.2, 0 }, { 1.5, -1, 0.4 }, { 1.8, 1.3, -0.3 }, { -1.6, 1.1, 0.5 } }
   local uv = { { 0.1, 0.2 }, { 0.9, 0.1 }, { 0.7, 0.8 }, { 0.3, 0.4 }, { 0.6, 0.9 }, { 0.2, 0.5 } }
@@ -146,7 +146,7 @@ function tests.errors_name_the_field()
   end
 end
 
--- What all corners of a face have is what each of its points has, to the last bit; nothing leaves what the corners have.
+-- If all corners of a face agree, all its points have that value, to the last bit; no point leaves the range of the corners.
 function tests.rounding_stays_within_the_corners()
   local level = glint.pattern(function(_, s) return { glint.equal(s.uv.u, 0.3), glint.lesseq(s.uv.v, 0.7), glint.lesseq(0.1, s.uv.v) } end)
   local vertices, faces, uv, n = {}, {}, {}, 12

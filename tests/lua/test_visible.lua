@@ -1,4 +1,4 @@
--- Lights that are seen: where, how bright, what they hide, and what they leave alone.
+-- Visible lights: position, brightness, the objects that they hide, and unaffected passes.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # libraries.sh FOLDER CC AR: builds zlib, libpng, Lua and xxHash as static libraries for another machine into FOLDER, with the
-# compiler CC and the archiver AR. The sources are those of the Debian packages that this machine's own apt knows. The machine's
+# compiler CC and the archiver AR. The sources come from the Debian packages that this machine's own apt knows. The machine's
 # packages and lists stay as they are. Needs apt-get, not root.
 set -eu
 mkdir -p "$1/sources/lists/partial" "$1/lib/pkgconfig" "$1/include"

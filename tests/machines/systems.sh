@@ -31,7 +31,7 @@ done
 END
 printf '#!/bin/sh\n: >"$2"\n' >"$tools/ar" # qcs ARCHIVE
 printf '#!/bin/sh\necho "strip $*" >>"$CALLS"\n' >"$tools/strip"
-# Packages as these systems have them: of Lua by its own name alone, of the rest what glint cannot be without.
+# Packages as these systems have them: Lua only under its own name, and otherwise only what glint requires.
 cat >"$tools/pkg-config" <<'END'
 #!/bin/sh
 for a; do case $a in -*) ;; *)

@@ -40,7 +40,7 @@ else
 end
 if P.surfaces == "lens" then camera.aperture, camera.focus = w.lens.aperture, w.lens.focus end
 
--- What lets light through has no colour of its own.
+-- A transparent material has no colour of its own.
 local function material(surface, fields)
   if surface.transmission then fields.ambient, fields.diffuse = 0, 0 end
   for name, value in pairs(surface) do
@@ -64,7 +64,7 @@ local function part(s)
   return glint[s.kind](fields)
 end
 
--- What stands in a sphere's place.
+-- A shape at the place of a sphere.
 local function shape(s, sphere, surface, coat)
   local center = { sphere[1][1], sphere[1][2] + (surface.lift or 0), sphere[1][3] }
   if not s then return glint.sphere { center = center, radius = sphere[2], material = coat } end

@@ -24,7 +24,7 @@ static inline void add_closed_triangle(closed_mesh *mesh, const double a[3], con
     memcpy(corner[2], c, 3 * sizeof *c);
 }
 
-/// A ball of 32 triangles around the middle, its corners at random distances: those of an octahedron and the middles of its sides.
+/// A ball of 32 triangles around the middle. Its corners, those of an octahedron and the middles of its sides, have random distances.
 static inline void make_star(closed_mesh *mesh, const double middle[3], double low, double high)
 {
     double at[3][3][3][3]; // by -1, 0, 1 along each axis

@@ -1,4 +1,4 @@
-/// What the tests of area lights share: balls over a floor, and what is asked of pictures and plans. Included after cmocka.h.
+/// Shared by the tests of area lights: balls over a floor, and checks of pictures and plans. Included after cmocka.h.
 #ifndef GLINT_TESTS_FLOOR_SCENE_H
 #define GLINT_TESTS_FLOOR_SCENE_H
 

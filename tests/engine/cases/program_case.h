@@ -39,7 +39,7 @@ static inline void recipe_add(recipe *r, recipe_step step, uint32_t results)
     r->value_count += results;
 }
 
-/// Inputs, numbers, then operations on what there is; often on numbers alone.
+/// Inputs, numbers, then operations on earlier values; often only on numbers.
 static inline recipe random_recipe(bool odd)
 {
     recipe r = { .output_count = one_in(2) ? 1 : 3 };

@@ -24,7 +24,7 @@ static inline bool one_in(uint32_t n) { return below(n) == 0; }
 static inline double between(double a, double b) { return a + (b - a) * ((double)(random_bits() >> 11) * 0x1p-53); }
 
 /// One of so many cases is run: 1, or GLINT_CASE_STEP where all of them would take too long (on an emulated machine, under a
-/// sanitizer). Prime to what the kinds of a test's cases go by, 5 and 6, or some would never be.
+/// sanitizer). Coprime to the periods of a test's kinds of cases, 5 and 6, or some kinds would never run.
 static inline uint32_t case_step(void)
 {
     const char *step = getenv("GLINT_CASE_STEP");

@@ -31,7 +31,7 @@ static inline glint_image *render_with(const glint_scene *scene, const char *isa
     return image;
 }
 
-/// Of the pixels of a square, by their bits.
+/// Hashes the pixels of a square, by their bits.
 static inline int differing(const glint_image *a, const glint_image *b, glint_pass pass, int size)
 {
     int count = 0;

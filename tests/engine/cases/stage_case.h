@@ -1,4 +1,4 @@
-/// What the tests of the stages are made of: random numbers with odd ones among them, and outputs between guard bytes
+/// Tools of the stages' tests: random numbers with special ones among them, and outputs between guard bytes
 /// that are compared bit for bit. Every stage runs on every instruction set against the scalar reference.
 #ifndef GLINT_STAGE_CASE_H
 #define GLINT_STAGE_CASE_H

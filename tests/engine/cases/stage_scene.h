@@ -1,5 +1,5 @@
 /// Scenes for the tests of the stages that look at geometry: primitives placed where it is hard to tell whether a ray
-/// meets them, and the tables that stages.h promises the kernels, made from its words alone. The index is the engine's
+/// meets them, and the tables that stages.h promises the kernels, made only from its words. The index is the engine's
 /// tree over boxes that are made here.
 #ifndef GLINT_STAGE_SCENE_H
 #define GLINT_STAGE_SCENE_H
@@ -16,7 +16,7 @@ typedef struct test_line {
     double length; ///< how far away it matters; of a segment, all of it
 } test_line;
 
-/// What a random scene is like.
+/// The properties of a random scene.
 typedef struct scene_plan {
     double middle[3], size; ///< where primitives are that no line attracts
     double spread; ///< radii are smaller than `size` by up to so many powers of ten
@@ -361,7 +361,7 @@ static inline glint_box place_sphere(const glint_geometry_table *table, glint_pr
     return box;
 }
 
-/// The same of what has no radius.
+/// The same for primitives without a radius.
 static inline glint_box place_corners_of(const test_scene *scene, glint_prim *prim)
 {
     const glint_geometry_table *table = &scene->table;
@@ -385,7 +385,7 @@ static inline glint_box place_corners_of(const test_scene *scene, glint_prim *pr
     return box;
 }
 
-/// The axis of what has one, and how far off it its surface gets: of the columns across, what of each is square to it.
+/// The axis of a solid that has one, and the largest distance of its surface from it: the perpendicular parts of the columns across.
 static inline void place_axis(const glint_geometry_table *table, glint_solid *solid)
 {
     const bool has_axis = solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_CONE ||
@@ -499,7 +499,7 @@ static inline void set_triangle_face(test_scene *scene, glint_prim *prim)
     prim->face = scene->face_count;
 }
 
-/// The planes of what is flat, now that all is in place.
+/// The planes of flat primitives, after all have their places.
 static inline void set_faces(test_scene *scene)
 {
     scene->face_count = 0;
@@ -536,7 +536,7 @@ static inline void order_prims(test_scene *scene)
     scene->table.corners = (const double(*)[3][3])scene->corners;
 }
 
-/// The order of definition: that of the array, or any.
+/// The order of definition: the array's, or any other.
 static inline void number_prims(test_scene *scene)
 {
     const bool shuffled = one_in(2);

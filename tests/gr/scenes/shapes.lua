@@ -34,7 +34,7 @@ local ball = put(turned, gr.sphere('sheared'), blue, {'scale', 0.7, 0.7, 0.7})
 put(ball, gr.cube('child of a shape'), red, {'scale', 0.8, 0.8, 0.8}, {'translate', 0.6, 0.6, 0.6})
 put(turned, gr.cylinder('sheared'), green, {'scale', 0.2, 0.2, 3}, {'rotate', 'y', -765}, {'translate', -0.5, 1.5, 0})
 
--- What has no extent does not show.
+-- Shapes without an extent do not show.
 put(root, gr.sphere('flat'), red, {'scale', 3, 0, 3})
 put(root, gr.nh_sphere('point', {0, 0, 0}, 0), red)
 put(root, gr.nh_box('nothing', {0, 0, 0}, 0), red)

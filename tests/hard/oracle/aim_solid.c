@@ -241,7 +241,7 @@ hard_ray solid_aim(const hard_solid *s, double size)
     to_world(s, p);
     to_world(s, q);
     random_direction(away);
-    // points of what is flat are in one plane with each other
+    // points of flat shapes lie in one plane
     const bool flat = s->is_triangle || s->desc.kind == GLINT_SHAPE_DISK;
     const int way = along || touching ? 0 : flat && chance(0.8) ? 2 : (int)(random_bits() % 4);
     for (int c = 0; c < 3; c++) {

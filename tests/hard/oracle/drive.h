@@ -1,4 +1,4 @@
-/// The engine, through engine/glint.h alone; and the counting of checks that every program here does.
+/// The engine, only through engine/glint.h; and the counting of checks that every program here does.
 #ifndef HARD_DRIVE_H
 #define HARD_DRIVE_H
 
@@ -33,7 +33,7 @@ int hard_end(void);
 void hard_list_tests(const char *title);
 /// In tables: the heading of lines of values.
 void hard_columns(const char *title);
-/// What a line of values shows; HARD_BLANK: nothing there.
+/// The values of a line; HARD_BLANK: empty.
 #define HARD_BLANK (-HUGE_VAL)
 typedef struct hard_values {
     double truth, in_double, in_float; ///< the oracle's, the engine's
@@ -52,13 +52,13 @@ void random_direction(double v[3]); ///< unit to the last bits
 
 // ---- Objects ----
 
-/// What cannot fail here ends the program with the engine's message.
+/// A call that must not fail: a failure ends the program with the engine's message.
 void must(glint_status status, const glint_error *error);
 
 glint_scene *scene_new(void);
 void scene_light_up(glint_scene *scene, double ambient, const double background[3]);
 void scene_camera(glint_scene *scene, const glint_camera_desc *desc);
-/// The scene holds the only reference to what these add.
+/// The scene holds the only reference to the added objects.
 glint_shape *scene_sphere(glint_scene *scene, const hard_sphere *sphere, glint_material *material);
 glint_shape *scene_plane(glint_scene *scene, const hard_plane *plane, glint_material *material);
 void scene_light(glint_scene *scene, const glint_light_desc *desc);

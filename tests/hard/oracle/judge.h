@@ -1,4 +1,4 @@
-/// What the engine may be off by: 4 ulp of t, times how much the inputs' own rounding is magnified on its way to t. Half an
+/// The engine's allowed error: 4 ulp of t, times the magnification of the inputs' rounding. Half an
 /// ulp of the direction, of the radius, and of o - c where that is not exact, moves the hit by so much that a sharper
 /// answer would mean nothing. (Where o - c is exact the roundings of o and c are not counted: a user may mean them.)
 #ifndef HARD_JUDGE_H
@@ -23,7 +23,7 @@ extern const char *const verdict_name[];
 typedef struct judgement {
     verdict verdict;
     double ulp; ///< error of t, in ulp
-    double t_share; ///< that error's share of what is allowed: 4 ulp x how the inputs' rounding is magnified
+    double t_share; ///< that error relative to the allowed one: 4 ulp x the magnification of the inputs' rounding
     double normal_share;
 } judgement;
 

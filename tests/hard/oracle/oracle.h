@@ -1,4 +1,4 @@
-/// What is true of a ray and a sphere, a ray and a plane, a reflection, a code: from the definition, from the binary64
+/// Exact results for a ray and a sphere, a ray and a plane, a reflection, a pixel value: from the definition, from the binary64
 /// numbers that the engine gets, and by nobody's kernel. `oracle_*` answers in multiple precision and decides exactly;
 /// `quick_*` answers in 113 bits and says when that is not enough.
 #ifndef HARD_ORACLE_H

@@ -1,4 +1,4 @@
-/// What is true of light: microfacets, spots, lights with a surface, mirrors and glass. From the definitions, in multiple
+/// Exact results for light: microfacets, spots, lights with a surface, mirrors and glass. From the definitions, in multiple
 /// precision, from the binary64 numbers that the engine gets.
 #ifndef HARD_ORACLE_LIGHT_H
 #define HARD_ORACLE_LIGHT_H
@@ -13,7 +13,7 @@ double oracle_ggx(double alpha, double angle);
 double oracle_facets(bool beckmann, double roughness, double f0, const double n[3], const double l[3],
                      const double v[3]);
 
-/// What a spot sends along `to_point`: smoothstep of the cosine between outer and inner, times cos^exponent.
+/// The strength of a spot along `to_point`: smoothstep of the cosine between outer and inner, times cos^exponent.
 double oracle_spot(double inner_rad, double outer_rad, double exponent, const double axis[3], const double to_point[3]);
 
 /// 1 - cos of the half angle that a ball of radius `ratio` times the distance covers.

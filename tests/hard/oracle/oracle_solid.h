@@ -1,4 +1,4 @@
-/// What is true of a ray and an ellipsoid, box, cylinder, cone, disk, torus or triangle, under any map: in 113 bits, from the
+/// Exact results for a ray and an ellipsoid, box, cylinder, cone, disk, torus or triangle, under any map: in 113 bits, from the
 /// binary64 numbers of its description.
 ///
 /// How near a decision is to the other one is asked of the shape itself: it is met grown and shrunk by a share `margin` of

@@ -1,4 +1,4 @@
-/// One point of a surface and what a frame of one pixel makes of it.
+/// One point of a surface, and a frame of one pixel that shows it.
 #ifndef HARD_POINT_H
 #define HARD_POINT_H
 

@@ -1,4 +1,4 @@
-/// Phong's and Blinn's models as shaders that read all that a shader may, but for coordinates on surfaces.
+/// Phong's and Blinn's models as shaders that read every input except coordinates on surfaces.
 #ifndef GLINT_HARD_SHADERS_H
 #define GLINT_HARD_SHADERS_H
 
@@ -37,7 +37,7 @@ static inline glint_value product(glint_builder *b, int x, int y)
     return sum;
 }
 
-/// x^s of what is Phong's or Blinn's cosine. (l + v)^2 is 2 (1 + l.v).
+/// x^s of Phong's or Blinn's cosine. (l + v)^2 is 2 (1 + l.v).
 static inline glint_value make_strength(glint_model model, glint_builder *b)
 {
     const glint_value nl = product(b, GLINT_INPUT_N_X, GLINT_INPUT_L_X), nv = product(b, GLINT_INPUT_N_X, GLINT_INPUT_V_X),

@@ -1,4 +1,4 @@
-/// A closed mesh, convex but for the rounding of its corners, and rays at its seams.
+/// A closed mesh, convex except for the rounding of its corners, and rays at its seams.
 #ifndef HARD_SHELL_H
 #define HARD_SHELL_H
 

@@ -1,4 +1,4 @@
-/// What the tests of derivatives have in common: vectors in 113 bits, a picture with one, and how far it is from the truth.
+/// Shared by the tests of derivatives: vectors in 113 bits, a picture with one, and how far it is from the truth.
 #ifndef GLINT_HARD_SLOPES_H
 #define GLINT_HARD_SLOPES_H
 
@@ -45,7 +45,7 @@ static inline void put(double *out, const quad in[3], int count)
         out[c] = (double)in[c];
 }
 
-/// `desc`: the size, and what else differs from the defaults. The caller releases the image.
+/// `desc`: the size, and other fields that differ from the defaults. The caller releases the image.
 static inline glint_image *slope_picture(const glint_scene *scene, glint_render_desc desc, const glint_derivative *derivative)
 {
     glint_renderer_desc r = glint_renderer_desc_default();
@@ -64,7 +64,7 @@ static inline glint_image *slope_picture(const glint_scene *scene, glint_render_
     return image;
 }
 
-/// The largest distance from `want`, of width * height pixels, in parts of what is promised. *most: the steepest pixel.
+/// The largest distance from `want`, of width * height pixels, relative to the promise. *most: the steepest pixel.
 /// Pixels are rounded to float; before, what is left of sums in double is within 2^-40 of the steepest pixel.
 static inline double slope_distance(const glint_image *image, int width, int height, double (*want)[3], double *most)
 {

@@ -30,7 +30,7 @@ const solid_case solid_cases[] = {
                { -0x1.40ecf90d049ebp-2, -0x1.c455a4348b9f9p-2, 0x1.dae62db0dbbbep+5, 0x0p+0 },
                { 0x1.8b75d51b58594p-4, 0x1.5785926369606p-3, -0x1.1f9c7f908b37ep+4, 0x0p+0 } },
       .t = 0.99999952271042791 },
-    // A map that undoes the flatness of what is under it: M is small where the sums that it is made of are large.
+    // A map that undoes the flattening of a map under it: M is small although its terms are large.
     { "V5", "cylinder, made round by its map",
       .ray = { { 0x1.3d78a45f30204p+15, -0x1.73ded04ab4097p+16, -0x1.caa1d494ef3c7p+19 },
                { -0x1.5a45b396dcfap+13, 0x1.e7f43187e60aep+15, 0x1.9ddefd642989cp+17 } },

@@ -1,4 +1,4 @@
-/// Rays at solids that have been answered wrongly, or judged so, once; with their answers, worked out in 400 bits.
+/// Rays at solids that have been answered wrongly, or judged so, once; with their answers, computed in 400 bits.
 #ifndef HARD_SOLID_CASES_H
 #define HARD_SOLID_CASES_H
 

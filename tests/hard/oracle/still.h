@@ -20,7 +20,7 @@ typedef struct hard_still {
     double ambient, background[3];
 } hard_still;
 
-/// What a tracer says of one pixel.
+/// A tracer's result for one pixel.
 typedef struct still_pixel {
     int object; ///< counted from 1; 0: background
     bool lit; ///< the light reaches it and shines on its front

@@ -1,4 +1,4 @@
--- What a scene runs by dofile.
+-- Run by a scene through dofile.
 function ball(name, material, x, y, z)
   local s = gr.sphere(name)
   s:set_material(material)
