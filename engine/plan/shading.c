@@ -10,7 +10,7 @@
 #define PI 0x1.921fb54442d18p+1
 #define SAMPLES_MAX 0x1p27 ///< of all lights, for all turns
 
-/// Strengths beyond this are white in any film; keeping below it, products of two stay finite.
+/// Larger strengths are white in any film. Below this limit, products of two stay finite.
 #define STRENGTH_MAX 1e150
 
 static bool is_black(const double c[3]) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
@@ -49,7 +49,7 @@ static void facets_init(glint_shade_material *out, const glint_material_desc *de
     }
 }
 
-/// What of a resolved description programs give: planes, and 1 for what they are multiplied by.
+/// Marks the planes that programs compute, and sets the constants that multiply them to 1.
 static void take_planes(glint_shade_material *out, glint_material_desc *d, bool ambient_follows)
 {
     const glint_material_programs *programs = &d->program;
@@ -65,7 +65,7 @@ static void take_planes(glint_shade_material *out, glint_material_desc *d, bool 
     }
 }
 
-/// Phong and Blinn-Phong whose exponent a program gives; with it goes what makes it even.
+/// Phong and Blinn-Phong with an exponent computed by a program, together with the normalising factor.
 static void take_exponents(glint_shade_material *out, const glint_material_desc *d)
 {
     out->planes |= GLINT_PLANE_SHININESS;
@@ -103,13 +103,13 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
         take_exponents(out, &d);
 }
 
-/// Whether its shadows are by caps.
+/// Returns whether a light's shadows use caps.
 static bool is_cap(const glint_plan *plan, const glint_light_desc *desc)
 {
     return plan->caps && desc->shadow == GLINT_SHADOW_CAPS && desc->shadows && desc->radius > 0;
 }
 
-/// Whether the light is taken for many points of its surface.
+/// Returns whether the light is sampled at points of its surface.
 static bool is_area(const glint_plan *plan, const glint_light_desc *desc)
 {
     if (is_cap(plan, desc))
@@ -125,7 +125,7 @@ static bool is_area(const glint_plan *plan, const glint_light_desc *desc)
     }
 }
 
-/// How many points are taken: of a point-like disk, one.
+/// Returns the number of samples; one for a disk without an area.
 static uint32_t sample_count(const glint_plan *plan, const glint_light_desc *desc)
 {
     return !is_area(plan, desc) || (desc->kind == GLINT_LIGHT_DISK && desc->radius == 0) ? 1 : (uint32_t)desc->samples;
@@ -134,7 +134,7 @@ static uint32_t sample_count(const glint_plan *plan, const glint_light_desc *des
 static void spot_init(glint_plan_light *out, const glint_light_desc *desc)
 {
     const double inner = glint_cos(desc->inner_rad), outer = glint_cos(desc->outer_rad);
-    out->is_spot = inner > -1 || desc->exponent > 0; // else it shines everywhere, as a point light
+    out->is_spot = inner > -1 || desc->exponent > 0; // otherwise it shines everywhere, like a point light
     if (!out->is_spot)
         return;
     out->attenuated = true;
@@ -144,9 +144,9 @@ static void spot_init(glint_plan_light *out, const glint_light_desc *desc)
     out->spot.exponent = (float)fmin(desc->exponent, FLT_MAX);
 }
 
-/// The power of two that brings the largest distance from here to a surface that has an end near 1: then no square of a
-/// distance overflows a float, and none that is 2^-60 of it vanishes. Distances that are not far from 1 stay as they are:
-/// the kernels leave out a product by 1.
+/// Returns the power of two that scales the largest distance from here to a bounded surface to about 1. Then no square of a
+/// distance overflows a float, and none above 2^-60 of it vanishes. Distances near 1 are not scaled, because
+/// the kernels skip a product by 1.
 static double distance_scale(const double position[3], const glint_geometry_table *geometry)
 {
     double away[3];
@@ -156,7 +156,7 @@ static double distance_scale(const double position[3], const glint_geometry_tabl
     return 0x1p-20 < scale && scale < 0x1p20 ? 1 : scale;
 }
 
-/// The mean of a polygon's corners, which is within it.
+/// Computes the mean of a polygon's corners, which is inside the polygon.
 static void middle_of_corners(const glint_light_desc *desc, double out[3])
 {
     for (int c = 0; c < 3; c++) {
@@ -166,7 +166,7 @@ static void middle_of_corners(const glint_light_desc *desc, double out[3])
     }
 }
 
-/// A light, or what all samples of one have in common.
+/// Fills a light, or the common fields of all its samples.
 static void light_init(const glint_plan *plan, glint_plan_light *out, const glint_light_desc *desc)
 {
     const glint_geometry_table *geometry = &plan->geometry->table;
@@ -196,10 +196,10 @@ static void light_init(const glint_plan *plan, glint_plan_light *out, const glin
         out->coefficients[0] = 0;
         out->coefficients[2] = 1;
         strength = desc->radiance * (PI * (desc->radius * desc->radius));
-    } else if (desc->has_radiance && desc->kind == GLINT_LIGHT_SPHERE) { // weighed by its solid angle over pi
+    } else if (desc->has_radiance && desc->kind == GLINT_LIGHT_SPHERE) { // weighted by its solid angle over pi
         out->attenuated = true;
         strength = PI * desc->radiance / desc->samples;
-    } else if (desc->has_radiance) { // the kernels' cos' / distance^2 is in the light's units: of its own size
+    } else if (desc->has_radiance) { // the kernels' cos' / distance^2 is in units of the light's size
         const double size = glint_light_sample_size(desc);
         out->attenuated = true;
         out->scale = size > 0 ? power_of_two_scale(size) : 1;
@@ -209,7 +209,7 @@ static void light_init(const glint_plan *plan, glint_plan_light *out, const glin
     bounded(out->specular, desc->has_specular ? desc->specular : desc->color, strength);
 }
 
-/// Ia: the scene's ambient light and every light's.
+/// Computes Ia: the ambient light of the scene and of every light.
 static void total_ambient(glint_plan *plan, const glint_scene *scene)
 {
     vec_copy(plan->ambient, scene->desc.ambient);
@@ -228,7 +228,7 @@ static void total_ambient(glint_plan *plan, const glint_scene *scene)
             scene->desc.has_depth_cue_color ? scene->desc.depth_cue_color : scene->desc.background, 1);
 }
 
-/// Which kinds of highlight there are among the materials.
+/// Fills the materials, and finds their kinds of highlight.
 static glint_status make_materials(glint_plan *plan, bool *powers, bool *facets, glint_error *error)
 {
     const glint_list *list = &plan->geometry->materials;
@@ -245,7 +245,7 @@ static glint_status make_materials(glint_plan *plan, bool *powers, bool *facets,
     return GLINT_OK;
 }
 
-/// Rows for all lights, and lamps for those of area.
+/// Allocates rows for all lights, and sample patterns for area lights.
 static glint_status make_room(glint_plan *plan, const glint_scene *scene, glint_error *error)
 {
     double rows = 0, light_samples = 0;
@@ -265,7 +265,7 @@ static glint_status make_room(glint_plan *plan, const glint_scene *scene, glint_
     return plan->lights && plan->light_samples ? GLINT_OK : glint_fail_nomem(error);
 }
 
-/// Whether a light is as the one before it but for its place, as far as the stage `light` reads them: neither has samples or a
+/// Returns whether two lights differ only in their places, as far as the stage `light` reads them, and have no samples or
 /// cone.
 static bool is_alike(const glint_plan_light *a, const glint_plan_light *b)
 {
@@ -274,7 +274,7 @@ static bool is_alike(const glint_plan_light *a, const glint_plan_light *b)
            memcmp(a->coefficients, b->coefficients, sizeof a->coefficients) == 0;
 }
 
-/// Adds the rows of one light: one, or one a sample. Returns how many lamps they took of `lamps`.
+/// Adds the rows of one light: one, or one per sample. Returns the number of patterns used from `lamps`.
 static size_t add_light(glint_plan *plan, const glint_plan_light *common, const glint_light_desc *desc,
                         glint_light_sample *light_samples)
 {
@@ -300,7 +300,7 @@ static size_t add_light(glint_plan *plan, const glint_plan_light *common, const 
 
 void glint_plan_count_lights(glint_plan *plan)
 {
-    uint32_t row = 0; // of its light
+    uint32_t row = 0; // within its light
     plan->shadow_count = plan->spared_count = 0;
     for (uint32_t i = 0; i < plan->light_count; i++) {
         glint_plan_light *light = &plan->lights[i];
@@ -340,7 +340,7 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
         glint_plan_light light;
         light_init(plan, &light, desc);
         if (is_black(light.diffuse) && is_black(light.specular) && !plan->desc.derivative_count)
-            continue; // derivatives are of lights that have no strength, too
+            continue; // lights of strength 0 can have derivatives, too
         light.source = (uint32_t)i;
         light.group = glint_light_group_of(plan, i);
         glossy_light = glossy_light || !is_black(light.specular);

@@ -163,8 +163,8 @@ static glint_value add_share(glint_slope_maker *s, glint_value sum, glint_value 
     return sum == GLINT_SLOPE_NOTHING ? term : two(s, off ? GLINT_OP_SUB : GLINT_OP_ADD, sum, term);
 }
 
-/// The slope of an operation's result, of those of its operands: a choice has that of what is chosen, another operation the sum
-/// of what it would pass on of 1, times theirs.
+/// Returns the slope of an operation's result from the slopes of its operands: a choice has the slope of the chosen operand, another operation the sum
+/// of its partial derivatives times the slopes.
 static glint_value find_slope(glint_slope_maker *s, glint_value i, const glint_value *slope)
 {
     const glint_ssa_node node = s->builder->nodes[i];
@@ -237,7 +237,7 @@ glint_status glint_shader_forward(const glint_program *shader, uint32_t inputs, 
 
 // ---- By parameters ------------------------------------------------------------------------------------------------
 
-/// What depends on parameter number `parameter`. The copy's parameters have the numbers of the builder's.
+/// Finds the values that depend on parameter number `parameter`. The copy's parameters have the builder's numbers.
 static void find_what_changes(glint_slope_maker *s, const glint_builder *builder, size_t parameter)
 {
     find_what_varies(s, 0);
@@ -250,7 +250,7 @@ static void find_what_changes(glint_slope_maker *s, const glint_builder *builder
     }
 }
 
-/// What an output was given by all numbers that change, as fast as they do.
+/// Returns the slope of an output by all changing numbers.
 static glint_value gather(glint_slope_maker *s, const glint_builder *builder, size_t parameter)
 {
     glint_value sum = glint_slope_number(s, 0);

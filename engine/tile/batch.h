@@ -1,32 +1,32 @@
 /// A batch of rays that start on surfaces: at most a tile's samples, walked through the stages together. Internal.
 ///
-/// effects/bounce and effects/indirect decide which rays there are and what becomes of the light they find.
+/// effects/bounce and effects/indirect make the rays and use their light.
 #ifndef GLINT_BATCH_H
 #define GLINT_BATCH_H
 
 #include "engine/effects/pattern/pattern.h"
 #include "engine/tile/rays.h"
 
-#define GLINT_WEIGHT_MAX 1e150 ///< products with what a surface gives stay finite
+#define GLINT_WEIGHT_MAX 1e150 ///< products with a surface's light stay finite
 
-/// A weight, bounded.
+/// Returns a weight, limited to GLINT_WEIGHT_MAX.
 static inline double glint_weight(double x) { return x < GLINT_WEIGHT_MAX ? x : GLINT_WEIGHT_MAX; }
 
 typedef struct glint_batch {
-    glint_tile tile; ///< its samples are what the rays have met, packed; `group_count` and `active` say which there are
-    glint_rays *rays; ///< that are cast
-    glint_rays own; ///< what that is at first
-    bool ordered; ///< every ray is to have the sample of its own number
-    bool distances; ///< of what is met the distance is read alone: surfaces are not found
+    glint_tile tile; ///< its samples are the rays' hits, packed; `group_count` and `active` say which exist
+    glint_rays *rays; ///< the rays to cast
+    glint_rays own; ///< the initial value of `rays`
+    bool ordered; ///< every hit must have the sample of its ray's number
+    bool distances; ///< only distances of hits are read; surfaces are not computed
     bool by_lane; ///< packed samples keep the lane of their ray
-    bool whole; ///< every ray has the sample of its own number, also where it meets nothing
-    _Alignas(64) double t[GLINT_TILE_SAMPLES]; ///< of each ray as it is cast, before samples are packed; real. And so `prim`
+    bool whole; ///< every ray has the sample of its own number, even if it hits nothing
+    _Alignas(64) double t[GLINT_TILE_SAMPLES]; ///< for each ray, before packing; real. `prim` likewise
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
     uint16_t met[GLINT_TILE_GROUPS]; ///< not whole: the rays that have a sample
-    uint16_t sample[GLINT_TILE_SAMPLES]; ///< of each ray that has one
-    uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< the other way
-    double shown[3][GLINT_TILE_SAMPLES]; ///< where a program gives the background, what rays without a sample see of it
-    // where the wanted samples of a tile go on, by glint_batch_find_ways
+    uint16_t sample[GLINT_TILE_SAMPLES]; ///< the sample the sample of each ray that has one
+    uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< the ray of each sample
+    double shown[3][GLINT_TILE_SAMPLES]; ///< the background seen by rays without a sample, if a program computes it
+    // continuations of the wanted samples of a tile, by glint_batch_find_ways
     uint16_t wanted[GLINT_TILE_GROUPS], total[GLINT_TILE_GROUPS];
     _Alignas(64) double ratio[GLINT_TILE_SAMPLES];
     _Alignas(64) double reflectance[GLINT_TILE_SAMPLES];
@@ -43,10 +43,10 @@ typedef enum glint_way {
 
 #define GLINT_PASSES_MAX 4096 ///< translucent surfaces that one ray may go straight through
 
-/// Rays that go on from samples of a tile.
+/// Rays that continue from samples of a tile.
 typedef struct glint_sent {
     uint32_t count;
-    uint16_t sample[GLINT_TILE_SAMPLES]; ///< where each begins
+    uint16_t sample[GLINT_TILE_SAMPLES]; ///< sample sample where each begins
     uint8_t way[GLINT_TILE_SAMPLES]; ///< a glint_way
 } glint_sent;
 
@@ -55,23 +55,23 @@ static inline bool glint_batch_has_sample(const glint_batch *batch, uint32_t ray
     return batch->whole || glint_has_lane(batch->met, ray);
 }
 
-/// What the ray that found a sample went through; frames with transparent materials.
+/// Returns the media of the ray that hit a sample; only in frames with transparent materials.
 static inline const glint_media *glint_batch_media(const glint_batch *batch, uint32_t i)
 {
     return &batch->rays->media[batch->ray_of[i]];
 }
 
-/// Before the first batch of a sample of `to`.
+/// Called before the first batch of a sample of `to`.
 void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_tile_frame *frame, glint_walk walk);
-/// Finds what batch->rays hit, and weakens them by what they went through. Returns whether anything is hit.
+/// Casts batch->rays, and applies absorption to their weights. Returns whether anything is hit.
 bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame);
-/// The rays that have met nothing, after that.
+/// After the cast: finds the rays that hit nothing.
 void glint_batch_find_missed(const glint_batch *batch, uint16_t missed[GLINT_TILE_GROUPS]);
-/// Makes the sums of the batch's tile: what surfaces, and of a whole batch the background, themselves send back along the rays.
+/// Computes the sums of the batch's tile: the light that surfaces, and in a whole batch the background, send back along the rays.
 void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, bool any);
-/// The same of those hits whose light is worked out for themselves.
+/// Does the same for hits that are shaded per sample.
 void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool any);
-/// The light of all local terms of sample `i`, in channel `c`.
+/// Returns the light of all local terms of sample `i`, in channel `c`.
 static inline double glint_batch_found(const glint_batch *batch, int c, uint32_t i)
 {
     const double(*sum)[3][GLINT_TILE_SAMPLES] = batch->tile.film.sum;
@@ -80,7 +80,7 @@ static inline double glint_batch_found(const glint_batch *batch, int c, uint32_t
         light += sum[k][c][i];
     return light;
 }
-/// The light along ray `ray`.
+/// Returns the light along ray `ray`.
 static inline double glint_batch_light_of(const glint_batch *batch, const glint_plan *plan, int c, uint32_t ray)
 {
     if (glint_batch_has_sample(batch, ray))
@@ -96,11 +96,11 @@ static inline bool glint_batch_uncovers(const glint_batch *batch, const glint_pl
                       (glint_has_lane(batch->tile.at.hits, i) || (plan->visible_light_count && glint_tile_sees_light(&batch->tile, i)));
     return batch->rays->sight[ray] && !seen;
 }
-/// Where light goes on from the samples of `tile` in batch->wanted: mirrored and refracted. `tile` is the batch's own, or
+/// Computes the reflected and refracted directions at the samples of `tile` in batch->wanted. `tile` is the batch's own, or
 /// one that the eye sees.
 void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame);
-/// A ray that starts where sample `i` of the tile hits, before its direction and weight are known: its direction is not set, and
-/// its media only in frames with transparent materials.
+/// Starts a ray at the hit of sample `i` of the tile. Direction and weight are set later,
+/// and the media only in frames with transparent materials.
 void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                            glint_ray *ray);
 /// Weighs the rays that go on from sample `i`, after glint_batch_find_ways: each comes with the weight of the ray that came. A ray that the
@@ -110,13 +110,13 @@ void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const g
 /// These rays, weighed; the last one only in frames with translucent surfaces. Where batch->total is set the first two go the same way.
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        glint_ray rays[GLINT_WAYS]);
-/// The same of many samples: makes `rays` of those that are sent, from ray 0 on, but for their weights and slopes. Those from a tile
-/// that the eye sees get their term, too.
+/// Does the same for many samples: makes `rays` of the rays in `sent`, from ray 0 on, except for weights and slopes. Rays from a tile
+/// seen by the eye get their term, too.
 void glint_batch_send(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
                       const glint_sent *sent, glint_rays *rays);
-/// The medium that a ray of the batch, which is cast, went through since its last surface.
+/// Returns the medium that a cast ray of the batch crossed since its last surface.
 uint32_t glint_batch_crossed(const glint_batch *batch, const glint_tile_frame *frame, uint32_t ray);
-/// The media of sample `i` of the tile on the ray's side of its surface, and beyond: materials, GLINT_NO_MEDIUM.
+/// Finds the media of sample `i` on the ray's side of its surface, and beyond: materials or GLINT_NO_MEDIUM.
 void glint_batch_sides(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        uint32_t sides[2]);
 /// Adds the work of the batches to the tile they were made for.

@@ -1,16 +1,16 @@
-/// Indirect light: from each matt point some paths of light are followed backwards, over directions as dense as their
-/// cosine, and the mean of what they find, times kd, is what the point gives on.
+/// Indirect light: from each matt point, paths of light are followed backwards, in directions with the density of their
+/// cosine. The mean light of these paths, times kd, is the indirect light of the point.
 ///
-/// Paths do not branch. Where one meets a surface it takes the light that the lights send there, and goes on in one of the
+/// Paths do not branch. Where a path hits a surface, it takes the light that the lamps send there, and continues in one
 /// directions the surface sends light on to: scattered, mirrored, refracted or straight on, chosen with probability as the shares, and
-/// weighed by one over it. So the memory is a batch and three sets of rays, however long paths are. What a path finds depends on
-/// its pixel, on the numbers of its sample and of its turns, and on the seed: where a lane chooses the point of an area light,
-/// paths stay in that of their point.
+/// divided by it. So the memory is a batch and three sets of rays, however long paths are. The light of a path depends on
+/// its pixel, on the numbers of its sample and of its steps, and on the seed. Paths stay in the lane of their point, because
+/// the lane selects the point of an area light.
 ///
-/// Of an area light each path takes one sample at each point, another from path to path. Light that is computed at each point
-/// and found by chance as well would count twice: paths do not see lights, whether rays of the eye do or not.
+/// At each point, a path takes one sample of an area light, a different one for each path. Light that is computed at each point
+/// must not be hit by chance as well, or it would count twice: paths do not see lamps, even if the eye does.
 ///
-/// A path too weak to be seen ends: what a sample loses so is, in the mean, a quarter of GLINT_BOUNCE_LOSS at most.
+/// A path too weak to be seen ends. On average, a sample loses at most a quarter of GLINT_BOUNCE_LOSS this way.
 #include "engine/base/alloc.h"
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
@@ -51,16 +51,16 @@ static void destroy(void *memory)
 
 static double mean(const double c[3]) { return ((c[0] + c[1]) + c[2]) / 3; }
 
-// ---- What is drawn on the way ----
+// ---- Random numbers ----
 
-/// The point that path `number` of point i takes.
+/// Draws the point of the unit square for path `number` of point i.
 static void draw(const struct glint_indirect *indirect, uint32_t i, uint64_t number, uint32_t which, double out[2])
 {
     const uint64_t k = glint_indirect_point_of(indirect, i, number);
     glint_sequence_scrambled((uint32_t)k, glint_indirect_seed_of(indirect, i, k, which), out);
 }
 
-/// One sample of each light, as strong as all of them: another for each path and turn.
+/// Selects one sample of each light, with the strength of all its samples: a different one for each path and step.
 static void take_lights(struct glint_indirect *indirect, const glint_plan *plan, uint64_t number, uint32_t step)
 {
     for (uint32_t i = 0; i < plan->indirect.light_count; i++) {
@@ -77,7 +77,7 @@ static void take_lights(struct glint_indirect *indirect, const glint_plan *plan,
     }
 }
 
-// ---- Where they go on ----
+// ---- Continuing ----
 
 /// Returns whether the surface of sample i may also mirror, refract or let through a path, and the path has not reached its end.
 static bool goes_on(const glint_batch *batch, const glint_plan *plan, uint32_t i)
@@ -127,7 +127,7 @@ static int choose_way(const struct glint_indirect *indirect, uint64_t number, co
     return last;
 }
 
-/// Chooses how the path of sample i goes on, and starts it there unless it is scattered.
+/// Chooses the continuation of the path of sample i, and starts the ray unless it is scattered.
 static turn choose(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t i,
                    glint_ray *next)
 {
@@ -165,7 +165,7 @@ static turn choose(struct glint_indirect *indirect, const glint_tile_frame *fram
     return (turn)(TURN_SCATTERED + chosen);
 }
 
-/// Sends the path of sample i on that is scattered there.
+/// Starts the scattered ray of the path of sample i.
 static void leave(const struct glint_indirect *indirect, const glint_tile_frame *frame, uint32_t i, glint_rays *next)
 {
     const glint_tile *tile = &indirect->batch.tile;
@@ -180,14 +180,14 @@ static void leave(const struct glint_indirect *indirect, const glint_tile_frame 
     }
 }
 
-/// Sends every path on that has found a surface to go on from. Returns whether any does.
+/// Continues every path that has hit a surface. Returns whether there is any.
 static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t step)
 {
     glint_batch *batch = &indirect->batch;
     const glint_tile *tile = &batch->tile;
     glint_rays *rays = &indirect->next[step & 1];
     unsigned any = 0;
-    if (!frame->plan->bouncing && step + 1 >= frame->plan->indirect.bounces) // all of them have been scattered so often
+    if (!frame->plan->bouncing && step + 1 >= frame->plan->indirect.bounces) // all paths have reached the limit
         return false;
     glint_indirect_find_ways(indirect, frame);
     glint_rays_clear(rays, tile->group_count);
@@ -221,9 +221,9 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
     return true;
 }
 
-// ---- What they find ----
+// ---- Light of the paths ----
 
-/// The light that the samples of a group have been found to send back, in each channel.
+/// Sums the light that the samples of a group send back along their rays, in each channel.
 static void found_in(const glint_batch *batch, uint32_t g, double found[3][GLINT_GROUP])
 {
     const double(*sum)[3][GLINT_TILE_SAMPLES] = batch->tile.film.sum;
@@ -235,8 +235,8 @@ static void found_in(const glint_batch *batch, uint32_t g, double found[3][GLINT
         }
 }
 
-/// Adds what rays have found in some samples of a group. Paths that end there do without the light that more of them would bring: they
-/// take the ambient light that it stands for.
+/// Adds the light of rays that hit in some samples of a group. Paths that end there take the ambient light instead of the
+/// indirect light of further steps.
 static void collect_group(const glint_batch *batch, const glint_plan *plan, uint32_t g, unsigned lanes, glint_tile *to)
 {
     const glint_rays *rays = batch->rays;
@@ -258,7 +258,7 @@ static void collect_group(const glint_batch *batch, const glint_plan *plan, uint
     }
 }
 
-/// The first rays of the eye's points are their pixels' own.
+/// The first rays of the eye's points belong to the point's own pixel.
 void glint_indirect_collect_missed(const struct glint_indirect *indirect, const glint_tile_frame *frame,
                                    const uint16_t *missed, const double background[3], glint_tile *to)
 {
@@ -278,7 +278,7 @@ void glint_indirect_collect_missed(const struct glint_indirect *indirect, const 
             to->film.sum[rays->term[i]][c][rays->pixel[i]] += rays->weight[c][i] * background[c];
 }
 
-/// The same of what a program shows them.
+/// Does the same for a background computed by a program.
 static void collect_shown(const glint_batch *batch, const uint16_t *missed, glint_tile *to)
 {
     const glint_rays *rays = batch->rays;
@@ -290,7 +290,7 @@ static void collect_shown(const glint_batch *batch, const uint16_t *missed, glin
         }
 }
 
-/// Adds the light that the rays have found to their pixels: of a whole batch in the order of rays, which may share pixels.
+/// Adds the light of the rays to their pixels; for a whole batch in the order of rays, which may share pixels.
 static void collect(const struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to)
 {
     const glint_batch *batch = &indirect->batch;
@@ -315,7 +315,7 @@ static void count_rays(const glint_batch *batch, glint_tile *to)
         to->counts.indirect += (unsigned)__builtin_popcount(batch->rays->active[g]);
 }
 
-/// The light of faces and vertices is kept for all readers: it is made of every sample of the lights.
+/// Lights the hits. The light of faces and vertices is cached for all readers, so it uses every sample of the lights.
 static void light(struct glint_indirect *indirect, const glint_tile_frame *frame, bool any)
 {
     glint_batch *batch = &indirect->batch;
@@ -326,7 +326,7 @@ static void light(struct glint_indirect *indirect, const glint_tile_frame *frame
         glint_tile_vertex(&batch->tile, frame);
 }
 
-/// One path of each point, to its end.
+/// Follows one path of each point to its end.
 static void follow(struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to, uint64_t number)
 {
     glint_batch *batch = &indirect->batch;
@@ -363,7 +363,7 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
     indirect->frame.plan = &indirect->plan;
     const uint32_t paths = glint_indirect_find_points(indirect, tile, frame, seen, from);
     glint_batch_begin(batch, tile, frame, GLINT_WALK_INDIRECT);
-    batch->ordered = from != NULL; // whose rays may share pixels
+    batch->ordered = from != NULL; // rays may share pixels
     batch->distances = frame->plan->indirect.is_sky && !frame->plan->transmits && !frame->plan->clears;
     for (uint32_t path = 0; path < paths && !glint_tile_cancelled(frame); path++) {
         const uint64_t number = (uint64_t)tile->sample * frame->plan->indirect.samples + path;
@@ -385,7 +385,7 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
 
 static bool called(const glint_plan *plan) { return plan->indirect.samples > 0; }
 
-/// What other surfaces and the background light.
+/// Adds the light from other surfaces and from the background.
 static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     if (!walk->any)

@@ -1,5 +1,5 @@
-/// Ambient occlusion: from each point some rays over directions as dense as their cosine, and the mean of what is open of the
-/// sky, 1 where a ray leaves the scene, times the ambient light. What closes it is any surface within the distance that the
+/// Ambient occlusion: casts rays from each point, in directions with the density of their cosine. The share of rays that
+/// leave the scene is the open sky, which multiplies the ambient light. Surfaces within the scene's distance block rays;
 /// scene says, but for what transmits or is translucent: there rays go on, weaker by what the surface takes.
 #include "engine/effects/indirect/paths.h"
 #include "engine/effects/pattern/pattern.h"
@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/// Surfaces that are too far away close nothing.
+/// Treats surfaces beyond the distance as open sky.
 static void open_far(glint_batch *batch, const glint_plan *plan)
 {
     glint_tile *tile = &batch->tile;
@@ -22,7 +22,7 @@ static void open_far(glint_batch *batch, const glint_plan *plan)
         }
 }
 
-/// What programs give of the share that goes on.
+/// Runs the programs of transmitted shares.
 static void find_shares(glint_tile *tile, const glint_tile_frame *frame)
 {
     const uint32_t shares = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION | 1u << GLINT_FIELD_CLEAR;
@@ -82,7 +82,7 @@ bool glint_indirect_open_sky(struct glint_indirect *indirect, const glint_tile_f
     glint_batch_find_missed(batch, missed);
     glint_indirect_collect_missed(indirect, frame, missed, white, to);
     for (uint32_t i = 0; frame->plan->light_groups && i < batch->rays->group_count * GLINT_GROUP; i++)
-        for (int c = 0; c < 3 && glint_has_lane(missed, i); c++) // weights are of ambient light
+        for (int c = 0; c < 3 && glint_has_lane(missed, i); c++) // weights are ambient light
             glint_groups_add_ambient(to, frame->plan, batch->rays->pixel[i], c, batch->rays->weight[c][i]);
     return any && (frame->plan->transmits || frame->plan->clears) && go_through(indirect, frame, step);
 }

@@ -103,7 +103,7 @@ local function most_of_color(most, is_whole)
   return most > (is_whole and 1 or 16) and 255 or 1
 end
 
--- What three columns from `first` on are: "normal", or the largest number of a colour, 1 or 255. Nil: neither.
+-- Returns the meaning of three columns from `first` on: "normal", or the value of full colour, 1 or 255; nil: neither.
 local function kind_of(rows, first)
   local most, is_color, is_unit, is_turned, is_whole = 0, true, true, false, true
   for _, row in ipairs(rows) do
