@@ -305,7 +305,7 @@ static void tell_left(const glint_mesh_reader *reader, const char *path, leaving
                     left->words, strchr(left->words, ',') ? "are" : "is");
 }
 
-/// Reads one; *there: it could be opened. What is wrong with it is a warning.
+/// Reads one file; *there: it could be opened. Faults in it give a warning.
 static glint_status read_file(glint_mesh_library *library, const glint_mesh_reader *reader, const char *path, bool last,
                               bool *there)
 {

@@ -1,15 +1,15 @@
-/// The walk of a batch of rays: cast, what they meet packed into few groups, through the stages, and where they go on.
+/// The walk of a batch of rays: casts them, packs their hits into few groups, runs the stages, and continues the rays.
 #include "engine/effects/light_groups/light_groups.h"
 #include "engine/base/vec.h"
 #include "engine/effects/cut_out/cut_out.h"
 
 #include <string.h>
 
-#define SORTED_PRIMS 32 ///< in scenes of no more, packed hits are sorted by what is hit; a power of 2
+#define SORTED_PRIMS 32 ///< in scenes with at most as many, packed hits are sorted by primitive; a power of 2
 
 // ---- Before and after ----
 
-/// Whether some light has a sample a lane.
+/// Returns whether some light has a different sample for each lane.
 static bool has_area_light(const glint_plan *plan)
 {
     for (uint32_t i = 0; i < plan->light_count; i++)
@@ -54,9 +54,9 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
     glint_odd_patterns_add(&to->counts.odd, &batch->tile.counts.odd);
 }
 
-// ---- What the rays find ----
+// ---- Hits of the rays ----
 
-/// Whether stages between cast and surface need all rays where they were, those that meet nothing as well.
+/// Returns whether stages between cast and surface need all rays in their original places, including those that hit nothing.
 static bool needs_all(const glint_plan *plan)
 {
     return glint_plan_cuts(plan) || plan->runs[GLINT_STAGE_VISIBLE_LIGHT];
@@ -83,7 +83,7 @@ static void cast(glint_batch *batch, const glint_tile_frame *frame)
     frame->stages->geometry[frame->plan->desc.precision].cast_rays(&args);
 }
 
-/// Every ray has the sample of its own number.
+/// Gives every ray the sample of its own number.
 static void take_all(glint_batch *batch, const glint_tile_frame *frame)
 {
     glint_tile *tile = &batch->tile;
@@ -109,7 +109,7 @@ static void give_sample(glint_batch *batch, uint32_t i, uint32_t to)
     batch->ray_of[to] = (uint16_t)i;
 }
 
-/// Takes the numbers that rays have, of an array of real, to their samples.
+/// Moves the rays' numbers in an array of real to their samples.
 static void take_reals(const uint16_t *ray_of, uint32_t count, glint_precision precision, const void *from, void *to)
 {
     for (uint32_t n = 0; n < count && precision == GLINT_DOUBLE; n++)
@@ -118,7 +118,7 @@ static void take_reals(const uint16_t *ray_of, uint32_t count, glint_precision p
         ((float *)to)[n] = ((const float *)from)[ray_of[n]];
 }
 
-/// Moves what rays have met to the first `count` samples, of which those that no ray has get anything.
+/// Moves the rays' hits to the first `count` samples; samples without a ray are undefined.
 static void move_hits(glint_batch *batch, glint_precision precision, uint32_t count)
 {
     glint_tile *tile = &batch->tile;
@@ -132,7 +132,7 @@ static void move_hits(glint_batch *batch, glint_precision precision, uint32_t co
         tile->at.prim[n] = batch->prim[batch->ray_of[n]];
 }
 
-/// Marks the samples that hits have been moved to. next: of each lane, the first without one.
+/// Marks the samples that have hits. next: the first sample without a hit, for each lane.
 static void mark_hits(glint_tile *tile, const uint32_t next[GLINT_GROUP])
 {
     uint32_t least = UINT32_MAX, most = 0; // groups
@@ -152,13 +152,13 @@ static void mark_hits(glint_tile *tile, const uint32_t next[GLINT_GROUP])
     tile->group_count = most;
 }
 
-/// Rays that meet something get the first samples of their lane, by which area lights choose their points.
+/// Gives hits the first samples of their lane. Area lights choose their points by the lane.
 static void pack_lanes(glint_batch *batch, glint_precision precision)
 {
     uint32_t next[GLINT_GROUP], end = 0;
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
         next[lane] = lane;
-    memset(batch->ray_of, 0, batch->rays->group_count * GLINT_GROUP * sizeof *batch->ray_of); // of samples without a ray
+    memset(batch->ray_of, 0, batch->rays->group_count * GLINT_GROUP * sizeof *batch->ray_of); // for samples without a ray
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
         for (unsigned left = batch->met[g]; left; left &= left - 1) {
             const uint32_t lane = (uint32_t)__builtin_ctz(left);
@@ -170,8 +170,8 @@ static void pack_lanes(glint_batch *batch, glint_precision precision)
     mark_hits(&batch->tile, next);
 }
 
-/// Rays that meet something get the first samples without a gap. In scenes with few primitives these follow one another, so that most
-/// groups show one.
+/// Gives hits the first samples, without gaps. In scenes with few primitives, hits are sorted by primitive, so that most
+/// groups show only one.
 static void pack(glint_batch *batch, const glint_tile_frame *frame)
 {
     const uint32_t last = frame->geometry.prim_count <= SORTED_PRIMS ? SORTED_PRIMS - 1 : 0; // kind
@@ -193,7 +193,7 @@ static void pack(glint_batch *batch, const glint_tile_frame *frame)
     mark_hits(&batch->tile, next);
 }
 
-/// Makes samples of what rays have met.
+/// Makes samples of the rays' hits.
 static void take_hits(glint_batch *batch, const glint_tile_frame *frame)
 {
     memcpy(batch->met, batch->tile.at.hits, batch->rays->group_count * sizeof *batch->met);
@@ -203,7 +203,7 @@ static void take_hits(glint_batch *batch, const glint_tile_frame *frame)
         pack(batch, frame);
 }
 
-/// What is inside the surface of sample i.
+/// Returns the medium inside the surface of sample i.
 static uint32_t medium_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
 {
     return frame->geometry.prims[tile->at.prim[i]].medium;
@@ -220,7 +220,7 @@ uint32_t glint_batch_crossed(const glint_batch *batch, const glint_tile_frame *f
                : glint_media_top(media);
 }
 
-/// Weakens the rays by what they went through since their last surface.
+/// Multiplies the rays' weights by the absorption since their last surface.
 static void absorb(glint_batch *batch, const glint_tile_frame *frame)
 {
     const glint_tile *tile = &batch->tile;
@@ -243,7 +243,7 @@ void glint_batch_find_missed(const glint_batch *batch, uint16_t missed[GLINT_TIL
         missed[g] = batch->rays->active[g] & (uint16_t) ~(batch->whole ? batch->tile.at.hits[g] : batch->met[g]);
 }
 
-/// What a program shows rays that have no sample.
+/// Computes the background for rays without a sample, if a program gives it.
 static void see_environment(glint_batch *batch, const glint_tile_frame *frame)
 {
     uint16_t missed[GLINT_TILE_GROUPS];
@@ -271,8 +271,8 @@ bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
     return any;
 }
 
-/// One light, those samples of one that follow each other in a chunk, or lights that are alike; returns how many rows of the plan they
-/// are.
+/// Computes the light of one light, of consecutive samples of one, or of several similar lights. Returns the number of rows of the plan
+/// that were handled.
 static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot, uint32_t end)
 {
     const glint_plan_light *lights = &frame->plan->lights[first];
@@ -331,7 +331,7 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
     } while (from < lights);
 }
 
-// ---- From a surface on ----
+// ---- Continuing from a surface ----
 
 static double index_of(const glint_plan *plan, uint32_t medium)
 {
@@ -344,7 +344,7 @@ static const glint_media *media_of(const glint_batch *batch, const glint_tile *t
     return tile == &batch->tile && frame->plan->transmits ? glint_batch_media(batch, i) : &frame->plan->eye_media;
 }
 
-/// What lets nothing through is solid: its index is beyond, from whichever side it is seen.
+/// An opaque material is solid: its index applies beyond the surface, from either side.
 void glint_batch_sides(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        uint32_t sides[2])
 {
@@ -361,7 +361,7 @@ void glint_batch_sides(const glint_batch *batch, const glint_tile *tile, const g
     sides[1] = glint_media_top(&beyond);
 }
 
-/// Index here over index beyond; of a mirror alone 1, where nothing else asks what lies beyond it.
+/// Returns the index on this side over the index beyond; 1 for a mirror that does not transmit.
 static double ratio_of(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
 {
     const glint_bounce_material *m = &frame->plan->bouncing[tile->surface.material[i]];
@@ -397,7 +397,7 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
     frame->stages->geometry[precision].bounce(&args);
 }
 
-/// What a ray that goes on has of the one that came.
+/// Copies the fields that a continued ray inherits from the arriving one.
 static void inherit(const glint_rays *rays, const glint_plan *plan, uint32_t i, glint_ray *ray)
 {
     for (int c = 0; c < 3; c++)
@@ -415,7 +415,7 @@ static void inherit(const glint_rays *rays, const glint_plan *plan, uint32_t i, 
         ray->media = rays->media[i];
 }
 
-/// What a ray of the eye has as it comes.
+/// Initialises the fields of a ray of the eye.
 static void begin_ray(const glint_plan *plan, uint32_t i, glint_ray *ray)
 {
     for (int c = 0; c < 3; c++)
@@ -561,7 +561,7 @@ static void note_passes(const glint_batch *batch, const glint_tile *tile, const 
     }
 }
 
-/// Where each begins, and what it has of the one that came.
+/// Computes the origin of each ray, and the fields inherited from the arriving one.
 static void hand_on(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
                     const glint_sent *sent, glint_rays *rays)
 {

@@ -4,18 +4,18 @@
 
 #include "engine/tile/tile.h"
 
-/// One of them, on its way from one set to another.
+/// One ray, outside of the arrays.
 typedef struct glint_ray {
-    double origin[3], direction[3], weight[3]; ///< the direction is unit but for rounding
+    double origin[3], direction[3], weight[3]; ///< the direction has length 1 up to rounding
     uint32_t leaving; ///< the primitive it starts on
-    uint32_t pixel; ///< its sample's place in the tile
+    uint32_t pixel; ///< index of its sample in the tile
     uint32_t point; ///< of a path of indirect light: the point where it began
     uint32_t depth; ///< mirrors and refractions on its path so far
     uint32_t passes; ///< translucent surfaces that its path went straight through
-    uint32_t scatters; ///< matt surfaces
-    double way; ///< from the eye to where it starts, along its path; in frames with programs
+    uint32_t scatters; ///< scatterings on its path so far
+    double way; ///< length of its path from the eye to its origin; in frames with programs
     double least; ///< the weight below which a path of indirect light ends
-    uint16_t term; ///< where its light goes
+    uint16_t term; ///< the term that its light is added to
     bool inward;
     bool sight; ///< true if its path has no reflection: the eye looks through surfaces along it
     glint_media media; ///< in frames with transparent materials
@@ -33,16 +33,16 @@ typedef struct glint_rays {
     uint16_t term[GLINT_TILE_SAMPLES];
     uint32_t group_count;
     bool sight[GLINT_TILE_SAMPLES]; ///< only in frames that need coverage or have translucent surfaces
-    uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS]; ///< lanes without a ray hold anything
+    uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS]; ///< lanes without a ray are undefined
     glint_media media[GLINT_TILE_SAMPLES];
-    struct glint_ray_slope *slopes; ///< in frames with derivatives: of each ray, one a derivative; else NULL or anything
+    struct glint_ray_slope *slopes; ///< in frames with derivatives: one per ray and derivative; otherwise undefined
 } glint_rays;
 
 /// Makes `rays` an empty set of groups.
 void glint_rays_clear(glint_rays *rays, uint32_t group_count);
 /// Puts a ray into lane i, which becomes active.
 void glint_rays_put(glint_rays *rays, const glint_plan *plan, uint32_t i, const glint_ray *ray);
-/// effects/environment/environment.c: fills `light` of those rays in `missed` with what a program shows them, as background.
+/// effects/environment/environment.c: fills `light` of the rays in `missed` with the background that a program computes.
 void glint_tile_environment_of(glint_tile *tile, const glint_tile_frame *frame, const glint_rays *rays,
                                const uint16_t *missed, double (*light)[GLINT_TILE_SAMPLES]);
 
