@@ -1,12 +1,12 @@
-/// What a tile leaves for later frames: where its results are kept, what it shows, and the keys of both.
+/// The cache of a tile for later frames: its results, the materials and lights that it shows, and the keys of both.
 #include "engine/base/alloc.h"
 #include "engine/tile/tile.h"
 
 #include <math.h>
 
-// ---- The pixels it is of ----
+// ---- Its pixels ----
 
-/// Which pixels of the tile have all samples; 0 where that is no choice.
+/// Returns the pixels of the tile that have all samples; 0 if all have.
 static uint64_t pixels_of(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_key none = { 0 };
@@ -26,7 +26,7 @@ static void forget(glint_cached_tile *cached, uint32_t light_count)
     }
 }
 
-/// Whether hits and lights are those of the last frame, so that shading alone may be left to do.
+/// Returns whether hits and lights are those of the last frame, so that only shading may have to run.
 static bool is_settled(const glint_reuse *reuse, const glint_plan *plan)
 {
     bool settled = reuse->keep_cast && plan->light_count == reuse->light_count;
@@ -42,7 +42,7 @@ bool glint_tile_may_gather(const glint_tile_frame *frame)
         plan->desc.passes & GLINT_LIGHT_PASSES || glint_tile_wants_coverage(plan) || frame->raster)
         return false;
     for (uint32_t i = 0; i < plan->light_count; i++)
-        if (plan->lights[i].light_samples) // one a lane
+        if (plan->lights[i].light_samples) // one per lane
             return false;
     return true;
 }
@@ -127,16 +127,16 @@ void glint_tile_note_way(const glint_tile *tile)
             fminf(tile->cached->ways.least[tile->anew], (float)(glint_tile_now_ns() - tile->begun));
 }
 
-// ---- Where results are ----
+// ---- Memory of results ----
 
-/// The first row of the tile's codes in the last picture.
+/// Prefetches the first row of the tile's pixel values in the last picture.
 static void prefetch_last_codes(const glint_tile *tile, const glint_image *last)
 {
     const size_t pixel = glint_image_pixel_bytes(last);
     glint_prefetch((const char *)last->codes + (tile->y0 * (size_t)last->width + tile->x0) * pixel, tile->width * pixel);
 }
 
-/// Whether the tile may show a material with highlights.
+/// Returns whether the tile may show a material with highlights.
 static bool may_shine(const glint_cached_tile *cached, const glint_plan *plan)
 {
     if (!plan->powers || !glint_key_equal(cached->seen, plan->keys[GLINT_STAGE_SURFACE]))
@@ -154,7 +154,7 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
     const glint_cached_tile *cached = tile->cached;
     bool points = false;
     if (tile->index + 1 < reuse->tile_count)
-        glint_prefetch(cached + 1, sizeof *cached); // prefetched, not read: it may be another worker's
+        glint_prefetch(cached + 1, sizeof *cached); // prefetched, not read: it may belong to another worker
     if (tile->anew || !glint_key_equal(cached->cast, plan->keys[GLINT_STAGE_CAST]))
         return;
     glint_prefetch(cached->hits, GLINT_TILE_GROUPS * sizeof *cached->hits);
@@ -171,16 +171,16 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
     }
     if (points)
         glint_prefetch(cached->t, GLINT_TILE_SAMPLES * reuse->real_size);
-    if (cached->only == GLINT_MISS) // materials are named by it
+    if (cached->only == GLINT_MISS) // it gives the materials
         glint_prefetch(cached->prim, GLINT_TILE_SAMPLES * sizeof *cached->prim);
     if (glint_splits_are_on(&reuse->splits) && glint_key_equal(cached->split, reuse->splits.key))
         glint_prefetch(cached->values, glint_splits_bytes(&reuse->splits));
-    if (frame->last && frame->last != frame->image && frame->last->codes) // of which the first row often differs: see glint_tile_has_codes_of
+    if (frame->last && frame->last != frame->image && frame->last->codes) // the first row often differs: see glint_tile_has_codes_of
         prefetch_last_codes(tile, frame->last);
 }
 
-/// Points the sample's results at kept memory where this frame keeps them or has them, else at the tile's own. Memory is
-/// allocated at the first sample alone: all samples of a tile are kept, or none. Returns whether the hits are known.
+/// Sets the sample's results to cache memory if this frame stores or reads them there, otherwise to the tile's own. Memory is
+/// allocated only at the first sample: all samples of a tile are cached, or none. Returns whether the hits are known.
 bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     glint_reuse *reuse = frame->reuse;
@@ -245,7 +245,7 @@ void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, ui
     }
 }
 
-/// Writes down what the kept arrays hold now. After the last sample, since the keys cover all of them.
+/// Sets the keys of the cached arrays. Called after the last sample, because the keys cover all samples.
 void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
@@ -268,9 +268,9 @@ void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_step(tile, frame, GLINT_AT_SIGN, NULL);
 }
 
-// ---- What the tile shows ----
+// ---- Contents of the tile ----
 
-/// Whether light is worked out for the faces or vertices of what is there.
+/// Returns whether the light of this primitive is computed per face or vertex.
 static bool has_shading_points(const glint_prim *prim)
 {
     return prim->kind == GLINT_PRIM_TRIANGLE && prim->shading_points != GLINT_MISS;
@@ -287,7 +287,7 @@ static void note_material(glint_cached_tile *cached, uint32_t material)
         cached->shown_count++;
 }
 
-/// Notes a sample's materials, and whether there is background among it.
+/// Records a sample's materials, and whether it shows background.
 void glint_tile_note_surfaces(const glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     glint_cached_tile *cached = tile->cached;
@@ -311,7 +311,7 @@ void glint_tile_note_surfaces(const glint_tile *tile, const glint_tile_frame *fr
         cached->background = cached->background || tile->at.hits[g] != tile->active[g];
 }
 
-/// Notes whether a light reaches any point of a sample, and the most that its highlights may be there.
+/// Records whether a light reaches any point of a sample, and the largest possible highlight there.
 void glint_tile_note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bool shadows, uint32_t k)
 {
     glint_cached_light *cached = &tile->cached->lights[index];
@@ -321,7 +321,7 @@ void glint_tile_note_light(const glint_tile *tile, uint32_t index, uint32_t slot
     cached->brightest = fmaxf(k ? cached->brightest : GLINT_NO_SPECULAR, tile->at.light[slot].brightest);
 }
 
-/// The same where nothing is hit.
+/// The same if nothing is hit.
 void glint_tile_note_nothing(const glint_tile *tile, uint32_t k)
 {
     if (k == 0) {
@@ -338,7 +338,7 @@ void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const 
     if (!cached || tile->boxed != tile->sample || glint_key_equal(cached->boxed, surface))
         return;
     if (tile->sample == 0) {
-        cached->boxed = (glint_key) { 0 }; // until all samples are in it: others may not compute their points
+        cached->boxed = (glint_key) { 0 }; // until it contains all samples; some samples may not compute their points
         cached->box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, 0 };
     }
     for (int c = 0; c < 3 && box; c++) {
@@ -354,7 +354,7 @@ void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const 
 
 static bool is_known(glint_key key) { return !glint_key_equal(key, (glint_key) { 0 }); }
 
-/// Which pixels of the base the tile has, and of which it has all samples; 0: not known.
+/// Returns a stamp of the pixels taken from the base and of those with all samples; 0: unknown.
 static uint64_t base_stamp(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const uint64_t base = frame->base->film ? frame->base->film[tile->index].base : 0;
@@ -362,7 +362,7 @@ static uint64_t base_stamp(const glint_tile *tile, const glint_tile_frame *frame
     return base ? glint_key_mix(from, chosen).low | 1 : 0;
 }
 
-/// What the tile's pixels are made from; its `codes` are its own. The key is all zero where that is not known.
+/// Returns the stamp of the tile's pixels. The key is all zero if their inputs are unknown.
 static glint_film_stamp stamp_of(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_key base_alone = { 1, 0 };
@@ -384,8 +384,8 @@ static bool are_like(const glint_film_stamp *a, const glint_film_stamp *b)
     return glint_key_equal(a->key, b->key) && a->base == b->base;
 }
 
-/// Whether the tile's pixels are those of the last picture; then they are copied, unless they are in this one's memory
-/// from before.
+/// Returns whether the tile's pixels equal those of the last picture. They are then copied, unless this picture's memory has them
+/// already.
 bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
@@ -396,7 +396,7 @@ bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
     glint_film_stamp now = stamp_of(tile, frame);
     if (plan->is_base && was->base != frame->refine->tiles[tile->index].pixels)
         return false;
-    if (plan->is_base) // it goes with the pixels, not with the key that they have in this frame
+    if (plan->is_base) // it belongs to the pixels, not to their key in this frame
         now.base = was->base;
     if (!is_known(now.key) || !are_like(&now, was))
         return false;
@@ -423,7 +423,7 @@ void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint
     glint_film_stamp stamp = stamp_of(tile, frame);
     const bool has_last = frame->last && frame->last != frame->image && frame->last->film; // its codes are still there
     const glint_film_stamp *last = has_last ? &frame->last->film[tile->index] : NULL;
-    const bool moved = tile->counts.runs[GLINT_STAGE_LIGHT] != before.lights; // then codes seldom stay as they are
+    const bool moved = tile->counts.runs[GLINT_STAGE_LIGHT] != before.lights; // then pixel values rarely stay the same
     if (last && last->codes && !moved && glint_tile_has_codes_of(tile, frame->image, frame->last))
         stamp.codes = last->codes;
     frame->image->film[tile->index] = stamp;

@@ -111,7 +111,7 @@ says "a frame after the last" 'frame of the script, 1 .. 6, expected, got .7.'
 "$GLINT" explain film.lua --sweep shininess=5,-1 --frame 1 >out 2>err && fail "a wrong value"
 says "a wrong value" '--sweep shininess=-1: .*number >= 0 expected'
 
-# A value that makes the script fail fails alone.
+# If the script fails for one value, only that value fails.
 exits 2 "a wrong value" film.lua --sweep shininess=5,-1,50 -o 'some/%02d.png' -q
 says "is named" '^glint: error: --sweep shininess=-1: .*shininess: number >= 0 expected, got -1'
 check "the others are there" test "$(ls some | tr '\n' ' ')" = "01.png 02.png 03.png 07.png 08.png 09.png "
