@@ -314,7 +314,7 @@ check-run: tests
 
 # Tests worth running under a sanitizer: C, Lua and the command line. Tests that run none of our programs are left out.
 SANITIZED := $(filter-out $(addprefix tests/,$(addprefix command/,povray.sh gallery.sh install.sh) machines/systems.sh),$(SCRIPTED))
-# What has threads: tiles, index, bands of rows, the writer, what is kept from frame to frame, the server of watch. With two of
+# Tests of threads: tiles, index, bands of rows, the writer, the cache between frames, the server of watch. With two of
 # the instruction sets: what threads share is the same in all.
 THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image reuse reuse_turns soft) \
                hard/hard_limits) tests/lua/test_patterned.lua tests/command/watch.sh
