@@ -22,7 +22,7 @@
 -- and objects.txt beside them, with the folders' names.
 --     glint scripts/photometric.lua --set layout=diligent --set objects=balls,solids --set materials=matt,gold
 -- --size makes pictures of any shape. -o 'set/%03d.png' names the pictures, and the other files are put beside them;
--- the picture after that of the last light is the scene in white ambient light.
+-- the picture after the last light shows the scene in white ambient light.
 -- Bright materials (gold, glossy) go beyond white: --exposure auto finds one exposure for the whole set, with which
 -- nothing is clipped, and --exposure -1.5 sets it. The intensities follow.
 -- A run that was interrupted goes on from there, and --shard cuts the job for several machines.

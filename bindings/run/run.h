@@ -17,7 +17,7 @@
 ///   jobs.c            frames of jobs; job_run.c :run; call.c scene:render
 ///   places.c          the files written so far
 ///   brightness.c      clipped values, and what --exposure auto measures
-///   kept_image.c      the picture of a file that was kept
+///   kept_image.c      the picture of a file that is already there
 ///
 /// Nothing here raises a Lua error while it holds something: Lua code is called under lua_pcall only.
 #ifndef GLINT_L_RUN_H
@@ -54,7 +54,7 @@ typedef struct glintL_selection {
     int64_t shard, shard_count; ///< shard 1 .. shard_count; 0 of 0: no shards
 } glintL_selection;
 
-/// Each returns false and writes what was expected and what was got; the selection is then unchanged.
+/// Each returns false on failure and writes the expectation and the actual text; the selection is then unchanged.
 bool glintL_selection_parse(glintL_selection *selection, const char *text, char message[GLINTL_MESSAGE_SIZE]);
 bool glintL_selection_parse_shard(glintL_selection *selection, const char *text, char message[GLINTL_MESSAGE_SIZE]);
 bool glintL_selection_add(glintL_selection *selection, glintL_range range);
@@ -80,7 +80,7 @@ glintL_render glintL_render_default(void);
 int glintL_render_find(const char *name);
 /// The words a field takes, ended by NULL; NULL: it takes something else, or `field` is -1.
 const char *const *glintL_render_choices(int field);
-/// Sets a field from text as on the command line. False: `message` says what was expected and what was got.
+/// Sets a field from text as on the command line. Returns false on failure; `message` has the expectation and the actual text.
 bool glintL_render_set_text(glintL_render *render, int field, const char *text, char message[GLINTL_MESSAGE_SIZE]);
 /// Sets a field from the Lua value at `index`; raises "<path><name>: ... expected, got ...".
 void glintL_render_read(lua_State *L, int index, const char *path, int field, glintL_render *render);
@@ -162,7 +162,7 @@ typedef struct glintL_request {
     const char *render_text[GLINTL_RENDER_FIELDS]; ///< what beats the script; NULL: nothing
     glintL_set *sets;
     size_t set_count;
-    size_t swept_count; ///< of the sets, the last ones: those of --sweep
+    size_t swept_count; ///< number of the last sets, which come from --sweep
     bool apng; ///< an output in .png is a film
     double fps; ///< of films; 0: as the script says
     int threads; ///< 0: one per processor
@@ -181,9 +181,9 @@ typedef enum glintL_mode {
     GLINTL_MODE_WATCH ///< jobs wait until they are run by cli_run_jobs; calls render as ever
 } glintL_mode;
 
-// ---- One frame on its way ----
+// ---- One frame ----
 
-/// What is reported of a frame when its last file is written.
+/// The report of a frame when its last file is written.
 typedef struct glintL_record {
     int64_t index;
     int repeat; ///< 1 ..; 0: frames are rendered once
@@ -332,7 +332,7 @@ glintL_run **glintL_new_run_box(lua_State *L, lua_CFunction collect);
 /// Lets `L` use a run that the caller owns and keeps longer than `L`.
 void glintL_attach_run(lua_State *L, glintL_run *run);
 double glintL_now_ms(void);
-/// What a script's error is told with: lack of memory is not its doing, but where it has a limit of its own.
+/// Returns the exit code of a script's error: lack of memory is not the script's fault, unless it has its own limit.
 static inline int glintL_script_exit(const glintL_run *run, int status)
 {
     return status == LUA_ERRMEM && !run->request.is_untrusted ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE;
@@ -340,7 +340,7 @@ static inline int glintL_script_exit(const glintL_run *run, int status)
 /// Keeps the first failure and returns false. `index` 0: not one frame's.
 bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/// What the command line says beats what the script says.
+/// The command line takes precedence over the script.
 void glintL_run_apply(glintL_run *run, glintL_render *render);
 /// The pattern of a script that names no output.
 void glintL_run_default_name(const glintL_run *run, char pattern[GLINTL_PATH_SIZE]);
@@ -380,7 +380,7 @@ void glintL_note_specular(lua_State *L, int index); ///< it has got one since
 /// Looks at the scene at `scene_index` as it is in a frame that is about to be rendered. May raise.
 void glintL_observe_frame(lua_State *L, glintL_run *run, int scene_index, const glint_render_desc *desc,
                           int64_t number);
-/// What all frames together have shown, when the script `script` has ended. May raise.
+/// Warns about all frames together, when the script `script` has ended. May raise.
 void glintL_report_observed(lua_State *L, glintL_run *run, const char *script);
 void glintL_report_unseen(lua_State *L, glintL_run *run);
 
@@ -446,7 +446,7 @@ void glintL_find_source(lua_State *L, glintL_run *run);
 
 #define GLINTL_TEXT_COUNT 11
 
-/// The texts of a file: what it was made by, and what is needed to make it again.
+/// The text entries of a file: its origin, and everything needed to render it again.
 typedef struct glintL_provenance {
     char pass[GLINTL_PASS_NAME_SIZE]; ///< name of the file's pass
     glint_text text[GLINTL_TEXT_COUNT];
@@ -517,7 +517,7 @@ void glintL_sweep_push_values(lua_State *L, int index, int64_t n);
 /// Pushes the "name=value" lines of frame n of the sweep at `index`, an axis each.
 void glintL_sweep_push_place(lua_State *L, int index, int64_t n);
 
-/// Makes a list of jobs out of what a script returned at `index` (a job, a scene, a list of them): pushes it and
+/// Makes a list of jobs from a script's result at `index` (a job, a scene, a list of them): pushes it and
 /// returns true, or pushes a message and returns false.
 bool glintL_push_jobs(lua_State *L, int index);
 /// Frames of the jobs in the list at `index`.
@@ -528,7 +528,7 @@ bool glintL_jobs_run(lua_State *L, int index, glintL_run *run);
 
 // ---- job_frames.c: a list of jobs frame by frame, g = 1 .. glintL_jobs_total ----
 
-/// What the frames rendered so far have left in the scenes of a list; all 0 at first.
+/// The state that frames rendered so far have left in the scenes of a list; all 0 at first.
 typedef struct glintL_jobs_state {
     int64_t settled; ///< jobs that left their scene as the next job finds it
     int64_t sweeping; ///< the sweep whose axes have values of a frame; 0: none
@@ -536,7 +536,7 @@ typedef struct glintL_jobs_state {
 
 /// Renders frame g, as number run->point_first + g. Jobs come in ascending order. False: the run has failed.
 bool glintL_jobs_frame(lua_State *L, int index, glintL_run *run, glintL_jobs_state *state, int64_t g);
-/// Plans frame g with what decides its keys. NULL: it cannot be planned, or the run has failed.
+/// Plans frame g, for its keys. NULL: it cannot be planned, or the run has failed.
 glint_plan *glintL_jobs_probe(lua_State *L, int index, glintL_run *run, glintL_jobs_state *state, int64_t g);
 /// Adds the axes of job i; none: there is no such job. False: its frames go to a pipe, as they are numbered.
 bool glintL_jobs_axes(lua_State *L, int index, glintL_run *run, int64_t i, struct glintL_order *order);

@@ -1,11 +1,11 @@
-/// Balls against what a tile's rays pass (a pyramid or bar), and against all ways from its points to a light: first by one cylinder
-/// around these, then by slabs around the hull of light and points.
+/// Tests balls against the volume of a tile's rays (a pyramid or bar), and against all segments from its points to a light: first by one cylinder
+/// around the segments, then by slabs around the hull of light and points.
 #include "engine/reuse/between.h"
 #include "engine/base/vec.h"
 
 #include <math.h>
 
-/// Room around every ball: far above all rounding.
+/// Enlarges a ball by a margin far above all rounding.
 static double loosened(double radius, double distance) { return radius * (1 + 1e-6) + 1e-6 * distance; }
 
 static double length_of(const double v[3]) { return sqrt(vec_dot(v, v)); }
@@ -21,14 +21,14 @@ static void find_edges(const glint_plan *plan, uint32_t column, uint32_t row, do
     y[1] = span[1] - 2.0 * row * GLINT_TILE_HEIGHT;
 }
 
-// ---- What a tile shows ----
+// ---- The volume that a tile shows ----
 
 /// The planes around a tile's rays: inwards[k] . (place - eye) >= -offset[k] inside; length[k]: of inwards[k].
 typedef struct sides {
     double inwards[4][3], length[4], offset[4];
 } sides;
 
-/// A pyramid, or with parallel rays a bar.
+/// Computes the sides of the pyramid, or with parallel rays of the bar.
 static void find_sides(const glint_plan *plan, uint32_t column, uint32_t row, sides *out)
 {
     const glint_plan_camera *camera = &plan->camera;
@@ -49,7 +49,7 @@ static void find_sides(const glint_plan *plan, uint32_t column, uint32_t row, si
     }
 }
 
-/// How far beside the pinhole's the rays of a lens may be where they pass a ball, whose middle is `along` the view.
+/// Returns the largest distance of a lens's rays from the pinhole's rays near a ball, whose middle is at depth `along`.
 static double beside(const glint_plan *plan, double along, double radius)
 {
     const glint_plan_camera *camera = &plan->camera;
@@ -78,12 +78,12 @@ bool glint_may_show(const glint_plan *plan, const glint_ball *balls, uint32_t co
     return false;
 }
 
-// ---- What is on the way to a light ----
+// ---- The volume between points and a light ----
 
-/// All that a light shines from.
+/// The emitting part of a light.
 typedef struct source {
     bool directional;
-    double to[3]; ///< the middle; directional: the way there
+    double to[3]; ///< the middle; for a directional light the direction
     double radius; ///< of a ball around it
 } source;
 
@@ -95,7 +95,7 @@ static source source_of(const glint_plan_light *light)
     return s;
 }
 
-/// Whether a ball is further from the line between the middles of the light and of the box than all three are wide.
+/// Returns whether a ball's distance from the line between the middles of light and box exceeds the sum of all three radii.
 static bool is_far_off(const source *light, const glint_point_box *box, const glint_ball *ball)
 {
     double from[3], half[3], line[3], way[3], across[3];
@@ -117,19 +117,19 @@ static bool is_far_off(const source *light, const glint_point_box *box, const gl
     return length_of(across) > loosened(ball->radius + wide, far);
 }
 
-/// Around ways to a light that begin in a body of eight corners: along each of these normals, all of them are between two heights.
+/// The segments to a light from a body with eight corners: along each of these normals, all segments lie between two heights.
 typedef struct slabs {
     int count;
-    double origin[3]; ///< heights are from here: the light's middle, or with parallel light a corner
-    double size; ///< how far from the origin the corners are, and that from the world's
+    double origin[3]; ///< reference point of heights: the light's middle, or with parallel light a corner
+    double size; ///< distances of the corners from this origin, and of this origin from the world's
     double normal[18][3], length[18], low[18], high[18];
 } slabs;
 
-/// The corners that edge 0 .. 11 of a body joins: their numbers differ in one bit.
+/// Return the corners of edge 0 .. 11 of a body: their numbers differ in one bit.
 static int edge_begin(int edge) { return edge / 4 == 0 ? 2 * (edge % 4) : edge / 4 == 1 ? edge % 2 + edge % 4 / 2 * 4 : edge % 4; }
 static int edge_end(int edge) { return edge_begin(edge) + (1 << edge / 4); }
 
-/// corner: from the origin. away: parallel light and a normal that is not made square to it; its ways go on and on.
+/// Adds a slab. corner: relative to the origin. away: the light is parallel and the normal not perpendicular to it, so the slab is unbounded on one side.
 static void add_slab(slabs *s, double (*corner)[3], const source *light, const double normal[3], bool away)
 {
     const double length = length_of(normal), ahead = away ? vec_dot(normal, light->to) : 0;
@@ -145,7 +145,7 @@ static void add_slab(slabs *s, double (*corner)[3], const source *light, const d
     s->high[s->count++] = ahead > 0 ? HUGE_VAL : high;
 }
 
-/// The slabs are those of the body's edges with the light and of its faces.
+/// Finds the slabs of the body's faces, and of its edges with the light.
 static void find_slabs(slabs *s, double (*corner)[3], const source *light)
 {
     s->count = 0;
@@ -173,7 +173,7 @@ static void find_slabs(slabs *s, double (*corner)[3], const source *light)
     }
 }
 
-/// Whether a ball is clear of all the ways, as it is when it lies beyond one slab's heights. A normal of length 0 excludes nothing.
+/// Returns whether a ball is clear of all segments, because it lies outside one slab. A normal of length 0 excludes nothing.
 static bool is_clear_of(const slabs *s, const glint_ball *ball)
 {
     double way[3];
@@ -194,8 +194,8 @@ static void find_box_corners(const glint_point_box *box, double corner[8][3])
             corner[k][c] = (k >> c & 1 ? box->upper : box->lower)[c];
 }
 
-/// The corners of that part of a tile's pyramid or bar which is as far along the view as the box. It is much smaller than the box where
-/// that is deep and oblique to the axes.
+/// Computes the corners of the part of a tile's pyramid or bar at the depths of the box. It is much smaller than the box if
+/// the box is deep and oblique to the axes.
 static void find_beam_corners(const glint_plan *plan, const glint_point_box *box, uint32_t column, uint32_t row,
                               double corner[8][3])
 {
