@@ -1,5 +1,6 @@
-/// Pictures of earlier frames, returned again when a frame has the same inputs. A picture whose key returns once is
-/// stored from then on; when there is no space, the least recently returned picture is dropped.
+/// Pictures of earlier frames, returned again when a frame has the same inputs. A picture whose key returns once is stored from then
+/// on. When there is no space, the picture that cost the fewest rays per byte is dropped, and among equal ones the least recently
+/// returned: a large cheap picture goes before a small expensive one.
 #include "engine/frame/renderer.h"
 
 /// Returns the key of the whole picture, or of its region.
@@ -32,7 +33,7 @@ bool glint_picture_give(glint_renderer *renderer, const glint_plan *plan, glint_
         glint_picture *picture = &renderer->pictures[i];
         if (!picture->image || !picture->image->codes != !plan->desc.codes || !glint_key_equal(picture->key, key))
             continue;
-        picture->used = ++renderer->pictures_given;
+        picture->worth = renderer->picture_floor + picture->cost;
         *out = glint_image_retain(picture->image);
         if (stats)
             tell_given(&picture->stats, stats);
@@ -49,28 +50,50 @@ static void drop(glint_renderer *renderer, glint_picture *picture)
     picture->image = NULL;
 }
 
+static double cost_of(const glint_plan *plan, const glint_image *image)
+{
+    const glint_ray_counts rays = glint_plan_expected_rays(plan);
+    return (double)(rays.primary + rays.shadow + rays.mirror + rays.refraction + rays.indirect) /
+           (double)glint_image_bytes(image);
+}
+
+/// Reserves memory for a picture; those that are worth less go. NULL: there is none for it.
+static glint_picture *make_place(glint_renderer *renderer, double worth, size_t bytes)
+{
+    for (;;) {
+        glint_picture *place = NULL, *least = NULL;
+        for (int i = 1; i < GLINT_PICTURES_MAX; i++) {
+            glint_picture *picture = &renderer->pictures[i];
+            place = picture->image ? place : picture;
+            least = picture->image && (!least || picture->worth < least->worth) ? picture : least;
+        }
+        if (place && glint_reuse_reserve(&renderer->reuse, bytes))
+            return place;
+        const bool fits = least && least->worth <= worth;
+        renderer->picture_floor = fits ? least->worth : worth;
+        if (!fits)
+            return NULL;
+        drop(renderer, least);
+    }
+}
+
 /// Moves the last picture from the spare images to the stored ones, if the budget has space for it.
 static void set_aside(glint_renderer *renderer, const glint_picture *last, int spare)
 {
     const size_t bytes = glint_image_bytes(last->image);
-    glint_picture *place = &renderer->pictures[1];
-    for (int i = 1; i < GLINT_PICTURES_MAX; i++) {
-        glint_picture *other = &renderer->pictures[i];
-        if (place->image && (!other->image || other->used < place->used))
-            place = other;
-    }
-    drop(renderer, place);
-    if (!glint_reuse_reserve(&renderer->reuse, bytes))
+    glint_picture *place = make_place(renderer, renderer->picture_floor + last->cost, bytes);
+    if (!place)
         return;
     *place = *last;
-    place->used = ++renderer->pictures_given;
+    place->worth = renderer->picture_floor + last->cost; // which has risen to that of the last evicted one
     glint_image_retain(place->image);
     glint_reuse_unreserve(&renderer->reuse, bytes); // the spare image's memory was reserved already
     glint_image_release(renderer->spare[spare]);
     renderer->spare[spare] = NULL;
 }
 
-void glint_picture_remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_frame_stats *stats)
+void glint_picture_remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
+                            const glint_frame_stats *stats)
 {
     glint_picture *last = &renderer->pictures[0];
     int spare = -1;
@@ -80,7 +103,9 @@ void glint_picture_remember(glint_renderer *renderer, const glint_plan *plan, gl
     last->image = NULL;
     if (!renderer->reuse.on || spare < 0)
         return;
-    *last = (glint_picture) { .image = glint_image_retain(image), .key = picture_key(plan), .stats = *stats };
+    *last = (glint_picture) {
+        .image = glint_image_retain(image), .key = picture_key(plan), .stats = *stats, .cost = cost_of(plan, image)
+    };
     if (renderer->shares) // the counts of adaptive sampling belong to the last frame
         return;
     if (glint_recent_has(&renderer->recent, GLINT_PICTURES_MAX - 1, last->key))

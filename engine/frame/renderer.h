@@ -24,7 +24,8 @@ typedef struct glint_picture {
     glint_image *image; ///< a reference; NULL: none
     glint_key key;
     glint_frame_stats stats;
-    uint64_t used; ///< when it was last returned
+    double cost; ///< the rays per byte that the plan expects
+    double worth; ///< the least is dropped first: `cost` plus the floor at the time the picture was last returned
 } glint_picture;
 
 struct glint_renderer {
@@ -42,7 +43,7 @@ struct glint_renderer {
     glint_tints tints; ///< for frames where transparent materials tint shadows
     glint_grids own_grids, *grids; ///< a renderer of bases uses those of the frame's renderer
     glint_picture pictures[GLINT_PICTURES_MAX]; ///< the last frame's; stored ones
-    uint64_t pictures_given; ///< number of pictures returned and stored
+    double picture_floor; ///< the worth of the last dropped picture; it rises, so that unused pictures age
     glint_recent recent; ///< keys of the last pictures
     /// Earlier pictures, whose memory is used again when there is no other reference.
     glint_image *spare[GLINT_SPARE_IMAGES];

@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define EARLIER_PRIMS 128 ///< with fewer primitives, computing a light takes no longer than reading a stored result
+/// With fewer primitives for each row of a light, computing it takes no longer than reading a stored result.
+#define EARLIER_PRIMS 128
 
 static const glint_key none = { 0 };
 
@@ -105,15 +106,25 @@ static void forget_lights(glint_reuse *reuse)
     memset(reuse->light_recurs, 0, sizeof reuse->light_recurs);
 }
 
+/// Returns whether the results of a light are dear enough for their memory. The samples of an area light, a row each, have the
+/// occluders that may matter looked for once: the more of them, the less each costs.
+static bool is_dear(const glint_plan *plan, uint32_t row)
+{
+    size_t rows = 0;
+    for (uint32_t i = 0; i < plan->light_count; i++)
+        rows += plan->lights[i].source == plan->lights[row].source;
+    return plan->geometry->table.prim_count >= EARLIER_PRIMS * rows;
+}
+
 void glint_earlier_lights(glint_reuse *reuse, const glint_plan *plan)
 {
-    const bool looks = reuse->earlier && !plan->base && plan->geometry->table.prim_count >= EARLIER_PRIMS;
+    const bool looks = reuse->earlier && !plan->base;
     if (plan->base && reuse->earlier)
         forget_lights(reuse);
     for (uint32_t i = 0; i < reuse->light_count; i++) {
         const glint_key key = plan->lights[i].key;
         reuse->keep_light[i] = glint_key_equal(reuse->light[i], key);
-        if (!reuse->keep_light[i] && looks)
+        if (!reuse->keep_light[i] && looks && is_dear(plan, i))
             reuse->keep_light[i] = find_light(reuse, i, key);
         reuse->light[i] = key;
     }
@@ -168,7 +179,8 @@ static void exchange_tiles(glint_reuse *reuse, glint_earlier_tiles *slot)
 
 bool glint_earlier_tiles_found(glint_reuse *reuse, glint_key key)
 {
-    if (!reuse->earlier && reuse->tile_count && sizeof *reuse->earlier <= (reuse->budget - reuse->pictures - reuse->used) / 16) {
+    if (!reuse->earlier && reuse->tile_count &&
+        sizeof *reuse->earlier <= (reuse->budget - reuse->pictures - reuse->used) / 16) {
         reuse->earlier = calloc(1, sizeof *reuse->earlier);
         reuse->used += reuse->earlier ? sizeof *reuse->earlier : 0;
     }

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-enum { LIGHTS = 2, CROWD = 150 }; // CROWD: spheres behind the eye, so that lights are worth setting aside
+enum { LIGHTS = 2, CROWD = 400 }; // CROWD: spheres behind the eye, so that lights are worth setting aside
 
 typedef struct stand {
     glint_scene *scene;
@@ -218,6 +218,54 @@ static void pictures_that_come_back(void **unused)
     free_stand(&s);
 }
 
+/// Whether a picture of the scene as it is comes back: given again, or else rendered.
+static bool is_given(stand *s)
+{
+    glint_plan *plan;
+    glint_image *image;
+    bool given = true;
+    assert_int_equal(glint_plan_create(s->scene, &s->render, &plan, NULL), GLINT_OK);
+    assert_int_equal(glint_render(s->renderers[0], plan, &image, &s->stats, NULL), GLINT_OK);
+    for (int i = 0; i < s->stats.stage_count; i++)
+        given = given && s->stats.stage_reused[i] == 1;
+    glint_image_release(image);
+    glint_plan_destroy(plan);
+    return given;
+}
+
+/// Eighty pictures of 400 x 300 pixels and one sample, more than have a place, do not evict a small one of 16 samples, which costs more rays a byte.
+static void dear_pictures_stay(void **unused)
+{
+    (void)unused;
+    stand s;
+    make_stand(&s, (size_t)512 << 20);
+    s.render.samples = 16;
+    for (int again = 0; again < 2; again++) { // the second time, it is set aside
+        set_color(&s, 0.8);
+        is_given(&s);
+        set_color(&s, 0.9);
+        is_given(&s);
+    }
+    for (int cheap = 0; cheap < 40; cheap++) {
+        s.render.width = 400, s.render.height = 300, s.render.samples = 1;
+        for (int again = 0; again < 2; again++) {
+            set_color(&s, 0.01 * cheap);
+            is_given(&s);
+            set_color(&s, 0.01 * cheap + 0.005);
+            is_given(&s);
+        }
+    }
+    s.render.width = 100, s.render.height = 80, s.render.samples = 16;
+    set_color(&s, 0.8);
+    assert_true(is_given(&s));
+    s.render.width = 400, s.render.height = 300, s.render.samples = 1;
+    set_color(&s, 0);
+    assert_false(is_given(&s));
+    set_color(&s, 0.01 * 39);
+    assert_true(is_given(&s));
+    free_stand(&s);
+}
+
 /// Gives one thing one of a few values.
 static void change(stand *s)
 {
@@ -314,6 +362,7 @@ int main(void)
         cmocka_unit_test(two_lamps_each_in_its_turn),
         cmocka_unit_test(cameras_in_turn),
         cmocka_unit_test(pictures_that_come_back),
+        cmocka_unit_test(dear_pictures_stay),
         cmocka_unit_test(frames_in_any_order),
         cmocka_unit_test(frames_in_any_order_with_little_memory),
     };
