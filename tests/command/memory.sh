@@ -70,6 +70,33 @@ script 20000 'local lamp = glint.point_light { position = { 0, 8, 4 } }' \
     '  lamp.position = { 9 * glint.cos(6 * t), t - 0.5, 4 }' '  measure(n)' 'end }'
 grows "20,000 frames" 1000000 -o none
 
+# What is kept for later frames takes at most --reuse-memory: a random walk over values that come back, whose peak is held against that
+# of a run without reuse. 24 MB are less than three pictures' hits and lights.
+cat >walk.lua <<'LUA'
+local glint = require "glint"
+local state = 7
+local function draw(n) state = state * 48271 % 0x7fffffff; return state % n end
+local red = glint.material { diffuse = { 0.8, 0.2, 0.2 }, specular = 0.5 }
+local lamp, eye = glint.point_light { position = { 0, 9, 3 } }, glint.camera { eye = { 0, 3, 10 }, at = { 0, 0, 0 } }
+local scene = glint.scene { camera = eye, lamp, glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 } } }
+for i = 1, 200 do scene:add(glint.sphere { center = { i % 20 - 10, 0, -(i // 20) }, radius = 0.4, material = red }) end
+for _ = 1, 60 do
+  local what = draw(4)
+  if what == 0 then eye.fov = 40 + draw(3) elseif what == 1 then lamp.x = draw(4) else red.shininess = 5 + draw(3) end
+  scene:render { width = 640, height = 480 }
+end
+local file = io.open "/proc/self/status"
+print(1024 * file:read "a":match "VmHWM:%s*(%d+)")
+LUA
+fresh=$("$glint" walk.lua -t 1 -q -o none --no-reuse)
+for most in 24 48; do
+    peak=$("$glint" walk.lua -t 1 -q -o none --reuse-memory ${most}M)
+    if [ $((peak - fresh)) -le $(((most + 2) << 20)) ]; then echo "ok - $most MB for later frames ($((peak - fresh)) bytes more)"; else
+        echo "not ok - $most MB for later frames: $((peak - fresh)) bytes more"
+        bad=1
+    fi
+done
+
 # Spheres given as data, four doubles each, take at most six times that at the peak of a run, beside what a run of one takes: as they
 # are indexed, and with the grid that the light of a large picture has of them.
 cat >write.lua <<'LUA'

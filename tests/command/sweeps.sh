@@ -126,4 +126,47 @@ rm -r some
 echo 'local = 3' >syntax.lua
 exits 2 "a script that fails at every value" syntax.lua --sweep n=1:100:100 -q
 check "says so once" test "$(wc -l <err)" -eq 1
+
+# ---- The witness: random sweeps of three axes, in lists, in shards, resumed after a kill, are those without reuse ----
+
+cat >random.lua <<'LUA'
+local glint, S = require "glint", require "S"
+local P = glint.params { seed = 1, strength = 1 }
+local state = P.seed * 7919 + 13
+local function draw(n) state = state * 48271 % 0x7fffffff; return state % n end
+for i = 1, 150 * draw(3) do S.scene:add(glint.sphere { center = { i * 0.02 - 2, 0.1, draw(9) * 0.3 - 1 }, radius = 0.05, material = S.red }) end
+local AXES = {
+  { S.lamp, "position", { { -3, 9, 1 }, { 0, 9, 1 }, { 3, 9, 1 } } }, { S.red, "shininess", { 5, 50 } }, { S.camera, "fov", { 40, 50 } },
+  { S.red, "diffuse", { { 0.2, 0.8, 0.2 }, { 0.8, 0.2, 0.2 } } }, { S.red, "mirror", { 0, 0.3 } }, { S.scene, "ambient", { 0, 0.2 } } }
+local function sweep(name)
+  local over = {}
+  for i = 1, 3 do over[i] = table.remove(AXES, draw(#AXES) + 1) end
+  for i = 1, 3 do AXES[#AXES + 1] = over[i] end
+  return glint.sweep { scene = S.scene, width = 48, height = 32, over = over }
+end
+S.lamp.intensity = P.strength
+return { sweep(), glint.animation { scene = S.scene, width = 48, height = 32, frames = 6, cyclic = true,
+  frame = function(t, n) S.red.shininess = n % 2 + 5; S.lamp.x = n % 3 end }, sweep() }
+LUA
+for seed in 1 2 3; do
+    random=(random.lua --set "seed=$seed" --sweep strength=1,0.5 -q)
+    rm -rf fresh
+    check "seed $seed" "$GLINT" "${random[@]}" --no-reuse -o 'fresh/%03d.png'
+    for memory in 1G 300K; do
+        check "seed $seed with $memory" "$GLINT" "${random[@]}" --reuse-memory "$memory" -o 'reused/%03d.png'
+        check "is the same" diff -r fresh reused
+        rm -rf reused
+    done
+    for shard in 2 3 1; do check "seed $seed, shard $shard of 3" "$GLINT" "${random[@]}" --shard $shard/3 -o 'reused/%03d.png'; done
+    check "is the same" diff -r fresh reused
+    rm -rf reused
+    "$GLINT" "${random[@]}" -t 1 -o 'reused/%03d.png' 2>/dev/null &
+    killed=$!
+    for _ in $(seq 500); do [ -e reused/001.png ] && break || sleep 0.01; done
+    kill -9 $killed
+    wait $killed 2>/dev/null
+    check "seed $seed, resumed after a kill" "$GLINT" "${random[@]}" -o 'reused/%03d.png'
+    check "is the same" diff -r fresh reused
+    rm -rf reused
+done
 totals
