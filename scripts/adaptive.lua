@@ -1,12 +1,12 @@
--- Many samples only where they are needed: `adaptive` first takes one sample a pixel, and then all samples of those
--- pixels that show another object, an edge or another colour than one of their neighbours.
+-- Many samples only where they are needed. `adaptive` first takes one sample per pixel. It then takes all samples of
+-- each pixel that shows an edge, or whose object or colour differs from a neighbour's.
 --
 --     glint scripts/adaptive.lua                          5 pictures: all samples everywhere, then 0.3 .. 0.01
---     glint scripts/adaptive.lua --passes refined         and which pixels got all samples, white
---     glint scripts/adaptive.lua --json | grep refined    how many these are, and the rays they took
---     glint scripts/adaptive.lua -f 4 --set samples=64    what is smooth costs no more
--- Look at: outlines and edges of shadows, which every threshold finds; the checkered floor far away and in the mirror;
--- the soft shadow, whose dither of single samples 0.03 still smooths and 0.3 leaves.
+--     glint scripts/adaptive.lua --passes refined         also shows the pixels that got all samples, in white
+--     glint scripts/adaptive.lua --json | grep refined    the number of these pixels, and of their rays
+--     glint scripts/adaptive.lua -f 4 --set samples=64    smooth areas cost no more
+-- Look at: outlines and shadow edges, which every threshold finds; the checkered floor far away and in the mirror;
+-- the soft shadow: a threshold of 0.03 still smooths the noise of single samples, 0.3 leaves it.
 local glint = require "glint"
 
 local P = glint.params {

@@ -1,15 +1,15 @@
--- Soft shadows without noise. A ball before a ball of light: how much of the light does it hide? To the point that
--- asks, both are disks in the sky, and the part that two disks of a sphere have in common is a formula.
--- `shadow = "caps"` multiplies the light by it, where `shadow = "rays"` (the default) asks `samples` of its points
--- one by one.
+-- Soft shadows without noise. A ball stands in front of a spherical light: how much of the light does it hide? Seen
+-- from the shaded point, both are disks in the sky, and a formula gives the overlap of two disks on a sphere.
+-- `shadow = "caps"` multiplies the light by the visible share. `shadow = "rays"` (the default) casts a ray to each of
+-- `samples` points of the light.
 --
 -- Six frames: 4 rays a pixel, 64 rays, the formula; then the same with a lamp four times as wide.
--- On the floor the formula is as near to the truth as thousands of rays. Where the light sinks below
--- a ball's own horizon it takes the light as a point at its middle: the edge of day on a ball is sharper than it should
--- be. Where several balls stand before the light it multiplies what each leaves: behind two in a row that is too dark
--- or too bright, never darker than if they hid nothing in common.
+-- On the floor the formula is as accurate as thousands of rays. It has two errors. Where the light sinks below a
+-- ball's own horizon, the light counts as a point at its centre, so the terminator on a ball is too sharp. Where
+-- several balls stand in front of the light, the formula multiplies their visible shares. Behind two in a row that is
+-- too dark or too bright, but never darker than if they hid separate parts of the light.
 --     glint scripts/caps.lua                               then glint sheet 'caps_%04d.png' --columns 3 -o sheet.png
---     glint cost scripts/caps.lua --frame 6                what both take, and how far they are off
+--     glint cost scripts/caps.lua --frame 6                the time and the error of both
 local glint = require "glint"
 
 local lamp = glint.sphere_light { position = { -2.5, 7, 2 }, radius = 1, samples = 4, name = "lamp" }

@@ -1,10 +1,10 @@
--- Inverse rendering: where is the lamp, how bright is it, and how shiny is the ball? From only a picture, by the
--- Gauss-Newton of glint.fit: the passes d:NAME of each step say how fast every pixel changes with the five numbers.
+-- Inverse rendering: where is the lamp, how bright is it, and how shiny is the ball? glint.fit finds the five numbers
+-- from a picture by Gauss-Newton steps. The passes d:NAME of each step are the derivatives of every pixel.
 --
 --     glint scripts/fit.lua -o 'fit/%02d.png'; glint sheet 'fit/##.png' -o fit.png --difference 1
 --
--- The target is made from hidden numbers, or file=... is a .png or .pfm of this scene at the same size. Frame 1 is the
--- target, the others are the steps. The numbers found are printed, each with its uncertainty.
+-- The target is rendered from hidden numbers, or file=... names a .png or .pfm of this scene at the same size. Frame 1
+-- is the target, the other frames are the steps. The script prints each number it finds with its uncertainty.
 local glint = require "glint"
 local fit = require "glint.fit"
 

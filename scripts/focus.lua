@@ -1,8 +1,9 @@
--- A focus pull: a lens brings one ball after the other of a row into focus, and blurs what is nearer and farther.
+-- A focus pull: a lens focuses on the balls of a row one after the other, and blurs everything nearer or farther.
 --
--- A point at depth d is a disk 2 aperture |1 - d / focus| wide there: as seen by the eye, what is behind the focus is
--- never wider than what is next to infinity, and what is before it grows without end. Lights out of focus take the form
--- of the lens: with `blades` a polygon, as the leaves of an iris make it. The lights here are balls that glow.
+-- A point at depth d becomes a disk 2 aperture |1 - d / focus| wide at that depth. In the picture, the disks of points
+-- behind the focus grow up to a limit, reached at infinity; the disks of points in front of it grow without limit.
+-- Lights out of focus take the shape of the lens: with `blades` a polygon, like the iris of a camera. The lights here
+-- are balls that glow.
 --     glint scripts/focus.lua -o film.mp4                     the focus goes from the nearest ball to the lights
 --     glint scripts/focus.lua -f 12 --set aperture=0.05       a small lens: more is sharp
 --     glint scripts/focus.lua -f 4 --set blades=5             lights become pentagons

@@ -1,7 +1,7 @@
--- Open cylinders and cones: with `capped = false` only the side is there, and the inside is seen.
+-- Open cylinders and cones: with `capped = false` they have only a side, and the inside is visible.
 --
--- The shade is an open cylinder around a bulb: light leaves above and below, and lights its inside. The funnel is an
--- open cone, the mug an open cylinder with a disk for a bottom; the tin beside it is capped.
+-- The shade is an open cylinder around a bulb. Light leaves above and below, and lights the inside. The funnel is an
+-- open cone, the mug an open cylinder with a disk as its bottom; the tin next to it is capped.
 --     glint scripts/lampshade.lua
 --     glint scripts/lampshade.lua --set capped=true        all of them closed: no light leaves the shade
 local glint = require "glint"

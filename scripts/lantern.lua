@@ -1,9 +1,9 @@
 -- A lantern that turns: light through holes that a function cuts.
 --
--- The shell is one sphere. Where its material's opacity is below one half the sphere is not there: the eye looks
--- through the holes at the shell's other side and past it, and the lamp in the middle shines through them on floor and
--- walls. The function lays staggered rows of dots by s.uv, around and along, and none near the poles, where circles
--- shrink. `--set dots=40 --set rows=21` makes them small.
+-- The shell is one sphere. Where its material's opacity is below one half, the sphere is cut out. The eye looks
+-- through the holes at the far side of the shell, and the lamp in the middle shines through them on the floor and the
+-- walls. The function uses s.uv to lay staggered rows of dots, except near the poles, where circles of latitude
+-- shrink. `--set dots=40 --set rows=21` makes small holes.
 --     glint scripts/lantern.lua -o lantern.mp4
 local glint = require "glint"
 

@@ -1,8 +1,8 @@
 -- A still life under three lamps and a window, whose strengths and colours are chosen after it is rendered.
 --
--- A light pass holds what one lamp adds to the picture, in mirrors and through glass too. Light adds up, so that other
--- strengths and colours need no rays: `glint relight` multiplies the passes and adds them. The window and the sun that
--- falls through it are one group.
+-- A light pass holds the contribution of one lamp to the picture, including mirrors and glass. Light is additive, so
+-- other strengths and colours need no new rays: `glint relight` scales the passes and adds them. The window and the
+-- sunlight through it are one group.
 --     glint scripts/lights.lua --passes 'light:*' -o lights.exr       one file with all passes
 --     glint relight lights.exr -o evening.png --light key=0 --light window=0.6 --light window=#ff9a4a --light rim=2
 --     glint relight lights.exr -o mixer.html                          a page with a slider and a colour for each

@@ -1,9 +1,9 @@
 -- The shape of a highlight: how cos^i narrows for i = 1, 2, 4, 8, 16, 32, drawn from material:evaluate.
 --
--- Above, Phong's (r.v)^i; below, Blinn-Phong's (n.h)^i. Each curve is a lobe: the further from the point at the bottom,
--- the more of the light that falls in along the thin line goes that way. Blinn-Phong's lobes are wide for the same
--- exponent, since the angle between n and h is half of that between r and v; `--set matched=true` gives them four times
--- the exponent, and the two rows look alike while all lies in one plane.
+-- Above, Phong's (r.v)^i; below, Blinn-Phong's (n.h)^i. Each curve is a lobe: its distance from the point at the bottom
+-- is the share of the light, arriving along the thin line, that leaves in that direction. For the same exponent
+-- Blinn-Phong's lobes are wider, because the angle between n and h is half of the angle between r and v.
+-- `--set matched=true` multiplies their exponents by four; the rows look alike while all vectors lie in one plane.
 --     glint scripts/lobes.lua                      6 + 6 lobes, light 40 degrees from the normal
 --     glint scripts/lobes.lua --set angle=75       at a low light Phong's lobes are cut off at the surface
 --     glint scripts/lobes.lua --set model=toon     a shader of scripts/lib/glint/models.lua in the lower row

@@ -1,4 +1,4 @@
--- A mesh from a file, .obj with the materials that it names, .stl or .ply, with a camera that has all of it in view.
+-- A mesh from a file: .obj with the materials that it names, .stl or .ply. The camera shows all of it.
 --     glint scripts/model.lua                                      a cottage: model.png
 --     glint scripts/model.lua --set file=part.stl --set from=1,2,1 --set up=0,0,1
 --     glint scripts/model.lua --set file=bunny.ply --set shading=phong

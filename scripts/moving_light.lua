@@ -7,7 +7,7 @@
 --     glint scripts/moving_light.lua --set radius=6       a tighter orbit
 --     glint scripts/moving_light.lua -f 1-120:10          every tenth frame
 --     glint scripts/moving_light.lua --shard 1/2          the first half; run 2/2 on another machine
--- Stop it whenever you like: the next run keeps the frames that are finished.
+-- Stop it at any time: the next run does not render finished frames again.
 local glint = require "glint"
 
 local P = glint.params {

@@ -1,7 +1,7 @@
 -- A scene from an NFF file, the format of the Standard Procedural Databases.
 --     glint scripts/sphereflake.lua --set nff=balls.nff          makes one
 --     glint scripts/nff.lua --set file=balls.nff                 nff.png
---     glint scripts/nff.lua --set file=gears.nff --set mirrors=false        without what f says of mirrors and glass
+--     glint scripts/nff.lua --set file=gears.nff --set mirrors=false        without the mirrors and glass of `f` lines
 local glint = require "glint"
 local nff = require "glint.nff"
 

@@ -1,8 +1,8 @@
--- A box of particles: 100,000, made up on the spot, a crystal of two kinds that melts towards one side.
+-- A box of 100,000 particles that the script generates: a crystal of two kinds that melts towards one side.
 --     glint scripts/particle_box.lua                             particle_box.png
 --     glint scripts/particle_box.lua --set count=1000000 --set format=f32
 --     glint scripts/particle_box.lua --set file=melt.dump --set frame=3     a frame of a LAMMPS dump instead
---     glint scripts/particle_box.lua --set count=1000 --set longest=1.1     bonds; those of a dump across its faces
+--     glint scripts/particle_box.lua --set count=1000 --set longest=1.1     bonds; in a dump also across its faces
 local glint = require "glint"
 local particles, lammps, bonds = require "glint.particles", require "glint.lammps", require "glint.bonds"
 

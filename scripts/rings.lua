@@ -1,8 +1,8 @@
 -- A chain of rings hangs between two posts, and a lamp passes by: each ring shadows the next, itself and the floor.
 --
--- A torus is a circle with a tube around it: `major` is the circle's radius, `minor` the tube's, which has to be the
--- smaller. The rings of a chain are linked as it hangs, in turn upright and level, each by a transform; of the two that
--- lie on the floor one is a mirror, one of glass. Light and sight go through them up to four times.
+-- A torus is a circle with a tube around it: `major` is the circle's radius, and `minor` the tube's radius, which must
+-- be smaller. The rings of the chain are linked, alternately upright and level; a transform places each ring. Two rings
+-- lie on the floor: one is a mirror, the other is of glass. A ray intersects a ring up to four times.
 --     glint scripts/rings.lua                      48 pictures, rings_0001.png ...
 --     glint scripts/rings.lua -f 13 --samples 9    one of them, smooth
 --     glint scripts/rings.lua --set thickness=0.3  a heavier chain

@@ -1,9 +1,9 @@
--- Microfacet roughness above, Phong exponents below: the same highlight said in two languages.
+-- Microfacet roughness above, Phong exponents below: two descriptions of the same highlight.
 --
 -- A surface of roughness r has a GGX distribution of width alpha = r^2; the normalised Phong exponent of about the same
--- width is 2 / alpha^2 - 2 for n.h (times 1/4 for r.v, whose angle is twice as large). Side by side the balls agree in
--- the middle and part in the tails: GGX's highlight has a wide, dim skirt, a power of a cosine has none, and only the
--- microfacets brighten towards the rim (Fresnel).
+-- width is 2 / alpha^2 - 2 for n.h (times 1/4 for r.v, whose angle is twice as large). The balls agree in the middle of
+-- the highlight and differ in its tails: GGX has a wide, dim skirt, a power of a cosine has none. Only the microfacets
+-- brighten towards the rim (Fresnel).
 --     glint scripts/roughness.lua                                 five roughnesses
 --     glint scripts/roughness.lua --set distribution=beckmann     a distribution with Phong's short tails
 local glint = require "glint"

@@ -1,5 +1,5 @@
--- A mesh with the colours of a scan: writes a binary .ply whose vertices have red, green and blue, and shows it. A face
--- has the mean of its corners' colours.
+-- A mesh with the colours of a scan. The script writes a binary .ply whose vertices have red, green and blue, and shows
+-- it. The colour of a face is the mean of its corners' colours.
 --     glint scripts/scan.lua                                       a boulder with moss: scan.png, and scan.ply
 --     glint scripts/scan.lua --set rows=160                        smaller faces
 local glint = require "glint"

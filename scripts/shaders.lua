@@ -1,8 +1,9 @@
--- Models of reflection written in Lua, beside two that are built in.
+-- Reflection models written in Lua, next to two built-in models.
 --
--- Above: Phong and Blinn-Phong, each built in (left) and as a shader of three lines (right), which no eye can tell
--- apart. Below: what is not built in: Oren and Nayar's matt clay, Ward's brushed metal, a cartoon's bands, and Gooch's
--- cool and warm tones of technical drawings. scripts/lib/glint/models.lua has them, with formula and source.
+-- Above: Phong and Blinn-Phong, each built in (left) and as a shader of three lines (right), without a visible
+-- difference. Below: models that are not built in: Oren and Nayar's matt clay, Ward's brushed metal, the bands of a
+-- cartoon, and Gooch's cool and warm tones of technical drawings. scripts/lib/glint/models.lua defines them, with
+-- formula and source.
 --     glint scripts/shaders.lua
 --     glint scripts/furnace.lua --set model=ward       how much of the light leaves again
 local glint = require "glint"

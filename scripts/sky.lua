@@ -1,9 +1,9 @@
 -- Things under a sky that is a picture.
 --
--- The script paints a picture of all directions, with clouds and hills, and gives it to the scene as its background:
--- the eye, the mirror and the glass see it, and it lights what is matt. Only the sun is a lamp: a spot as small and
--- bright as that would be found by one way of light in thousands. `--set file=sky.png` takes a picture of your own:
--- twice as wide as high, the horizon in its middle.
+-- The script paints a picture of all directions, with clouds and hills, and sets it as the scene's background. The eye,
+-- the mirror and the glass see it, and it lights matt surfaces. Only the sun is a lamp: only one random ray in
+-- thousands would hit such a small, bright spot. `--set file=sky.png` uses your own picture, twice as wide as high,
+-- with the horizon in the middle.
 --     glint scripts/sky.lua -o sky.mp4
 local glint = require "glint"
 local png = require "glint.png"
