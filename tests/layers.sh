@@ -1,6 +1,6 @@
 #!/bin/sh
-# Arrows point one way: scripts -> bindings -> engine -> engine/stages -> engine/base. Each folder includes its own headers, and
-# those of the folders named here.
+# Dependencies go one way: scripts -> bindings -> engine -> engine/stages -> engine/base. Each folder includes its own headers and
+# the headers of the folders named here.
 set -u
 bad=0
 

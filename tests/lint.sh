@@ -1,5 +1,5 @@
 #!/bin/sh
-# luacheck over the Lua files, cppcheck over the C files; each is skipped, and says so, where it is not installed.
+# Runs luacheck on the Lua files and cppcheck on the C files. A tool that is not installed is skipped with a message.
 set -u
 bad=0
 if command -v luacheck >/dev/null 2>&1; then

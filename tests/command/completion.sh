@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# glint completion: each shell's script is read by that shell where it is installed, offers what the command takes, and
-# every word it offers for an option is one the command accepts.
+# glint completion: each installed shell reads its script, offers all of the command's options, and offers only option
+# values that the command accepts.
 . tests/command/prelude.sh
 
 for shell in bash zsh fish; do

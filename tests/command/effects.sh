@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Only what is called for: an effect that a scene does not call for has no rays, no stage and no function called.
-# `make bench-effects` compares instructions too.
+# Effects that a scene does not use cost nothing: they cast no rays, run no stage and call no function.
+# `make bench-effects` also compares instruction counts.
 if ! command -v valgrind >/dev/null; then
     echo "valgrind is not there"
     exit 77

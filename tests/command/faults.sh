@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Every allocation of some twenty commands fails in its turn, and every write: a run succeeds with the same bytes, or says why
-# it did not and leaves nothing half done (tests/faults/every.c). Each seventh here, STEP=1 takes all (make soak). Prints TAP.
+# Makes each allocation and each write of some twenty commands fail, one per run. The run must succeed with the same bytes, or
+# print the reason and leave no partial files (tests/faults/every.c). Tests every seventh; STEP=1 tests all (make soak). Prints TAP.
 set -u
 root=$PWD
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Sheets, films, reproduce and new, from outside. Films by ffmpeg are made by a stand-in that checks and counts what it is
-# fed; tests/command/real_films.sh (make check-films) uses the real one.
+# Sheets, films, reproduce and new, on the command line. A stand-in for ffmpeg checks and counts its input;
+# tests/command/real_films.sh (make check-films) uses the real ffmpeg.
 . tests/command/prelude.sh
 
 cd "$work" || exit 1

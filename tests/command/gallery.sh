@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# gallery.sh [check|update]: the pictures of scripts/README.md, a page with one for every script. They are what the scripts
-# render now, pixel for pixel, each script has one, and the page names each. `update` (make gallery) writes those that differ.
+# gallery.sh [check|update]: compares the pictures of scripts/README.md, pixel for pixel, with the scripts' output. Each script
+# must have a picture, and the page must name it. `update` (make gallery) writes the pictures that differ.
 set -u
 export GLINT_FONT=bitmap # text of the same pixels everywhere
 build=${BUILD:-build}

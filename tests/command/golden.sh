@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# golden.sh [check|update]: small pictures of the scripts against those in tests/golden/, as decoded pixels, tolerance
-# 0: the engine promises the same pixels on every machine. A failure leaves got and golden side by side in the build
-# folder. `update` writes them anew and prints what moved; the commit says why.
+# golden.sh [check|update]: compares small pictures of the scripts with tests/golden/, as decoded pixels, with tolerance
+# 0: the engine promises the same pixels on every machine. A failure leaves both pictures in the build folder. `update`
+# writes new goldens and prints the differences; the commit must say why they changed.
 set -u
 export GLINT_FONT=bitmap # text of the same pixels everywhere
 build=${BUILD:-build}

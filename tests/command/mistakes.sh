@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Mistakes that the command sees: what it adds to Lua's own messages, prints of a pattern, loops without an end.
+# Mistakes in scripts that the command detects: additions to Lua's own messages, printing in a pattern, endless loops.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The page of `glint relight -o mixer.html` in a browser: it unpacks its pixels and shows the codes that glint relight writes, at several
-# settings; its controls and texts; and how long a picture of 1280x720 with six lights takes. Exit 77: no browser.
+# The page of `glint relight -o mixer.html` in a browser: at several settings it must show the pixel values that glint relight writes.
+# Also tests its controls and texts, and the time for a picture of 1280x720 with six lights. Exit 77: no browser.
 . tests/command/prelude.sh
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || {
     echo "skip: Chromium is not installed; get it with:  apt-get install chromium"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The blocks of scripts/python.md, in their order, by a Python that has what they import; blocks whose module is missing are
-# skipped, and say so. And normals solved from a DiLiGenT set are the set's own.
+# Runs the blocks of scripts/python.md in order. Blocks whose Python modules are not installed are skipped with a message. Also
+# checks that normals computed from a DiLiGenT set match the normals in the set.
 . tests/command/prelude.sh
 mkdir "$work/bin"
 ln -s "$glint" "$work/bin/glint"

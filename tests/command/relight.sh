@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Light passes and glint relight: files of passes and their names; a relit picture is the rendered one; films, pages, wrong input, after
-# which nothing is written. The mixer's page is run in mixer.sh.
+# Light passes and glint relight: the files of passes and their names; a relit picture equals a rendered one; films and pages; wrong
+# input, which must write nothing. mixer.sh tests the mixer's page.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The rock of `make dist` into a folder of its own, or without git and zip what `luarocks make` builds here: the module loads in
-# plain Lua and renders, the command runs, and removing the rock leaves neither.
+# Installs the rock of `make dist` into an empty folder, or without git and zip the result of `luarocks make`. The module must load
+# in plain Lua and render, the command must run, and removing the rock must remove both.
 . tests/command/prelude.sh
 rocks() { HOME=$work MAKEFLAGS=-j2 luarocks --lua-version 5.4 --tree "$work/tree" "$@"; }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A build without programs: what would run one is an error that says so, with the script's line, and all
-# else is the picture of the whole build.
+# A build without pattern programs: a scene that needs one gives an error with the script's line. All other scenes give
+# the same pictures as the full build.
 . tests/command/prelude.sh
 GLINT=$(realpath "$build/without/PROGRAM/glint") || exit 1
 cd "$work" || exit 1

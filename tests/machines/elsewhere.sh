@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# elsewhere.sh: what a command built for another machine or C library renders, against the goldens and against what this one does.
+# elsewhere.sh: compares the pictures of a command built for another machine or C library with the goldens and with this machine's.
 #   ELSEWHERE      its build folder
 #   EMULATOR       what runs it; empty: it runs here
 #   ENCODERS=same  it has the encoder libraries that this one has
