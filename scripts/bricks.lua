@@ -1,8 +1,8 @@
--- A wall of bricks whose relief is nowhere: a bump is a height that only the light sees.
+-- A flat wall that looks like a relief of bricks: a bump is a height that affects only the shading.
 --
--- One function lays the bricks; the colour reads where it is mortar, and the bump reads the same as a height. The
--- engine differentiates the height's program, so that normals tilt exactly as on the relief, without a step size.
--- The silhouette stays flat, and so do shadows: look along the edge. `--set height=0` shows the wall as it is.
+-- One function lays the bricks. The colour uses it to place the mortar, and the bump uses it as a height. The engine
+-- differentiates the height's program, without a step size, and tilts the normals like the normals of a real relief.
+-- The silhouette and the shadows stay flat: look along the edge. `--set height=0` shows the wall without the bump.
 --     glint scripts/bricks.lua -o bricks.mp4
 local glint = require "glint"
 

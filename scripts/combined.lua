@@ -1,5 +1,5 @@
--- Solids that are made of others: a die (a box, a ball to round it, and a ball taken away for each pip), a flange with
--- its holes, and a lens, which is what two balls have in common.
+-- Solids made of other solids: a die (a box, rounded by a ball, minus a ball for each pip), a flange with holes, and a
+-- lens, which is the intersection of two balls.
 local glint = require "glint"
 local P = glint.params {
   turn = { 25, doc = "of the die, degrees" },
@@ -37,7 +37,7 @@ local function die()
   return glint.difference(parts)
 end
 
--- Its holes end where it does: cutters may be flush with the part that they cut.
+-- The holes end at the flange's faces: a cutter may be flush with the solid that it cuts.
 local function flange()
   local body = glint.union { glint.cylinder { base = { 0, 0, 0 }, top = { 0, 0.4, 0 }, radius = 1.6 },
     glint.cylinder { base = { 0, 0.4, 0 }, top = { 0, 1.5, 0 }, radius = 0.8 },

@@ -1,9 +1,9 @@
 -- A globe from a picture that the script paints itself.
 --
--- The continents are noise on a sphere, computed point by point in plain Lua: the operations of patterns take
--- numbers, too. The picture goes to a PNG file, glint.texture reads it, and it is laid around the ball by its uv. The
--- sea shines and land does not, since the highlight is a pattern of the same picture; clouds are noise of the point,
--- drawn when the frame is. `--set file=globe.png` takes a picture of your own.
+-- The continents are noise on a sphere, computed point by point in plain Lua: the operations of patterns also take
+-- numbers. The script writes the picture to a PNG file, glint.texture reads it, and the ball's uv maps it. The sea
+-- shines and land does not, because the highlight is a pattern of the same picture. The clouds are a noise pattern,
+-- evaluated while the frame is rendered. `--set file=globe.png` uses your own picture.
 --     glint scripts/earth.lua -o earth.mp4
 local glint = require "glint"
 local png = require "glint.png"

@@ -1,7 +1,7 @@
 -- A flight through an avenue of columns: eye, aim and lamp follow keys in time.
 --     glint scripts/flight.lua -o flight.mp4
---     glint scripts/flight.lua --set ease=linear     # with a halt in no key, and a corner in each
--- `ease = "spline"` goes through all keys with a speed that does not jump; glint.ease moves a number softly.
+--     glint scripts/flight.lua --set ease=linear     # straight from key to key, with a corner at each
+-- `ease = "spline"` passes through all keys with continuous speed. glint.ease moves a number smoothly.
 local glint = require "glint"
 
 local P = glint.params {
@@ -14,7 +14,7 @@ local brass = glint.material { diffuse = { 0.5, 0.34, 0.12 }, specular = { 0.7, 
 local tiles = glint.pattern(function(p) return glint.mix(0.16, 0.42, glint.checker(p * 0.5)) end)
 local floor = glint.material { diffuse = tiles }
 
--- ---- The flight: position and target of the camera at each time ----
+-- ---- The flight: the eye's position and the point it looks at, for each time ----
 
 local eye = glint.keys {
   { 0, { 0, 2, 22 } }, { 0.3, { -2.2, 1.2, 11 } }, { 0.55, { 2, 3.5, 3 } }, { 0.8, { -1, 2.6, -6 } },

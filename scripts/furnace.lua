@@ -1,9 +1,10 @@
--- Which highlights obey physics? How much of the light that falls in leaves again, drawn from material:evaluate.
+-- Which highlights obey physics? The share of the incoming light that leaves again, drawn from material:evaluate.
 --
--- Across: a direction, from straight above (left) to the horizon (right). Up: the share of light from everywhere that
--- leaves that way (thick), and the share of light from there that leaves to everywhere (thin), the white line at 1.
--- Nothing passive rises above it: plain Phong does, without bound where light falls in low. Where thick and thin
--- differ, light cannot be followed backwards: plain Phong is not reciprocal. In the plot, one of the other three hides another.
+-- Across: a direction, from straight above (left) to the horizon (right). Up: the light that leaves in this direction
+-- when it arrives from all directions (thick), and the share that leaves in all directions when light arrives from
+-- this one (thin). The white line is at 1. No passive surface rises above it, but plain Phong does, without bound at
+-- grazing incidence. Where thick and thin differ, the model is not reciprocal: plain Phong is not. The other three
+-- are, so one curve hides the other.
 --     red Phong, s = 1   orange Phong, s = 8   green normalised Phong, s = 8
 --     blue GGX, roughness 0.5   violet Beckmann, roughness 0.5
 --     glint scripts/furnace.lua

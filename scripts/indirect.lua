@@ -1,15 +1,15 @@
--- Light that surfaces send each other: a white room with one red and one green wall, lit by a lamp under its ceiling.
+-- Light reflected between surfaces: a white room with one red and one green wall, lit by a lamp under its ceiling.
 --
--- Without `indirect` the lamp alone lights the room, and `ambient` stands for everything else: the same light from
--- everywhere, so that corners, ceiling and the shadow's middle are flat, and a red wall makes nothing red. With it,
--- some ways of light are followed backwards from each point; the number of matt surfaces on a way is `bounces`, and
--- where a way is cut off `ambient` stands for the rest.
+-- Without `indirect` only the lamp lights the room, and `ambient` replaces all other light. It is the same from all
+-- directions, so corners, ceiling and the middle of the shadow look flat, and the red wall tints nothing. With
+-- `indirect` the engine traces some paths backwards from each point. `bounces` is the number of matt surfaces on a
+-- path; at the end of a path `ambient` replaces the remaining light.
 --     glint scripts/indirect.lua                                   4 pictures: 0, 1, 2 and 6 bounces
---     glint scripts/indirect.lua --set samples=256                 less noise: the error falls with the root or faster
---     glint scripts/indirect.lua --set ambient=0                   what is cut off is lost: least at 6 bounces
---     glint scripts/indirect.lua -f 4 --passes diffuse,indirect    light from the lamp, and light from the room
+--     glint scripts/indirect.lua --set samples=256                 less noise: the error falls as 1/sqrt(n) or faster
+--     glint scripts/indirect.lua --set ambient=0                   the remaining light is lost: least at 6 bounces
+--     glint scripts/indirect.lua -f 4 --passes diffuse,indirect    direct light and indirect light
 -- Look at: the ceiling, which the lamp does not reach; red and green on floor, ceiling and box; corners, which go dark
--- by themselves; the ball, whose shaded side is lit by the floor.
+-- without any trick; the ball, whose shaded side is lit by the floor.
 local glint = require "glint"
 
 local P = glint.params {

@@ -1,8 +1,8 @@
--- Text on a figure: a title, the time, a colour bar and the axes, drawn over the picture.
+-- Annotations: a title, the time, a colour bar and the axes, drawn over the picture.
 --     glint scripts/labels.lua -o film.mp4
 --     glint scripts/labels.lua -f 1 --size 2400x1500 --dpi 300 --set size=9    letters of 9 points in print
 --     glint scripts/labels.lua -f 1 --set map=coolwarm
--- A lattice of balls through which a wave runs; each has the colour of how far it has moved.
+-- A wave runs through a lattice of balls. The colour of each ball shows its displacement.
 local glint = require "glint"
 
 local P = glint.params {

@@ -1,12 +1,12 @@
--- Lamps that are seen. A light is invisible until `visible = true`; then the eye, mirrors and glass see its surface.
+-- Visible lamps. A light is invisible unless `visible = true`; then the eye, mirrors and glass see its surface.
 --
--- What they see is its radiance: with `radiance` L a lamp shows pi L color, so that a white matt surface with lamp all
--- around it shows the same. With `intensity` I it shows color I A(D), D its radius: a lamp that falls off as 1/d^2
--- looks like what lights the same from afar, one that does not fall off as bright as the white surface that it lights.
--- A lamp casts no shadow of itself, and a one-sided lamp is visible only from that side.
+-- They see its radiance. With `radiance` L a lamp shows pi L color, the same as a white matt surface that is surrounded
+-- by such a lamp. With `intensity` I it shows color I A(D), where D is its radius. A lamp that falls off as 1/d^2 then
+-- has the brightness that matches its light from afar; a lamp without falloff is as bright as the white surface that
+-- it lights. A lamp casts no shadow. A one-sided lamp is visible only from that side.
 --     glint scripts/lamps.lua                              a ball, a panel and a window, in a mirror and through glass
 --     glint scripts/lamps.lua --set visible=false          the same light, from nowhere
---     glint scripts/lamps.lua --passes background,mirror   seen lamps are of the background, mirrored ones of mirror
+--     glint scripts/lamps.lua --passes background,mirror   lamps seen directly are in background, others in mirror
 local glint = require "glint"
 
 local P = glint.params { visible = { true, doc = "whether the lamps are seen" } }

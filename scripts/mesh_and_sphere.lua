@@ -1,6 +1,6 @@
--- A sphere and its approximations by triangles: the exact one on the left, then meshes of 8, 16 and 64 segments, above with
--- normals of the sphere at the vertices ("phong"), below with one normal a face ("faceted"). Smooth normals hide the
--- facets inside; nothing hides the outline.
+-- A sphere made of triangles: the exact sphere on the left, then meshes of 8, 16 and 64 segments. The upper row has the
+-- sphere's normals at the vertices ("phong"), the lower row has one normal per face ("faceted"). Smooth normals hide
+-- the facets inside the outline, but the outline stays a polygon.
 local glint = require "glint"
 
 local clay = glint.material { diffuse = { 0.75, 0.45, 0.3 }, specular = 0.5, shininess = 60 }

@@ -1,15 +1,15 @@
--- Mirrors and glass add to the local colour of a surface: mirror times the light along the mirrored ray, and
+-- Mirrors and glass add two terms to the local colour of a surface: mirror times the light along the mirrored ray, and
 -- transmission times the light along the refracted ray.
 --
 --   glint scripts/mirror_and_glass.lua                        # a mirror, clear glass, green glass, and polished paint
 --   glint scripts/mirror_and_glass.lua --set ior=1            # no bending, no reflection: the glass is hardly there
---   glint scripts/mirror_and_glass.lua --set max_depth=1      # glass is black where a ray has not come out again
---   glint scripts/mirror_and_glass.lua --passes mirror,transmission        # the two terms alone
---   glint explain scripts/mirror_and_glass.lua                # which objects call for them
+--   glint scripts/mirror_and_glass.lua --set max_depth=1      # glass is black where a ray ends inside it
+--   glint scripts/mirror_and_glass.lua --passes mirror,transmission        # only the two terms
+--   glint explain scripts/mirror_and_glass.lua                # the objects that use them
 --
--- Look at: the world upside down in the clear ball, since it is a lens; its rim, which mirrors everything (Fresnel);
--- the shadows of the glass, in its own colour, where real glass would also gather light (no caustics); the green ball,
--- darker where the way through it is longer; the paint, which mirrors at grazing angles as glass does.
+-- Look at: the world upside down in the clear ball, because it is a lens; its rim, which mirrors everything (Fresnel);
+-- the coloured shadows of the glass, without the caustics of real glass; the green ball, darker where the path through
+-- it is longer; the paint, which mirrors at grazing angles like glass.
 local glint = require "glint"
 local P = glint.params {
   ior = { 1.5, min = 1, max = 3, doc = "refractive index of the glass: water 1.33, glass 1.5, diamond 2.42" },

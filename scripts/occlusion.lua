@@ -1,8 +1,8 @@
--- Shape without lamps: ambient light that is dim where little of the sky is open, as viewers of particles draw it.
---     glint scripts/occlusion.lua -f 2                      all of the sky; frame 1 is without occlusion, 3 only by near surfaces
---     glint scripts/occlusion.lua -f 3 --set distance=1.5   what is farther away than this closes nothing
---     glint scripts/occlusion.lua -f 2 --set samples=256    less noise; further samples of a pixel do it too
--- A porous body: balls of a lattice, thrown about, less those in some round pores.
+-- Ambient occlusion shows shape without lamps: ambient light is dim where shapes hide much of the sky.
+--     glint scripts/occlusion.lua -f 2                      the whole sky; frame 1: none, 3: near occluders only
+--     glint scripts/occlusion.lua -f 3 --set distance=1.5   ignores occluders farther away than this
+--     glint scripts/occlusion.lua -f 2 --set samples=256    less noise; more samples per pixel reduce it, too
+-- The body is porous: randomly shifted balls of a lattice, without the balls inside some round pores.
 local glint = require "glint"
 
 local P = glint.params {

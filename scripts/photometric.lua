@@ -1,14 +1,14 @@
--- A photometric set: one view under many lights, with the truth beside it, for photometric stereo and relighting.
+-- A photometric set for photometric stereo and relighting: one view under many lights, with the ground truth.
 --
 -- Files, all linear, in the folder `photometric` (--set folder=...):
 --     light_001.png ...    the scene under light 1, 2 ...: 16 bits, code = light * 65535; .pfm with --set exact=true
 --     lights.csv           file, x, y, z (unit, from the scene to the light; x right, y up, z to the camera), intensity
 --                          (the light's times 2^exposure, as the codes have it)
 --     mask.png             1 where an object is, 0 elsewhere (16 bits)
---     normal.png           normal * 0.5 + 0.5 in the same axes (16 bits), and normal.pfm: exact, 0 where nothing is
---     depth.png            nearest / distance (16 bits), and depth.pfm: the distance from the eye, inf where nothing is
--- Only the light changes. The engine keeps the hits when a second frame has read the same, so that from image 3 on a
--- picture costs light and shading (and shadows, unless --set shadows=false): --json shows "cast":"reused".
+--     normal.png           normal * 0.5 + 0.5 in the same axes (16 bits), and normal.pfm: exact, else 0
+--     depth.png            nearest / distance (16 bits), and depth.pfm: the distance from the eye, else inf
+-- Only the light changes. The engine caches the hits once a second frame has used the same ones. From image 3 on, a
+-- picture costs only light and shading (and shadows, unless --set shadows=false): --json shows "cast":"reused".
 --     glint scripts/photometric.lua --set lights=96 --set shadows=false
 --     glint scripts/photometric.lua --set specular=0.4          surfaces that are not matt
 -- --set layout=diligent writes what programs for the DiLiGenT benchmark read (B. Shi et al., "A Benchmark Dataset and
@@ -17,16 +17,16 @@
 --     001.png 002.png ...       16 bits, linear; filenames.txt has their names, a line each
 --     light_directions.txt      x y z, a light a line, in the axes above
 --     light_intensities.txt     its red, green and blue, times 2^exposure
---     Normal_gt.mat, .npy, .png the truth, 0 where nothing is; depth_gt.npy
+--     Normal_gt.mat, .npy, .png the true normals, 0 in the background; depth_gt.npy
 --     mask.png                  255 where the object is, 0 elsewhere; one channel
 -- and objects.txt beside them, with the folders' names.
 --     glint scripts/photometric.lua --set layout=diligent --set objects=balls,solids --set materials=matt,gold
--- --size makes pictures of any shape. -o 'set/%03d.png' names the pictures, and the other files are put beside them;
--- the picture after the last light shows the scene in white ambient light.
--- Bright materials (gold, glossy) go beyond white: --exposure auto finds one exposure for the whole set, with which
--- nothing is clipped, and --exposure -1.5 sets it. The intensities follow.
--- A run that was interrupted goes on from there, and --shard cuts the job for several machines.
--- For a scene of your own put its shapes among `OBJECTS`; a camera along -z keeps the axes.
+-- --size sets the size of the pictures. -o 'set/%03d.png' names them, and the other files go into the same folder. The
+-- last picture, after the last light, is the scene in white ambient light.
+-- Bright materials (gold, glossy) exceed white: --exposure auto finds one exposure for the whole set that clips
+-- nothing, and --exposure -1.5 sets it. The intensities are scaled to match.
+-- An interrupted job continues when it is run again, and --shard divides it between several machines.
+-- To use your own scene, add its shapes to `OBJECTS`; with a camera along -z the axes stay as above.
 local glint = require "glint"
 local mat = require "glint.mat"
 local png = require "glint.png"

@@ -1,8 +1,8 @@
--- A protein-sized molecule made up on the spot: four alpha helices of polyalanine side by side.
+-- A protein-sized molecule that the script generates: four alpha helices of polyalanine side by side.
 --
 -- A helix turns by 100 degrees and climbs 1.5 angstroms a residue; its atoms are placed to have the bond lengths and
 -- angles of a peptide (N-CA 1.458, CA-C 1.525, C-N 1.329, C=O 1.231 angstroms).
--- Distant parts fade into the background.
+-- Distant atoms fade into the background.
 --     glint scripts/protein.lua                                    1200 atoms: protein.png
 --     glint scripts/protein.lua --set style=sticks                 bonds, and small balls
 --     glint scripts/protein.lua --set residues=200 --set pdb=chain.pdb      and writes what it shows as a PDB file

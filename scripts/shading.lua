@@ -1,14 +1,14 @@
--- Where a mesh is lit: once a face, once a vertex, or in every sample. On the left of each picture is a ball of a few
--- quadrangles, on the right the sphere it stands for.
+-- Three ways to light a mesh: once per face, once per vertex, or once per sample. Each picture has a ball of a few
+-- quadrangles on the left, and the sphere that it approximates on the right.
 --
 --     flat      one evaluation of lights, shadows and material at the middle of each face
---     Gouraud   one at each vertex, and between them by barycentric coordinates
+--     Gouraud   one at each vertex, interpolated by barycentric coordinates
 --     Phong     one for each sample, with a normal interpolated between the vertices
--- Above, the highlight is on a vertex: Gouraud spreads what it finds there over the faces around, as a star. Below, the
--- lamp has moved by half a face: the highlight is between the vertices, none of them sees it, and Gouraud has lost it.
--- Phong shading has the sphere's own highlight in both. The outline stays a polygon, whatever the shading.
---     glint scripts/shading.lua                       shading_sheet.png, and each picture by itself
---     glint scripts/shading.lua --set segments=64     more vertices: the differences almost vanish
+-- Above, the highlight is on a vertex: Gouraud shading spreads it over the adjacent faces, like a star. Below, the lamp
+-- has moved by half a face: the highlight lies between the vertices, and Gouraud shading misses it. Phong shading shows
+-- the sphere's highlight in both. The outline stays a polygon with any shading.
+--     glint scripts/shading.lua                       shading_sheet.png, and each picture on its own
+--     glint scripts/shading.lua --set segments=64     more vertices: the differences nearly vanish
 local glint = require "glint"
 
 local P = glint.params {

@@ -1,10 +1,10 @@
--- An open shutter: balls on three orbits, the inner ones faster, and a lamp that circles above.
+-- Motion blur by an open shutter: balls on three orbits, the inner ones faster, and a lamp that circles above.
 --     glint scripts/shutter.lua -o shutter.mp4
 --     glint scripts/shutter.lua -f 1 --set shutter=0                # an instant
 --     glint scripts/shutter.lua -f 1 --set shutter=1 --set times=64 # a whole frame's time, finely
---     glint scripts/shutter.lua -f 1 --set moves=lamp               # shadows alone are smeared: all else is done once
--- `camera.shutter` is a share of the time from one frame to the next; `frame(t)` is called for `shutter_times` times in
--- it, and the picture is the mean of their light.
+--     glint scripts/shutter.lua -f 1 --set moves=lamp               # blurs only shadows: the rest is computed once
+-- `camera.shutter` is a share of the time from one frame to the next. The engine calls `frame(t)` at `shutter_times`
+-- times within it, and the picture is the mean of their light.
 local glint = require "glint"
 
 local P = glint.params {
@@ -29,7 +29,7 @@ local scene = glint.scene {
     material = glint.material { diffuse = { 0.62, 0.6, 0.56 }, specular = 0.5, shininess = 90 } },
 }
 
--- For each ball: the orbit's radius, its turns during one of the outer ball's, the ball's radius and colour.
+-- For each ball: the orbit's radius, the turns per turn of the outer ball, the ball's radius and colour.
 local orbits = {
   { 2.3, 3, 0.45, { 0.78, 0.2, 0.14 } },
   { 3.6, 2, 0.55, { 0.85, 0.6, 0.12 } },

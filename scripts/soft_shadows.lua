@@ -1,8 +1,9 @@
--- The size of a lamp makes shadows soft, and samples make them smooth.
+-- How the size of a lamp changes its shadows, and how many samples a picture without noise needs.
 --
--- A point casts hard shadows. Some points see only a part of a lamp with a surface: the penumbra, wider for larger lamps and
--- for a shadow that falls far. The engine looks at `samples` points of the lamp, other ones for each
--- pixel of a block of 4 x 4 and for each of the 4 samples of a pixel here: few give noise, never bands.
+-- A point light casts hard shadows. With an area light, points in the penumbra see a part of the lamp. The penumbra is
+-- wider for a larger lamp and for a more distant occluder. The engine casts rays to `samples` points of the lamp. The
+-- points differ between the pixels of a 4 x 4 block, and between the 4 samples of a pixel here: few points give noise,
+-- but never bands.
 --     glint scripts/soft_shadows.lua                       12 pictures: radius 0 0.6 1.8 across, samples 1 4 16 64 down
 --     glint scripts/soft_shadows.lua --set lamp=disk       a disk that faces the floor
 --     glint scripts/soft_shadows.lua --set lamp=window     a square of the same area

@@ -1,8 +1,8 @@
 -- Wood and marble: two old recipes of noise.
 --
 -- Wood is rings around an axis, sqrt(x^2 + z^2), pushed about by noise; marble is stripes of a sine that turbulence
--- bends (K. Perlin, "An Image Synthesizer", SIGGRAPH 1985). Both are solid: the block is cut from it, and the pattern
--- on a face continues round the corner. Octaves finer than a pixel are left out by its footprint.
+-- bends (K. Perlin, "An Image Synthesizer", SIGGRAPH 1985). Both are solid textures, so the pattern on one face of the
+-- block continues round the corner. The pixel's footprint leaves out octaves finer than a pixel.
 --     glint scripts/wood_and_marble.lua --set rings=14 --set veins=3
 local glint = require "glint"
 

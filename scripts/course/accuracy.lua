@@ -1,4 +1,4 @@
--- The cost of accuracy: rays per pixel against jagged edges, rays to the lamp against grainy shadows.
+-- The cost of accuracy: more rays per pixel for smooth edges, more rays to the lamp for smooth shadows.
 local glint = require "glint"
 
 local P = glint.params {
