@@ -1,6 +1,6 @@
 #!/bin/bash
-# headers.sh FLAGS...: each header compiles alone, those of kernels for double and for float. simd/avx2.h and simd/avx512.h need their
-# instruction sets. Then: which machines are refused.
+# headers.sh FLAGS...: each header compiles on its own; kernel headers compile for double and for float. simd/avx2.h and simd/avx512.h
+# need their instruction sets. Then tests that unsupported machines are refused.
 set -u
 bad=0
 
@@ -48,7 +48,7 @@ refused() {
 refused "little-endian machines" -U__BYTE_ORDER__ -D__BYTE_ORDER__=__ORDER_BIG_ENDIAN__
 refused "without excess precision" -U__FLT_EVAL_METHOD__ -D__FLT_EVAL_METHOD__=2
 refused "same bits" -ffast-math
-# With other compilers of the machine, if they exist.
+# Unsupported machines, where the compiler has support for them.
 if echo | ${CC:-cc} -m32 -E - >/dev/null 2>&1; then
     refused "without excess precision" -m32 -mfpmath=387 -mno-sse
 fi

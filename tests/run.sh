@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Runs tests, JOBS at a time, and prints a line for each as it ends, then the totals: 'N passed, N failed, N skipped'.
+# Runs JOBS tests at a time. Prints a line when a test ends, and finally the totals: 'N passed, N failed, N skipped'.
 #   run.sh ITEM...    an item is a C test program, a .lua file, a .sh file, make:TARGET, or fuzz:NAME
 # From the environment: BUILD (the build folder), T (run the items whose name has it), JOBS (as many as there are
 # processors), PRELOAD (a sanitizer's runtime, for the Lua tests), LUA, MAKE, EMULATOR (what C tests run under), TEST_LIMIT_S
 # (for one item). A test exits 0
 # when it passed and 77 when it cannot run here. Its output goes to BUILD/tests/log/NAME and is shown when it fails.
 # Cases are counted from a line of totals like our own, from cmocka's lines or from TAP; a test that prints none of
-# these counts as one. Tests run beside each other, so each has its files in a folder of its own.
+# these counts as one. Tests run in parallel, so each test keeps its files in its own folder.
 set -u
 
 BUILD=${BUILD:-build}

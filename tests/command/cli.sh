@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The command line from outside: names, selection, options, events, exit codes, files that are whole or absent.
+# The command line as a user sees it: names, selection, options, events, exit codes, and files that are complete or absent.
 # shellcheck disable=SC2016
 . tests/command/prelude.sh
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# scripts/farm: the shards of a job by GNU parallel, and by a Slurm array over two nodes of which one dies in the
-# middle. The pictures must be complete and equal one machine's, byte for byte. SLURM_CLUSTER names a program that sets
-# up a Slurm of two nodes on this machine (start, kill, stop); without it that part is skipped.
+# scripts/farm: GNU parallel runs the shards of a job, and so does a Slurm array on two nodes, one of which dies halfway.
+# The pictures must be complete and byte-identical to a run on one machine. SLURM_CLUSTER names a program that sets up
+# a Slurm of two nodes on this machine (start, kill, stop). Without it the Slurm part is skipped.
 . tests/command/prelude.sh
 slurm=$work/slurm
 frames=32 shards=8

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Files that have no end, keep their reader waiting or claim to be larger than they are, wherever a file is read: refused at once, and
-# with little memory.
+# Hostile inputs: endless files, files that block their reader, and files that claim a larger size than they have. glint must refuse
+# them at once, using little memory, everywhere it reads a file.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 seconds=5
@@ -29,7 +29,7 @@ printf "$ply" 1000000000 >begun.ply && truncate -s 15G begun.ply
 printf "$ply" 4000000000 >claims.ply
 { head -c 80 /dev/zero && printf '\1\2\3\4'; } >claims.stl
 
-# The memory limit of a run: a sanitizer maps terabytes.
+# Limits the memory of a run, except under a sanitizer, which maps terabytes.
 limited() {
     if [[ $build = *-asan ]]; then "$@"; else (ulimit -v $memory_kib && exec "$@"); fi
 }

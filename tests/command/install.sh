@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# make install into a folder of its own: the command, the module, the manual page, the completions, and a C program
-# built only against the installed files. make uninstall leaves nothing.
+# make install into an empty folder: the command, the module, the manual page, the completions, and a C program built
+# only against the installed files. make uninstall leaves nothing.
 . tests/command/prelude.sh
 prefix=$work/usr
 

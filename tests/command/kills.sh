@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs that are killed leave hidden files; the next run that writes into the folder removes them, and nothing else.
-# KILLS=300 kills so many. Prints TAP.
+# A killed run leaves hidden files. The next run that writes into the folder must remove them, and nothing else.
+# KILLS=300 sets the number of kills. Prints TAP.
 set -u
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}
 work=$(mktemp -d)
@@ -56,7 +56,7 @@ for ((i = 0; i < kills; i++)); do
 done 2>/dev/null
 result $bad "$kills kills left $left hidden files, and the next run none"
 
-# Other files stay: of a living process, of another host if not old, of another name.
+# Other files stay: files of a running process, recent files of another host, and files with other names.
 host=$(uname -n)
 sleep 60 &
 alive=$!

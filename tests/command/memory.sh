@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Tests of memory. A run's memory does not grow with the scenes, meshes and frames that have gone. A script
-# reads its own process's resident bytes after a full collection: the least of the second tenth of its rounds is held
-# against the least of the last tenth (what malloc has not given back yet comes and goes by a megabyte). Prints TAP.
+# Memory leaks: the memory of a run must not grow with the number of scenes, meshes and frames that it has released. A
+# script reads the resident bytes of its own process after a full collection. The test compares the minimum of the second
+# tenth of the rounds with the minimum of the last tenth (memory cached by malloc varies by a megabyte). Prints TAP.
 set -u
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}
 if [ -n "${PRELOAD:-}" ] || ldd "$glint" | grep -qE "lib[at]san"; then

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# --region and glint join: the parts of a frame make the whole, byte for byte, with any effect that looks at neighbours and any reuse from frame to
-# frame; and mistakes are reported.
+# --region and glint join: the joined parts are byte-identical to the whole frame, also with effects that read neighbouring pixels
+# and with caches between frames. Wrong input gives a clear message.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 scene=$root/scripts/mirror_and_glass.lua
@@ -36,7 +36,7 @@ check "a part is kept" eval '"$glint" "$scene" --size $size --alpha --outline wh
 check "the whole is kept where join put it" eval '"$glint" "$scene" --size $size --alpha --outline white --encode small \
     --passes alpha -o parts/a.png --json -q | grep -q "\"kept\":1"'
 
-# A moving lamp: reuse between frames works for parts, too.
+# A moving lamp: parts use the caches between frames, too.
 frames="scripts/moving_light.lua --size 150x90 -q -f 1-3"
 check "frames of a film" "$glint" $root/$frames -o 'film/%d.png'
 for region in 0,0,150,41 0,41,77,49 77,41,73,49; do
@@ -46,7 +46,7 @@ for n in 1 2 3; do
     check "frame $n of parts" "$glint" join film/*_$n.png -o film/joined.png -q
     check "is frame $n" cmp film/joined.png film/$n.png
 done
-# An open shutter: lights of all times, and pictures of all times; and a file stays while the shutter is unchanged.
+# An open shutter with moving lights, then with moving objects. A file is not rendered again while the shutter is unchanged.
 scene=$root/scripts/shutter.lua
 for moves in lamp all; do
     options="-f 2 --set moves=$moves --set times=3 -o f.png --alpha --bits 16"

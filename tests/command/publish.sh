@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `glint publish` without a browser: the contents of the page, and refused options. tests/web/pages.mjs opens such a page in one.
+# `glint publish` without a browser: the contents of the page, and input that it refuses. tests/web/pages.mjs opens a page in a browser.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 mkdir web data other

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Films by the real ffmpeg, and animated PNG and sheets as pages in Chromium: make check-films. Missing programs are
-# skipped, and says so. Prints each check that fails, then "N passed, N failed, N skipped".
+# Films by the real ffmpeg, and animated PNGs and sheets as pages in Chromium: make check-films. Checks whose program is not
+# installed are skipped with a message. Prints each failed check, then "N passed, N failed, N skipped".
 . tests/command/prelude.sh
 
 scripts=$PWD/scripts

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The Debian source package of .github/debian from what git has committed: dpkg-source makes it, and lintian accepts it.
+# The Debian source package of .github/debian, from the committed files: dpkg-source must build it, and lintian must not complain.
 # Prints TAP lines; 77 where git, dpkg-dev or lintian is not installed.
 set -u
 for tool in git dpkg-buildpackage dh lintian; do

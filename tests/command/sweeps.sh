@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The order in which the frames of a sweep are rendered: the cheapest axis changes most often, and nothing but the order of
-# completion depends on it: not the numbers and bytes of files, not the film, not what shards and a second run do.
+# The order in which a sweep's frames are rendered: the cheapest axis changes most often. The order must not affect the numbers
+# and bytes of files, the film, shards, or a second run.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# --untrusted: the attempts of a hostile script, and their results.
+# --untrusted: attacks by hostile scripts, and their outcome.
 . tests/command/prelude.sh
 export ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0 # which traces processes
 cd "$work" || exit 1

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Warnings that teach: each where it is due and nowhere else, once, as an event, and as an error on request.
+# Warnings: each appears only where it applies, and only once, also as an event, and as an error on request.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 
@@ -175,7 +175,7 @@ scene 'objects = { glint.sphere { center = { 0, 0, 0 }, radius = 1, transform = 
     'lamp.position = { 2, 1.5, 0 }'
 silent "of an ellipsoid nothing is said"
 
-# Random scenes, perspective and parallel: if a sphere is reported as unseen, removing it changes no pixel.
+# Random scenes, perspective and orthographic: when a warning says that a sphere is unseen, removing it must not change a pixel.
 cat >random.lua <<'END'
 local glint = require "glint"
 local P = glint.params { seed = 1 }

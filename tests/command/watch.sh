@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# glint watch: a save renders again, an error shows and is recovered from, files that come and go, and the page's
-# server, asked through /dev/tcp. Prints TAP lines. The page in a browser: tests/command/watch_page.sh, `make check-watch`.
+# glint watch: rendering again after a save, errors and recovery, files that appear and disappear, and the page's server,
+# queried through /dev/tcp. Prints TAP lines. tests/command/watch_page.sh (`make check-watch`) tests the page in a browser.
 set -u
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}
 lib=$PWD/scripts/lib
@@ -79,7 +79,7 @@ for file in parts/ball.lua color.txt scene.lua; do
     check "$file counts" await '"event":"picture"' $((before + 1))
 done
 
-# Files that the engine reads, files that readers of data read, and a file that does not exist yet.
+# Files that the engine reads, files that the data readers read, and a file that does not exist yet.
 mkdir -p data
 printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >data/part.obj
 printf '1\n\nC 0 0 0\n' >data/atom.xyz
@@ -107,7 +107,7 @@ check "a mesh that is wrong is told" await '"event":"error".*data/part.obj:3:' 1
 printf 'v -1 0 0\nv 1 0 0\nv 0 3 0\nf 1 2 3\n' >data/part.obj
 check "and one that is right again shows" await '"event":"picture"' $((before + 1))
 
-# An error is reported, and the next good save is shown.
+# An error is reported, and the next correct save renders.
 before=$(seen picture)
 save 0.5 "local x = = 1"
 check "a wrong script is told" await '"event":"error","message":"scene.lua:5: unexpected symbol' 1
@@ -146,7 +146,7 @@ before=$(seen picture)
 echo "return 1.5" >parts/ball.lua
 check "a folder that was away counts again" await '"event":"picture"' $((before + 1))
 
-# Files that the script itself writes do not start it again.
+# Files that the script itself writes do not start another run.
 before=$(seen picture)
 save 0.5 'local log = io.open("log.txt", "a"); log:write "x"; log:close(); io.open("log.txt"):close()'
 await '"event":"picture"' $((before + 1))

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# The Makefile on systems that are not here: `make install` for macOS and BSDs, with their names for the compiler's machine and for
-# Lua, by stand-ins for their tools that refuse what GNU's alone know. No program runs; that what is written is right there
-# only such a machine can tell.
+# Tests the Makefile for macOS and BSDs on this machine: `make install` with these systems' names for the compiler's target and for
+# Lua, and with stand-ins for their tools that refuse GNU-only options. No built program runs: only a real machine can test that.
 . tests/command/prelude.sh
 tools=$work/tools
 mkdir "$tools"
@@ -31,7 +30,7 @@ done
 END
 printf '#!/bin/sh\n: >"$2"\n' >"$tools/ar" # qcs ARCHIVE
 printf '#!/bin/sh\necho "strip $*" >>"$CALLS"\n' >"$tools/strip"
-# Packages as these systems have them: Lua only under its own name, and otherwise only what glint requires.
+# Packages as these systems name them: Lua under its own name, and only the other libraries that glint requires.
 cat >"$tools/pkg-config" <<'END'
 #!/bin/sh
 for a; do case $a in -*) ;; *)
