@@ -68,8 +68,8 @@ function lines.open(path)
   return setmetatable({ path = path, number = 0, file = file, block = "", at = 1, base = 0, line_at = 0 }, source)
 end
 
--- A block whose lines end in LF or CRLF: the same bytes, except for carriage returns without LF after them, which become
--- line ends, and for several before one LF, which are one line end.
+-- Returns the block with lines that end in LF or CRLF. Carriage returns without an LF after them become line ends, and
+-- several before one LF become one line end. All other bytes stay.
 local function end_lines(block)
   if not block:find "\r[^\n]" then return block end
   return (block:gsub("(\r+)()", function(run, after)

@@ -1,8 +1,8 @@
 -- NFF, the Neutral File Format of Eric Haines' Standard Procedural Databases (SPD): v, b, l, f, s, p, pp, c.
 --     local picture = nff.load "balls.nff"
 --     return glint.animation { scene = picture.scene, width = picture.width, height = picture.height, ... }
--- The meaning of its entries: `angle` is the vertical field of view, `hither` is not needed; the colour of `f` times Kd is
--- diffuse, Ks the strength of a white highlight, with the exponent Shine, and of the mirror; T, with the index of
+-- Its entries: `angle` is the vertical field of view, `hither` is not needed; the colour of `f` times Kd is diffuse,
+-- Ks is the strength of a white highlight, with the exponent Shine, and of the mirror; T, with the index of
 -- refraction, is transmission; options.mirrors = false leaves mirror and transmission out. A light without a colour has
 -- the intensity 1 / sqrt(number of lights). All spheres become one glint.spheres; the polygons of a material become one
 -- glint.mesh, its patches (polygons with a normal a corner) another. Cones and cylinders are open at their ends; one

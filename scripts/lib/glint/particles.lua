@@ -273,8 +273,8 @@ local function add_colored(self, frame)
   return self
 end
 
---- Adds the atoms of a frame from a reader; points of a coloured cloud keep their colours. An atom that cannot be added is an
---- error with file and line. The frame's box is stored for glint.bonds.
+--- Adds the atoms of a frame from a reader; points of a coloured cloud keep their colours. An atom that cannot be added
+--- is an error with file and line. The set stores the frame's box for glint.bonds.
 ---@return table set  the same
 function set:add_frame(frame)
   if frame.box then keep_box(self, frame.box) end

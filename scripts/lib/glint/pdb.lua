@@ -1,9 +1,9 @@
 -- PDB: the ATOM and HETATM records of the Protein Data Bank's format 3.3, by columns. Each MODEL is a frame.
 --     for label, x, y, z in pdb.frame "1crn.pdb":atoms() do ... end
 -- The element comes from columns 77-78, or if these are empty from the atom's name (columns 13-16) and residue.
--- If an atom has alternate locations, the first one is taken, whatever column 17 calls it. The massless places of a water
--- (EPW, MW) are passed over. CRYST1 gives frame.cell = { origin, a, b, c } and frame.box (glint.box). Other records
--- are passed over. The other fields are there by name, frame:atoms("chain", "bfactor"): serial, name, resname, chain,
+-- If an atom has alternate locations, the first one is taken, whatever column 17 calls it. Massless sites of water
+-- (EPW, MW) are skipped. CRYST1 gives frame.cell = { origin, a, b, c } and frame.box (glint.box). Other records are
+-- skipped. The other fields are there by name, frame:atoms("chain", "bfactor"): serial, name, resname, chain,
 -- resseq, occupancy, bfactor, element, charge.
 local glint = require "glint"
 local elements = require "glint.elements"

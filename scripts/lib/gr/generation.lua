@@ -1,8 +1,8 @@
 -- Which of the course's two generations a scene is from, by its text. In the first (Lua 5.0 and 5.1) transforms were
 -- multiplied on the right, "post", in the second (from about 2015) on the left, "pre".
 --
--- The arguments of gr.mesh tell most: tables in the first, the name of a file in the second. Then table.unpack, which the
--- first did not have; then a bare `unpack(` or a `require`, which the second had no use for. Neither: the second.
+-- The arguments of gr.mesh decide first: tables mean the first, the name of a file means the second. Then table.unpack,
+-- which the first did not have; then a bare `unpack(` or a `require`, which the second did not need. Default: the second.
 local check = require "gr.check"
 local files = require "gr.files"
 check.own_source()
