@@ -238,7 +238,7 @@ local rows = {
   { "many", "1,000 spheres, render", "g.1k:render", "e.1k:render", bar = 0.6 },
   { "peers", "1,000 spheres, render", "g.1k:render", "p.1k:cpu" },
   { "peers", "1,000 spheres, render", "g.1k:render", "t.1k:render" },
-  { "peers", "100,000 spheres, orthographic, no shadow", "g.box:render", "p.box:cpu", bar = 30, more = true },
+  { "peers", "100,000 spheres, orthographic, no shadow", "g.box:render", "p.box:cpu", more = true },
   { "many", "1,000 spheres, pixels more than 2 codes off", nil, "u.1k:differ", note = "of 2,073,600" },
   { "many", "1,000,000 spheres, render", "g.1M:render", "e.1M:render", bar = 0.5 },
   { "many", "1,000,000 spheres, render, two threads", "g.1M.2:render", "e.1M.2:render", bar = 0.5 },
@@ -281,15 +281,15 @@ local rows = {
 
   { "All of 16 samples only where neighbours differ by more than a tenth; a glass ball among soft shadows" },
   { "peers", "workshop, adaptive", "g.adaptive:render", "p.adaptive:cpu", bar = 35, more = true },
-  { "peers", "a molecule, adaptive", "g.molecule.adaptive:render", "p.molecule.adaptive:cpu", bar = 15, more = true },
+  { "peers", "a molecule, adaptive", "g.molecule.adaptive:render", "p.molecule.adaptive:cpu", more = true },
   { "peers", "a glass ball, 16-sample area light", "g.glassball:render", "p.glassball:cpu", bar = 5, more = true },
   { "peers", "the same, adaptive", "g.glassball.adaptive:render", "p.glassball.adaptive:cpu", bar = 5, more = true },
 
   { "Combined solids, tori and a lens, hard shadow, one thread; by processor time on both sides" },
-  { "solids", "1,000 boxes less a ball / these boxes and balls by themselves", "g.cut:cpu", "g.pieces:cpu", bar = 2.5 },
-  { "peers", "1,000 boxes less a ball", "g.cut:cpu", "p.cut:cpu", bar = 40, more = true },
+  { "solids", "1,000 boxes less a ball / these boxes and balls by themselves", "g.cut:cpu", "g.pieces:cpu" },
+  { "peers", "1,000 boxes less a ball", "g.cut:cpu", "p.cut:cpu", more = true },
   { "peers", "these boxes and balls by themselves", "g.pieces:cpu", "p.pieces:cpu" },
-  { "peers", "24 tori", "g.tori:cpu", "p.tori:cpu", bar = 20, more = true },
+  { "peers", "24 tori", "g.tori:cpu", "p.tori:cpu", more = true },
   { "solids", "a lens, 16 samples a pixel / without", "g.lens:cpu", "g.16:cpu", bar = 3 },
   { "peers", "a lens, 16 samples a pixel", "g.lens:cpu", "p.lens:cpu" },
 
@@ -304,7 +304,7 @@ local rows = {
   { "programs", "microseconds of a trace of 30 instructions", "l.program:trace", nil, bar = 50 },
 
   { "The workshop with patterns, hard shadow, render only, one thread" },
-  { "programs", "checker floor / plain", "g.checker:render", "g.frame:render", bar = 1.15 },
+  { "programs", "checker floor / plain", "g.checker:render", "g.frame:render" },
   { "programs", "marble floor / plain", "g.marble:render", "g.frame:render" },
   { "programs", "Phong as a program / built in", "g.phong:render", "g.frame:render", bar = 1.5 },
   { "programs", "changed number of the checker / full frame", "g.number:kept", "g.number:fresh", bar = 0.35 },
