@@ -2,7 +2,7 @@
 -- multiplied on the right, "post", in the second (from about 2015) on the left, "pre".
 --
 -- The arguments of gr.mesh decide first: tables mean the first, the name of a file means the second. Then table.unpack,
--- which the first did not have; then a bare `unpack(` or a `require`, which the second did not need. Default: the second.
+-- which the first did not have; then a bare `unpack(` or a `require`, which the second did not need. Else the second.
 local check = require "gr.check"
 local files = require "gr.files"
 check.own_source()
