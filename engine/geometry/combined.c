@@ -121,51 +121,6 @@ void glint_combined_roles(glint_combined *combined)
     combined->alone = stack[0].alone;
 }
 
-static bool is_convex(const glint_geometry *geometry, const glint_prim *part)
-{
-    if (part->kind != GLINT_PRIM_SOLID)
-        return false;
-    const uint32_t form = geometry->solids[part->item].form;
-    return form == GLINT_FORM_BOX || form == GLINT_FORM_BALL || form == GLINT_FORM_CYLINDER;
-}
-
-/// Returns whether an operation can be merged with the one before: the same operation, or a cut from an intersection.
-static bool may_follow(uint8_t before, uint8_t operation)
-{
-    return operation == before || (before == GLINT_COMBINE_INTERSECTION && operation == GLINT_COMBINE_DIFFERENCE);
-}
-
-bool glint_combined_simple(const glint_geometry *geometry, const glint_combined *combined)
-{
-    bool simple = combined->count > 1 && combined->count <= GLINT_SIMPLE_PARTS && combined->length == 2 * combined->count - 1;
-    for (uint32_t j = 0; j < combined->count && simple; j++) {
-        const uint8_t *next = combined->program + 2 * j;
-        simple = is_convex(geometry, &geometry->members[combined->first + j]) && (j == 0 || next[-1] == j) &&
-                 (j < 2 || may_follow(next[-2], next[0]));
-    }
-    return simple;
-}
-
-static bool is_level(const glint_solid *solid)
-{
-    bool level = true;
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            level = level && (i == k || (solid->inverse[i][k] == 0 && solid->forward[i][k] == 0));
-    for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
-        level = level && solid->faces[i].axis == (uint32_t)i / 2;
-    return level;
-}
-
-bool glint_combined_cut_box(const glint_geometry *geometry, const glint_combined *combined)
-{
-    if (!combined->simple || combined->count != 2 || combined->program[2] != GLINT_COMBINE_DIFFERENCE)
-        return false;
-    const glint_prim *parts = &geometry->members[combined->first];
-    const glint_solid *box = &geometry->solids[parts[0].item], *ball = &geometry->solids[parts[1].item];
-    return box->form == GLINT_FORM_BOX && ball->form == GLINT_FORM_BALL && is_level(box) && is_level(ball);
-}
-
 /// Along any way as good as along another; this one is along no face or edge that is likely.
 static bool hull_holds(const glint_geometry *geometry, const glint_prim *part, const double place[3])
 {

@@ -196,8 +196,6 @@ glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glin
         status = add_to_whole(f, &m, shape, around, dress, false);
     if (!status) {
         glint_combined_roles(m.combined);
-        m.combined->simple = glint_combined_simple(geometry, m.combined);
-        m.combined->cut_box = glint_combined_cut_box(geometry, m.combined);
         glint_combined_box(geometry, m.combined, prim->corner);
     }
     f->object_count++;

@@ -148,11 +148,6 @@ static inline bool glint_prim_has_corners(const glint_prim *prim)
 void glint_combined_box(const glint_geometry *geometry, const glint_combined *combined, double box[3][3]);
 /// Sets of parts that its program makes known: all, needs, alone.
 void glint_combined_roles(glint_combined *combined);
-/// Whether it is simple, see glint_combined.
-bool glint_combined_simple(const glint_geometry *geometry, const glint_combined *combined);
-
-/// Whether one that is simple is a cut box, see there.
-bool glint_combined_cut_box(const glint_geometry *geometry, const glint_combined *combined);
 /// Whether a place is inside the combined solid.
 bool glint_combined_holds(const glint_geometry *geometry, const glint_combined *combined, const double place[3]);
 

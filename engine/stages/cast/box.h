@@ -25,15 +25,6 @@ INNER void R(begin_slab)(const glint_face *faces, const vr *place, const vr d[3]
     slabs->high[i] = height[1];
 }
 
-/// The same of faces that are square to axis i, a constant.
-INNER void R(begin_level_slab)(const glint_face *faces, const vr *place, const vr d[3], const int i, R(box_slabs) * slabs)
-{
-    vr height[2] = { r_set(0), r_set(0) };
-    slabs->rise[i] = R(over_level_slab)(faces + 2 * i, i, place, d, height);
-    slabs->low[i] = height[0];
-    slabs->high[i] = height[1];
-}
-
 INNER vr R(slab_slack)(vr low, vr high) { return r_set(BOX_SLACK) * (R(abs)(low) + R(abs)(high)); }
 
 /// hit and missed: rays that go into it ahead, at t, or pass it, both for certain.

@@ -8,7 +8,6 @@
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/hull.h"
 #include "engine/stages/cast/meet.h"
-#include "engine/stages/cast/simple.h"
 #include "engine/stages/cast/solid.h"
 #include "engine/stages/cast/torus.h"
 #include "engine/stages/cast/triangle.h"
@@ -388,22 +387,6 @@ static void R(keep_part)(const glint_cast_args *args, const glint_combined *whol
     }
 }
 
-/// Keeps what a vector of rays met of a simple whole. Returns whether any did.
-INNER bool R(keep_simple)(const glint_cast_args *args, const glint_combined *whole, size_t at, unsigned lanes,
-                          const R(simple_hits) * hits)
-{
-    const uint32_t first = args->geometry->prim_count + whole->first;
-    const rm hit = rm_and(hits->hit, rm_from_bits(lanes));
-    if (!rm_bits(hit))
-        return false;
-    for (uint32_t j = 0; j < whole->count; j++) {
-        const rm mine = rm_and(hit, r_eq(hits->part, r_set(j)));
-        if (rm_bits(mine))
-            R(keep_nearest)(args, at, first + j, mine, hits->t);
-    }
-    return true;
-}
-
 /// Decides the whole for a vector of rays, from lane `at` of the call on, and keeps the nearest: a part of it. Returns whether any hit
 /// was kept.
 static __attribute__((noinline)) bool R(cast_combined)(const glint_cast_args *args, const glint_combined *whole, size_t at, const R(whole_rays) * w)
@@ -435,20 +418,7 @@ static __attribute__((noinline)) bool R(cast_combined)(const glint_cast_args *ar
     return any != 0;
 }
 
-/// The same of rays that start anywhere: quickly where that is enough.
-static bool R(cast_combined_vector)(const glint_cast_args *args, const glint_combined *whole, size_t at, R(whole_rays) w)
-{
-    bool any = false;
-    if (GLINT_REAL == 64 && whole->simple && !R(starts_on)(w.on, args->geometry->prim_count + whole->first, whole->count)) {
-        R(simple_hits) hits;
-        const unsigned told = R(meet_from_anywhere)(args->geometry, whole, w.o, w.d, &hits);
-        any = R(keep_simple)(args, whole, at, w.lanes, &hits);
-        w.lanes &= ~told;
-    }
-    return (w.lanes && R(cast_combined)(args, whole, at, &w)) || any;
-}
-
-/// Decides a combined solid for the rays of a group in `near`. Returns whether any hit was stored.
+/// Decides it for the rays of a group in `near`. Returns whether any hit was kept.
 static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const glint_prim *prim, unsigned near)
 {
     const glint_combined *whole = &args->geometry->combined[prim->item];
@@ -463,71 +433,31 @@ static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const
         R(load3)(args->direction, at + (size_t)i, d);
         const uint32_t *on = args->leaving ? args->leaving + at + i : NULL;
         const R(whole_rays) rays = { o, d, on, on ? args->inward[g] >> i : 0, near >> i & ((1u << VR) - 1) };
-        if (R(cast_combined_vector)(args, whole, at + (size_t)i, rays))
-            any = true;
-    }
-    return any;
-}
-
-/// The same of the eye's rays, what a simple whole leaves of them.
-static __attribute__((noinline)) bool R(cast_combined_left)(const glint_cast_args *args, const glint_combined *whole,
-                                                            R(group_directions) directions, size_t at, unsigned left)
-{
-    const double *eye = args->camera->eye;
-    const vr o[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
-    bool any = false;
-    for (int i = 0; i < GLINT_GROUP; i += VR) {
-        vr d[3];
-        if (!(left >> i & ((1u << VR) - 1)))
-            continue;
-        R(load_direction)(directions, args->direction, 0, i, d);
-        const R(whole_rays) rays = { o, d, NULL, 0, left >> i & ((1u << VR) - 1) };
         if (R(cast_combined)(args, whole, at + (size_t)i, &rays))
             any = true;
     }
     return any;
 }
 
-/// Those in group (x, y) of a tile, of a simple whole; kind: its own, a constant.
-INNER bool R(cast_simple_pixels)(const glint_cast_args *args, const glint_combined *whole, const R(simple_kind) kind,
-                                 const R(eye_parts) * parts, int x, int y, size_t at, unsigned near)
+/// The same of the eye's rays in group (x, y) of a tile.
+static __attribute__((noinline)) bool R(cast_combined_pixels)(const glint_cast_args *args, const glint_prim *prim, int x, int y,
+                                                              size_t at, unsigned near)
 {
     const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
-    R(simple_hits) hits[GLINT_GROUP / VR];
+    const double *eye = args->camera->eye;
+    const vr o[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
     bool any = false;
-    R(meet_group_of)(kind, args->geometry, whole, parts, args, directions, near, hits);
-#pragma GCC unroll 8
-    for (int v = 0; v < GLINT_GROUP / VR; v++) {
-        const unsigned lanes = near >> v * VR & ((1u << VR) - 1);
-        if (lanes && R(keep_simple)(args, whole, at + (size_t)(v * VR), lanes, &hits[v]))
-            any = true;
-        if (lanes)
-            near &= ~(rm_bits(rm_or(hits[v].hit, hits[v].missed)) << v * VR);
-    }
-    return (near && R(cast_combined_left)(args, whole, directions, at, near)) || any;
-}
-
-/// Apart, so that what it knows of two vectors stays in registers.
-static __attribute__((noinline)) bool R(cast_cut_box)(const glint_cast_args *args, const glint_combined *whole,
-                                                            const R(eye_parts) * parts, int x, int y, size_t at, unsigned near)
-{
-    return R(cast_simple_pixels)(args, whole, R(CUT_BOX), parts, x, y, at, near);
-}
-
-/// The eye's rays in group (x, y) of a tile. parts: of a simple whole, else NULL.
-static __attribute__((noinline)) bool R(cast_combined_pixels)(const glint_cast_args *args, const glint_prim *prim,
-                                                              const R(eye_parts) * parts, int x, int y, size_t at,
-                                                              unsigned near)
-{
-    const glint_combined *whole = &args->geometry->combined[prim->item];
     count_tests(args->tests, near);
-    if (!parts)
-        return R(cast_combined_left)(args, whole, R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y), at, near);
-    if (parts->kind == R(CUT_BOX))
-        return R(cast_cut_box)(args, whole, parts, x, y, at, near);
-    if (parts->kind == R(PARTS_TWO))
-        return R(cast_simple_pixels)(args, whole, R(PARTS_TWO), parts, x, y, at, near);
-    return R(cast_simple_pixels)(args, whole, R(PARTS_ANY), parts, x, y, at, near);
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        vr d[3];
+        if (!(near >> i & ((1u << VR) - 1)))
+            continue;
+        R(load_direction)(directions, args->direction, 0, i, d);
+        const R(whole_rays) rays = { o, d, NULL, 0, near >> i & ((1u << VR) - 1) };
+        if (R(cast_combined)(args, &args->geometry->combined[prim->item], at + (size_t)i, &rays))
+            any = true;
+    }
+    return any;
 }
 
 #endif

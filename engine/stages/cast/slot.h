@@ -5,7 +5,6 @@
 #include "engine/stages/cast/groups.h"
 #include "engine/stages/cast/meet.h"
 #include "engine/stages/cast/rays.h"
-#include "engine/stages/cast/simple.h"
 #include "engine/stages/index/candidate.h"
 #include "engine/stages/index/eye_box.h"
 #include "engine/stages/index/screen.h"
@@ -133,9 +132,9 @@ INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_no
 
 // ---- Anything else, and spheres through a lens ----
 
-/// Casts anything but a triangle. parts, box: where it is boxed, room for what its rays know of it.
+/// Casts anything but a triangle. slabs, box: where it is boxed, room for what its rays know of it.
 INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
-                         int slot, const bool boxed, R(eye_parts) * parts, eye_box *box)
+                         int slot, const bool boxed, R(eye_slabs) * slabs, eye_box *box)
 {
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
     R(near_group) groups[GLINT_TILE_GROUPS];
@@ -146,7 +145,7 @@ INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_n
     if (gathered || !tile->parallel)
         R(place_candidate)(tile->args, id, &candidate);
     if (boxed)
-        R(see_candidate)(tile->args, &candidate, parts);
+        R(see_candidate)(tile->args, &candidate, slabs);
     for (int n = 0; n < count; n++) {
         const int x = groups[n].x, y = groups[n].y;
         if (!boxed && !gathered && tile->parallel
@@ -160,12 +159,12 @@ INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_n
 static __attribute__((noinline)) void R(cast_boxed)(R(tile_cast) * tile, const glint_node *node,
                                                     const node_on_screen *seen, int slot)
 {
-    R(eye_parts) parts;
+    R(eye_slabs) slabs;
     eye_box box;
     if (tile->pixels)
-        R(cast_other)(tile, true, node, seen, slot, true, &parts, &box);
+        R(cast_other)(tile, true, node, seen, slot, true, &slabs, &box);
     else
-        R(cast_other)(tile, false, node, seen, slot, true, &parts, &box);
+        R(cast_other)(tile, false, node, seen, slot, true, &slabs, &box);
 }
 
 /// Casts what is in the slot. Where float decides, no box keeps anything from it.

@@ -154,7 +154,6 @@ typedef struct glint_solid {
 } glint_solid;
 
 #define GLINT_PARTS_MAX 64 ///< of a combined solid
-#define GLINT_SIMPLE_PARTS 8 ///< of one whose program is simple, at most
 #define GLINT_HULL_PARTS 4 ///< of these a closed mesh is as many: the stretches of a ray within it that are held at a time
 
 /// Operations in the program of a combined solid, besides numbers of parts.
@@ -172,9 +171,6 @@ typedef struct glint_combined {
     uint32_t count; ///< of parts
     uint32_t length; ///< of the program
     float lower[3], upper[3]; ///< a box around it, as of a solid
-    bool simple; ///< it has two parts or a few more, each a box, ball or cylinder, and one operation joins each to those before it, or
-                 ///< the first few are met and the others taken away
-    bool cut_box; ///< a box less a ball, both along the axes of the world; it is simple, too
     // sets of parts, a bit each:
     uint64_t all; ///< every part, where the program has no empty set; else 0
     uint64_t needs; ///< those without any of which the whole is nothing

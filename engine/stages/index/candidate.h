@@ -7,7 +7,6 @@
 #include "engine/stages/cast/combined.h"
 #include "engine/stages/cast/meet.h"
 #include "engine/stages/cast/shared_edge.h"
-#include "engine/stages/cast/simple.h"
 #include "engine/stages/cast/solid.h"
 #include "engine/stages/cast/torus.h"
 #include "engine/stages/cast/triangle.h"
@@ -62,7 +61,7 @@ typedef struct R(candidate) {
     uint32_t id;
     real f[3], c; ///< see R(offset) and R(offset_constant)
     real scale, r2; ///< of a sphere
-    const R(eye_parts) *parts; ///< of a box and of a simple combined solid; NULL: not known
+    const R(eye_slabs) *slabs; ///< of a box; NULL: not known
     float base[3], along_s[3],
         along_t[3]; ///< the filter: linear in s and t are f x d of a sphere, e of a triangle, how
     ///< fast a ray nears a plane
@@ -253,7 +252,7 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
     const vr origin[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
     vr f[3];
     candidate->id = id;
-    candidate->parts = NULL;
+    candidate->slabs = NULL;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++)
@@ -276,22 +275,17 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
     candidate->c = R(first_lane)(R(offset_constant)(f, prim));
 }
 
-/// Works out what helps to decide a solid for many groups. out: to keep it in.
-static void R(see_candidate)(const glint_cast_args *args, R(candidate) * candidate, R(eye_parts) * out)
+/// Works out what helps to decide a box for many groups. out: to keep it in.
+static inline void R(see_candidate)(const glint_cast_args *args, R(candidate) * candidate, R(eye_slabs) * out)
 {
-    const glint_geometry_table *table = args->geometry;
     const glint_prim *prim = candidate->prim;
-    const glint_combined *whole = prim->kind == GLINT_PRIM_COMBINED ? &table->combined[prim->item] : NULL;
-    if (GLINT_REAL == 32 || (whole ? !whole->simple : table->solids[prim->item].form != GLINT_FORM_BOX))
+    if (GLINT_REAL == 32 || prim->kind != GLINT_PRIM_SOLID || args->geometry->solids[prim->item].form != GLINT_FORM_BOX)
         return;
-    if (whole)
-        R(see_parts)(table, whole, args->camera->eye, out);
-    else
-        R(see_part)(&table->solids[prim->item], prim, args->camera->eye, &out->part[0]);
-    candidate->parts = out;
+    R(see_slabs)(candidate->height, out);
+    candidate->slabs = out;
 }
 
-/// That, and the filter.
+/// The candidate, and the filter.
 static void R(make_candidate)(const R(tile_cast) * tile, uint32_t id, R(candidate) * candidate)
 {
     const glint_cast_args *args = tile->args;
@@ -342,7 +336,7 @@ INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * can
         const glint_solid *solid = &table->solids[candidate->prim->item];
         const R(solid_start) start = { .f = { f[0], f[1], f[2] }, .height = candidate->height };
         rm hit;
-        if (candidate->parts && R(meet_eye_box)(solid, &candidate->parts->part[0].slabs, d, lanes, t, &hit))
+        if (candidate->slabs && R(meet_eye_box)(solid, candidate->slabs, d, lanes, t, &hit))
             return hit;
         return R(meet_solid)(solid, &start, d, t);
     }
@@ -402,7 +396,7 @@ INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * cand
     const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
     bool any = false;
     if (candidate->prim->kind == GLINT_PRIM_COMBINED)
-        return R(cast_combined_pixels)(args, candidate->prim, candidate->parts, x, y, at, near);
+        return R(cast_combined_pixels)(args, candidate->prim, x, y, at, near);
     count_tests(args->tests, near);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = near >> i & ((1u << VR) - 1);

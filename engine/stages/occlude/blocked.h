@@ -7,7 +7,6 @@
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/combined.h"
 #include "engine/stages/cast/meet.h"
-#include "engine/stages/cast/simple.h"
 #include "engine/stages/cast/solid.h"
 #include "engine/stages/cast/torus.h"
 #include "engine/stages/cast/triangle.h"
@@ -340,40 +339,13 @@ static unsigned R(stay_in_combined)(const glint_occlude_args *args, const glint_
     return wanted;
 }
 
-/// Decides a simple whole for `lanes` of segments, from lane i of the group at `at` on, where that takes little; own: those that begin
-/// on it. Returns those that are left; *blocked: of the others.
-static unsigned R(settle_simple)(const glint_occlude_args *args, const glint_combined *whole, const R(whole_rays) * rays,
-                                 size_t at, int i, unsigned own, unsigned lanes, unsigned *blocked)
-{
-    const uint32_t first = args->geometry->prim_count + whole->first;
-    for (unsigned left = lanes, here, told; left; left &= ~here) {
-        R(simple_hits) hits;
-        here = left & ~own;
-        if (here) {
-            told = R(meet_from_anywhere)(args->geometry, whole, rays->o, rays->d, &hits);
-        } else {
-            const uint32_t on = rays->on[__builtin_ctz(left)];
-            const unsigned into = args->geometry->prims[on].turned ? ~rays->inward : rays->inward;
-            here = lanes_equal(args->prim + at, on) >> i & left;
-            told = R(meet_from_part)(args->geometry, whole, on - first, into, rays->o, rays->d, &hits);
-        }
-        told &= here;
-        lanes &= ~told;
-        rm hit = hits.hit;
-        if (!args->directional)
-            hit = rm_and(hit, r_lt(hits.t * r_set(args->scale), r_set(1)));
-        *blocked |= rm_bits(hit) & told;
-    }
-    return lanes;
-}
-
 /// The lanes of `wanted` that a combined solid blocks: a segment from one of its parts begins within where that is seen from
 /// behind, else outside.
 static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const glint_prim *prim,
                                        const real position[3][GLINT_GROUP], size_t at, unsigned wanted)
 {
     const glint_combined *whole = &args->geometry->combined[prim->item];
-    const unsigned back = args->back[at / GLINT_GROUP], own = wanted & R(lanes_on_parts)(args, whole, at);
+    const unsigned back = args->back[at / GLINT_GROUP];
     unsigned blocked = 0;
     count_tests(args->tests, wanted);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
@@ -385,11 +357,7 @@ static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const gli
         R(load3)(args->point, at + i, p);
         R(directions_to)(args, position, at, i, d);
         const R(whole_rays) rays = { p, d, args->prim + at + i, back >> i, lanes };
-        unsigned left = lanes, met = 0, hit;
-        if (GLINT_REAL == 64 && whole->simple)
-            left = R(settle_simple)(args, whole, &rays, at, i, own >> i & lanes, lanes, &met);
-        blocked |= met << i;
-        while (left) {
+        for (unsigned left = lanes, hit; left;) {
             left = R(next_change)(args->geometry, whole, &rays, left, &from, &s, &t, &hit);
             if (!args->directional)
                 hit &= rm_bits(r_lt(t * r_set(args->scale), r_set(1)));
