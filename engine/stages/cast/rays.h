@@ -43,13 +43,11 @@ static inline rm R(way_out)(const glint_geometry_table *table, const glint_prim 
 static inline rm R(way_back)(const glint_solid *solid, const glint_prim *prim, const vr o[3], const vr d[3],
                              unsigned inward, vr *t)
 {
-    vr f[1][3], e[1][3];
-    rm hit;
-    R(unit_offset)(solid, prim, o, f[0]);
-    R(to_unit)(solid, d, e[0]);
+    vr f[3], e[3];
+    R(unit_offset)(solid, prim, o, f);
+    R(to_unit)(solid, d, e);
     const R(torus_start) start = { rm_from_bits((1u << VR) - 1), rm_from_bits(inward) };
-    R(meet_torus)(1, solid, (const vr(*)[3])f, (const vr(*)[3])e, &start, t, &hit);
-    return hit;
+    return R(meet_torus)(solid, f, e, start, t);
 }
 
 /// Returns whether a ray that passes through the surface may hit it again. A part of a combined solid is hit only through that solid.

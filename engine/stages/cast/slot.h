@@ -6,16 +6,13 @@
 #include "engine/stages/cast/meet.h"
 #include "engine/stages/cast/rays.h"
 #include "engine/stages/index/candidate.h"
-#include "engine/stages/index/eye_box.h"
 #include "engine/stages/index/screen.h"
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// Finds the groups that come near it. Returns how many. Constants: rods, it may be longer than wide; boxed, a solid before rays from
-/// one eye, with the box that it is in.
+/// Finds the groups that come near it. Returns how many. Constants: rods, it may be longer than wide.
 INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, const glint_node *node,
-                              const node_on_screen *seen, int slot, const bool rods, const bool boxed, eye_box *box,
-                              R(near_group) * out)
+                              const node_on_screen *seen, int slot, const bool rods, R(near_group) * out)
 {
     const float depth = seen->near[slot];
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
@@ -27,12 +24,10 @@ INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, co
     rod_on_screen rod = { .is = false };
     if (rods)
         see_rod(tile->args->geometry, &tile->args->geometry->prims[id], &tile->view, &rod);
-    if (boxed)
-        *box = see_box(tile->args->camera, &tile->view, node, slot);
     for (; left; left &= left - 1) {
         const R(tile_group) at = R(lowest_group)(tile, gathered, left);
         unsigned lanes = 0;
-        if (!boxed && !gathered && GLINT_WITH_LENS && tile->lens)
+        if (!gathered && GLINT_WITH_LENS && tile->lens)
             lanes = R(lanes_through_lens)(tile, &shape, seen->middle[2][slot], depth, at.x, at.y);
         else
             for (int i = 0; i < GLINT_GROUP; i += VF) {
@@ -40,7 +35,7 @@ INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, co
                 unsigned near = R(open_lanes)(tile, &at, i, depth) & near_shape(&shape, s, -t);
                 if (rod.is)
                     near &= near_rod(&rod, s, -t);
-                lanes |= (boxed ? near & lanes_in_box(box, s, t) : near) << i;
+                lanes |= near << i;
             }
         count = R(note_near)(&at, lanes, out, count);
     }
@@ -116,7 +111,7 @@ INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_no
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
     R(near_group) groups[GLINT_TILE_GROUPS];
     R(near_part) parts[GLINT_TILE_SAMPLES / VR];
-    const int count = R(find_near_groups)(tile, gathered, node, seen, slot, false, false, NULL, groups);
+    const int count = R(find_near_groups)(tile, gathered, node, seen, slot, false, groups);
     if (!count)
         return;
     const int part_count = R(find_near_parts)(tile, groups, count, parts);
@@ -132,52 +127,36 @@ INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_no
 
 // ---- Anything else, and spheres through a lens ----
 
-/// Casts anything but a triangle. slabs, box: where it is boxed, room for what its rays know of it.
+/// Casts anything but a triangle.
 INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
-                         int slot, const bool boxed, R(eye_slabs) * slabs, eye_box *box)
+                         int slot)
 {
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
     R(near_group) groups[GLINT_TILE_GROUPS];
     R(candidate) candidate;
-    const int count = R(find_near_groups)(tile, gathered, node, seen, slot, GLINT_REAL == 64, boxed, box, groups);
+    const int count = R(find_near_groups)(tile, gathered, node, seen, slot, GLINT_REAL == 64, groups);
     if (!count)
         return;
     if (gathered || !tile->parallel)
         R(place_candidate)(tile->args, id, &candidate);
-    if (boxed)
-        R(see_candidate)(tile->args, &candidate, slabs);
     for (int n = 0; n < count; n++) {
         const int x = groups[n].x, y = groups[n].y;
-        if (!boxed && !gathered && tile->parallel
+        if (!gathered && tile->parallel
                 ? R(decide_rays)(tile->args, (uint32_t)(y * tile->across + x), id, groups[n].lanes)
                 : R(decide_pixels)(tile, &candidate, x, y, groups[n].lanes))
             R(note_group)(tile, gathered, groups[n]);
     }
 }
 
-/// A separate function, so that it takes no registers from the code for other surfaces.
-static __attribute__((noinline)) void R(cast_boxed)(R(tile_cast) * tile, const glint_node *node,
-                                                    const node_on_screen *seen, int slot)
-{
-    R(eye_slabs) slabs;
-    eye_box box;
-    if (tile->pixels)
-        R(cast_other)(tile, true, node, seen, slot, true, &slabs, &box);
-    else
-        R(cast_other)(tile, false, node, seen, slot, true, &slabs, &box);
-}
-
-/// Casts what is in the slot. Where float decides, no box keeps anything from it.
+/// Casts what is in the slot.
 INNER void R(cast_slot)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
                         int slot)
 {
     const uint32_t kind = tile->args->geometry->prims[node->child[slot] & ~GLINT_NODE_PRIM].kind;
-    if (GLINT_REAL == 64 && (gathered || !tile->parallel) && (kind == GLINT_PRIM_SOLID || kind == GLINT_PRIM_COMBINED))
-        R(cast_boxed)(tile, node, seen, slot);
-    else if (kind == GLINT_PRIM_SPHERE && (gathered || !tile->lens))
+    if (kind == GLINT_PRIM_SPHERE && (gathered || !tile->lens))
         R(cast_ball)(tile, gathered, node, seen, slot);
     else
-        R(cast_other)(tile, gathered, node, seen, slot, false, NULL, NULL);
+        R(cast_other)(tile, gathered, node, seen, slot);
 }
 
 #endif

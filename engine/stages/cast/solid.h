@@ -4,7 +4,6 @@
 #ifndef GLINT_CAST_SOLID_H
 #define GLINT_CAST_SOLID_H
 
-#include "engine/stages/cast/box.h"
 #include "engine/stages/cast/face.h"
 #include "engine/stages/cast/torus.h"
 #include "engine/stages/cast/triangle.h"
@@ -265,41 +264,12 @@ INNER R(span) R(span_along)(const glint_solid *solid, const R(solid_start) * sta
     return R(span_of)(solid, start, d, e, false, whole);
 }
 
-/// Decides a box before rays that start anywhere, where that takes little. Returns whether it is decided for all of `lanes`.
-INNER bool R(meet_box)(const glint_solid *solid, const vr place[3], const vr d[3], unsigned lanes, vr *t, rm *hit)
-{
-    R(box_slabs) slabs;
-    rm missed;
-    if (GLINT_REAL == 32 || solid->form != GLINT_FORM_BOX)
-        return false;
-    for (int i = 0; i < 3; i++)
-        R(begin_slab)(solid->faces, place, d, i, &slabs);
-    R(into_box)(&slabs, t, hit, &missed);
-    return (lanes & ~rm_bits(rm_or(*hit, missed))) == 0;
-}
-
-/// The same of rays from one eye.
-INNER bool R(meet_eye_box)(const glint_solid *solid, const R(eye_slabs) * eye, const vr d[3], unsigned lanes, vr *t, rm *hit)
-{
-    vr rise[3], per_way;
-    rm missed;
-    if (!eye->before)
-        return false;
-    for (int i = 0; i < 3; i++)
-        rise[i] = R(face_rise)(solid->faces + 2 * i, d);
-    R(into_eye_box)(eye, rise, t, &per_way, hit, &missed);
-    return (lanes & ~rm_bits(rm_or(*hit, missed))) == 0;
-}
-
 static rm R(meet_solid)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], vr *t)
 {
     if (solid->form == GLINT_FORM_TORUS) {
-        const R(torus_start) afresh = R(torus_afresh)();
-        vr e[1][3];
-        rm hit;
-        R(to_unit)(solid, d, e[0]);
-        R(meet_torus)(1, solid, &start->f, (const vr(*)[3])e, &afresh, t, &hit);
-        return hit;
+        vr e[3];
+        R(to_unit)(solid, d, e);
+        return R(meet_torus)(solid, start->f, e, R(torus_afresh)(), t);
     }
     const R(span) span = R(span_along)(solid, start, d, false);
     *t = r_select(r_lt(r_set(0), span.t[0]), span.t[0], span.t[1]);
@@ -366,26 +336,6 @@ INNER void R(onto_unit)(uint32_t form, vr which, rm flat, vr k[3], vr g[3], vr f
         k[2] = r_select(rm_and(flat, r_lt(g[2], r_set(0))), r_set(0), k[2]);
 }
 
-/// The faces of a box that rays are on at t: of each the height there is nothing but rounding. which: as in span. Returns whether
-/// each of `lanes` is on only one: the face that t was computed from.
-INNER bool R(faces_at)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], vr t, unsigned lanes, vr *which)
-{
-    const vr share = r_set(GLINT_REAL == 64 ? 0x1p-40 : 0x1p-14), zero = r_set(0), one = r_set(1);
-    vr count = zero, face = zero;
-    for (int axis = 0; axis < 3; axis++) {
-        vr height[2] = { zero, zero };
-        const vr rise = R(over_slab)(solid->faces + 2 * axis, start->height ? NULL : start->place, d, height);
-        for (int i = 0; i < 2; i++) {
-            const vr from = start->height ? r_set(start->height[2 * axis + i]) : height[i];
-            const rm on = r_le(R(abs)(from + t * rise), share * R(abs)(from));
-            count = count + r_select(on, one, zero);
-            face = r_select(on, r_set(i ? axis + 1 : -axis - 1), face);
-        }
-    }
-    *which = face;
-    return (~rm_bits(rm_and(r_eq(count, one), r_lt(r_set(0x1p-100), t))) & lanes) == 0; // not at GLINT_LEAST_WAY
-}
-
 /// The outward normal, of length 1, where the unit shape's is g.
 INNER void R(normal_of)(const glint_solid *solid, const vr g[3], vr n[3])
 {
@@ -397,55 +347,11 @@ INNER void R(normal_of)(const glint_solid *solid, const vr g[3], vr n[3])
         n[c] = n[c] / length;
 }
 
-/// The normals of a box's faces, low x first, computed when the first ray hits each.
-typedef struct R(box_faces) {
-    unsigned known; ///< a bit each
-    real normal[6][3];
-} R(box_faces);
-
-static __attribute__((noinline)) void R(learn_face)(const glint_solid *solid, int face, R(box_faces) * faces)
-{
-    vr g[3], n[3];
-    for (int c = 0; c < 3; c++)
-        g[c] = r_set(c != face / 2 ? 0 : face % 2 ? 1 : -1);
-    R(normal_of)(solid, g, n);
-    for (int c = 0; c < 3; c++)
-        faces->normal[face][c] = R(first_lane)(n[c]);
-    faces->known |= 1u << face;
-}
-
-/// The same as below of a box where all of `lanes` meet one face. Returns whether they do; else nothing is done. which: see faces_at;
-/// k: where the box is the unit one.
-INNER bool R(face_surface)(const glint_solid *solid, const glint_prim *prim, vr which, unsigned lanes, vr k[3],
-                           R(box_faces) * faces, vr n[3], vr p[3])
-{
-    _Alignas(64) real each[VR];
-    r_store(each, which);
-    const real first = each[__builtin_ctz(lanes)];
-    if (~rm_bits(r_eq(which, r_set(first))) & lanes)
-        return false;
-    const int axis = (int)(first < 0 ? -first : first) - 1, face = 2 * axis + (first > 0);
-    const glint_face *plane = &solid->faces[face];
-    if (!(faces->known >> face & 1))
-        R(learn_face)(solid, face, faces);
-    for (int c = 0; c < 3; c++)
-        if (c == axis)
-            k[c] = r_set(first < 0 ? -1 : 1);
-    for (int c = 0; c < 3; c++) {
-        n[c] = r_set(faces->normal[face][c]);
-        p[c] = r_set(prim->center[c]) + ((r_set(solid->forward[c][0]) * k[0] + r_set(solid->forward[c][1]) * k[1]) +
-                                         r_set(solid->forward[c][2]) * k[2]);
-        if (plane->axis == (uint32_t)c)
-            p[c] = r_set(plane->at[c]);
-    }
-    return true;
-}
-
-/// Where rays that start at `start`, of a box with its f, meet the solid, and the unit normal there. lanes: those that do.
+/// Where rays that start at `start` meet the solid, and the unit normal there.
 static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, const R(solid_start) * start,
-                             const vr d[3], vr t, unsigned lanes, R(box_faces) * faces, vr n[3], vr p[3])
+                             const vr d[3], vr t, vr n[3], vr p[3])
 {
-    vr e[3], k[3], g[3], face[3], which;
+    vr e[3], k[3], g[3], face[3];
     rm flat = rm_from_bits(0);
     R(to_unit)(solid, d, e);
     for (int c = 0; c < 3; c++)
@@ -454,11 +360,6 @@ static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, c
         R(onto_torus)(solid->tube, k, g);
     } else if (solid->form == GLINT_FORM_BALL) {
         R(onto_side)(solid->form, k, g);
-    } else if (solid->form == GLINT_FORM_BOX && R(faces_at)(solid, start, d, t, lanes, &which)) {
-        if (R(face_surface)(solid, prim, which, lanes, k, faces, n, p))
-            return;
-        flat = rm_from_bits((1u << VR) - 1);
-        R(onto_unit)(GLINT_FORM_BOX, which, flat, k, g, face);
     } else {
         const R(span) span = R(span_of)(solid, start, d, e, true, true);
         const rm entering = r_eq(t, span.t[0]);
@@ -473,16 +374,12 @@ static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, c
 }
 
 /// Whether the surface is crossed by segments from `point` along d, which end at 1 / scale; directional: nowhere. In lanes
-/// of `own` they begin on it, within: what they can meet is the other side of an open form. lanes: those whose answer matters.
+/// of `own` they begin on it, within: what they can meet is the other side of an open form.
 static rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, const vr point[3], const vr d[3],
-                                 double scale, bool directional, rm own, unsigned lanes)
+                                 double scale, bool directional, rm own)
 {
     const vr zero = r_set(0), end = r_set(directional ? HUGE_VAL : 1), unit = r_set(directional ? 1 : scale);
     R(solid_start) start;
-    vr t;
-    rm hit;
-    if (R(meet_box)(solid, point, d, lanes, &t, &hit))
-        return rm_and(hit, r_lt(t * unit, end));
     R(start_at)(solid, prim, point, &start);
     const R(span) span = R(span_along)(solid, &start, d, false);
     const rm first = rm_andnot(rm_and(r_lt(zero, span.t[0]), r_lt(span.t[0] * unit, end)), own);

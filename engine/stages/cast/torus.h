@@ -1,15 +1,10 @@
 // torus: what cast, surface and occlude need of an image of the unit torus, which is no convex solid: a ray meets it up to four
 // times, and may meet again what it leaves. What is found along a line, and why so: ref/torus.h. Contract: stages.h.
-//
-// Lines are followed a few vectors at a time: each step to a turn or a root waits for the one before it, and while one vector
-// waits the next goes on.
 #ifndef GLINT_CAST_TORUS_H
 #define GLINT_CAST_TORUS_H
 
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
-
-#define TORUS_LINES (GLINT_GROUP / VR) ///< vectors at a time, at most
 
 /// Where places are to the torus: below 0 inside. *beyond: what the quartic has besides as a factor, above 0.
 INNER vr R(torus_gap)(const vr k[3], vr tube2, vr *beyond)
@@ -46,29 +41,22 @@ static inline R(torus_start) R(torus_afresh)(void)
 }
 
 /// Of each line the largest x with x^3 + bend x = |lean|.
-INNER void R(last_turns)(int count, const R(torus_line) l[], vr x[])
+INNER vr R(last_turn)(const R(torus_line) * l)
 {
-    const vr three = r_set(3), zero = r_set(0);
-    unsigned wanted[TORUS_LINES], any = 0;
-    for (int i = 0; i < count; i++) {
-        const vr bend = l[i].bend, lean = R(abs)(l[i].lean), r = r_sqrt(r_max(-bend, zero));
-        const vr by = r_select(r_lt(bend, zero), r_set(-2) * bend, bend);
-        x[i] = r + r_min(lean / by, (r_set(2) + lean) * r_set(0.34));
-        any |= wanted[i] = rm_bits(l[i].near);
+    const vr three = r_set(3), zero = r_set(0), bend = l->bend, lean = R(abs)(l->lean), r = r_sqrt(r_max(-bend, zero));
+    const vr by = r_select(r_lt(bend, zero), r_set(-2) * bend, bend);
+    vr x = r + r_min(lean / by, (r_set(2) + lean) * r_set(0.34));
+    unsigned wanted = rm_bits(l->near);
+    for (int n = 0; n < GLINT_TURN_STEPS && wanted; n++) {
+        const vr value = (x * x + bend) * x - lean, slope = three * (x * x) + bend;
+        const vr step = value * slope / (slope * slope - value * (three * x));
+        x = r_select(rm_from_bits(wanted), x - step, x);
+        wanted &= ~rm_bits(r_le(R(abs)(step), r_set(GLINT_TURN_NEAR)));
     }
-    for (int n = 0; n < GLINT_TURN_STEPS && any; n++) {
-        any = 0;
-        for (int i = 0; i < count; i++) {
-            const vr bend = l[i].bend, lean = R(abs)(l[i].lean);
-            const vr value = (x[i] * x[i] + bend) * x[i] - lean, slope = three * (x[i] * x[i]) + bend;
-            const vr step = value * slope / (slope * slope - value * (three * x[i]));
-            x[i] = r_select(rm_from_bits(wanted[i]), x[i] - step, x[i]);
-            any |= wanted[i] &= ~rm_bits(r_le(R(abs)(step), r_set(GLINT_TURN_NEAR)));
-        }
-    }
+    return x;
 }
 
-/// last: of last_turns.
+/// last: of last_turn.
 static inline void R(find_turns)(R(torus_line) * l, vr last)
 {
     const vr zero = r_set(0), never = r_set(HUGE_VAL);
@@ -162,23 +150,13 @@ static inline void R(aim_at_torus)(const glint_solid *solid, const vr f[3], cons
     l->lean = -two * (l->p[2] * l->u[2]);
 }
 
-static void R(along_torus)(int count, const glint_solid *solid, const vr (*f)[3], const vr (*e)[3],
-                           const R(torus_start) start[], R(torus_line) l[])
+static void R(along_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, R(torus_line) * l)
 {
-    vr last[TORUS_LINES];
-    unsigned any = 0;
-    for (int i = 0; i < count; i++) {
-        R(aim_at_torus)(solid, f[i], e[i], start[i], &l[i]);
-        any |= rm_bits(l[i].near);
-    }
-    if (!any)
+    R(aim_at_torus)(solid, f, e, start, l);
+    if (!rm_bits(l->near))
         return;
-    R(last_turns)(count, l, last);
-    for (int i = 0; i < count; i++)
-        if (rm_bits(l[i].near)) {
-            R(find_turns)(&l[i], last[i]);
-            R(begin_on_torus)(&l[i], solid, f[i], e[i], start[i]);
-        }
+    R(find_turns)(l, R(last_turn)(l));
+    R(begin_on_torus)(l, solid, f, e, start);
 }
 
 /// Rays that leave the torus, do not go in, and surely never meet it again.
@@ -263,31 +241,20 @@ INNER void R(step_to_root)(const R(torus_line) * l, R(torus_stretch) * at, vr *s
     *wanted &= ~rm_bits(there);
 }
 
-/// t of the root of each line's stretch, in the lanes that have one: `hit`.
-static void R(torus_roots)(int count, const R(torus_line) l[], R(torus_stretch) at[], const rm hit[], vr t[])
+/// Returns t of the root of each line's stretch, in the lanes that have one: `hit`.
+static vr R(torus_root)(const R(torus_line) * l, R(torus_stretch) * at, rm hit)
 {
     const vr zero = r_set(0), half = r_set(0.5);
-    vr s[TORUS_LINES];
-    unsigned wanted[TORUS_LINES], any = 0;
-    for (int i = 0; i < count; i++) {
-        any |= wanted[i] = rm_bits(hit[i]);
-        const vr curve = r_set(12) * (at[i].middle * at[i].middle) + r_set(4) * l[i].bend;
-        const vr off = r_sqrt(r_max(r_set(-2) * at[i].gap / curve, zero));
-        const vr guess = r_select(at[i].rising, at[i].middle + off, at[i].middle - off);
-        const rm within = rm_and(r_le(at[i].low, guess), r_le(guess, at[i].high));
-        s[i] = r_select(within, guess, half * at[i].low + half * at[i].high);
-    }
-    for (int n = 0; n < GLINT_ROOT_STEPS && any; n++) {
-        any = 0;
-        for (int i = 0; i < count; i++) {
-            R(step_to_root)(&l[i], &at[i], &s[i], &wanted[i]);
-            any |= wanted[i];
-        }
-    }
-    for (int i = 0; i < count; i++) {
-        const vr found = l[i].from + s[i] * l[i].per;
-        t[i] = r_select(rm_and(hit[i], r_lt(zero, found)), found, r_set(GLINT_LEAST_WAY));
-    }
+    const vr curve = r_set(12) * (at->middle * at->middle) + r_set(4) * l->bend;
+    const vr off = r_sqrt(r_max(r_set(-2) * at->gap / curve, zero));
+    const vr guess = r_select(at->rising, at->middle + off, at->middle - off);
+    const rm within = rm_and(r_le(at->low, guess), r_le(guess, at->high));
+    vr s = r_select(within, guess, half * at->low + half * at->high);
+    unsigned wanted = rm_bits(hit);
+    for (int n = 0; n < GLINT_ROOT_STEPS && wanted; n++)
+        R(step_to_root)(l, at, &s, &wanted);
+    const vr found = l->from + s * l->per;
+    return r_select(rm_and(hit, r_lt(zero, found)), found, r_set(GLINT_LEAST_WAY));
 }
 
 /// The stretch of each line on which the first root ahead is. Returns the lanes that have one.
@@ -310,23 +277,15 @@ static rm R(first_ahead)(const R(torus_line) * l, R(torus_stretch) * at)
     return hit;
 }
 
-/// Where rays meet the torus first. Those that leave it and go in meet it surely.
-static void R(meet_torus)(int count, const glint_solid *solid, const vr (*f)[3], const vr (*e)[3],
-                          const R(torus_start) start[], vr t[], rm hit[])
+/// Where rays meet the torus first. Returns those that do. Rays that leave it and go in meet it surely.
+static rm R(meet_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr *t)
 {
-    R(torus_line) l[TORUS_LINES];
-    R(torus_stretch) at[TORUS_LINES];
-    unsigned any = 0;
-    R(along_torus)(count, solid, f, e, start, l);
-    for (int i = 0; i < count; i++) {
-        hit[i] = rm_andnot(R(first_ahead)(&l[i], &at[i]), R(leaves_torus)(f[i], e[i], start[i]));
-        any |= rm_bits(hit[i]);
-        t[i] = r_set(GLINT_LEAST_WAY);
-    }
-    if (any)
-        R(torus_roots)(count, l, at, hit, t);
-    for (int i = 0; i < TORUS_LINES && i < count; i++)
-        hit[i] = rm_or(hit[i], rm_and(start[i].leaves, start[i].inward));
+    R(torus_line) l;
+    R(torus_stretch) at;
+    R(along_torus)(solid, f, e, start, &l);
+    const rm hit = rm_andnot(R(first_ahead)(&l, &at), R(leaves_torus)(f, e, start));
+    *t = rm_bits(hit) ? R(torus_root)(&l, &at, hit) : r_set(GLINT_LEAST_WAY);
+    return rm_or(hit, rm_and(start.leaves, start.inward));
 }
 
 /// Where rays are inside: from ends[0] to ends[1], and from ends[2] to ends[3] or, where they do not come out between, from the
@@ -334,7 +293,7 @@ static void R(meet_torus)(int count, const glint_solid *solid, const vr (*f)[3],
 static void R(torus_ends)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr ends[4])
 {
     R(torus_line) l = { .near = rm_from_bits(0) }; // without a line near the tube all else is left as it is here
-    R(along_torus)(1, solid, (const vr(*)[3])f, (const vr(*)[3])e, &start, &l);
+    R(along_torus)(solid, f, e, start, &l);
     const vr zero = r_set(0), none = r_set(-HUGE_VAL);
     for (int stretch = 0; stretch < 4; stretch++) {
         const rm here = rm_and(R(torus_crosses)(&l, stretch), R(torus_ahead)(&l, stretch));
@@ -342,9 +301,7 @@ static void R(torus_ends)(const glint_solid *solid, const vr f[3], const vr e[3]
         if (!rm_bits(here))
             continue;
         R(torus_stretch) at = R(stretch_at)(&l, stretch);
-        vr t;
-        R(torus_roots)(1, &l, &at, &here, &t);
-        ends[stretch] = r_select(here, t, none);
+        ends[stretch] = r_select(here, R(torus_root)(&l, &at, here), none);
     }
     ends[2] = r_select(rm_and(l.near, r_lt(zero, l.gap[1])), ends[2], ends[0]);
     const rm out = rm_or(r_lt(zero, ends[1]), r_lt(zero, ends[3]));

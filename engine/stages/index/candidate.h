@@ -8,7 +8,6 @@
 #include "engine/stages/cast/meet.h"
 #include "engine/stages/cast/shared_edge.h"
 #include "engine/stages/cast/solid.h"
-#include "engine/stages/cast/torus.h"
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/index/screen.h"
 #include "engine/stages/index/walk.h"
@@ -61,7 +60,6 @@ typedef struct R(candidate) {
     uint32_t id;
     real f[3], c; ///< see R(offset) and R(offset_constant)
     real scale, r2; ///< of a sphere
-    const R(eye_slabs) *slabs; ///< of a box; NULL: not known
     float base[3], along_s[3],
         along_t[3]; ///< the filter: linear in s and t are f x d of a sphere, e of a triangle, how
     ///< fast a ray nears a plane
@@ -252,7 +250,6 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
     const vr origin[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
     vr f[3];
     candidate->id = id;
-    candidate->slabs = NULL;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++)
@@ -275,17 +272,7 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
     candidate->c = R(first_lane)(R(offset_constant)(f, prim));
 }
 
-/// Works out what helps to decide a box for many groups. out: to keep it in.
-static inline void R(see_candidate)(const glint_cast_args *args, R(candidate) * candidate, R(eye_slabs) * out)
-{
-    const glint_prim *prim = candidate->prim;
-    if (GLINT_REAL == 32 || prim->kind != GLINT_PRIM_SOLID || args->geometry->solids[prim->item].form != GLINT_FORM_BOX)
-        return;
-    R(see_slabs)(candidate->height, out);
-    candidate->slabs = out;
-}
-
-/// The candidate, and the filter.
+/// That, and the filter.
 static void R(make_candidate)(const R(tile_cast) * tile, uint32_t id, R(candidate) * candidate)
 {
     const glint_cast_args *args = tile->args;
@@ -325,9 +312,9 @@ INNER unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * ca
     return near;
 }
 
-/// f: the candidate's, in every lane; lanes: those whose answer matters.
+/// f: the candidate's, in every lane.
 INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * candidate, const vr f[3], const vr d[3],
-                           unsigned lanes, vr *t)
+                           vr *t)
 {
     const glint_geometry_table *table = args->geometry;
     const double *eye = args->camera->eye;
@@ -335,9 +322,6 @@ INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * can
     if (candidate->prim->kind == GLINT_PRIM_SOLID) {
         const glint_solid *solid = &table->solids[candidate->prim->item];
         const R(solid_start) start = { .f = { f[0], f[1], f[2] }, .height = candidate->height };
-        rm hit;
-        if (candidate->slabs && R(meet_eye_box)(solid, candidate->slabs, d, lanes, t, &hit))
-            return hit;
         return R(meet_solid)(solid, &start, d, t);
     }
     if (candidate->prim->kind == GLINT_PRIM_SPHERE)
@@ -351,46 +335,10 @@ INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * can
     return R(unless_begun_on)(table, candidate->prim, NULL, o, hit, *t);
 }
 
-/// The same as below of a torus, all vectors of the group at once.
-static bool R(decide_torus)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y, unsigned near)
-{
-    const glint_cast_args *args = tile->args;
-    const glint_solid *solid = &args->geometry->solids[candidate->prim->item];
-    const size_t at = (size_t)(y * tile->across + x) * GLINT_GROUP;
-    const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
-    vr f[TORUS_LINES][3], e[TORUS_LINES][3], t[TORUS_LINES];
-    R(torus_start) start[TORUS_LINES];
-    rm hit[TORUS_LINES];
-    int count = 0, from[TORUS_LINES];
-    bool any = false;
-    count_tests(args->tests, near);
-    for (int n = 0; n < TORUS_LINES; n++)
-        start[n] = R(torus_afresh)();
-    for (int i = 0; i < GLINT_GROUP; i += VR) {
-        vr d[3];
-        if (!(near >> i & ((1u << VR) - 1)))
-            continue;
-        R(load_direction)(directions, args->direction, 0, i, d);
-        R(to_unit)(solid, d, e[count]);
-        for (int c = 0; c < 3; c++)
-            f[count][c] = r_set(candidate->f[c]);
-        from[count++] = i;
-    }
-    R(meet_torus)(count, solid, (const vr(*)[3])f, (const vr(*)[3])e, start, t, hit);
-    for (int n = 0; n < count; n++)
-        if (rm_bits(hit[n])) {
-            R(keep_nearest)(args, at + (size_t)from[n], candidate->id, hit[n], t[n]);
-            any = true;
-        }
-    return any;
-}
-
 /// Decides one candidate for the lanes of group (x, y) in `near`. Returns whether any hit was stored.
 INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y, unsigned near)
 {
     const glint_cast_args *args = tile->args;
-    if (args->geometry->tori && is_torus(args->geometry, candidate->prim))
-        return R(decide_torus)(tile, candidate, x, y, near);
     const size_t at = (size_t)(y * tile->across + x) * GLINT_GROUP;
     const vr f[3] = { r_set(candidate->f[0]), r_set(candidate->f[1]), r_set(candidate->f[2]) };
     const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
@@ -404,7 +352,7 @@ INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * cand
             continue;
         vr d[3], t;
         R(load_direction)(directions, args->direction, 0, i, d);
-        const rm hit = R(meet_candidate)(args, candidate, f, d, lanes, &t);
+        const rm hit = R(meet_candidate)(args, candidate, f, d, &t);
         if (!rm_bits(hit))
             continue;
         R(keep_nearest)(args, at + i, candidate->id, hit, t);

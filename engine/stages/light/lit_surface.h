@@ -8,7 +8,6 @@
 #include "engine/stages/light/light.h"
 #include "engine/stages/light/light_sample.h"
 #include "engine/stages/simd/real.h"
-#include "engine/stages/surface/box.h"
 #include "engine/stages/surface/surface.h"
 
 #define LIT_PARTS (GLINT_GROUP / VR)
@@ -89,36 +88,6 @@ INNER void R(light_parts)(const glint_surface_args *surface, const glint_light_a
         R(find_whole)(surface, slot, kind, directions, at, j * VR, d, n, p);
         R(light_part)(surface, light, call, wants, material, d, n, p, at, j, box, whole);
     }
-}
-
-/// Those of a group of one face of a level box. Returns whether it is one; else nothing is done.
-INNER bool R(light_face)(const glint_surface_args *surface, const glint_light_args *light, const R(lit_call) * call,
-                         R(seen_slot) * slot, const R(lit_wants) wants, const glint_shade_material *material, R(group_directions) directions,
-                         size_t at, R(point_box) * box, R(lit_whole) * whole)
-{
-    const glint_prim *prim = slot->prim.prim;
-    const glint_solid *solid = &surface->solids[prim->item];
-    R(level_lanes) lanes = { { 0, 0, 0 }, { 0, 0, 0 }, 0 };
-    vr d[LIT_PARTS][3], p[LIT_PARTS][3], k[3], n[3];
-    if (!slot->view.level || prim->turned)
-        return false;
-#pragma GCC unroll 8
-    for (int j = 0; j < LIT_PARTS; j++) {
-        const vr t = r_load((const real *)surface->t + at + (size_t)(j * VR));
-        R(load_direction)(directions, surface->direction, at, j * VR, d[j]);
-        R(place_in_level)(solid, prim, slot->prim.f, d[j], t, k, p[j]);
-        R(sort_in_level)(&slot->view, k, t, j * VR, &lanes);
-    }
-    const unsigned face = R(face_of_level)(&lanes);
-    if (face == 6)
-        return false;
-    R(normal_of_face)(solid, face, &slot->faces, n);
-#pragma GCC unroll 8
-    for (int j = 0; j < LIT_PARTS; j++) {
-        R(put_on_face)(solid, face, p[j]);
-        R(light_part)(surface, light, call, wants, material, d[j], n, p[j], at, j, box, whole);
-    }
-    return true;
 }
 
 INNER vf R(join)(const vr *x)
@@ -203,7 +172,7 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
         R(light_parts)(surface, light, call, slot, wants, GLINT_PRIM_SPHERE, material, directions, at, box, &whole);
     else if (!solid)
         R(light_parts)(surface, light, call, slot, wants, GLINT_PRIM_PLANE, material, directions, at, box, &whole);
-    else if (!R(light_face)(surface, light, call, slot, wants, material, directions, at, box, &whole))
+    else
         R(light_parts)(surface, light, call, slot, wants, GLINT_PRIM_SOLID, material, directions, at, box, &whole);
     lanes_put(surface->material + at, 0xffff, prim->material);
     surface->back[place.g] = (uint16_t)whole.back;

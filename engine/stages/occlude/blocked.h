@@ -259,34 +259,26 @@ static unsigned R(blocked_by_torus)(const glint_occlude_args *args, const glint_
     const glint_solid *solid = &args->geometry->solids[prim->item];
     const unsigned back = own & args->back[at / GLINT_GROUP], all = (1u << VR) - 1;
     const vr end = r_set(args->directional ? HUGE_VAL : 1 / args->scale);
-    vr f[TORUS_LINES][3], e[TORUS_LINES][3];
-    R(torus_start) start[TORUS_LINES];
-    R(torus_line) l[TORUS_LINES];
     unsigned blocked = 0;
-    int count = 0, from[TORUS_LINES];
     count_tests(args->tests, wanted);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = wanted >> i & all, inside = ~outside >> i & all;
-        vr p[3], d[3];
+        vr p[3], d[3], f[3], e[3];
         if (!lanes)
             continue;
         R(load3)(args->point, at + i, p);
         R(directions_to)(args, position, at, i, d);
-        R(unit_offset)(solid, prim, p, f[count]);
-        R(to_unit)(solid, d, e[count]);
-        start[count] = (R(torus_start)) { rm_from_bits(own >> i & all), rm_from_bits(back >> i & all) };
-        const unsigned gone = rm_bits(R(leaves_torus)((const vr *)f[count], (const vr *)e[count], start[count]));
-        blocked |= (gone & inside & lanes) << i;
-        from[count] = i;
-        count += (lanes & ~gone) != 0;
-    }
-    if (!count)
-        return blocked;
-    R(along_torus)(count, solid, (const vr(*)[3])f, (const vr(*)[3])e, start, l);
-    for (int n = 0; n < count; n++) {
-        const rm inside = rm_from_bits(~outside >> from[n] & all);
-        const rm parted = R(torus_parts)(&l[n], (const vr *)f[n], (const vr *)e[n], end, inside, start[n]);
-        blocked |= (rm_bits(parted) & wanted >> from[n] & all) << from[n];
+        R(unit_offset)(solid, prim, p, f);
+        R(to_unit)(solid, d, e);
+        const R(torus_start) start = { rm_from_bits(own >> i & all), rm_from_bits(back >> i & all) };
+        const unsigned gone = rm_bits(R(leaves_torus)(f, e, start));
+        unsigned parted = gone & inside;
+        if (lanes & ~gone) {
+            R(torus_line) l;
+            R(along_torus)(solid, f, e, start, &l);
+            parted |= rm_bits(R(torus_parts)(&l, f, e, end, rm_from_bits(inside), start));
+        }
+        blocked |= (parted & lanes) << i;
     }
     return blocked;
 }
@@ -311,7 +303,7 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
         R(load3)(args->point, at + i, p);
         R(directions_to)(args, position, at, i, d);
         const rm mine = rm_from_bits(within >> i & ((1u << VR) - 1));
-        blocked |= (rm_bits(R(solid_blocks)(solid, prim, p, d, args->scale, args->directional, mine, lanes)) & lanes) << i;
+        blocked |= (rm_bits(R(solid_blocks)(solid, prim, p, d, args->scale, args->directional, mine)) & lanes) << i;
     }
     return blocked;
 }

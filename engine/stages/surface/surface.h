@@ -8,7 +8,6 @@
 #include "engine/stages/cast/solid.h"
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
-#include "engine/stages/surface/box.h"
 #include "engine/stages/surface/mesh.h"
 #include "engine/stages/surface/sphere.h"
 
@@ -43,8 +42,8 @@ typedef struct R(seen_prim) {
     real from[3], way[3]; ///< of a plane: points are at from + way (t direction): on that axis the plane's own place
 } R(seen_prim);
 
-/// In place, since a copy of numbers that were just written waits for them. view: where the heights of the eye over a solid's faces go.
-static inline void R(see_prim)(const glint_surface_args *args, uint32_t id, R(seen_prim) * seen, R(box_view) * view)
+/// In place, since a copy of numbers that were just written waits for them. height: where the heights of the eye over a solid's faces go.
+static inline void R(see_prim)(const glint_surface_args *args, uint32_t id, R(seen_prim) * seen, real height[6])
 {
     const glint_prim *prim = &args->prims[id];
     *seen = (R(seen_prim)) { .id = id, .prim = prim };
@@ -62,7 +61,7 @@ static inline void R(see_prim)(const glint_surface_args *args, uint32_t id, R(se
             seen->way[k] = k != seen->level;
         }
         if (prim->kind == GLINT_PRIM_SOLID && args->camera)
-            R(start_at_eye)(&args->solids[prim->item], prim, args->camera->eye, seen->f, view->height);
+            R(start_at_eye)(&args->solids[prim->item], prim, args->camera->eye, seen->f, height);
         return;
     }
     seen->scale = (real)glint_sphere_scale(prim);
@@ -77,8 +76,7 @@ static inline void R(see_prim)(const glint_surface_args *args, uint32_t id, R(se
 /// One primitive and its constants.
 typedef struct R(seen_slot) {
     R(seen_prim) prim;
-    R(box_view) view; ///< where it is a box; of another solid the heights
-    R(box_faces) faces; ///< likewise
+    real height[6]; ///< of the eye over a solid's faces
 } R(seen_slot);
 
 #define SEEN_SLOTS 4 ///< a tile's groups come back to the same few
@@ -110,27 +108,24 @@ INNER void R(face_viewer)(const vr n[3], R(found) * found)
         found->normal[k] = r_select(found->back, -n[k], n[k]);
 }
 
-INNER void R(find_on_solid)(const glint_surface_args *args, R(seen_slot) * slot, const vr from[3], const vr d[3], vr t,
-                            unsigned lanes, vr n[3], vr p[3])
+INNER void R(find_on_solid)(const glint_surface_args *args, R(seen_slot) * slot, const vr from[3], const vr d[3], vr t, vr n[3],
+                            vr p[3])
 {
     const R(seen_prim) *seen = &slot->prim;
     const glint_solid *solid = &args->solids[seen->prim->item];
-    const bool box = args->camera && solid->form == GLINT_FORM_BOX;
-    if (!box || !R(box_surface)(solid, seen->prim, seen->f, &slot->view, d, t, lanes, &slot->faces, n, p)) {
-        R(solid_start) start = { .place = from, .height = args->camera ? slot->view.height : NULL };
-        for (int k = 0; k < 3; k++)
-            start.f[k] = r_set(seen->f[k]);
-        if (!args->camera)
-            R(unit_offset)(solid, seen->prim, from, start.f);
-        R(solid_surface)(solid, seen->prim, &start, d, t, lanes, &slot->faces, n, p);
-    }
+    R(solid_start) start = { .place = from, .height = args->camera ? slot->height : NULL };
+    for (int k = 0; k < 3; k++)
+        start.f[k] = r_set(seen->f[k]);
+    if (!args->camera)
+        R(unit_offset)(solid, seen->prim, from, start.f);
+    R(solid_surface)(solid, seen->prim, &start, d, t, n, p);
     for (int k = 0; seen->prim->turned && k < 3; k++)
         n[k] = -n[k];
 }
 
-/// Computes those of the lanes from i on that are in `lanes`; others are undefined.
+/// Of a vector of lanes from i on.
 INNER void R(find_lanes)(const glint_surface_args *args, R(seen_slot) * slot, R(group_directions) directions, size_t at,
-                         int i, unsigned lanes, bool mixed, R(found) * found)
+                         int i, bool mixed, R(found) * found)
 {
     const R(seen_prim) *seen = &slot->prim;
     const glint_prim *prim = seen->prim;
@@ -159,7 +154,7 @@ INNER void R(find_lanes)(const glint_surface_args *args, R(seen_slot) * slot, R(
             R(corners_of)(prim, corner);
             R(triangle_point)(corner, args->scale, from, d, w, p, &found->slack);
         } else if (mixed && prim->kind == GLINT_PRIM_SOLID)
-            R(find_on_solid)(args, slot, from, d, t, lanes, n, p);
+            R(find_on_solid)(args, slot, from, d, t, n, p);
     }
     if (prim->kind == GLINT_PRIM_PLANE && seen->level == 3)
         R(onto_plane_of)(prim, n, p);
@@ -293,10 +288,7 @@ static __attribute__((noinline)) void R(look_at_other)(const glint_surface_args 
     walk->only = id;
     if (slot->prim.id == id)
         return;
-    R(see_prim)(args, id, &slot->prim, &slot->view);
-    slot->faces.known = 0;
-    if (slot->prim.prim->kind == GLINT_PRIM_SOLID && args->camera)
-        R(view_box)(&args->solids[slot->prim.prim->item], slot->prim.f, &slot->view);
+    R(see_prim)(args, id, &slot->prim, slot->height);
 }
 
 INNER void R(look_at)(const glint_surface_args *args, R(surface_walk) * walk, const bool mixed, uint32_t id)
@@ -350,7 +342,7 @@ INNER void R(find_whole)(const glint_surface_args *args, R(seen_slot) * slot, co
     if (kind == GLINT_PRIM_SOLID) {
         const double *eye = args->camera->eye;
         const vr from[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
-        R(find_on_solid)(args, slot, from, d, t, (1u << VR) - 1, n, p);
+        R(find_on_solid)(args, slot, from, d, t, n, p);
         return;
     }
     if (kind == GLINT_PRIM_SPHERE) {
@@ -447,7 +439,7 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
             if (!here)
                 continue;
             R(found) found;
-            R(find_lanes)(args, slot, directions, at, i, here, way == R(MIXED), &found);
+            R(find_lanes)(args, slot, directions, at, i, way == R(MIXED), &found);
             behind |= R(put_found)(args, &found, at + (size_t)i, here, way, box) << i;
         }
         if (way != R(POINTS_ALONE))
