@@ -133,7 +133,7 @@ static inline void resolve_mixed(const samples_frame *frame, uint32_t g)
     colors.of = NULL;
     memset(sum, 0, sizeof sum);
     for (uint32_t k = 0; k < frame->count; k++)
-        shade_sums(&frame->sample[k], false, g, &colors, &sums); // few are whole
+        shade_sums(&frame->sample[k], g, &colors, &sums);
     for (int term = 0; term < GLINT_TERM_LOCAL; term++)
         for (int c = 0; c < 3; c++)
             for (int i = 0; i < GLINT_GROUP; i += VD)

@@ -291,78 +291,10 @@ static void choose(const glint_choose_args *args)
     }
 }
 
-#define CHECKER_OUTPUTS 3
-
-/// How a program ends that is a checker: with a parity, by which the outputs are one of two reflectances each.
-typedef struct checker {
-    const glint_program_args *args;
-    const glint_instruction *parity; ///< only selects follow
-    op_call call; ///< of it
-    vf number[CHECKER_OUTPUTS][2];
-} checker;
-
-/// Finds what output k is one of. Returns false where it is not.
-static bool find_numbers(checker *to, uint32_t k)
-{
-    const glint_program_args *args = to->args;
-    const glint_instruction *parity = to->parity;
-    float number[2];
-    const glint_instruction *at = glint_find_choice(args->code, k, number);
-    if (!at || at < parity || at->in[0] != parity->out[0] || args->result[k] || args->total[k] || !args->plane[k])
-        return false;
-    for (const glint_instruction *before = parity + 1; before < at; before++)
-        if (before->out[0] == parity->out[0])
-            return false;
-    for (int i = 0; i < 2; i++)
-        to->number[k][i] = f_set(number[i]);
-    return true;
-}
-
-static bool is_checker(const glint_program_args *args, checker *to)
-{
-    const glint_program_code *code = args->code;
-    const glint_instruction *parity = code->instructions + code->length;
-    if (code->output_count > CHECKER_OUTPUTS || args->sums_count || args->added[0])
-        return false;
-    do
-        if (parity-- == code->instructions)
-            return false;
-    while (parity->op == GLINT_OP_SELECT);
-    if (parity->op != GLINT_OP_PARITY)
-        return false;
-    to->args = args;
-    to->parity = parity;
-    for (uint32_t k = 0; k < code->output_count; k++)
-        if (!find_numbers(to, k))
-            return false;
-    for (uint32_t k = 0; k < parity->operands; k++)
-        to->call.in[k] = find_operand(args, parity->in[k], &to->call.step[k]);
-    return true;
-}
-
-/// Computes a checker in one pass without rows: the parity and the operations after it.
-static void end_checker(const checker *by)
-{
-    const glint_program_args *args = by->args;
-    for (uint32_t g = 0; g < args->group_count; g++) {
-        const size_t from = (size_t)g * GLINT_GROUP, to = (size_t)(args->groups ? args->groups[g] : g) * GLINT_GROUP;
-        unsigned even = 0;
-        for (size_t i = 0; i < GLINT_GROUP; i += VD) {
-            const vd parity = d_parity(op_in(&by->call, 0, from + i), op_in(&by->call, 1, from + i),
-                                       op_in(&by->call, 2, from + i));
-            even |= dm_bits(d_eq(parity, d_set(0))) << i;
-        }
-        for (uint32_t k = 0; k < args->code->output_count; k++)
-            choose_lanes(args->plane[k] + to, args->wanted[g], ~even, by->number[k][0], by->number[k][1]);
-    }
-}
-
 static void program(const glint_program_args *args)
 {
     const glint_program_code *code = args->code;
-    checker even;
-    const bool checks = is_checker(args, &even);
-    const glint_instruction *end = checks ? even.parity : code->instructions + code->length;
+    const glint_instruction *end = code->instructions + code->length;
     double *rows = args->rows;
     for (uint32_t g = 0; args->odd && g < args->group_count; g++)
         args->odd[g] = 0;
@@ -376,10 +308,6 @@ static void program(const glint_program_args *args)
         if (at->op >= GLINT_OP_TEXEL)
             call.texture = code->textures[at->texture];
         op_kernels[at->op](&call);
-    }
-    if (checks) {
-        end_checker(&even);
-        return;
     }
     if (args->sums_count)
         add_sums(args);

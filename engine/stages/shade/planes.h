@@ -4,7 +4,6 @@
 
 #include "engine/stages/program/exact.h"
 #include "engine/stages/shade/group.h"
-#include "engine/stages/shade/matt.h"
 #include "engine/stages/shade/microfacet_lobes.h"
 #include "engine/stages/shade/phong.h"
 #include "engine/stages/simd/elementary.h"
@@ -118,192 +117,51 @@ static inline void sum_plane_shares(const glint_shade_args *args, const glint_sh
         d_store_f(sum + i, total[i / VD]);
 }
 
-/// A vector of a plane, in double.
-typedef struct wide_lanes {
+/// A vector of a plane times a number, in double.
+static inline vf scaled_plane(const float *plane, double number)
+{
     vd part[VF / VD];
-} wide_lanes;
-
-static inline wide_lanes wide_of(const float *plane)
-{
-    wide_lanes wide;
-    f_split(f_load(plane), wide.part);
-    return wide;
+    f_split(f_load(plane), part);
+    return f_join(part[0] * d_set(number), part[1] * d_set(number));
 }
 
-static inline vf narrow(const wide_lanes *wide, double number)
-{
-    return f_join(wide->part[0] * d_set(number), wide->part[1] * d_set(number));
-}
-
-/// Of one channel what planes are multiplied by, and the products where there are none: read once, as stores may change what
-/// pointers lead to.
-typedef struct channel_numbers {
-    double ambient, diffuse, specular;
-    float ambient_color, diffuse_color, specular_color;
-} channel_numbers;
-
-static inline channel_numbers numbers_of(const glint_shade_args *args, const glint_shade_material *material,
-                                         const glint_shade_light *light, int c)
-{
-    const double diffuse = light ? light->diffuse[c] : 0, specular = light ? light->specular[c] : 0;
-    return (channel_numbers) { args->planes->ambient_light[c],
-                               material->diffuse[c] * diffuse,
-                               material->specular[c] * specular,
-                               (float)material->ambient[c],
-                               share_color(material->diffuse[c], diffuse),
-                               share_color(material->specular[c], specular) };
-}
-
-/// What reaches a group that shows one material in every lane, of one light at most. NULL, a constant: no factors are stored, as there
-/// are no highlights.
-typedef struct group_light {
-    const light_factors *factors;
-    const glint_shade_light *light; ///< NULL: none reaches it
-    bool shines; ///< there are highlights
-} group_light;
-
-/// One vector of the light's diffuse factor.
-INNER vf group_diffuse(const group_light *by, size_t at, int i)
-{
-    return by->factors ? f_load(by->factors->diffuse[0] + i) : diffuse_factor(by->light, at, i);
-}
-
-/// One channel of a group. `has`: the material's planes.
-INNER void whole_channel(const glint_shade_args *args, const channel_numbers *by, unsigned has, const group_light *from, int c,
-                         size_t at)
+/// One channel of whole_planes. `has`: the material's planes. light NULL: none reaches the group. Numbers are read first, as stores
+/// may change what pointers lead to.
+INNER void whole_channel(const glint_shade_args *args, const glint_shade_material *material, unsigned has, bool shines,
+                         const light_factors *factors, int c, size_t at)
 {
     const glint_shade_planes *planes = args->planes;
-    const bool follows = has & GLINT_PLANE_AMBIENT_IS_DIFFUSE, painted = follows || has & GLINT_PLANE_DIFFUSE;
-    const float *diffuse = painted ? planes->diffuse[c] + at : NULL,
-                *ambient = has & GLINT_PLANE_AMBIENT ? planes->ambient[c] + at : NULL,
+    const glint_shade_light *light = factors->count ? factors->light[0] : NULL;
+    const bool follows = has & GLINT_PLANE_AMBIENT_IS_DIFFUSE;
+    const float *ambient = follows ? planes->diffuse[c] + at : has & GLINT_PLANE_AMBIENT ? planes->ambient[c] + at : NULL;
+    const float *diffuse = has & GLINT_PLANE_DIFFUSE ? planes->diffuse[c] + at : NULL,
                 *specular = has & GLINT_PLANE_SPECULAR ? planes->specular[c] + at : NULL;
+    const double ambient_light = planes->ambient_light[c], kd = light ? material->diffuse[c] * light->diffuse[c] : 0,
+                 ks = light ? material->specular[c] * light->specular[c] : 0;
+    const float own[3] = { (float)material->ambient[c], light ? share_color(material->diffuse[c], light->diffuse[c]) : 0,
+                           light ? share_color(material->specular[c], light->specular[c]) : 0 };
     float *beauty = args->beauty[c] + at;
-    const bool lit = from->light, shines = lit && from->shines;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        wide_lanes kd, other;
-        vf sum = f_set(by->ambient_color), color = f_set(by->diffuse_color), shine = f_set(by->specular_color);
-        if (diffuse)
-            kd = wide_of(diffuse + i);
-        if (follows) {
-            sum = narrow(&kd, by->ambient);
-        } else if (ambient) {
-            other = wide_of(ambient + i);
-            sum = narrow(&other, by->ambient);
-        }
-        if (has & GLINT_PLANE_DIFFUSE)
-            color = f_min(narrow(&kd, by->diffuse), f_set(FLT_MAX));
-        if (lit)
-            sum = sum + group_diffuse(from, at, i) * color;
-        if (shines && specular)
-            shine = plane_color(specular + i, by->specular);
-        if (shines)
-            sum = sum + f_load(from->factors->specular[0] + i) * shine;
+        vf sum = ambient ? scaled_plane(ambient + i, ambient_light) : f_set(own[0]);
+        if (light)
+            sum = sum + f_load(factors->diffuse[0] + i) * (diffuse ? plane_color(diffuse + i, kd) : f_set(own[1]));
+        if (light && shines)
+            sum = sum + f_load(factors->specular[0] + i) * (specular ? plane_color(specular + i, ks) : f_set(own[2]));
         f_store(beauty + i, sum);
     }
 }
 
-/// Products of the last group, which the next group often shares.
-typedef struct plane_numbers {
-    const glint_shade_material *material; ///< NULL: none yet
-    const glint_shade_light *light; ///< NULL: none reaches it
-    bool grey; ///< its diffuse reflectance and the light's colour are the same in all channels, which share a plane
-    bool level; ///< of a grey one: so is ambient light
-    bool white; ///< of a grey one: it is the plane
-    channel_numbers channel[3];
-} plane_numbers;
-
-static void read_numbers(const glint_shade_args *args, const glint_shade_material *material,
-                         const glint_shade_light *light, plane_numbers *numbers)
-{
-    const float *const *diffuse = args->planes->diffuse;
-    numbers->material = material;
-    numbers->light = light;
-    for (int c = 0; c < 3; c++)
-        numbers->channel[c] = numbers_of(args, material, light, c);
-    numbers->grey = numbers->level = true;
-    for (int c = 1; c < 3; c++) {
-        numbers->grey = numbers->grey && diffuse[c] == diffuse[0] &&
-                        numbers->channel[c].diffuse == numbers->channel[0].diffuse;
-        numbers->level = numbers->level && numbers->channel[c].ambient == numbers->channel[0].ambient;
-    }
-    numbers->white = numbers->channel[0].diffuse == 1;
-}
-
-/// All channels of a group whose diffuse light is grey; the ambient reflectance is the diffuse one.
-INNER void whole_grey(const glint_shade_args *args, const plane_numbers *numbers, const group_light *from, size_t at)
-{
-    const float *diffuse = args->planes->diffuse[0] + at;
-    float *const beauty[3] = { args->beauty[0] + at, args->beauty[1] + at, args->beauty[2] + at };
-    const bool lit = from->light, shines = lit && from->shines;
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const vf plane = f_load(diffuse + i);
-        const wide_lanes kd = wide_of(diffuse + i);
-        vf light = f_set(0), ambient = narrow(&kd, numbers->channel[0].ambient);
-        if (lit && numbers->white) // a reflectance, and so finite
-            light = group_diffuse(from, at, i) * plane;
-        else if (lit)
-            light = group_diffuse(from, at, i) * f_min(narrow(&kd, numbers->channel[0].diffuse), f_set(FLT_MAX));
-        if (numbers->level && !shines) {
-            if (lit)
-                ambient = ambient + light;
-            for (int c = 0; c < 3; c++)
-                f_store(beauty[c] + i, ambient);
-            continue;
-        }
-        for (int c = 0; c < 3; c++) {
-            if (c > 0 && !numbers->level)
-                ambient = narrow(&kd, numbers->channel[c].ambient);
-            vf sum = ambient;
-            if (lit)
-                sum = sum + light;
-            if (shines)
-                sum = sum + f_load(from->factors->specular[0] + i) * f_set(numbers->channel[c].specular_color);
-            f_store(beauty[c] + i, sum);
-        }
-    }
-}
-
-/// All of it. Diffuse reflectances that are the ambient ones, too, are the common case.
-INNER void whole_painted(const glint_shade_args *args, const glint_shade_material *material, const group_light *from, size_t at,
-                         plane_numbers *numbers)
+/// As shade_whole. Diffuse reflectances that are the ambient ones, too, are the common case.
+static __attribute__((noinline)) void whole_planes(const glint_shade_args *args, const glint_shade_material *material,
+                                                   bool shines, const light_factors *factors, size_t at)
 {
     const unsigned painted = GLINT_PLANE_DIFFUSE | GLINT_PLANE_AMBIENT_IS_DIFFUSE, has = material->planes;
-    const bool usual = (has & ~(unsigned)GLINT_PLANE_SHININESS) == painted;
-    if (numbers->material != material || numbers->light != from->light)
-        read_numbers(args, material, from->light, numbers);
-    if (usual && numbers->grey) {
-        whole_grey(args, numbers, from, at);
-        return;
-    }
     for (int c = 0; c < 3; c++) {
-        if (usual)
-            whole_channel(args, &numbers->channel[c], painted, from, c, at);
+        if ((has & ~(unsigned)GLINT_PLANE_SHININESS) == painted)
+            whole_channel(args, material, painted, shines, factors, c, at);
         else
-            whole_channel(args, &numbers->channel[c], has, from, c, at);
+            whole_channel(args, material, has, shines, factors, c, at);
     }
-}
-
-/// As shade_whole.
-static __attribute__((noinline)) void whole_planes(const glint_shade_args *args, const glint_shade_material *material,
-                                                   bool shines, const light_factors *factors, size_t at,
-                                                   plane_numbers *numbers)
-{
-    const group_light from = { factors, factors->count ? factors->light[0] : NULL, shines };
-    whole_painted(args, material, &from, at, numbers);
-}
-
-/// Whether whole_matt_planes can shade it.
-static inline bool is_matt_painted(const glint_shade_args *args, const glint_shade_material *material, bool specular)
-{
-    return has_only_factors(args, specular) && !(material->planes & GLINT_PLANE_SHADED) && !has_facets(material);
-}
-
-/// The same of a material without highlights.
-static __attribute__((noinline)) void whole_matt_planes(const glint_shade_args *args, const glint_shade_material *material,
-                                                        size_t at, plane_numbers *numbers)
-{
-    const group_light from = { NULL, args->lights->lit[at / GLINT_GROUP] ? args->lights : NULL, false };
-    whole_painted(args, material, &from, at, numbers);
 }
 
 /// As shade_direct.
@@ -348,43 +206,6 @@ static inline reached_lanes find_reached(unsigned lit)
     for (int i = 0; i < GLINT_GROUP; i += VF)
         reached.part[i / VF] = fm_from_bits(lit >> i & ((1u << VF) - 1));
     return reached;
-}
-
-/// One channel of whole_shaded. `whole`, a constant: light reaches every lane.
-INNER void channel_shaded(const glint_shade_args *args, const glint_shade_material *material, int c, size_t at,
-                          const bool whole, const reached_lanes *reached)
-{
-    const bool painted = material->planes & (GLINT_PLANE_AMBIENT | GLINT_PLANE_AMBIENT_IS_DIFFUSE);
-    const float *diffuse = args->planes->shaded[0][c] + at, *specular = args->planes->shaded[1][c] + at;
-    float *beauty = args->beauty[c] + at;
-    vf ambient = f_set((float)material->ambient[c]);
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const size_t k = at + (size_t)i;
-        vf kd = f_load(diffuse + i), ks = f_load(specular + i);
-        if (painted)
-            ambient = f_join(plane_ambient(args, material, c, k), plane_ambient(args, material, c, k + VD));
-        if (!whole) {
-            kd = f_select(reached->part[i / VF], kd, f_set(0));
-            ks = f_select(reached->part[i / VF], ks, f_set(0));
-        }
-        f_store(beauty + i, (ambient + kd) + ks);
-    }
-}
-
-/// As shade_whole, of a material whose light is in planes.
-static __attribute__((noinline)) void whole_shaded(const glint_shade_args *args, const glint_shade_material *material,
-                                                   uint32_t g)
-{
-    const size_t at = (size_t)g * GLINT_GROUP;
-    const unsigned lit = lanes_reached(args, g);
-    if (lit == 0xffff) {
-        for (int c = 0; c < 3; c++)
-            channel_shaded(args, material, c, at, true, NULL);
-        return;
-    }
-    const reached_lanes reached = find_reached(lit);
-    for (int c = 0; c < 3; c++)
-        channel_shaded(args, material, c, at, false, &reached);
 }
 
 /// As shade_direct.

@@ -6,15 +6,14 @@
 #include "engine/stages/program/exact.h"
 #include "engine/stages/program/texel.h"
 #include "engine/stages/shade/group.h"
-#include "engine/stages/shade/matt.h"
 #include "engine/stages/shade/microfacet_lobes.h"
 #include "engine/stages/shade/mixed.h"
 #include "engine/stages/shade/phong.h"
 #include "engine/stages/shade/planes.h"
 #include "engine/stages/simd/elementary.h"
 
-/// A group of one sample, added to sums. plain: has_plain_lights(args), or false.
-static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, bool plain, uint32_t g, light_colors *colors,
+/// A group of one sample, added to sums.
+static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, uint32_t g, light_colors *colors,
                                                  const group_sums *to)
 {
     const unsigned hits = args->hits[g], empty = args->active[g] & ~hits;
@@ -29,10 +28,6 @@ static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, b
         if (GLINT_WITH_PROGRAM && material->planes) {
             add_planes(args, material, specular, g, to, lanes);
             continue;
-        }
-        if (plain && !specular && lanes == 0xffff) {
-            add_matt(args, material, g, colors, to);
-            return;
         }
         find_factors(args, material, specular, g, &factors);
         if (lanes == 0xffff)
@@ -127,9 +122,9 @@ static inline bool wants_terms(const glint_shade_args *args)
     return false;
 }
 
-/// A group whose terms are final; `simple` is a constant. plain: has_plain_lights(args).
-INNER void shade_group(const glint_shade_args *args, const bool simple, bool plain, uint32_t g, plane_numbers *numbers,
-                       light_colors *colors, mixed_table *mixed)
+/// A group whose terms are final; `simple` is a constant.
+INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t g, light_colors *colors,
+                       mixed_table *mixed)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
     unsigned left = args->hits[g];
@@ -150,18 +145,6 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, bool pla
         const bool specular = args->highlights && material->highlight;
         const bool planes = GLINT_WITH_PROGRAM && material->planes;
         const bool shaded = planes && material->planes & GLINT_PLANE_SHADED && args->planes->shaded[0][0];
-        if (shaded && simple && lanes == 0xffff) {
-            whole_shaded(args, material, g);
-            return;
-        }
-        if (plain && !specular && !planes && simple && lanes == 0xffff) {
-            shade_matt(args, material, colors, at);
-            return;
-        }
-        if (planes && simple && lanes == 0xffff && is_matt_painted(args, material, specular)) {
-            whole_matt_planes(args, material, at, numbers);
-            return;
-        }
         if (simple && lanes == 0xffff && mixed->usable && is_plain_material(material)) {
             shade_whole(args, material, mixed_numbers_of(args, material, mixed), g);
             return;
@@ -171,7 +154,7 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, bool pla
         else
             find_factors(args, material, specular, g, &factors);
         if (planes && !shaded && simple && lanes == 0xffff && factors.count <= 1 && !has_facets(material)) {
-            whole_planes(args, material, specular && factors.shiny, &factors, at, numbers);
+            whole_planes(args, material, specular && factors.shiny, &factors, at);
             return;
         }
         if (!planes && simple && lanes == 0xffff) {
@@ -195,8 +178,7 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, bool pla
 
 static void shade(const glint_shade_args *args)
 {
-    const bool simple = !wants_terms(args), plain = has_plain_lights(args);
-    plane_numbers numbers = { 0 };
+    const bool simple = !wants_terms(args);
     light_colors colors;
     mixed_table mixed;
     colors.of = NULL;
@@ -204,14 +186,14 @@ static void shade(const glint_shade_args *args)
     if (GLINT_WITH_SAMPLES && args->sum[0][0]) {
         for (uint32_t g = 0; g < args->group_count; g++) {
             const group_sums sums = { args->sum, (size_t)g * GLINT_GROUP };
-            shade_sums(args, plain, g, &colors, &sums);
+            shade_sums(args, g, &colors, &sums);
         }
     } else if (simple) {
         for (uint32_t g = 0; g < args->group_count; g++)
-            shade_group(args, true, plain, g, &numbers, &colors, &mixed);
+            shade_group(args, true, g, &colors, &mixed);
     } else {
         for (uint32_t g = 0; g < args->group_count; g++)
-            shade_group(args, false, plain, g, &numbers, &colors, &mixed);
+            shade_group(args, false, g, &colors, &mixed);
     }
 }
 
