@@ -1172,14 +1172,6 @@ typedef struct glint_renderer glint_renderer;
 /// A rendered picture: planes of its passes, and codes. Immutable, reference counted; any thread.
 typedef struct glint_image glint_image;
 
-/// What is done in a tile whose hits are kept from an earlier frame and whose points are needed, as under a moved light: reading what
-/// is kept may take longer than finding it. The pictures are the same.
-typedef enum glint_hits_choice {
-    GLINT_HITS_MEASURED, ///< (default) each tile by its own time: frames go both ways in turn, then the quicker one
-    GLINT_HITS_KEPT, ///< they are read
-    GLINT_HITS_ANEW ///< they are found again
-} glint_hits_choice;
-
 /// The fields of a renderer.
 typedef struct glint_renderer_desc {
     int threads; ///< 1 .. 1024 workers; 0 (default): one per processor the process may use
@@ -1188,13 +1180,12 @@ typedef struct glint_renderer_desc {
     bool count_work; ///< fill in the work of the stats (costs some per cent)
     bool no_reuse; ///< keep nothing from frame to frame; the pictures are the same
     size_t reuse_memory; ///< bytes that may be kept between frames; 0 (default): a quarter of the machine's memory
-    glint_hits_choice hits; ///< GLINT_HITS_MEASURED: what the environment's GLINT_HITS says, "measured", "kept" or "anew", if anything
 } glint_renderer_desc;
 
 /// A thread a processor, the best instruction set, reuse within a quarter of the memory.
 glint_renderer_desc glint_renderer_desc_default(void);
 /// GLINT_ERR_UNSUPPORTED when the machine lacks that instruction set, GLINT_ERR_INVALID when there is none
-/// of that name, or GLINT_HITS is another word.
+/// of that name.
 glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error);
 /// Ends the threads and frees what was kept; no frame may be running. NULL: nothing.
 void glint_renderer_destroy(glint_renderer *renderer);
@@ -1243,9 +1234,6 @@ typedef struct glint_frame_stats {
     /// Share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
     double stage_reused[GLINT_STAGE_MAX];
     glint_ray_counts rays; ///< as cast; reused stages cast none
-    uint64_t hits_kept, hits_anew; ///< tiles whose hits were at hand and whose points were needed: those that read them, and those
-        ///< that found them again, because that is the quicker way there or to see whether it is
-    double hits_kept_us, hits_anew_us; ///< what such a tile takes either way: the mean of the least times seen; 0: not measured
     glint_work work; ///< 0 unless the renderer counts it; what is reused took none
     uint64_t refined; ///< pixels that got all samples, where `adaptive` chooses; else 0
     uint64_t pixels; ///< rendered: of a region those of the tiles that it touches; `clipped` and `nonfinite` are of these

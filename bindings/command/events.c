@@ -54,17 +54,6 @@ void cli_print_rays(FILE *out, const glint_ray_counts *rays)
             rays->primary, rays->shadow, rays->mirror, rays->refraction, rays->indirect);
 }
 
-// For tiles with cached hits: how many read them, how many cast again, and the time of each.
-static void print_hits(FILE *out, const glint_frame_stats *stats)
-{
-    if (stats->hits_kept + stats->hits_anew == 0)
-        return;
-    fprintf(out, ",\"hits\":{\"kept\":%" PRIu64 ",\"anew\":%" PRIu64, stats->hits_kept, stats->hits_anew);
-    if (stats->hits_kept_us > 0)
-        fprintf(out, ",\"kept_us\":%.3f,\"anew_us\":%.3f", stats->hits_kept_us, stats->hits_anew_us);
-    fputc('}', out);
-}
-
 static void print_file(FILE *out, const char *path)
 {
     if (path)
@@ -108,7 +97,6 @@ static void print_frame_json(cli_output *output, const glintL_record *record)
     print_times(out, record);
     fputc(',', out);
     cli_print_rays(out, &record->stats.rays);
-    print_hits(out, &record->stats);
     fprintf(out, ",\"refined\":%" PRIu64, record->stats.refined);
     if (*record->derivative[0] && !record->kept) {
         fputs(",\"shifted\":", out);

@@ -15,23 +15,6 @@ typedef struct frame {
     glint_extent extent;
 } frame;
 
-/// Reads the choice from the environment, if it is left open.
-static glint_status choose_hits(glint_hits_choice *hits, glint_error *error)
-{
-    static const char *const words[] = { "measured", "kept", "anew" };
-    const char *word = getenv("GLINT_HITS");
-    if ((unsigned)*hits > GLINT_HITS_ANEW)
-        return glint_fail(error, GLINT_ERR_INVALID, "hits: one of glint_hits_choice expected, got %d", (int)*hits);
-    if (*hits != GLINT_HITS_MEASURED || !word || !*word)
-        return GLINT_OK;
-    for (int i = 0; i < 3; i++)
-        if (strcmp(word, words[i]) == 0) {
-            *hits = (glint_hits_choice)i;
-            return GLINT_OK;
-        }
-    return glint_fail(error, GLINT_ERR_INVALID, "GLINT_HITS: measured, kept or anew expected, got '%.40s'", word);
-}
-
 glint_renderer_desc glint_renderer_desc_default(void) { return (glint_renderer_desc) { 0 }; }
 
 glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error)
@@ -47,11 +30,8 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
     renderer->refine = &renderer->own_refine;
     renderer->time_stages = desc->time_stages;
     renderer->count_work = desc->count_work;
-    glint_hits_choice hits = desc->hits;
-    glint_status status = choose_hits(&hits, error);
-    glint_reuse_init(&renderer->reuse, !desc->no_reuse, desc->reuse_memory, hits);
-    if (!status)
-        status = glint_choose_isa(desc->isa, &renderer->stages, error);
+    glint_reuse_init(&renderer->reuse, !desc->no_reuse, desc->reuse_memory);
+    glint_status status = glint_choose_isa(desc->isa, &renderer->stages, error);
     const int threads = desc->threads ? desc->threads : glint_pool_processors();
     if (!status)
         status = glint_pool_create(threads, &renderer->pool, error);

@@ -29,11 +29,6 @@ static void add_counts(glint_tile_counts *to, const glint_tile_counts *more)
     to->indirect += more->indirect;
     to->clipped += more->clipped;
     to->nonfinite += more->nonfinite;
-    to->compared += more->compared;
-    for (int way = 0; way < 2; way++) {
-        to->ways[way] += more->ways[way];
-        to->way_ns[way] += more->way_ns[way];
-    }
     glint_work_add(&to->work, &more->work);
     glint_odd_patterns_add(&to->odd, &more->odd);
 }
@@ -72,7 +67,6 @@ void glint_renderer_collect(const glint_renderer *renderer, const glint_plan *pl
     sum.reuses[GLINT_STAGE_VERTEX] += renderer->shading_points.ready;
     sum.ns[GLINT_STAGE_CAST] += (uint64_t)(renderer->raster.ms * 1e6) * (uint64_t)threads;
     const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
-    const double compared = sum.compared ? (double)sum.compared : 1;
     *out = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned),
                                  .tone_ms = wall_ms * toned,
                                  .rays = { .primary = sum.primary,
@@ -80,10 +74,6 @@ void glint_renderer_collect(const glint_renderer *renderer, const glint_plan *pl
                                            .mirror = sum.mirror,
                                            .refraction = sum.refraction,
                                            .indirect = sum.indirect },
-                                 .hits_kept = sum.ways[0],
-                                 .hits_anew = sum.ways[1],
-                                 .hits_kept_us = sum.way_ns[0] * 1e-3 / compared,
-                                 .hits_anew_us = sum.way_ns[1] * 1e-3 / compared,
                                  .work = sum.work,
                                  .pixels = (uint64_t)extent->width * (uint64_t)extent->height,
                                  .clipped = sum.clipped,
@@ -125,20 +115,7 @@ uint64_t glint_count_shifted(const glint_image *image, const glint_extent *exten
 
 // ---- Of several parts ----
 
-/// Merges the mean times of measured tiles; either part may have none.
-static void add_hits(glint_frame_stats *to, const glint_frame_stats *more)
-{
-    const double own = to->hits_kept_us > 0 ? (double)(to->hits_kept + to->hits_anew) : 0;
-    const double other = more->hits_kept_us > 0 ? (double)(more->hits_kept + more->hits_anew) : 0;
-    if (other > 0) {
-        to->hits_kept_us = (own * to->hits_kept_us + other * more->hits_kept_us) / (own + other);
-        to->hits_anew_us = (own * to->hits_anew_us + other * more->hits_anew_us) / (own + other);
-    }
-    to->hits_kept += more->hits_kept;
-    to->hits_anew += more->hits_anew;
-}
-
-static void add_odd(glint_odd *to, const glint_odd *more)
+static void add_odd(glint_frame_stats *to, const glint_frame_stats *more)
 {
     const uint64_t count = to->count + more->count;
     if (!to->count)
@@ -156,9 +133,7 @@ void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more,
     to->rays.refraction += more->rays.refraction;
     to->rays.indirect += more->rays.indirect;
     glint_work_add(&to->work, &more->work);
-    add_hits(to, more);
-    for (int kind = 0; kind < GLINT_ODD_COUNT; kind++)
-        add_odd(&to->odd[kind], &more->odd[kind]);
+    add_odd(to, more);
     for (int i = 0; i < to->stage_count; i++)
         for (int k = 0; k < more->stage_count; k++) {
             if (to->stage_name[i] != more->stage_name[k] || to->stage_name[i] == glint_stage_table[GLINT_STAGE_TONE]->name)

@@ -10,12 +10,11 @@
 #define CHUNK_BYTES ((size_t)4 << 20)
 #define BLOCK_ALIGN 64
 
-void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget, glint_hits_choice hits)
+void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget)
 {
     memset(reuse, 0, sizeof *reuse);
     pthread_mutex_init(&reuse->lock, NULL);
     reuse->on = on;
-    reuse->hits = hits;
     reuse->budget = budget ? budget : (size_t)sysconf(_SC_PHYS_PAGES) / 4 * (size_t)sysconf(_SC_PAGESIZE);
 }
 

@@ -36,13 +36,7 @@ typedef struct glint_cached_light {
     float brightest; ///< the largest log2_specular of lit lanes, in shadow or not
 } glint_cached_light;
 
-/// What a tile's frame took with kept hits and with new ones.
-typedef struct glint_cached_ways {
-    uint32_t turn; ///< frames so far in which it could go either way
-    float least[2]; ///< ns, of those that were timed: with kept hits, with new ones
-} glint_cached_ways;
-
-#define GLINT_SHOWN_MAX 8 ///< largest number of materials that are distinguished in a tile
+#define GLINT_SHOWN_MAX 8 ///< materials of a tile that are told apart
 
 typedef struct glint_cached_tile {
     uint64_t pixels; ///< adaptive sampling: the pixels that these results belong to; 0: all
@@ -51,7 +45,6 @@ typedef struct glint_cached_tile {
     void *t; ///< doubles or floats; in one block with prim and hits
     uint32_t *prim;
     uint16_t *hits;
-    glint_cached_ways ways;
     glint_key view;
     float *facing; ///< its own block
     glint_key pattern;
@@ -112,7 +105,6 @@ typedef struct glint_earlier {
 
 typedef struct glint_reuse {
     bool on;
-    glint_hits_choice hits;
     size_t budget;
     size_t pictures; ///< bytes of the budget used by whole pictures, see glint_reuse_reserve
     size_t used; ///< bytes of the budget used by tiles
@@ -140,7 +132,7 @@ typedef struct glint_reuse {
 } glint_reuse;
 
 /// budget  bytes; 0: a quarter of the machine's memory.
-void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget, glint_hits_choice hits);
+void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget);
 void glint_reuse_clear(glint_reuse *reuse);
 void glint_reuse_destroy(glint_reuse *reuse);
 /// Before a frame: compares keys with the last frame's and makes the tiles' slots. Without memory, nothing is cached.

@@ -77,57 +77,7 @@ void glint_tile_fit_cached(glint_tile *tile, const glint_tile_frame *frame)
         tile->cached = NULL;
 }
 
-// ---- Kept hits, or new ones ----
-
-#define WAY_TURNS 6 ///< frames that a tile goes both ways in, in turn
-#define WAY_FRAMES 64 ///< after which it does so again
-#define WAY_GAIN 0.93 ///< of the time with kept hits, to find them anew
-
-/// Whether the tile's hits are known, and what is done with them begins with their points: there it may take longer to read what
-/// is kept than to find it. The stages that follow rays from there take longer than either.
-static bool has_two_ways(const glint_tile *tile, const glint_tile_frame *frame)
-{
-    const glint_plan *plan = frame->plan;
-    const glint_cached_tile *cached = tile->cached;
-    const glint_reuse *reuse = frame->reuse;
-    if (!cached || plan->raster || plan->runs[GLINT_STAGE_INDIRECT] || plan->runs[GLINT_STAGE_BOUNCE] ||
-        !glint_key_equal(cached->cast, plan->keys[GLINT_STAGE_CAST]))
-        return false;
-    for (uint32_t i = 0; i < reuse->light_count; i++)
-        if (!glint_key_equal(cached->lights[i].light, plan->lights[i].key))
-            return true;
-    return plan->light_count > reuse->light_count;
-}
-
-void glint_tile_choose_way(glint_tile *tile, const glint_tile_frame *frame)
-{
-    tile->anew = tile->timed = false;
-    if (!has_two_ways(tile, frame))
-        return;
-    glint_cached_ways *ways = &tile->cached->ways;
-    const uint32_t turn = ways->turn++ % WAY_FRAMES;
-    tile->timed = turn < WAY_TURNS && frame->reuse->hits == GLINT_HITS_MEASURED;
-    if (turn == 0)
-        ways->least[0] = ways->least[1] = HUGE_VALF;
-    if (tile->timed)
-        tile->anew = (turn + tile->index) % 2 == 1; // neighbours take turns, so that each frame has some of both
-    else
-        tile->anew = frame->reuse->hits == GLINT_HITS_ANEW || ways->least[1] < (float)WAY_GAIN * ways->least[0];
-    tile->counts.ways[tile->anew]++;
-    for (int way = 0; way < 2 && ways->least[0] + ways->least[1] < HUGE_VALF; way++)
-        tile->counts.way_ns[way] += (double)ways->least[way];
-    tile->counts.compared += ways->least[0] + ways->least[1] < HUGE_VALF;
-    tile->begun = tile->timed ? glint_tile_now_ns() : 0;
-}
-
-void glint_tile_note_way(const glint_tile *tile)
-{
-    if (tile->timed)
-        tile->cached->ways.least[tile->anew] =
-            fminf(tile->cached->ways.least[tile->anew], (float)(glint_tile_now_ns() - tile->begun));
-}
-
-// ---- Memory of results ----
+// ---- Where results are ----
 
 /// Prefetches the first row of the tile's pixel values in the last picture.
 static void prefetch_last_codes(const glint_tile *tile, const glint_image *last)
@@ -154,8 +104,8 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
     const glint_cached_tile *cached = tile->cached;
     bool points = false;
     if (tile->index + 1 < reuse->tile_count)
-        glint_prefetch(cached + 1, sizeof *cached); // prefetched, not read: it may belong to another worker
-    if (tile->anew || !glint_key_equal(cached->cast, plan->keys[GLINT_STAGE_CAST]))
+        glint_prefetch(cached + 1, sizeof *cached); // prefetched, not read: it may be another worker's
+    if (!glint_key_equal(cached->cast, plan->keys[GLINT_STAGE_CAST]))
         return;
     glint_prefetch(cached->hits, GLINT_TILE_GROUPS * sizeof *cached->hits);
     const bool shines = may_shine(cached, plan);
@@ -186,13 +136,13 @@ bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint
     glint_reuse *reuse = frame->reuse;
     glint_cached_tile *cached = tile->cached;
     const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
-    const bool known = cached && !tile->anew && glint_key_equal(cached->cast, frame->plan->keys[GLINT_STAGE_CAST]);
+    const bool known = cached && glint_key_equal(cached->cast, frame->plan->keys[GLINT_STAGE_CAST]);
     tile->at.box = NULL;
     tile->at.t = tile->hit.t;
     tile->at.prim = tile->hit.prim;
     tile->at.hits = tile->hit.mask;
     tile->at.sampled = tile->hit.mask;
-    if (known || (cached && !tile->anew && reuse->keep_cast && (k ? cached->t != NULL : glint_reuse_hold_cast(reuse, cached)))) {
+    if (known || (cached && reuse->keep_cast && (k ? cached->t != NULL : glint_reuse_hold_cast(reuse, cached)))) {
         tile->at.t = (char *)cached->t + first * reuse->real_size;
         tile->at.prim = cached->prim + first;
         tile->at.hits = cached->hits + first / GLINT_GROUP;
@@ -253,10 +203,8 @@ void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame)
     glint_cached_tile *cached = tile->cached;
     if (!cached)
         return;
-    if (reuse->keep_cast && cached->t && !glint_key_equal(cached->cast, plan->keys[GLINT_STAGE_CAST])) {
+    if (reuse->keep_cast && cached->t && !glint_key_equal(cached->cast, plan->keys[GLINT_STAGE_CAST]))
         cached->cast = plan->keys[GLINT_STAGE_CAST];
-        cached->ways = (glint_cached_ways) { .turn = 0 };
-    }
     for (uint32_t i = 0; i < reuse->light_count; i++) {
         if (reuse->keep_light[i] && cached->lights[i].cosine) {
             cached->lights[i].light = plan->lights[i].key;

@@ -44,11 +44,8 @@ typedef struct glint_tile_counts {
     uint64_t ns[GLINT_STAGE_COUNT], tile_ns;
     uint64_t primary, shadow, mirror, refraction, indirect, clipped, nonfinite;
     glint_work work;
-    glint_odd_patterns odd;
-    uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls, and results reused from an earlier frame
-    uint64_t ways[2]; ///< tiles whose hits are known and whose points are needed: those that read the hits; that find them anew
-    uint64_t compared; ///< of these, the ones that have gone both ways
-    double way_ns[2]; ///< the least that those took each way, summed
+    glint_odd_pattern odd;
+    uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls made, and results taken from the last frame
 } glint_tile_counts;
 
 /// Adds every count of `more`.
@@ -172,12 +169,9 @@ typedef struct glint_tile {
     uint32_t boxed; ///< samples so far whose points are in the cached box
     uint32_t painted, kept; ///< samples so far with programs run; samples with cached results of first parts
     glint_tile_sample at;
-    size_t index; ///< index of the tile in the picture
-    glint_cached_tile *cached; ///< NULL: nothing is cached for this tile
-    bool anew; ///< its hits are found, though they are kept
-    bool timed; ///< this frame's time tells whether that is quicker
-    bool direct; ///< its only sample gets light only from shade, without sums
-    uint64_t begun; ///< of such a frame
+    size_t index; ///< of the tile in the picture
+    glint_cached_tile *cached; ///< NULL: nothing is kept for this tile
+    bool direct; ///< its only sample gets no light but what shade makes, without sums
 
     uint32_t x0, y0, width, height; ///< the part of the tile inside the image
     uint32_t group_count, groups_across;
@@ -302,11 +296,7 @@ void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint
 /// tile/cached.c: drops cached results of other pixels, from the second frame on with the same choice. In the first, nothing is
 /// cached, nor if pixels may be gathered.
 void glint_tile_fit_cached(glint_tile *tile, const glint_tile_frame *frame);
-/// Of a tile that is to run and whose hits are known, chooses whether to read them or to find them anew, by what its
-/// frames took; afterwards notes what this one took.
-void glint_tile_choose_way(glint_tile *tile, const glint_tile_frame *frame);
-void glint_tile_note_way(const glint_tile *tile);
-/// Prefetches the cached results of the first sample that the tile will read.
+/// Prefetches what the tile has kept of its first sample and will read.
 void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame);
 
 /// Each calls one stage for the current sample, and counts it.

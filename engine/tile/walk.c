@@ -321,7 +321,6 @@ static void begin_cached(glint_tile *tile, const glint_tile_frame *frame)
     if (tile->cached)
         frame->image->film[tile->index] = (glint_film_stamp) { 0 };
     glint_tile_fit_cached(tile, frame);
-    glint_tile_choose_way(tile, frame);
     if (tile->cached)
         glint_tile_prefetch(tile, frame);
 }
@@ -333,7 +332,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     const glint_film_counts before = { .clipped = tile->counts.clipped,
                                        .nonfinite = tile->counts.nonfinite,
                                        .lights = tile->counts.runs[GLINT_STAGE_LIGHT] };
-    tile->anew = tile->direct = false;
+    tile->direct = false;
     if (glint_tile_wants_geometry(plan) && glint_plan_casts_centres(plan))
         find_geometry(tile, frame);
     const bool refined = !frame->base || glint_tile_choose_refined(tile, frame);
@@ -353,8 +352,6 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     if (plan->is_base)
         glint_tile_compare(tile, frame, before);
     glint_tile_sign_film(tile, frame, before, refined);
-    if (refined)
-        glint_tile_note_way(tile);
 }
 
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row)

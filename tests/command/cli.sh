@@ -625,9 +625,6 @@ errors() {
     GLINT_ISA=foo run ten.lua -o none
     check "GLINT_ISA=foo" test "$status" -eq 2
     says "GLINT_ISA=foo" 'GLINT_ISA: ref, generic, avx2 or avx512 expected'
-    GLINT_HITS=some run ten.lua -o none
-    check "GLINT_HITS=some" test "$status" -eq 2
-    says "GLINT_HITS=some" 'GLINT_HITS: measured, kept or anew expected'
     script results 'local s = require("scene").scene return s, s'
     exits 2 "two results" results.lua
     script exits 'local S = require "scene"

@@ -561,15 +561,14 @@ static double seconds(void)
 }
 
 /// Renders after each of many edits with two renderers, one of which forgets everything. adaptive: most frames take all samples of
-/// only some pixels.
-static void edits(size_t memory, int threads, glint_hits_choice hits, bool adaptive, double limit_s)
+/// some pixels alone.
+static void edits(size_t memory, int threads, bool adaptive, double limit_s)
 {
     world w;
     glint_renderer *reusing, *fresh;
     glint_renderer_desc desc = glint_renderer_desc_default();
     desc.threads = threads;
     desc.reuse_memory = memory;
-    desc.hits = hits;
     assert_int_equal(glint_renderer_create(&desc, &reusing, NULL), GLINT_OK);
     desc.no_reuse = true;
     assert_int_equal(glint_renderer_create(&desc, &fresh, NULL), GLINT_OK);
@@ -627,24 +626,22 @@ static void reused_equals_fresh(void **unused)
 {
     (void)unused;
     state = seed(1);
-    for (int hits = GLINT_HITS_MEASURED; hits <= GLINT_HITS_ANEW; hits++)
-        edits(0, 2, (glint_hits_choice)hits, false, limit_s(4) / 3);
+    edits(0, 2, false, limit_s(4));
 }
 
 static void reused_equals_fresh_of_chosen_pixels(void **unused)
 {
     (void)unused;
     state = seed(4);
-    for (int hits = GLINT_HITS_MEASURED; hits <= GLINT_HITS_ANEW; hits++)
-        edits(0, 2, (glint_hits_choice)hits, true, limit_s(4) / 3);
-    edits(1000000, 2, GLINT_HITS_KEPT, true, limit_s(1));
+    edits(0, 2, true, limit_s(4));
+    edits(1000000, 2, true, limit_s(1));
 }
 
 static void reused_equals_fresh_without_memory(void **unused)
 {
     (void)unused;
     state = seed(2);
-    edits(1, 2, GLINT_HITS_KEPT, false, limit_s(1));
+    edits(1, 2, false, limit_s(1));
 }
 
 static void reused_equals_fresh_with_little_memory(void **unused)
@@ -652,7 +649,7 @@ static void reused_equals_fresh_with_little_memory(void **unused)
     (void)unused;
     state = seed(3);
     for (size_t memory = 20000; memory < 4000000; memory = memory * 3 / 2)
-        edits(memory, 8, GLINT_HITS_MEASURED, false, limit_s(2) / 14);
+        edits(memory, 8, false, limit_s(2) / 14);
 }
 
 /// The samples of an area light are added up a call of shade at a time: a lamp before it that shines into a closed ball,
@@ -851,18 +848,17 @@ static void a_highlight_that_a_tile_does_not_show(void **unused)
     sweep_shininess(0.1);
 }
 
-/// Frames of a lamp that moves: which way tiles go, and that the pictures are those of a renderer that keeps nothing. adaptive: the
+/// Frames of a lamp that moves: their hits are kept, and the pictures are those of a renderer that keeps nothing. adaptive: the
 /// threshold, of four samples a pixel; 0: none.
-static void move_the_light(glint_hits_choice hits, double adaptive, int frames, glint_frame_stats *stats)
+static void move_the_light(double adaptive, int frames, glint_frame_stats *stats)
 {
     world w;
     glint_renderer *both[2];
     glint_renderer_desc desc = glint_renderer_desc_default();
-    desc.hits = hits;
     open_both(desc, both);
     state = 6;
     make_world(&w);
-    for (int i = 0; i < SHAPES; i++) { // no mirrors, no glass: those tiles have one way
+    for (int i = 0; i < SHAPES; i++) { // no mirrors, no glass
         glint_material_desc m = glint_material_desc_default();
         glint_material_set(w.materials[i], &m, NULL);
     }
@@ -878,73 +874,14 @@ static void move_the_light(glint_hits_choice hits, double adaptive, int frames, 
     close_both(both);
 }
 
-static void hits_are_read_or_found_anew(void **unused)
+static void hits_under_a_moved_light_are_kept(void **unused)
 {
     (void)unused;
     glint_frame_stats stats;
-    move_the_light(GLINT_HITS_KEPT, 0, 5, &stats);
-    assert_true(stats.hits_kept > 0 && stats.hits_anew == 0 && reused_share(&stats, "cast") == 1);
-    move_the_light(GLINT_HITS_ANEW, 0, 5, &stats);
-    assert_true(stats.hits_kept == 0 && stats.hits_anew > 0 && reused_share(&stats, "cast") < 1);
-    unsetenv("GLINT_HITS");
-    move_the_light(GLINT_HITS_MEASURED, 0, 9, &stats);
-    assert_true(stats.hits_kept + stats.hits_anew > 0 && stats.hits_kept_us > 0 && stats.hits_anew_us > 0);
-    move_the_light(GLINT_HITS_MEASURED, 0.1, 9, &stats); // the values of the first sample of each pixel
-    assert_true(stats.hits_kept + stats.hits_anew > 0 && stats.hits_kept_us > 0 && stats.hits_anew_us > 0);
-    setenv("GLINT_HITS", "anew", 1);
-    move_the_light(GLINT_HITS_MEASURED, 0, 5, &stats);
-    assert_true(stats.hits_kept == 0 && stats.hits_anew > 0);
-    setenv("GLINT_HITS", "sometimes", 1);
-    glint_renderer *renderer;
-    glint_error error;
-    glint_renderer_desc desc = glint_renderer_desc_default();
-    assert_int_equal(glint_renderer_create(&desc, &renderer, &error), GLINT_ERR_INVALID);
-    assert_string_equal(error.message, "GLINT_HITS: measured, kept or anew expected, got 'sometimes'");
-    unsetenv("GLINT_HITS");
-    desc.hits = (glint_hits_choice)3;
-    assert_int_equal(glint_renderer_create(&desc, &renderer, &error), GLINT_ERR_INVALID);
-}
-
-/// By what its frames took, a tile finds its hits anew only where that is clearly quicker, and looks again after a while.
-static void the_quicker_way_is_taken(void **unused)
-{
-    (void)unused;
-    static const struct {
-        float kept, anew;
-        bool is_anew;
-    } cases[] = { { 100, 50, true }, { 50, 100, false }, { 100, 97, false }, { 100, 90, true } };
-    world w;
-    glint_plan *plan;
-    glint_tile *tile = glint_alloc(1, sizeof *tile);
-    assert_non_null(tile);
-    state = 7;
-    make_world(&w);
-    glint_material_desc plain = glint_material_desc_default();
-    for (int i = 0; i < SHAPES; i++)
-        glint_material_set(w.materials[i], &plain, NULL);
-    assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
-    glint_cached_light lights[GLINT_CACHED_LIGHTS] = { 0 };
-    glint_cached_tile cached = { .cast = plan->keys[GLINT_STAGE_CAST], .lights = lights };
-    glint_reuse reuse = { .light_count = (uint32_t)plan->light_count, .hits = GLINT_HITS_MEASURED };
-    const glint_tile_frame frame = { .plan = plan, .reuse = &reuse };
-    memset(tile, 0, sizeof *tile);
-    tile->cached = &cached;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        cached.ways = (glint_cached_ways) { .turn = 6, .least = { cases[i].kept, cases[i].anew } };
-        for (int k = 0; k < 58; k++) {
-            glint_tile_choose_way(tile, &frame);
-            assert_true(tile->anew == cases[i].is_anew && !tile->timed);
-        }
-        for (int k = 0; k < 6; k++) {
-            glint_tile_choose_way(tile, &frame);
-            assert_true(tile->timed && tile->anew == k % 2);
-            glint_tile_note_way(tile);
-        }
-        assert_true(cached.ways.least[0] < HUGE_VALF && cached.ways.least[1] < HUGE_VALF);
-    }
-    free(tile);
-    glint_plan_destroy(plan);
-    free_world(&w);
+    move_the_light(0, 5, &stats);
+    assert_true(reused_share(&stats, "cast") == 1);
+    move_the_light(0.1, 9, &stats); // the hits of the first sample of each pixel
+    assert_true(reused_share(&stats, "cast") > 0);
 }
 
 int main(void)
@@ -954,8 +891,7 @@ int main(void)
         cmocka_unit_test(a_lamp_that_reaches_nothing),
         cmocka_unit_test(frames_that_come_back),
         cmocka_unit_test(a_highlight_that_a_tile_does_not_show),
-        cmocka_unit_test(hits_are_read_or_found_anew),
-        cmocka_unit_test(the_quicker_way_is_taken),
+        cmocka_unit_test(hits_under_a_moved_light_are_kept),
         cmocka_unit_test(reused_equals_fresh),
         cmocka_unit_test(reused_equals_fresh_of_chosen_pixels),
         cmocka_unit_test(reused_equals_fresh_without_memory),

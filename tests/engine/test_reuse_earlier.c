@@ -73,7 +73,6 @@ static void make_stand(stand *s, size_t memory)
         assert_int_equal(glint_scene_add_light(s->scene, s->lights[i], NULL), GLINT_OK);
     }
     desc.threads = 2;
-    desc.hits = GLINT_HITS_KEPT;
     desc.reuse_memory = memory;
     for (int i = 0; i < 2; i++) {
         desc.no_reuse = i;

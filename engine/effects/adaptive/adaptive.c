@@ -27,7 +27,7 @@ static glint_status open_base(glint_renderer *renderer, glint_error *error)
     base->refine = renderer->refine;
     base->time_stages = renderer->time_stages;
     base->count_work = renderer->count_work;
-    glint_reuse_init(&base->reuse, renderer->reuse.on, renderer->reuse.budget / 2 + 1, renderer->reuse.hits);
+    glint_reuse_init(&base->reuse, renderer->reuse.on, renderer->reuse.budget / 2 + 1);
     renderer->base = base;
     return GLINT_OK;
 }
