@@ -32,11 +32,11 @@ typedef struct glint_cached_light {
     glint_key facet; ///< of the following arrays
     float *sine2, *schlick; ///< a block of their own, sine2 first
     glint_key place; ///< the light's place and shadows when the following was computed; all zero: never
-    bool reaches; ///< the light reaches some lane
+    bool reaches; ///< the light reaches the light reaches some lane
     float brightest; ///< the largest log2_specular of lit lanes, in shadow or not
 } glint_cached_light;
 
-#define GLINT_SHOWN_MAX 8 ///< materials of a tile that are told apart
+#define GLINT_SHOWN_MAX 8 ///< largest number of materials that are distinguished in a tile
 
 typedef struct glint_cached_tile {
     uint64_t pixels; ///< adaptive sampling: the pixels that these results belong to; 0: all

@@ -77,7 +77,7 @@ void glint_tile_fit_cached(glint_tile *tile, const glint_tile_frame *frame)
         tile->cached = NULL;
 }
 
-// ---- Where results are ----
+// ---- Memory of results ----
 
 /// Prefetches the first row of the tile's pixel values in the last picture.
 static void prefetch_last_codes(const glint_tile *tile, const glint_image *last)
@@ -104,7 +104,7 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
     const glint_cached_tile *cached = tile->cached;
     bool points = false;
     if (tile->index + 1 < reuse->tile_count)
-        glint_prefetch(cached + 1, sizeof *cached); // prefetched, not read: it may be another worker's
+        glint_prefetch(cached + 1, sizeof *cached); // prefetched, not read: it may belong to another worker
     if (!glint_key_equal(cached->cast, plan->keys[GLINT_STAGE_CAST]))
         return;
     glint_prefetch(cached->hits, GLINT_TILE_GROUPS * sizeof *cached->hits);

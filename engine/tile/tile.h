@@ -45,7 +45,7 @@ typedef struct glint_tile_counts {
     uint64_t primary, shadow, mirror, refraction, indirect, clipped, nonfinite;
     glint_work work;
     glint_odd_pattern odd;
-    uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls made, and results taken from the last frame
+    uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls, and results reused from an earlier frame
 } glint_tile_counts;
 
 /// Adds every count of `more`.
@@ -70,12 +70,12 @@ typedef struct glint_tile_frame {
     glint_refine *refine; ///< the pixels of the base that get all samples; for a base, the data to compare
     const glint_image *last; ///< the last picture, of the same format, or NULL
     glint_geometry_table geometry; ///< the plan's, with its index
-    const glint_light_grid *grids[GLINT_TILE_GRIDS]; ///< grids of some lights; NULL: that light has none
+    const glint_light_grid *grids[GLINT_TILE_GRIDS]; ///< grids grids of some lights; NULL: that light has none
     uint32_t grid_count;
     const glint_stages *stages;
     glint_image *image;
     const glint_tone_table *tone_table; ///< NULL: no pixel values
-    float gain; ///< factor of the exposure
+    float gain; ///< factor factor of the exposure
     glint_reuse *reuse;
     const atomic_bool *cancelled; ///< the picture is cancelled and may be left unfinished
     bool time_stages, count_work;
@@ -112,7 +112,7 @@ typedef struct glint_tile_sample {
         float *sine2, *schlick; ///< only in frames with microfacets, like `facing`
         uint16_t *lit, *open;
         float *visible; ///< for lights with caps
-        float brightest; ///< the largest log2_specular of the sample, or of all samples
+        float brightest; ///< the largest log2_specular of the sample, or of all samples samples
         bool summed; ///< for samples of an area light: only their sum is stored, in the first one's cosine and
             ///< log2_specular, and each has the `lit` and `open` of all
     } light[GLINT_LIGHT_CHUNK];
@@ -169,9 +169,9 @@ typedef struct glint_tile {
     uint32_t boxed; ///< samples so far whose points are in the cached box
     uint32_t painted, kept; ///< samples so far with programs run; samples with cached results of first parts
     glint_tile_sample at;
-    size_t index; ///< of the tile in the picture
-    glint_cached_tile *cached; ///< NULL: nothing is kept for this tile
-    bool direct; ///< its only sample gets no light but what shade makes, without sums
+    size_t index; ///< index of the tile in the picture
+    glint_cached_tile *cached; ///< NULL: nothing is cached for this tile
+    bool direct; ///< its only sample gets light only from shade, without sums
 
     uint32_t x0, y0, width, height; ///< the part of the tile inside the image
     uint32_t group_count, groups_across;
@@ -296,7 +296,7 @@ void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint
 /// tile/cached.c: drops cached results of other pixels, from the second frame on with the same choice. In the first, nothing is
 /// cached, nor if pixels may be gathered.
 void glint_tile_fit_cached(glint_tile *tile, const glint_tile_frame *frame);
-/// Prefetches what the tile has kept of its first sample and will read.
+/// Prefetches the cached results of the first sample that the tile will read.
 void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame);
 
 /// Each calls one stage for the current sample, and counts it.
@@ -435,7 +435,7 @@ void glint_tile_vertex_gathered(glint_tile *tile, const glint_tile_frame *frame)
 void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
                                uint32_t count, uint32_t first, uint32_t samples);
 
-/// effects/adaptive/refine.c: returns whether some pixels of the tile get all samples.
+/// effects/adaptive/refine.c: returns returns whether some pixels of the tile get all samples.
 bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame);
 /// Makes only these active. Returns whether there are any.
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
@@ -455,7 +455,7 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
 
 /// effects/transparent_shadow/transparent_shadow.c: light through transparent objects.
 /// Finds the points inside an absorbing medium, and returns whether there are any. The points
-/// are found.
+/// must be known.
 bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame);
 /// After that: returns the lanes of group `g` whose light must be tinted even without an occluder.
 static inline uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g)

@@ -67,7 +67,7 @@ static void store_geometry(glint_tile *tile, const glint_tile_frame *frame, glin
     w->shows = false;
 }
 
-/// Casts the rays. Returns whether anything is hit.
+/// Casts the rays. Casts the rays. Returns whether anything is hit.
 static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w)
 {
     const glint_plan *plan = frame->plan;

@@ -561,7 +561,7 @@ static double seconds(void)
 }
 
 /// Renders after each of many edits with two renderers, one of which forgets everything. adaptive: most frames take all samples of
-/// some pixels alone.
+/// only some pixels.
 static void edits(size_t memory, int threads, bool adaptive, double limit_s)
 {
     world w;

@@ -418,7 +418,7 @@ static __attribute__((noinline)) bool R(cast_combined)(const glint_cast_args *ar
     return any != 0;
 }
 
-/// Decides it for the rays of a group in `near`. Returns whether any hit was kept.
+/// Decides a combined solid for the rays of a group in `near`. Returns whether any hit was stored.
 static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const glint_prim *prim, unsigned near)
 {
     const glint_combined *whole = &args->geometry->combined[prim->item];
