@@ -174,7 +174,13 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 .PHONY: all need deps check check-run asan tsan hard hard-run soak soak-run bench demo demo-run install uninstall \
         install-rock golden-update gallery check-layers check-symbols check-headers lint clean help tests FORCE
 
-all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
+# The manual page and the API for editors: the new program puts the engine's tables of fields into them, where it can run.
+FILLED := $(BUILD)/glint.1 $(BUILD)/meta/glint.lua
+$(FILLED): $(BUILD)/%: bindings/% bindings/meta/fill.lua $(BUILD)/glint
+	@mkdir -p $(@D)
+	@FROM=$< ASAN_OPTIONS=detect_leaks=0 $(BUILD)/glint --quiet bindings/meta/fill.lua > $@
+
+all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a $(if $(filter $(shell uname -m)-%,$(TARGET)),$(FILLED)) ## the command build/glint and the Lua module build/glint.so
 
 # Only stages are compiled for an instruction set, except ref.c. Unrolling pays only in these files.
 # Processors with AVX2 also have BMI and POPCNT for masks; select.c checks for all of them.
@@ -719,7 +725,7 @@ check-web: web ## the module in node (bits, errors, limits, memory), the pages i
 	@$(MAKE) --no-print-directory all
 	@TEST_LIMIT_S=900 $(RUNNER) tests/web/module.sh tests/web/pages.sh
 
-site: web ## build/site: the pages of make web with the manual, the gallery and the reference, for any static host
+site: web $(BUILD)/meta/glint.lua ## build/site: the pages of make web with the manual, the gallery and the reference, for any static host
 	@rm -rf $(BUILD)/site
 	$(Q)node $(NPM)/site.mjs $(CURDIR) $(WEB) $(BUILD)/site
 	@cp bindings/web/pages/search.js $(BUILD)/site
@@ -732,8 +738,8 @@ define INSTALLED
 644 $(BUILD)/$(SHARED) $(libdir)/$(SHARED)
 644 $(BUILD)/glint.pc $(libdir)/pkgconfig/glint.pc
 644 engine/glint.h $(incdir)/glint.h
-644 bindings/glint.1 $(datadir)/man/man1/glint.1
-644 bindings/meta/glint.lua $(datadir)/glint/glint.lua
+644 $(BUILD)/glint.1 $(datadir)/man/man1/glint.1
+644 $(BUILD)/meta/glint.lua $(datadir)/glint/glint.lua
 644 $(BUILD)/completion/bash $(datadir)/bash-completion/completions/glint
 644 $(BUILD)/completion/zsh $(datadir)/zsh/site-functions/_glint
 644 $(BUILD)/completion/fish $(datadir)/fish/vendor_completions.d/glint.fish
@@ -764,7 +770,7 @@ STRIP ?= strip
 # put MODE FROM TO; of install(1) what all systems have.
 PUT   := put() { echo "  INSTALL	$$3"; mkdir -p "$$(dirname "$$3")" && install -m "$$1" "$$2" "$$3"; }
 LINKS  = $(SONAME) $(call shared_name,)
-install: all shared pages $(BUILD)/glint.pc $(addprefix $(BUILD)/completion/,bash zsh fish) ## PREFIX=/usr/local, DESTDIR=
+install: all shared pages $(BUILD)/glint.pc $(FILLED) $(addprefix $(BUILD)/completion/,bash zsh fish) ## PREFIX=/usr/local, DESTDIR=
 	@$(PUT); printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
 	    [ -n "$$mode" ] || continue; put "$$mode" "$$from" "$(DESTDIR)$$to" || exit 1; \
 	    case $$to in *.a) $(STRIP) $(STRIP_DEBUG) "$(DESTDIR)$$to" ;; \

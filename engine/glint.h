@@ -300,6 +300,73 @@ void glint_texture_release(glint_texture *texture);
 int glint_texture_width(const glint_texture *texture);
 int glint_texture_height(const glint_texture *texture);
 
+// ---- Fields -------------------------------------------------------------------------------------------------------
+
+/// How a description stores a field.
+typedef enum glint_field_type {
+    GLINT_TYPE_NUMBER, ///< double, finite
+    GLINT_TYPE_WHOLE, ///< double, a whole number
+    GLINT_TYPE_ANGLE, ///< double, radians; scripts and messages have degrees
+    GLINT_TYPE_FLAG, ///< bool
+    GLINT_TYPE_VECTOR, ///< double[3], finite
+    GLINT_TYPE_DIRECTION, ///< double[3], finite, not zero
+    GLINT_TYPE_COLOR, ///< double[3], linear RGB, finite, >= 0
+    GLINT_TYPE_CHOICE, ///< an enumeration; `names` are those of its values
+    GLINT_TYPE_TEXT, ///< char[GLINT_NAME_SIZE]
+    GLINT_TYPE_OBJECT, ///< a pointer to an object; `names[0]` says which kind
+    GLINT_TYPE_POINTS, ///< const double (*)[3] and, next to it, a size_t: how many
+    GLINT_TYPE_DISTANCE, ///< a double, > 0; next to it a bool and a double[3]: where the bool is true, this point. 0 and false: neither
+    GLINT_TYPE_TRANSFORM, ///< glint_transform
+    GLINT_TYPE_PROGRAM, ///< a program and nothing else
+    GLINT_TYPE_TABLE, ///< several fields of the same description, `parts`, that are given together
+    GLINT_TYPE_CUSTOM, ///< the caller's own; no engine table has it
+    GLINT_TYPE_OTHER ///< likewise
+} glint_field_type;
+
+#define GLINT_TAKES_PATTERN 1u ///< bits of glint_object_field.takes: a program for each point
+#define GLINT_TAKES_TEXTURE 2u ///< a picture
+#define GLINT_TAKES_SHADER 4u ///< a program for each light
+#define GLINT_TAKES_VARIABLE 8u ///< a number with a slope; frames have its derivative
+
+/// One field of an object: the row that its default, its check and its documentation come from.
+typedef struct glint_object_field {
+    const char *name; ///< in scripts and messages
+    const char *member; ///< in the description; NULL: it has none of its own
+    glint_field_type type; ///< of the value in the description
+    size_t offset; ///< in the description
+    size_t set_offset; ///< of a bool that says whether the field is set; 0: there is none, the field always counts
+    size_t program_offset; ///< of the glint_program * that stands for it where it is not NULL; 0: there is none
+    unsigned takes; ///< what may stand for a value: bits GLINT_TAKES_...
+    bool required; ///< an object cannot be made without it
+    const char *const *names; ///< GLINT_TYPE_CHOICE: of the values, from 0, NULL at the end; GLINT_TYPE_OBJECT
+    const struct glint_object_field *parts; ///< GLINT_TYPE_TABLE; a row without a name ends them
+    double low, high; ///< smallest and largest number allowed, of each component; an angle's in radians
+    const char *expected; ///< what messages say is allowed: "number >= 0"
+    double initial[3]; ///< the default, or the number of the default choice; what was not said is 0
+    const char *follows; ///< the field whose value it has until it is set; NULL: none
+    const char *unit; ///< "world units"; NULL: none
+    const char *doc; ///< what it means, in one line
+    const void *custom; ///< GLINT_TYPE_CUSTOM: the caller's own
+} glint_object_field;
+
+/// Kinds of objects that have a table of fields.
+typedef enum glint_object_kind {
+    GLINT_OBJECT_NONE, ///< no object, no fields
+    GLINT_OBJECT_MATERIAL, ///< fields of glint_material_desc
+    GLINT_OBJECT_POINT_LIGHT, ///< of glint_light_desc, those that the kind reads; GLINT_OBJECT_POINT_LIGHT + a glint_light_kind
+    GLINT_OBJECT_DIRECTIONAL_LIGHT, ///< likewise
+    GLINT_OBJECT_SPOT_LIGHT, ///< likewise
+    GLINT_OBJECT_DISK_LIGHT, ///< likewise
+    GLINT_OBJECT_POLYGON_LIGHT, ///< likewise
+    GLINT_OBJECT_SPHERE_LIGHT, ///< likewise
+    GLINT_OBJECT_SCENE, ///< of glint_scene_desc
+    GLINT_OBJECT_KINDS ///< how many there are
+} glint_object_kind;
+
+/// The fields of a kind of object, in the order of the documentation; a row without a name follows the last.
+/// count: how many; NULL: not asked for. NULL: there is no such kind.
+const glint_object_field *glint_object_fields(glint_object_kind kind, size_t *count);
+
 // ---- Materials ----------------------------------------------------------------------------------------------------
 
 /// How a surface reflects, emits and passes light. Shared by reference between shapes; see Ownership.

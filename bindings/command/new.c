@@ -87,10 +87,10 @@ static int write_script(const char *path)
     return finish(file, path);
 }
 
-// Finds the folder of the editor's types: PREFIX/share/glint, or the folder of the checkout around a build. False: none.
+// Finds the folder of the editor's types: PREFIX/share/glint, or the folder next to a build. False: none.
 static bool find_types(const char *program, char out[GLINTL_PATH_SIZE])
 {
-    static const char *const places[] = { "../share/glint", "../bindings/meta" };
+    static const char *const places[] = { "../share/glint", "meta" };
     char folder[GLINTL_PATH_SIZE], path[GLINTL_PATH_SIZE + 64];
     if (!glintL_program_folder(program, folder, sizeof folder))
         return false;

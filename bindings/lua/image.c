@@ -141,7 +141,7 @@ static int pixel(lua_State *L)
 // The name of a map, "viridis:1:9" with its range, or nil, at the top; pops it.
 static void take_colormap(lua_State *L, glint_write_desc *desc)
 {
-    static const glintL_field name = { .name = "colormap", .kind = GLINTL_ENUM, .names = glintL_pass_colormaps };
+    static const glintL_field name = { .name = "colormap", .type = GLINT_TYPE_CHOICE, .names = glintL_pass_colormaps };
     char message[GLINTL_MESSAGE_SIZE];
     const char *text = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : NULL, *colon = text ? strchr(text, ':') : NULL;
     if (colon)
@@ -165,24 +165,24 @@ static void read_options(lua_State *L, glint_write_desc *desc)
         double bits;
     } options;
     static const glintL_field fields[] = {
-        { .name = "bits", .kind = GLINTL_NUMBER, .offset = offsetof(options, bits) },
+        { .name = "bits", .type = GLINT_TYPE_NUMBER, .offset = offsetof(options, bits) },
         { .name = "transfer",
-          .kind = GLINTL_ENUM,
+          .type = GLINT_TYPE_CHOICE,
           .offset = offsetof(options, desc.tone.transfer),
           .names = transfers },
         { .name = "rounding",
-          .kind = GLINTL_ENUM,
+          .type = GLINT_TYPE_CHOICE,
           .offset = offsetof(options, desc.tone.rounding),
           .names = roundings },
         { .name = "tone",
-          .kind = GLINTL_ENUM,
+          .type = GLINT_TYPE_CHOICE,
           .offset = offsetof(options, desc.tone.curve),
           .names = glintL_tone_curves },
-        { .name = "exposure", .kind = GLINTL_NUMBER, .offset = offsetof(options, desc.tone.exposure) },
-        { .name = "encode", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.encode), .names = encodes },
-        { .name = "dpi", .kind = GLINTL_NUMBER, .offset = offsetof(options, desc.dpi) },
-        { .name = "colormap", .kind = GLINTL_OTHER },
-        { .name = "pass", .kind = GLINTL_OTHER },
+        { .name = "exposure", .type = GLINT_TYPE_NUMBER, .offset = offsetof(options, desc.tone.exposure) },
+        { .name = "encode", .type = GLINT_TYPE_CHOICE, .offset = offsetof(options, desc.encode), .names = encodes },
+        { .name = "dpi", .type = GLINT_TYPE_NUMBER, .offset = offsetof(options, desc.dpi) },
+        { .name = "colormap", .type = GLINT_TYPE_OTHER },
+        { .name = "pass", .type = GLINT_TYPE_OTHER },
         { .name = NULL },
     };
     options read = { .desc = *desc, .bits = desc->tone.bits };

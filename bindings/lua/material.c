@@ -5,58 +5,10 @@
 #include "bindings/run/run.h"
 
 typedef glint_material_desc desc_type;
-_Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 #define AT(member) offsetof(desc_type, member)
 
-static const char *const MODELS[] = { "phong", "blinn_phong", "lambert", "cook_torrance", NULL };
-static const char *const DISTRIBUTIONS[] = { "ggx", "beckmann", NULL };
-static const char *const OPACITY_MODES[] = { "auto", "cut", "blend", NULL };
-
-static const glintL_field FIELDS[] = {
-    { .name = "model",
-      .kind = GLINTL_ENUM,
-      .offset = AT(model),
-      .names = MODELS,
-      .program_offset = AT(program.shader) },
-    { .name = "ambient",
-      .kind = GLINTL_COLOR,
-      .offset = AT(ambient),
-      .set_offset = AT(has_ambient),
-      .program_offset = AT(program.ambient),
-      .follows = "diffuse", .slopes = true },
-    { .name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse), .program_offset = AT(program.diffuse), .slopes = true },
-    { .name = "specular",
-      .kind = GLINTL_COLOR,
-      .offset = AT(specular),
-      .set_offset = AT(has_specular),
-      .program_offset = AT(program.specular), .slopes = true },
-    { .name = "shininess", .kind = GLINTL_NUMBER, .offset = AT(shininess), .program_offset = AT(program.shininess), .slopes = true },
-    { .name = "mirror",
-      .kind = GLINTL_COLOR,
-      .offset = AT(mirror),
-      .set_offset = AT(has_mirror),
-      .program_offset = AT(program.mirror), .slopes = true },
-    { .name = "transmission",
-      .kind = GLINTL_COLOR,
-      .offset = AT(transmission),
-      .program_offset = AT(program.transmission), .slopes = true },
-    { .name = "ior", .kind = GLINTL_NUMBER, .offset = AT(ior), .slopes = true },
-    { .name = "fresnel", .kind = GLINTL_BOOLEAN, .offset = AT(fresnel) },
-    { .name = "absorption", .kind = GLINTL_COLOR, .offset = AT(absorption), .slopes = true },
-    { .name = "normalized", .kind = GLINTL_BOOLEAN, .offset = AT(normalized) },
-    { .name = "matched", .kind = GLINTL_BOOLEAN, .offset = AT(matched) },
-    { .name = "roughness", .kind = GLINTL_NUMBER, .offset = AT(roughness), .program_offset = AT(program.roughness), .slopes = true },
-    { .name = "distribution", .kind = GLINTL_ENUM, .offset = AT(distribution), .names = DISTRIBUTIONS },
-    { .name = "f0", .kind = GLINTL_COLOR, .offset = AT(f0), .set_offset = AT(has_f0), .slopes = true },
-    { .name = "opacity", .kind = GLINTL_NUMBER, .offset = AT(opacity), .program_offset = AT(program.opacity), .slopes = true },
-    { .name = "opacity_mode", .kind = GLINTL_ENUM, .offset = AT(opacity_mode), .names = OPACITY_MODES },
-    { .name = "bump", .kind = GLINTL_PROGRAM, .program_offset = AT(program.bump) },
-    { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
-    { .name = NULL },
-};
-
-static const glintL_variant MATERIAL = { .name = "material", .fields = FIELDS };
+static const glintL_variant MATERIAL = { .name = "material", .kind = GLINT_OBJECT_MATERIAL };
 
 static const glintL_variant *variant(const void *object)
 {
@@ -64,20 +16,15 @@ static const glintL_variant *variant(const void *object)
     return &MATERIAL;
 }
 
-static void get(const void *object, void *desc) { memcpy(desc, glint_material_get(object), sizeof(desc_type)); }
+GLINTL_FUNCTIONS(material);
 
-static glint_status set(void *object, const void *desc, glint_error *error)
+static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
-    desc_type d;
-    memcpy(&d, desc, sizeof d);
-    if (!d.has_specular) // it was set to nil
-        memset(d.specular, 0, sizeof d.specular);
-    return glint_material_set(object, &d, error);
+    desc_type *d = desc;
+    (void)L;
+    if (field->offset == AT(specular) && !d->has_specular) // it was set to nil
+        memset(d->specular, 0, sizeof d->specular);
 }
-
-static void *retain(void *object) { return glint_material_retain(object); }
-
-static void release(void *object) { glint_material_release(object); }
 
 static void follow(void *desc) { glint_material_desc_resolve(desc); }
 
@@ -123,10 +70,10 @@ static int evaluate(lua_State *L)
     typedef glintL_geometry geometry;
 #define DIRECTIONS(n, l, v)                                                                                               \
     {                                                                                                                     \
-        { .name = (n), .kind = GLINTL_VECTOR, .offset = offsetof(geometry, normal), .required = true },                   \
-        { .name = (l), .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_light), .required = true },                 \
-        { .name = (v), .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_eye), .required = true },                   \
-        { .name = "p", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, p) },                                          \
+        { .name = (n), .type = GLINT_TYPE_VECTOR, .offset = offsetof(geometry, normal), .required = true },                   \
+        { .name = (l), .type = GLINT_TYPE_VECTOR, .offset = offsetof(geometry, to_light), .required = true },                 \
+        { .name = (v), .type = GLINT_TYPE_VECTOR, .offset = offsetof(geometry, to_eye), .required = true },                   \
+        { .name = "p", .type = GLINT_TYPE_VECTOR, .offset = offsetof(geometry, p) },                                          \
         { .name = NULL },                                                                                                 \
     }
     static const glintL_field long_names[] = DIRECTIONS("normal", "to_light", "to_eye"), short_names[] = DIRECTIONS("n", "l", "v");
@@ -149,18 +96,6 @@ static int evaluate(lua_State *L)
 
 static const luaL_Reg METHODS[] = { { "evaluate", evaluate }, { NULL, NULL } };
 
-static const glintL_class CLASS = {
-    .type = GLINTL_MATERIAL,
-    .variant = variant,
-    .get = get,
-    .set = set,
-    .retain = retain,
-    .release = release,
-    .follow = follow,
-    .accepted = accepted,
-    .methods = METHODS,
-};
-
 // Whether the constructor's table, at 1, has the field.
 static bool is_given(lua_State *L, const char *name)
 {
@@ -170,30 +105,31 @@ static bool is_given(lua_State *L, const char *name)
     return given;
 }
 
-static int new_material(lua_State *L)
+static void begin(int kind, void *desc)
 {
-    desc_type desc = glint_material_desc_default();
-    glint_material *material = NULL;
-    glint_error error;
-    lua_settop(L, 1);
-    glintL_box *box = glintL_new_box(L, GLINTL_MATERIAL);
-    glintL_read_table(L, 1, "material", FIELDS, &desc, false);
-    glintL_check_status(L, "material", &error, glint_material_create(&desc, &material, &error));
-    box->object = material;
-    glintL_remember(L, material);
-    glintL_keep_sources(L, 2, 1, FIELDS);
-    glintL_keep_table_slopes(L, 2, 1, FIELDS);
-    accepted(L, glintL_find_field(FIELDS, "diffuse"), &desc);
-    glintL_note_material(L, 2,
-                         (desc.model == GLINT_MODEL_PHONG || desc.model == GLINT_MODEL_BLINN_PHONG) &&
-                             is_given(L, "shininess") && !is_given(L, "specular"));
-    return 1;
+    (void)kind;
+    *(desc_type *)desc = glint_material_desc_default();
 }
 
-void glintL_open_material(lua_State *L)
+static void made(lua_State *L, const void *desc)
 {
-    glintL_open_class(L, &CLASS);
-    glintL_list_object(L, &MATERIAL, &CLASS);
-    lua_pushcfunction(L, new_material);
-    lua_setfield(L, -2, "material");
+    const desc_type *d = desc;
+    accepted(L, glintL_find_field(glintL_fields_of(&MATERIAL), "diffuse"), d);
+    glintL_note_material(L, 2,
+                         (d->model == GLINT_MODEL_PHONG || d->model == GLINT_MODEL_BLINN_PHONG) && is_given(L, "shininess") &&
+                             !is_given(L, "specular"));
 }
+
+static const glintL_class CLASS = {
+    .type = GLINTL_MATERIAL,
+    .variant = variant,
+    GLINTL_FUNCTION_MEMBERS,
+    .assigned = assigned,
+    .follow = follow,
+    .accepted = accepted,
+    .methods = METHODS,
+    .begin = begin,
+    .made = made,
+};
+
+void glintL_open_material(lua_State *L) { glintL_open_objects(L, &CLASS, &MATERIAL, 1); }

@@ -18,31 +18,31 @@ static const char *const FORMATS[] = { "f32", "f64", NULL };
 
 // clang-format off
 #define EVERY_MESH \
-    {.name = "shading", .kind = GLINTL_ENUM, .offset = AT(desc.shading), .set_offset = AT(desc.has_shading), \
+    {.name = "shading", .type = GLINT_TYPE_CHOICE, .offset = AT(desc.shading), .set_offset = AT(desc.has_shading), \
      .names = SHADINGS}, \
-    {.name = "material", .kind = GLINTL_OTHER}, \
-    {.name = "transform", .kind = GLINTL_TRANSFORM, .offset = AT(desc.transform)}, \
-    {.name = "two_sided", .kind = GLINTL_BOOLEAN, .offset = AT(desc.two_sided)}, \
-    {.name = "name", .kind = GLINTL_STRING, .offset = AT(desc.name)}
+    {.name = "material", .type = GLINT_TYPE_OTHER}, \
+    {.name = "transform", .type = GLINT_TYPE_TRANSFORM, .offset = AT(desc.transform)}, \
+    {.name = "two_sided", .type = GLINT_TYPE_FLAG, .offset = AT(desc.two_sided)}, \
+    {.name = "name", .type = GLINT_TYPE_TEXT, .offset = AT(desc.name)}
 // clang-format on
 
 static const glintL_field FIELDS[] = {
-    { .name = "file", .kind = GLINTL_OTHER },
-    { .name = "vertices", .kind = GLINTL_OTHER },
-    { .name = "faces", .kind = GLINTL_OTHER },
-    { .name = "normals", .kind = GLINTL_OTHER },
-    { .name = "uv", .kind = GLINTL_OTHER },
-    { .name = "format", .kind = GLINTL_OTHER },
-    { .name = "materials", .kind = GLINTL_OTHER },
-    { .name = "index", .kind = GLINTL_OTHER },
+    { .name = "file", .type = GLINT_TYPE_OTHER },
+    { .name = "vertices", .type = GLINT_TYPE_OTHER },
+    { .name = "faces", .type = GLINT_TYPE_OTHER },
+    { .name = "normals", .type = GLINT_TYPE_OTHER },
+    { .name = "uv", .type = GLINT_TYPE_OTHER },
+    { .name = "format", .type = GLINT_TYPE_OTHER },
+    { .name = "materials", .type = GLINT_TYPE_OTHER },
+    { .name = "index", .type = GLINT_TYPE_OTHER },
     EVERY_MESH,
     { .name = NULL },
 };
 
 static const glintL_field SPHERE_FIELDS[] = {
-    { .name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true },
-    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
-    { .name = "segments", .kind = GLINTL_NUMBER, .offset = AT(segments), .required = true },
+    { .name = "center", .type = GLINT_TYPE_VECTOR, .offset = AT(center), .required = true },
+    { .name = "radius", .type = GLINT_TYPE_NUMBER, .offset = AT(radius), .required = true },
+    { .name = "segments", .type = GLINT_TYPE_NUMBER, .offset = AT(segments), .required = true },
     EVERY_MESH,
     { .name = NULL },
 };
@@ -193,7 +193,7 @@ static double *read_points(lua_State *L, const arguments *a, int place, const en
 
 static void read_format(lua_State *L, arguments *a)
 {
-    static const glintL_field field = { .name = "format", .kind = GLINTL_ENUM, .offset = AT(format), .names = FORMATS };
+    static const glintL_field field = { .name = "format", .type = GLINT_TYPE_CHOICE, .offset = AT(format), .names = FORMATS };
     bool packed = false;
     for (int place = VERTICES; place <= UV; place++)
         packed = packed || (place != FACES && lua_type(L, place) == LUA_TSTRING);

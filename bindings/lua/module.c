@@ -102,6 +102,8 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     lua_setfield(L, -2, "version");
     lua_pushcfunction(L, list_fields); // for the test of meta/glint.lua alone
     lua_setfield(L, -2, "_fields");
+    lua_pushcfunction(L, glintL_list_rows); // likewise, and for what is made of it: bindings/meta/fill.lua
+    lua_setfield(L, -2, "_rows");
     lua_pushcfunction(L, other_kind);
     lua_setfield(L, -2, "_other_kind");
     lua_pushcfunction(L, warn);

@@ -4,7 +4,6 @@
 #include "bindings/value/glintL.h"
 
 typedef glint_overlay_desc desc_type;
-_Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 #define AT(member) offsetof(desc_type, member)
 
@@ -281,7 +280,7 @@ static const char *const ORIENTATIONS[] = { "vertical", "horizontal", NULL };
 // The name of a map, a list of colours, or a function where a bar is made: that of a bar that is there might close it.
 static void read_map(lua_State *L, int index, const char *path, void *desc)
 {
-    static const glintL_field name = { .name = "map", .kind = GLINTL_ENUM, .names = glintL_colormaps };
+    static const glintL_field name = { .name = "map", .type = GLINT_TYPE_CHOICE, .names = glintL_colormaps };
     desc_type *d = desc;
     uint8_t rgb[256][3];
     unsigned which;
@@ -317,7 +316,7 @@ static const char *const SCALES[] = { "linear", "log", NULL };
 
 static void read_scale(lua_State *L, int index, const char *path, void *desc)
 {
-    static const glintL_field scale = { .name = "scale", .kind = GLINTL_ENUM, .names = SCALES };
+    static const glintL_field scale = { .name = "scale", .type = GLINT_TYPE_CHOICE, .names = SCALES };
     unsigned which;
     (void)path;
     glintL_read_field(L, index, "colorbar", &scale, &which);
@@ -328,41 +327,41 @@ static void push_scale(lua_State *L, const void *desc) { lua_pushstring(L, SCALE
 
 // clang-format off
 #define EVERY_OVERLAY \
-    {.name = "at", .kind = GLINTL_CUSTOM, .read = read_at, .push = push_at}, \
-    {.name = "position", .kind = GLINTL_CUSTOM, .set_offset = AT(has_position), .read = read_position, .push = push_position}, \
-    {.name = "size", .kind = GLINTL_NUMBER, .offset = AT(size), .set_offset = AT(has_size)}, \
-    {.name = "margin", .kind = GLINTL_NUMBER, .offset = AT(margin), .set_offset = AT(has_margin)}, \
-    {.name = "color", .kind = GLINTL_COLOR, .offset = AT(color)}, \
-    {.name = "background", .kind = GLINTL_COLOR, .offset = AT(background), .set_offset = AT(has_background)}, \
-    {.name = "opacity", .kind = GLINTL_NUMBER, .offset = AT(opacity)}, \
-    {.name = "name", .kind = GLINTL_STRING, .offset = AT(name)}
+    {.name = "at", GLINTL_CUSTOM(read_at, push_at)}, \
+    {.name = "position", GLINTL_CUSTOM(read_position, push_position), .set_offset = AT(has_position)}, \
+    {.name = "size", .type = GLINT_TYPE_NUMBER, .offset = AT(size), .set_offset = AT(has_size)}, \
+    {.name = "margin", .type = GLINT_TYPE_NUMBER, .offset = AT(margin), .set_offset = AT(has_margin)}, \
+    {.name = "color", .type = GLINT_TYPE_COLOR, .offset = AT(color)}, \
+    {.name = "background", .type = GLINT_TYPE_COLOR, .offset = AT(background), .set_offset = AT(has_background)}, \
+    {.name = "opacity", .type = GLINT_TYPE_NUMBER, .offset = AT(opacity)}, \
+    {.name = "name", .type = GLINT_TYPE_TEXT, .offset = AT(name)}
 
-#define LENGTH {.name = "length", .kind = GLINTL_NUMBER, .offset = AT(length), .set_offset = AT(has_length)}
+#define LENGTH {.name = "length", .type = GLINT_TYPE_NUMBER, .offset = AT(length), .set_offset = AT(has_length)}
 // clang-format on
 
 static const glintL_field LABEL_FIELDS[] = {
-    { .name = "text", .kind = GLINTL_CUSTOM, .required = true, .read = read_text, .push = push_text },
+    { .name = "text", GLINTL_CUSTOM(read_text, push_text), .required = true },
     EVERY_OVERLAY,
     { .name = NULL },
 };
 
 static const glintL_field COLORBAR_FIELDS[] = {
-    { .name = "map", .kind = GLINTL_CUSTOM, .required = true, .read = read_map, .push = push_map },
-    { .name = "low", .kind = GLINTL_NUMBER, .offset = AT(low), .required = true },
-    { .name = "high", .kind = GLINTL_NUMBER, .offset = AT(high), .required = true },
-    { .name = "title", .kind = GLINTL_CUSTOM, .read = read_text, .push = push_text },
-    { .name = "ticks", .kind = GLINTL_CUSTOM, .read = read_ticks, .push = push_ticks },
-    { .name = "scale", .kind = GLINTL_CUSTOM, .read = read_scale, .push = push_scale },
-    { .name = "orientation", .kind = GLINTL_ENUM, .offset = AT(orientation), .names = ORIENTATIONS },
+    { .name = "map", GLINTL_CUSTOM(read_map, push_map), .required = true },
+    { .name = "low", .type = GLINT_TYPE_NUMBER, .offset = AT(low), .required = true },
+    { .name = "high", .type = GLINT_TYPE_NUMBER, .offset = AT(high), .required = true },
+    { .name = "title", GLINTL_CUSTOM(read_text, push_text) },
+    { .name = "ticks", GLINTL_CUSTOM(read_ticks, push_ticks) },
+    { .name = "scale", GLINTL_CUSTOM(read_scale, push_scale) },
+    { .name = "orientation", .type = GLINT_TYPE_CHOICE, .offset = AT(orientation), .names = ORIENTATIONS },
     LENGTH,
     EVERY_OVERLAY,
     { .name = NULL },
 };
 
 static const glintL_field AXES_FIELDS[] = {
-    { .name = "box", .kind = GLINTL_CUSTOM, .set_offset = AT(has_box), .read = read_box, .push = push_box }, // names axes
-    { .name = "labels", .kind = GLINTL_CUSTOM, .read = read_names, .push = push_names },
-    { .name = "values", .kind = GLINTL_CUSTOM, .set_offset = AT(has_values), .read = read_values, .push = push_values },
+    { .name = "box", GLINTL_CUSTOM(read_box, push_box), .set_offset = AT(has_box) }, // names axes
+    { .name = "labels", GLINTL_CUSTOM(read_names, push_names) },
+    { .name = "values", GLINTL_CUSTOM(read_values, push_values), .set_offset = AT(has_values) },
     LENGTH,
     EVERY_OVERLAY,
     { .name = NULL },
@@ -376,74 +375,39 @@ static const glintL_variant VARIANTS[] = {
 
 static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_overlay_get(object)->kind]; }
 
-static void get(const void *object, void *desc) { memcpy(desc, glint_overlay_get(object), sizeof(desc_type)); }
-
-static glint_status set(void *object, const void *desc, glint_error *error)
-{
-    return glint_overlay_set(object, desc, error);
-}
-
-static void *retain(void *object) { return glint_overlay_retain(object); }
-
-static void release(void *object) { glint_overlay_release(object); }
+GLINTL_FUNCTIONS(overlay);
 
 // The one of at and position set last is the one used.
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
     desc_type *d = desc;
-    if (field->read != read_at)
+    if (strcmp(field->name, "at") != 0)
         return;
     if (d->has_box)
         glintL_error(L, "axes.at: of axes without a box; with one they lie at its edges");
     d->has_position = false;
 }
 
+static void begin(int kind, void *desc) { *(desc_type *)desc = glint_overlay_desc_default((glint_overlay_kind)kind); }
+
+static void given(lua_State *L, const glintL_variant *of, const void *desc)
+{
+    const desc_type *d = desc;
+    lua_pushliteral(L, "at");
+    if (lua_rawget(L, 1) != LUA_TNIL && d->has_position)
+        glintL_error(L, "%s: at or position expected, got both", of->name);
+    if (!lua_isnil(L, -1) && d->has_box)
+        glintL_error(L, "axes: at or box expected, got both");
+    lua_pop(L, 1);
+}
+
 static const glintL_class CLASS = {
     .type = GLINTL_OVERLAY,
     .variant = variant,
-    .get = get,
-    .set = set,
-    .retain = retain,
-    .release = release,
+    GLINTL_FUNCTION_MEMBERS,
     .assigned = assigned,
+    .begin = begin,
+    .given = given,
 };
 
-static int new_overlay(lua_State *L, glint_overlay_kind kind)
-{
-    desc_type desc = glint_overlay_desc_default(kind);
-    glint_overlay *overlay = NULL;
-    glint_error error;
-    lua_settop(L, 1);
-    glintL_box *box = glintL_new_box(L, GLINTL_OVERLAY);
-    glintL_read_table(L, 1, VARIANTS[kind].name, VARIANTS[kind].fields, &desc, false);
-    lua_pushliteral(L, "at");
-    if (lua_rawget(L, 1) != LUA_TNIL && desc.has_position)
-        return glintL_error(L, "%s: at or position expected, got both", VARIANTS[kind].name);
-    if (!lua_isnil(L, -1) && desc.has_box)
-        return glintL_error(L, "axes: at or box expected, got both");
-    lua_pop(L, 1);
-    glintL_check_status(L, VARIANTS[kind].name, &error, glint_overlay_create(&desc, &overlay, &error));
-    box->object = overlay;
-    glintL_remember(L, overlay);
-    return 1;
-}
-
-static int new_label(lua_State *L) { return new_overlay(L, GLINT_OVERLAY_LABEL); }
-
-static int new_colorbar(lua_State *L) { return new_overlay(L, GLINT_OVERLAY_COLORBAR); }
-
-static int new_axes(lua_State *L) { return new_overlay(L, GLINT_OVERLAY_AXES); }
-
-void glintL_open_overlay(lua_State *L)
-{
-    static const luaL_Reg constructors[] = {
-        { "label", new_label },
-        { "colorbar", new_colorbar },
-        { "axes", new_axes },
-        { NULL, NULL },
-    };
-    glintL_open_class(L, &CLASS);
-    for (size_t i = 0; i < sizeof VARIANTS / sizeof *VARIANTS; i++)
-        glintL_list_object(L, &VARIANTS[i], &CLASS);
-    luaL_setfuncs(L, constructors, 0);
-}
+void glintL_open_overlay(lua_State *L) { glintL_open_objects(L, &CLASS, VARIANTS, sizeof VARIANTS / sizeof *VARIANTS); }

@@ -8,92 +8,7 @@
 typedef glint_scene_desc desc_type;
 _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
-#define AT(member) offsetof(desc_type, member)
-
-static const char *const CAMERA[] = { GLINTL_CAMERA };
-
-static const glintL_field DEPTH_CUE[] = {
-    { .name = "color", .kind = GLINTL_COLOR, .offset = AT(depth_cue_color), .set_offset = AT(has_depth_cue_color) },
-    { .name = "near", .kind = GLINTL_NUMBER, .offset = AT(depth_cue_near) },
-    { .name = "far", .kind = GLINTL_NUMBER, .offset = AT(depth_cue_far), .required = true },
-    { .name = NULL },
-};
-
-static void begin_depth_cue(void *desc)
-{
-    ((desc_type *)desc)->has_depth_cue_color = false;
-    ((desc_type *)desc)->depth_cue_near = 0;
-}
-
-static const glintL_field INDIRECT[] = {
-    { .name = "samples", .kind = GLINTL_NUMBER, .offset = AT(indirect_samples) },
-    { .name = "bounces", .kind = GLINTL_NUMBER, .offset = AT(indirect_bounces) },
-    { .name = NULL },
-};
-
-static void begin_indirect(void *desc)
-{
-    ((desc_type *)desc)->indirect_samples = 16;
-    ((desc_type *)desc)->indirect_bounces = 2;
-}
-
-// Any number but NaN: infinity is the default.
-static void read_distance(lua_State *L, int index, const char *path, void *desc)
-{
-    ((desc_type *)desc)->ambient_occlusion_distance = glintL_read_number(L, index, path);
-}
-
-static void push_distance(lua_State *L, const void *desc)
-{
-    lua_pushnumber(L, ((const desc_type *)desc)->ambient_occlusion_distance);
-}
-
-static const glintL_field AMBIENT_OCCLUSION[] = {
-    { .name = "samples", .kind = GLINTL_NUMBER, .offset = AT(ambient_occlusion_samples) },
-    { .name = "distance",
-      .kind = GLINTL_CUSTOM,
-      .offset = AT(ambient_occlusion_distance),
-      .read = read_distance,
-      .push = push_distance },
-    { .name = NULL },
-};
-
-static void begin_ambient_occlusion(void *desc)
-{
-    ((desc_type *)desc)->ambient_occlusion_samples = 16;
-    ((desc_type *)desc)->ambient_occlusion_distance = HUGE_VAL;
-}
-
-static const glintL_field FIELDS[] = {
-    { .name = "camera", .kind = GLINTL_OBJECT, .offset = AT(camera), .names = CAMERA },
-    { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient), .slopes = true },
-    { .name = "background",
-      .kind = GLINTL_COLOR,
-      .offset = AT(background),
-      .program_offset = AT(background_program),
-      .slopes = true },
-    { .name = "depth_cue",
-      .kind = GLINTL_NESTED,
-      .offset = AT(depth_cue_near),
-      .set_offset = AT(has_depth_cue),
-      .nested = DEPTH_CUE,
-      .begin_nested = begin_depth_cue },
-    { .name = "indirect",
-      .kind = GLINTL_NESTED,
-      .offset = AT(indirect_samples),
-      .set_offset = AT(has_indirect),
-      .nested = INDIRECT,
-      .begin_nested = begin_indirect },
-    { .name = "ambient_occlusion",
-      .kind = GLINTL_NESTED,
-      .offset = AT(ambient_occlusion_samples),
-      .set_offset = AT(has_ambient_occlusion),
-      .nested = AMBIENT_OCCLUSION,
-      .begin_nested = begin_ambient_occlusion },
-    { .name = NULL },
-};
-
-static const glintL_variant SCENE = { .name = "scene", .fields = FIELDS };
+static const glintL_variant SCENE = { .name = "scene", .kind = GLINT_OBJECT_SCENE };
 
 static const glintL_variant *variant(const void *object)
 {
@@ -103,10 +18,7 @@ static const glintL_variant *variant(const void *object)
 
 static void get(const void *object, void *desc) { memcpy(desc, glint_scene_get(object), sizeof(desc_type)); }
 
-static glint_status set(void *object, const void *desc, glint_error *error)
-{
-    return glint_scene_set(object, desc, error);
-}
+static glint_status set(void *object, const void *desc, glint_error *error) { return glint_scene_set(object, desc, error); }
 
 static void *retain(void *object) { return glint_scene_retain(object); }
 
@@ -367,8 +279,7 @@ static int render(lua_State *L)
 }
 
 static const luaL_Reg METHODS[] = {
-    { "add", add }, { "remove", drop }, { "cast", cast }, { "objects", objects }, { "render", render }, { NULL, NULL },
-};
+    { "add", add }, { "remove", drop }, { "cast", cast }, { "objects", objects }, { "render", render }, { NULL, NULL } };
 
 static const glintL_class CLASS = {
     .type = GLINTL_SCENE,
@@ -377,8 +288,7 @@ static const glintL_class CLASS = {
     .set = set,
     .retain = retain,
     .release = release,
-    .methods = METHODS,
-};
+    .methods = METHODS };
 
 static void add_list(lua_State *L)
 {
@@ -398,7 +308,7 @@ static void refuse_named(lua_State *L)
     if (!lua_istable(L, 1))
         return;
     for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1))
-        if (lua_type(L, -2) == LUA_TSTRING && !glintL_find_field(FIELDS, lua_tostring(L, -2)) && has_object(L, -1))
+        if (lua_type(L, -2) == LUA_TSTRING && !glintL_find_field(glintL_fields_of(&SCENE), lua_tostring(L, -2)) && has_object(L, -1))
             glintL_error(L, "scene.%s: shapes and lights stand in a scene without a name: glint.scene { camera = ..., lamp, ball }",
                          lua_tostring(L, -2));
 }
@@ -413,7 +323,7 @@ static int new_scene(lua_State *L)
     glintL_check_status(L, "scene", &error, glint_scene_create(&scene, &error));
     box->object = scene;
     refuse_named(L);
-    glintL_read_table(L, 1, "scene", FIELDS, &desc, true);
+    glintL_read_table(L, 1, "scene", glintL_fields_of(&SCENE), &desc, true);
     glintL_check_status(L, "scene", &error, glint_scene_set(scene, &desc, &error));
     if (desc.camera) {
         lua_pushliteral(L, "camera");
@@ -421,8 +331,8 @@ static int new_scene(lua_State *L)
         glintL_keep(L, 2, "camera", 3);
         lua_settop(L, 2);
     }
-    glintL_keep_sources(L, 2, 1, FIELDS);
-    glintL_keep_table_slopes(L, 2, 1, FIELDS);
+    glintL_keep_sources(L, 2, 1, glintL_fields_of(&SCENE));
+    glintL_keep_table_slopes(L, 2, 1, glintL_fields_of(&SCENE));
     add_list(L);
     glintL_remember(L, scene);
     return 1;
@@ -435,13 +345,14 @@ static int new_ambient_occlusion(lua_State *L)
     glint_scene *scene = NULL;
     glint_error error;
     lua_settop(L, 1);
-    begin_ambient_occlusion(&desc);
-    glintL_read_table(L, 1, "ambient_occlusion", AMBIENT_OCCLUSION, &desc, false);
+    const glintL_field *field = glintL_find_field(glintL_fields_of(&SCENE), "ambient_occlusion");
+    glintL_begin_table(field->parts, &desc);
+    glintL_read_table(L, 1, field->name, field->parts, &desc, false);
     glintL_box *box = glintL_new_box(L, GLINTL_SCENE); // that checks it
     glintL_check_status(L, "", &error, glint_scene_create(&scene, &error));
     box->object = scene;
     glintL_check_status(L, "", &error, glint_scene_set(scene, &desc, &error));
-    glintL_push_field(L, glintL_find_field(FIELDS, "ambient_occlusion"), &desc);
+    glintL_push_field(L, field, &desc);
     lua_getmetatable(L, -1);
     lua_pushboolean(L, true);
     lua_setfield(L, -2, "glint.ambient_occlusion");

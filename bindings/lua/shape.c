@@ -5,7 +5,6 @@
 #include "bindings/value/glintL.h"
 
 typedef glint_shape_desc desc_type;
-_Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 #define AT(member) offsetof(desc_type, member)
 
@@ -13,63 +12,63 @@ static const char *const MATERIAL[] = { GLINTL_MATERIAL };
 
 // clang-format off
 #define EVERY_SHAPE \
-    {.name = "material", .kind = GLINTL_OBJECT, .offset = AT(material), .names = MATERIAL}, \
-    {.name = "transform", .kind = GLINTL_TRANSFORM, .offset = AT(transform)}, \
-    {.name = "two_sided", .kind = GLINTL_BOOLEAN, .offset = AT(two_sided)}, \
-    {.name = "name", .kind = GLINTL_STRING, .offset = AT(name)}
+    {.name = "material", .type = GLINT_TYPE_OBJECT, .offset = AT(material), .names = MATERIAL}, \
+    {.name = "transform", .type = GLINT_TYPE_TRANSFORM, .offset = AT(transform)}, \
+    {.name = "two_sided", .type = GLINT_TYPE_FLAG, .offset = AT(two_sided)}, \
+    {.name = "name", .type = GLINT_TYPE_TEXT, .offset = AT(name)}
 // clang-format on
 
 static const glintL_field SPHERE_FIELDS[] = {
-    { .name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true, .slopes = true },
-    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true, .slopes = true },
+    { .name = "center", .type = GLINT_TYPE_VECTOR, .offset = AT(center), .required = true, .takes = GLINT_TAKES_VARIABLE },
+    { .name = "radius", .type = GLINT_TYPE_NUMBER, .offset = AT(radius), .required = true, .takes = GLINT_TAKES_VARIABLE },
     EVERY_SHAPE,
     { .name = NULL },
 };
 
 static const glintL_field PLANE_FIELDS[] = {
-    { .name = "point", .kind = GLINTL_VECTOR, .offset = AT(point), .required = true, .slopes = true },
-    { .name = "normal", .kind = GLINTL_VECTOR, .offset = AT(normal), .required = true, .slopes = true },
+    { .name = "point", .type = GLINT_TYPE_VECTOR, .offset = AT(point), .required = true, .takes = GLINT_TAKES_VARIABLE },
+    { .name = "normal", .type = GLINT_TYPE_VECTOR, .offset = AT(normal), .required = true, .takes = GLINT_TAKES_VARIABLE },
     EVERY_SHAPE,
     { .name = NULL },
 };
 
 static const glintL_field BOX_FIELDS[] = {
-    { .name = "min", .kind = GLINTL_VECTOR, .offset = AT(min), .required = true },
-    { .name = "max", .kind = GLINTL_VECTOR, .offset = AT(max), .required = true },
+    { .name = "min", .type = GLINT_TYPE_VECTOR, .offset = AT(min), .required = true },
+    { .name = "max", .type = GLINT_TYPE_VECTOR, .offset = AT(max), .required = true },
     EVERY_SHAPE,
     { .name = NULL },
 };
 
 static const glintL_field DISK_FIELDS[] = {
-    { .name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true },
-    { .name = "normal", .kind = GLINTL_VECTOR, .offset = AT(normal), .required = true },
-    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
+    { .name = "center", .type = GLINT_TYPE_VECTOR, .offset = AT(center), .required = true },
+    { .name = "normal", .type = GLINT_TYPE_VECTOR, .offset = AT(normal), .required = true },
+    { .name = "radius", .type = GLINT_TYPE_NUMBER, .offset = AT(radius), .required = true },
     EVERY_SHAPE,
     { .name = NULL },
 };
 
 // Fields of cylinders and cones.
 static const glintL_field ROUND_FIELDS[] = {
-    { .name = "base", .kind = GLINTL_VECTOR, .offset = AT(base), .required = true },
-    { .name = "top", .kind = GLINTL_VECTOR, .offset = AT(top), .required = true },
-    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
-    { .name = "capped", .kind = GLINTL_BOOLEAN, .offset = AT(capped) },
+    { .name = "base", .type = GLINT_TYPE_VECTOR, .offset = AT(base), .required = true },
+    { .name = "top", .type = GLINT_TYPE_VECTOR, .offset = AT(top), .required = true },
+    { .name = "radius", .type = GLINT_TYPE_NUMBER, .offset = AT(radius), .required = true },
+    { .name = "capped", .type = GLINT_TYPE_FLAG, .offset = AT(capped) },
     EVERY_SHAPE,
     { .name = NULL },
 };
 
 static const glintL_field TORUS_FIELDS[] = {
-    { .name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true },
-    { .name = "axis", .kind = GLINTL_VECTOR, .offset = AT(axis) },
-    { .name = "major", .kind = GLINTL_NUMBER, .offset = AT(major), .required = true },
-    { .name = "minor", .kind = GLINTL_NUMBER, .offset = AT(minor), .required = true },
+    { .name = "center", .type = GLINT_TYPE_VECTOR, .offset = AT(center), .required = true },
+    { .name = "axis", .type = GLINT_TYPE_VECTOR, .offset = AT(axis) },
+    { .name = "major", .type = GLINT_TYPE_NUMBER, .offset = AT(major), .required = true },
+    { .name = "minor", .type = GLINT_TYPE_NUMBER, .offset = AT(minor), .required = true },
     EVERY_SHAPE,
     { .name = NULL },
 };
 
 static const glintL_field GROUP_FIELDS[] = {
-    { .name = "transform", .kind = GLINTL_TRANSFORM, .offset = AT(transform) },
-    { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
+    { .name = "transform", .type = GLINT_TYPE_TRANSFORM, .offset = AT(transform) },
+    { .name = "name", .type = GLINT_TYPE_TEXT, .offset = AT(name) },
     { .name = NULL },
 };
 
@@ -85,7 +84,7 @@ static const glintL_field SPHERES_FIELDS[] = { EVERY_SHAPE, { .name = NULL } };
 static const char *const SHADINGS[] = { "faceted", "phong", "flat", "gouraud", NULL };
 
 static const glintL_field MESH_FIELDS[] = {
-    { .name = "shading", .kind = GLINTL_ENUM, .offset = AT(shading), .names = SHADINGS },
+    { .name = "shading", .type = GLINT_TYPE_CHOICE, .offset = AT(shading), .names = SHADINGS },
     EVERY_SHAPE,
     { .name = NULL },
 };
@@ -140,6 +139,8 @@ static const luaL_Reg MANY_GETTERS[] = {
     { "count", get_count }, { "materials", get_materials }, { "min", get_min }, { "max", get_max }, { NULL, NULL },
 };
 
+#define COLLECTION .is_list = true, .getters = GROUP_GETTERS, .methods = GROUP_METHODS
+
 static const glintL_variant VARIANTS[] = {
     [GLINT_SHAPE_SPHERE] = { .name = "sphere", .fields = SPHERE_FIELDS, .place = "center" },
     [GLINT_SHAPE_PLANE] = { .name = "plane", .fields = PLANE_FIELDS },
@@ -150,41 +151,20 @@ static const glintL_variant VARIANTS[] = {
     [GLINT_SHAPE_CYLINDER] = { .name = "cylinder", .fields = ROUND_FIELDS },
     [GLINT_SHAPE_CONE] = { .name = "cone", .fields = ROUND_FIELDS },
     [GLINT_SHAPE_TORUS] = { .name = "torus", .fields = TORUS_FIELDS, .place = "center" },
-    [GLINT_SHAPE_GROUP] = { .name = "group",
-                            .fields = GROUP_FIELDS,
-                            .getters = GROUP_GETTERS,
-                            .methods = GROUP_METHODS },
-    [GLINT_SHAPE_UNION] = { .name = "union",
-                            .fields = COMBINED_FIELDS,
-                            .getters = GROUP_GETTERS,
-                            .methods = GROUP_METHODS },
-    [GLINT_SHAPE_INTERSECTION] = { .name = "intersection",
-                                   .fields = COMBINED_FIELDS,
-                                   .getters = GROUP_GETTERS,
-                                   .methods = GROUP_METHODS },
-    [GLINT_SHAPE_DIFFERENCE] = { .name = "difference",
-                                 .fields = COMBINED_FIELDS,
-                                 .getters = GROUP_GETTERS,
-                                 .methods = GROUP_METHODS },
+    [GLINT_SHAPE_GROUP] = { .name = "group", .fields = GROUP_FIELDS, COLLECTION },
+    [GLINT_SHAPE_UNION] = { .name = "union", .fields = COMBINED_FIELDS, COLLECTION },
+    [GLINT_SHAPE_INTERSECTION] = { .name = "intersection", .fields = COMBINED_FIELDS, COLLECTION },
+    [GLINT_SHAPE_DIFFERENCE] = { .name = "difference", .fields = COMBINED_FIELDS, COLLECTION },
 };
 
 static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_shape_get(object)->kind]; }
 
-static void get(const void *object, void *desc) { memcpy(desc, glint_shape_get(object), sizeof(desc_type)); }
-
-static glint_status set(void *object, const void *desc, glint_error *error)
-{
-    return glint_shape_set(object, desc, error);
-}
-
-static void *retain(void *object) { return glint_shape_retain(object); }
-
-static void release(void *object) { glint_shape_release(object); }
+GLINTL_FUNCTIONS(shape);
 
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
     (void)desc;
-    if (field->kind != GLINTL_OBJECT)
+    if (field->type != GLINT_TYPE_OBJECT)
         return;
     push_kept_list(L);
     if (!lua_isnil(L, -1))
@@ -195,84 +175,38 @@ static void assigned(lua_State *L, const glintL_field *field, void *desc)
     lua_pop(L, 1);
 }
 
-static const glintL_class CLASS = {
-    .type = GLINTL_SHAPE,
-    .variant = variant,
-    .get = get,
-    .set = set,
-    .retain = retain,
-    .release = release,
-    .assigned = assigned,
-};
+static void begin(int kind, void *desc) { *(desc_type *)desc = glint_shape_desc_default((glint_shape_kind)kind); }
 
-static int new_shape(lua_State *L, glint_shape_kind kind)
+static void made(lua_State *L, const void *desc)
 {
-    const glintL_variant *v = &VARIANTS[kind];
-    desc_type desc = glint_shape_desc_default(kind);
-    glint_shape *shape = NULL;
-    glint_error error;
-    lua_settop(L, 1);
-    glintL_box *box = glintL_new_box(L, GLINTL_SHAPE);
-    glintL_read_table(L, 1, v->name, v->fields, &desc, kind >= GLINT_SHAPE_GROUP);
-    glintL_check_status(L, v->name, &error, glint_shape_create(&desc, &shape, &error));
-    box->object = shape;
-    glintL_remember(L, shape);
-    glintL_keep_table_slopes(L, 2, 1, v->fields);
-    if (desc.material) {
+    const desc_type *d = desc;
+    if (d->material) {
         lua_pushliteral(L, "material");
         lua_rawget(L, 1);
         glintL_keep(L, 2, "material", -1);
         lua_pop(L, 1);
     }
-    if (kind >= GLINT_SHAPE_GROUP)
-        glintL_group_fill(L, 1, 2, v->name);
-    lua_settop(L, 2);
-    return 1;
+    if (VARIANTS[d->kind].is_list)
+        glintL_group_fill(L, 1, 2, VARIANTS[d->kind].name);
 }
 
-static int new_box(lua_State *L) { return new_shape(L, GLINT_SHAPE_BOX); }
-
-static int new_disk(lua_State *L) { return new_shape(L, GLINT_SHAPE_DISK); }
-
-static int new_cylinder(lua_State *L) { return new_shape(L, GLINT_SHAPE_CYLINDER); }
-
-static int new_cone(lua_State *L) { return new_shape(L, GLINT_SHAPE_CONE); }
-
-static int new_torus(lua_State *L) { return new_shape(L, GLINT_SHAPE_TORUS); }
-
-static int new_group(lua_State *L) { return new_shape(L, GLINT_SHAPE_GROUP); }
-
-static int new_union(lua_State *L) { return new_shape(L, GLINT_SHAPE_UNION); }
-
-static int new_intersection(lua_State *L) { return new_shape(L, GLINT_SHAPE_INTERSECTION); }
-
-static int new_difference(lua_State *L) { return new_shape(L, GLINT_SHAPE_DIFFERENCE); }
-
-static int new_sphere(lua_State *L) { return new_shape(L, GLINT_SHAPE_SPHERE); }
-
-static int new_plane(lua_State *L) { return new_shape(L, GLINT_SHAPE_PLANE); }
+static const glintL_class CLASS = {
+    .type = GLINTL_SHAPE,
+    .variant = variant,
+    GLINTL_FUNCTION_MEMBERS,
+    .assigned = assigned,
+    .begin = begin,
+    .made = made,
+};
 
 void glintL_open_shape(lua_State *L)
 {
-    static const luaL_Reg constructors[] = {
-        { "sphere", new_sphere },
-        { "plane", new_plane },
+    static const luaL_Reg others[] = {
         { "spheres", glintL_new_spheres },
-        { "box", new_box },
-        { "disk", new_disk },
-        { "cylinder", new_cylinder },
-        { "cone", new_cone },
-        { "torus", new_torus },
-        { "group", new_group },
-        { "union", new_union },
-        { "intersection", new_intersection },
-        { "difference", new_difference },
         { "mesh", glintL_new_mesh },
         { "sphere_mesh", glintL_new_sphere_mesh },
         { NULL, NULL },
     };
-    glintL_open_class(L, &CLASS);
-    for (size_t i = 0; i < sizeof VARIANTS / sizeof *VARIANTS; i++)
-        glintL_list_object(L, &VARIANTS[i], &CLASS);
-    luaL_setfuncs(L, constructors, 0);
+    glintL_open_objects(L, &CLASS, VARIANTS, sizeof VARIANTS / sizeof *VARIANTS);
+    luaL_setfuncs(L, others, 0);
 }

@@ -16,14 +16,14 @@ typedef struct arguments {
 static const char *const FORMATS[] = { "none", "f32", "f64", NULL };
 
 static const glintL_field FIELDS[] = {
-    { .name = "data", .kind = GLINTL_OTHER },
-    { .name = "format", .kind = GLINTL_OTHER },
-    { .name = "material", .kind = GLINTL_OTHER },
-    { .name = "materials", .kind = GLINTL_OTHER },
-    { .name = "index", .kind = GLINTL_OTHER },
-    { .name = "transform", .kind = GLINTL_TRANSFORM, .offset = offsetof(arguments, transform) },
-    { .name = "two_sided", .kind = GLINTL_BOOLEAN, .offset = offsetof(arguments, desc.two_sided) },
-    { .name = "name", .kind = GLINTL_STRING, .offset = offsetof(arguments, desc.name) },
+    { .name = "data", .type = GLINT_TYPE_OTHER },
+    { .name = "format", .type = GLINT_TYPE_OTHER },
+    { .name = "material", .type = GLINT_TYPE_OTHER },
+    { .name = "materials", .type = GLINT_TYPE_OTHER },
+    { .name = "index", .type = GLINT_TYPE_OTHER },
+    { .name = "transform", .type = GLINT_TYPE_TRANSFORM, .offset = offsetof(arguments, transform) },
+    { .name = "two_sided", .type = GLINT_TYPE_FLAG, .offset = offsetof(arguments, desc.two_sided) },
+    { .name = "name", .type = GLINT_TYPE_TEXT, .offset = offsetof(arguments, desc.name) },
     { .name = NULL },
 };
 
@@ -51,7 +51,7 @@ static void read_format(lua_State *L, arguments *a)
 {
     static const glintL_field field = {
         .name = "format",
-        .kind = GLINTL_ENUM,
+        .type = GLINT_TYPE_CHOICE,
         .offset = offsetof(arguments, format),
         .names = FORMATS + 1,
     };

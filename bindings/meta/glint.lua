@@ -72,25 +72,7 @@ function vector:reflect(n) end
 -- ---- Materials ----
 
 ---@class glint.material_fields
----@field model? "phong"|"blinn_phong"|"lambert"|"cook_torrance"|glint.shader  how the highlight falls off; "lambert" has none; "cook_torrance" is of microfacets. Default "phong"
----@field ambient? glint.color|glint.pattern|glint.texture  reflectance >= 0 of ambient light. Follows `diffuse` until set; nil: follows again
----@field diffuse? glint.color|glint.pattern|glint.texture  reflectance >= 0; above 1 is allowed and warned about once. Default 0.8
----@field specular? glint.color|glint.pattern|glint.texture  strength >= 0 of the highlight. Default 0; with "cook_torrance" 1, nil: follows again
----@field shininess? number|glint.pattern  exponent >= 0 of the highlight: higher is smaller and sharper. Default 32
----@field mirror? glint.color|glint.pattern|glint.texture  share >= 0 of the light that a mirrored ray brings. Default 0, with `fresnel` 1; nil: follows again
----@field transmission? glint.color|glint.pattern|glint.texture  share >= 0 of the light that a refracted ray brings, at each surface; where it is totally reflected it crosses none, and all of its light goes on. Default 0
----@field ior? number  refractive index inside, > 0; outside is 1 or that of the object around. Default 1.5. Where `f0` follows it, that is ((ior - 1)/(ior + 1))^2
----@field fresnel? boolean  true: `mirror` times what a dielectric reflects at that angle, `transmission` times the rest. Default false
----@field absorption? glint.color  >= 0 per world unit: exp(-absorption * way) of the light is left inside. Default 0
----@field normalized? boolean  of both Phongs: (s + 2)/2 (r.v)^s (n.l) or its like for n.h; reciprocal, gives off no more light than it gets. Default false
----@field matched? boolean  of "blinn_phong": the exponent is 4 shininess, which looks most like Phong. Default false
----@field roughness? number|glint.pattern  of "cook_torrance", 0 .. 1; the distribution's width is its square. Below 1e-9 as 1e-9. Default 0.3
----@field distribution? "ggx"|"beckmann"  of "cook_torrance": the slopes of its facets. Default "ggx"
----@field f0? glint.color  of "cook_torrance", 0 .. 1: what it reflects head-on; coloured for metals. Follows `ior` until set; nil: follows again
----@field opacity? number|glint.pattern  0 .. 1: a number o lets 1 - o of each ray and of the light straight through, at each surface; where a pattern is below 0.5, or NaN, the surface is not there for any ray of a frame. scene:cast hits it all the same. Default 1
----@field opacity_mode? "auto"|"cut"|"blend"  "blend": a pattern, too, lets 1 - o through; "cut": a number, too, cuts at 0.5. Default "auto": numbers blend, patterns cut
----@field bump? glint.pattern  height over the surface, world units: light, mirrors and glass see the normals that it would have. Default nil
----@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
+---@fields material
 
 ---@class glint.material: glint.material_fields
 local material = {}
@@ -120,23 +102,8 @@ function glint.material(fields) end
 -- ---- Lights ----
 
 --- Each light adds A * V * (kd * diffuse * (n.l) + ks * specular * S) where n.l > 0, with V = 0 in shadow.
----@class glint.light_fields
----@field color? glint.color  >= 0. Default 1
----@field intensity? number  >= 0, multiplies each of the three terms. Default 1
----@field ambient? glint.color  >= 0, adds to the scene's ambient light; neither attenuated nor shadowed. Default 0
----@field diffuse? glint.color  >= 0; follows `color` until set; nil: follows again
----@field specular? glint.color  >= 0; follows `color` until set; nil: follows again
----@field attenuation? glint.vec3  {c0, c1, c2} of A = 1 / (c0 + c1 d + c2 d^2), each >= 0, not all 0. Default {1, 0, 0}
----@field shadows? boolean  whether it casts shadows. Default true
----@field visible? boolean  whether the eye, mirrors and glass see its surface, from the sides that shine. By `radiance` L it
---- shows pi L color, by `intensity` I color I A(D) with D its radius (of a polygon, that of a disk of its area). It throws
---- no shadow, and is no object: to the passes it is background with a depth and a normal. Does nothing to lights without a
---- surface. Default false
----@field name? string  for messages, `glint explain` and its pass "light:NAME", at most 63 bytes. Default ""
----@field group? string  the pass "light:GROUP" holds the light of all lights of this group together, at most 63 bytes. Default "": by `name`
-
----@class glint.point_light_fields: glint.light_fields
----@field position glint.vec3  world units
+---@class glint.point_light_fields
+---@fields point_light
 
 ---@class glint.point_light: glint.point_light_fields
 ---@field x number  of position
@@ -151,8 +118,8 @@ function point_light:close() end
 ---@return glint.point_light
 function glint.point_light(fields) end
 
----@class glint.directional_light_fields: glint.light_fields
----@field direction glint.vec3  in which the light travels; not zero, need not be unit
+---@class glint.directional_light_fields
+---@fields directional_light
 
 ---@class glint.directional_light: glint.directional_light_fields
 local directional_light = {}
@@ -164,12 +131,8 @@ function directional_light:close() end
 ---@return glint.directional_light
 function glint.directional_light(fields) end
 
----@class glint.spot_light_fields: glint.light_fields
----@field position glint.vec3  world units
----@field direction glint.vec3  in which its axis points; not zero, need not be unit
----@field inner number  half angle of the full light, degrees, 0 <= inner <= outer
----@field outer number  half angle beyond which there is none, degrees, <= 180; between the two a smoothstep of the cosine
----@field exponent? number  >= 0: the light also falls off as cos^exponent from the axis. Default 0
+---@class glint.spot_light_fields
+---@fields spot_light
 
 ---@class glint.spot_light: glint.spot_light_fields
 ---@field x number  of position
@@ -184,23 +147,10 @@ function spot_light:close() end
 ---@return glint.spot_light
 function glint.spot_light(fields) end
 
---- Lights with a surface, and soft shadows. With `intensity` each adds the mean over its surface of what a point light
+--- Lights with a surface have soft shadows. With `intensity` each adds the mean over its surface of what a point light
 --- there adds; with `radiance` L the integral of L cos cos' / distance^2 over its surface, in place of A V (n.l).
----@class glint.area_light_fields: glint.light_fields
----@field samples? integer  points of the surface a sample of a pixel, 1 .. 65536; other ones for each pixel of a 4 x 4
---- block, so that 16 samples look like 256 from afar. Default 16
----@field radiance? number  >= 0, beside an intensity of 1. nil: `intensity` counts. Default nil
----@field shadow? "rays"|"hard"|"caps"  rays: by one to each sample. hard: by one to the light's middle, for all samples.
---- caps: sphere lights, in closed form, without noise: the terms of a point at its centre (of `radiance` L, of irradiance
---- pi L r^2/d^2 (n.l)) times the share of the light that is seen, exact past one sphere, past several the product of what
---- each leaves. Scenes with other shapes than spheres and planes, or with transparent ones, have rays all the same;
---- `glint explain` says which. By `radiance` caps are the limit of rays, but for how the cosine changes across the light. By
---- `intensity` they are not: its rays go to all of the surface, the far side as well, since it is a mean over that. Default "rays"
-
----@class glint.disk_light_fields: glint.area_light_fields
----@field position glint.vec3  its centre, world units
----@field normal glint.vec3  the side that shines; not zero, need not be unit
----@field radius number  world units, >= 0; 0 is a point
+---@class glint.disk_light_fields
+---@fields disk_light
 
 ---@class glint.disk_light: glint.disk_light_fields
 ---@field x number  of position
@@ -215,10 +165,8 @@ function disk_light:close() end
 ---@return glint.disk_light
 function glint.disk_light(fields) end
 
----@class glint.polygon_light_fields: glint.area_light_fields
----@field vertices glint.vec3[]  3 .. 4096 corners, convex, in one plane; it shines to the side from which they run
---- counter-clockwise
----@field two_sided? boolean  shines to both sides. Default false
+---@class glint.polygon_light_fields
+---@fields polygon_light
 
 ---@class glint.polygon_light: glint.polygon_light_fields
 local polygon_light = {}
@@ -230,9 +178,8 @@ function polygon_light:close() end
 ---@return glint.polygon_light
 function glint.polygon_light(fields) end
 
----@class glint.sphere_light_fields: glint.area_light_fields
----@field position glint.vec3  its centre, world units
----@field radius number  world units, >= 0; 0 is a point light, bit for bit
+---@class glint.sphere_light_fields
+---@fields sphere_light
 
 ---@class glint.sphere_light: glint.sphere_light_fields
 ---@field x number  of position
@@ -688,12 +635,7 @@ function glint.axes(fields) end
 function glint.ambient_occlusion(fields) end
 
 ---@class glint.scene_fields
----@field camera? glint.camera  needed for a frame; nil: none
----@field ambient? glint.color  light from everywhere, >= 0. Default 0
----@field background? glint.color|glint.pattern|glint.texture  what a ray sees that hits nothing, >= 0; of a pattern p is the unit direction, and a texture is a picture of all directions with -z in its middle, +x three quarters from the left, +y above. Default 0
----@field depth_cue? { color: glint.color?, near: number?, far: number }  light fades to color (default: the background, if that is a colour) from distance near (default 0) to far. Default nil: it does not
----@field ambient_occlusion? glint.ambient_occlusion  not together with indirect. Default nil: off
----@field indirect? glint.indirect  light from surface to surface instead of `ambient`; what a material's `ambient` has beyond its `diffuse` is its own light and stays. Default nil: off
+---@fields scene
 
 ---@class glint.scene_table: glint.scene_fields
 ---@field [integer] glint.shape|glint.light|glint.overlay|glint.ambient_occlusion  the objects, numbered in this order, without holes

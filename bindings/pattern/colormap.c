@@ -171,7 +171,7 @@ static double read_end(lua_State *L, int index, const char *path, double otherwi
 static bool read_scale(lua_State *L, double *low, double *high)
 {
     static const char *const scales[] = { "linear", "log", NULL };
-    static const glintL_field field = { .name = "scale", .kind = GLINTL_ENUM, .names = scales };
+    static const glintL_field field = { .name = "scale", .type = GLINT_TYPE_CHOICE, .names = scales };
     unsigned scale = 0;
     if (!lua_isnoneornil(L, 4))
         glintL_read_field(L, 4, "colormap", &field, &scale);
@@ -186,7 +186,7 @@ static bool read_scale(lua_State *L, double *low, double *high)
 
 static int new_colormap(lua_State *L)
 {
-    static const glintL_field field = { .name = "name", .kind = GLINTL_ENUM, .names = glintL_colormaps };
+    static const glintL_field field = { .name = "name", .type = GLINT_TYPE_CHOICE, .names = glintL_colormaps };
     unsigned which = 0;
     const double grey = glint_srgb_decode(MISSING_CODE / 255.0);
     double missing[3] = { grey, grey, grey };

@@ -36,7 +36,7 @@ static void note_patterned(lua_State *L, int index)
 
 void glintL_keep_source(lua_State *L, int index, const glintL_field *field, int value)
 {
-    const bool is_source = glintL_is_source(L, value, field->kind == GLINTL_ENUM);
+    const bool is_source = glintL_is_source(L, value, field->type == GLINT_TYPE_CHOICE);
     luaL_checkstack(L, 8, "pattern");
     index = lua_absindex(L, index);
     if (!is_source && !glintL_push_kept(L, index, field->name))
@@ -139,7 +139,7 @@ static void trace_object(lua_State *L, int index, const char *type, int frame)
 {
     const int top = lua_gettop(L);
     const glintL_class *class = glintL_class_of(L, type);
-    const glintL_field *fields = class->variant(NULL)->fields;
+    const glintL_field *fields = glintL_fields_of(class->variant(NULL));
     union {
         max_align_t align;
         char bytes[GLINTL_DESC_SIZE];

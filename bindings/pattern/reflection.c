@@ -20,23 +20,18 @@ static glint_status run(const glint_program *program, const double inputs[GLINT_
 
 static glint_status run_patterns(glint_material_desc *desc, const double inputs[GLINT_INPUT_COUNT], glint_error *error)
 {
-    const struct {
-        glint_program **program;
-        double *numbers;
-        size_t count;
-    } fields[] = {
-        { &desc->program.diffuse, desc->diffuse, 3 },      { &desc->program.specular, desc->specular, 3 },
-        { &desc->program.mirror, desc->mirror, 3 },        { &desc->program.transmission, desc->transmission, 3 },
-        { &desc->program.shininess, &desc->shininess, 1 }, { &desc->program.roughness, &desc->roughness, 1 },
-    };
+    glint_program *const shader = desc->program.shader;
     glint_status status = GLINT_OK;
-    for (size_t i = 0; i < sizeof fields / sizeof *fields && !status; i++)
-        if (*fields[i].program) {
-            status = run(*fields[i].program, inputs, fields[i].numbers, fields[i].count, error);
-            *fields[i].program = NULL;
-        }
-    desc->roughness = fmin(desc->roughness, 1);
-    desc->program.bump = desc->program.opacity = NULL;
+    for (const glintL_field *f = glint_object_fields(GLINT_OBJECT_MATERIAL, NULL); f->name && !status; f++) {
+        glint_program *program = f->program_offset ? *(glint_program **)(void *)((char *)desc + f->program_offset) : NULL;
+        double *numbers = (double *)(void *)((char *)desc + f->offset);
+        if (!program || program == shader || f->type == GLINT_TYPE_PROGRAM)
+            continue;
+        status = run(program, inputs, numbers, f->type == GLINT_TYPE_COLOR ? 3 : 1, error);
+        if (f->type == GLINT_TYPE_NUMBER)
+            *numbers = fmin(*numbers, f->high);
+    }
+    desc->program = (glint_material_programs) { .shader = shader };
     return status;
 }
 

@@ -17,10 +17,10 @@ static const char *const FILTERS[] = { "bilinear", "nearest", NULL };
 static const char *const TRANSFERS[] = { "srgb", "linear", NULL };
 
 static const glintL_field FIELDS[] = {
-    { .name = "file", .kind = GLINTL_OTHER },
-    { .name = "wrap", .kind = GLINTL_ENUM, .offset = AT(desc.wrap), .names = WRAPS },
-    { .name = "filter", .kind = GLINTL_ENUM, .offset = AT(desc.filter), .names = FILTERS },
-    { .name = "transfer", .kind = GLINTL_ENUM, .offset = AT(transfer), .names = TRANSFERS },
+    { .name = "file", .type = GLINT_TYPE_OTHER },
+    { .name = "wrap", .type = GLINT_TYPE_CHOICE, .offset = AT(desc.wrap), .names = WRAPS },
+    { .name = "filter", .type = GLINT_TYPE_CHOICE, .offset = AT(desc.filter), .names = FILTERS },
+    { .name = "transfer", .type = GLINT_TYPE_CHOICE, .offset = AT(transfer), .names = TRANSFERS },
     { .name = NULL },
 };
 

@@ -22,16 +22,6 @@ bool glintL_wants_variable(const glintL_run *run, const char *name)
     return false;
 }
 
-// Returns the C API's name of a field that Lua has in degrees.
-static const char *engine_name(const glintL_field *field)
-{
-    if (field->kind != GLINTL_DEGREES)
-        return field->name;
-    if (strcmp(field->name, "fov") == 0)
-        return "fov_y_rad";
-    return strcmp(field->name, "inner") == 0 ? "inner_rad" : "outer_rad";
-}
-
 typedef struct gathering {
     const glint_scene *scene;
     glint_slope *out; // NULL: they are counted
@@ -60,11 +50,11 @@ static void gather_object(lua_State *L, int index, const char *type, int variabl
     void *object = glintL_test_object(L, index, type);
     if (!object || (strcmp(type, GLINTL_SCENE) == 0 && object != g->scene))
         return;
-    for (const glintL_field *field = class->variant(object)->fields; field->name; field++) {
-        glint_slope slope = { .field = engine_name(field), .program = find_tangent(class, object, field, variable) };
+    for (const glintL_field *field = glintL_fields_of(class->variant(object)); field->name; field++) {
+        glint_slope slope = { .field = field->member ? field->member : field->name, .program = find_tangent(class, object, field, variable) };
         if (!glintL_get_slope(L, index, field, variable, slope.slope) && !slope.program)
             continue;
-        for (int c = 0; c < 3 && field->kind == GLINTL_DEGREES; c++)
+        for (int c = 0; c < 3 && field->type == GLINT_TYPE_ANGLE; c++)
             slope.slope[c] *= PI / 180;
         slope.material = strcmp(type, GLINTL_MATERIAL) == 0 ? object : NULL;
         slope.light = strcmp(type, GLINTL_LIGHT) == 0 ? object : NULL;

@@ -13,21 +13,21 @@
     OPTION(seed, NUMBER, WHOLE, desc.seed, 0, SEED_MAX, NULL, "N", "another sample pattern")                            \
     FIELD(max_depth, NUMBER, WHOLE, desc.max_depth, 0, DEPTH_MAX, NULL)                                                 \
     OPTION(bits, NUMBER, BITS, desc.tone.bits, 0, 0, NULL, "8|16", "of a channel")                                      \
-    OPTION(precision, ENUM, CHOICE, desc.precision, 0, 0, precisions, "", "what decides hits and shadows")              \
-    OPTION(transfer, ENUM, CHOICE, desc.tone.transfer, 0, 0, transfers, "", "from light to codes")                      \
-    OPTION(rounding, ENUM, CHOICE, desc.tone.rounding, 0, 0, roundings, "", "of codes")                                 \
-    OPTION(tone, ENUM, CHOICE, desc.tone.curve, 0, 0, glintL_tone_curves, "", "curve of bright light")                  \
-    OPTION(encode, ENUM, CHOICE, encode, 0, 0, encodes, "", "fast to write or small on disk")                           \
-    FIELD(colormap, ENUM, COLORS, colormap, 0, 0, glintL_pass_colormaps)                                                \
+    OPTION(precision, CHOICE, CHOICE, desc.precision, 0, 0, precisions, "", "what decides hits and shadows")              \
+    OPTION(transfer, CHOICE, CHOICE, desc.tone.transfer, 0, 0, transfers, "", "from light to codes")                      \
+    OPTION(rounding, CHOICE, CHOICE, desc.tone.rounding, 0, 0, roundings, "", "of codes")                                 \
+    OPTION(tone, CHOICE, CHOICE, desc.tone.curve, 0, 0, glintL_tone_curves, "", "curve of bright light")                  \
+    OPTION(encode, CHOICE, CHOICE, encode, 0, 0, encodes, "", "fast to write or small on disk")                           \
+    FIELD(colormap, CHOICE, COLORS, colormap, 0, 0, glintL_pass_colormaps)                                                \
     FIELD(dpi, NUMBER, REAL, dpi, 0, 1e6, NULL)                                                                         \
-    FIELD(output, STRING, OUTPUT, output, 0, 0, NULL)                                                                   \
-    FIELD(passes, STRING, PASSES, file_passes, 0, 0, NULL)                                                              \
+    FIELD(output, TEXT, OUTPUT, output, 0, 0, NULL)                                                                   \
+    FIELD(passes, TEXT, PASSES, file_passes, 0, 0, NULL)                                                              \
     FIELD(exposure, NUMBER, REAL, desc.tone.exposure, -GLINT_EXPOSURE_MAX, GLINT_EXPOSURE_MAX, NULL)                    \
-    OPTION(alpha, BOOLEAN, FLAG, desc.alpha, 0, 0, NULL, NULL, "transparent background")                                \
-    OPTION(outline, ENUM, CHOICE, desc.outline, 0, 0, outlines, "", "lines where objects end or have an edge")          \
-    OPTION(visibility, ENUM, CHOICE, desc.visibility, 0, 0, visibilities, "",                                           \
+    OPTION(alpha, FLAG, FLAG, desc.alpha, 0, 0, NULL, NULL, "transparent background")                                \
+    OPTION(outline, CHOICE, CHOICE, desc.outline, 0, 0, outlines, "", "lines where objects end or have an edge")          \
+    OPTION(visibility, CHOICE, CHOICE, desc.visibility, 0, 0, visibilities, "",                                           \
            "how it is found what the eye sees; same pictures")                                                          \
     FIELD(adaptive, NUMBER, REAL, desc.adaptive, 0, 3, NULL)                                                            \
-    FIELD(region, STRING, REGION, desc.region, 0, 0, NULL)
+    FIELD(region, TEXT, REGION, desc.region, 0, 0, NULL)
 
 #endif

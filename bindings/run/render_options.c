@@ -47,7 +47,7 @@ _Static_assert(sizeof glintL_pass_colormaps / sizeof *glintL_pass_colormaps == G
     FIELD(name, kind, sort, member, min, max, words)
 
 const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1] = {
-#define FIELD(field, letters, ...) { .name = #field, .kind = GLINTL_##letters },
+#define FIELD(field, letters, ...) { .name = #field, .type = GLINT_TYPE_##letters },
     GLINTL_RENDER_LIST(FIELD, WITH_TEXT) { .name = NULL },
 #undef FIELD
 };

@@ -113,14 +113,14 @@ static bool is_outside(const view *v, const ball *all, const glint_light_desc *l
 // Whether the object has a field of this name with something else than 0, black, false or nil in it.
 static bool has(lua_State *L, const char *type, const void *object, const void *desc, int index, const char *name)
 {
-    const glintL_field *field = glintL_find_field(glintL_class_of(L, type)->variant(object)->fields, name);
+    const glintL_field *field = glintL_find_field(glintL_fields_of(glintL_class_of(L, type)->variant(object)), name);
     const char *at = (const char *)desc + (field ? field->offset : 0);
     if (!field)
         return false;
-    if (field->kind == GLINTL_COLOR)
+    if (field->type == GLINT_TYPE_COLOR)
         return ((const double *)(const void *)at)[0] != 0 || ((const double *)(const void *)at)[1] != 0 ||
                ((const double *)(const void *)at)[2] != 0;
-    if (field->kind == GLINTL_NUMBER)
+    if (field->type == GLINT_TYPE_NUMBER)
         return *(const double *)(const void *)at != 0;
     if (index == 0)
         return true;

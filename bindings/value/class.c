@@ -13,6 +13,11 @@ typedef union description { // of whatever object
 
 // ---- Fields ----
 
+const glintL_field *glintL_fields_of(const glintL_variant *variant)
+{
+    return variant->kind ? glint_object_fields(variant->kind, NULL) : variant->fields;
+}
+
 // The class is the first upvalue of each metamethod. 1: the object.
 static const glintL_class *this_class(lua_State *L) { return lua_touserdata(L, lua_upvalueindex(1)); }
 
@@ -39,7 +44,7 @@ static const char *field_name(lua_State *L, const glintL_variant *variant)
 
 static int unknown_field(lua_State *L, const glintL_class *class, const glintL_variant *variant, const char *name)
 {
-    const char *near = glintL_nearest(name, variant->fields);
+    const char *near = glintL_nearest(name, glintL_fields_of(variant));
     for (const luaL_Reg *f = variant->getters; f && f->name; f++)
         near = glintL_nearer(name, near, f->name);
     for (const luaL_Reg *f = variant->methods; f && f->name; f++)
@@ -74,7 +79,7 @@ static void push_value(lua_State *L, const glintL_class *class, const glintL_fie
     if (class->follow)
         class->follow(&desc);
     glintL_push_field(L, field, &desc);
-    if (field->kind == GLINTL_OBJECT && lua_isnil(L, -1))
+    if (field->type == GLINT_TYPE_OBJECT && lua_isnil(L, -1))
         push_object_field(L, class, field, &desc);
 }
 
@@ -111,7 +116,7 @@ static int read_member(lua_State *L)
     const void *object = glintL_check_object(L, 1, class->type);
     const glintL_variant *variant = class->variant(object);
     const char *name = field_name(L, variant);
-    const glintL_field *field = glintL_find_field(variant->fields, name);
+    const glintL_field *field = glintL_find_field(glintL_fields_of(variant), name);
     function = find_function(variant->methods, name);
     if (function) {
         lua_pushcfunction(L, function->func);
@@ -122,10 +127,10 @@ static int read_member(lua_State *L)
         return 1;
     } else if (field) {
         push_value(L, class, field, object);
-    } else if (part >= 0 && glintL_push_sloped(L, 1, glintL_find_field(variant->fields, variant->place))) {
+    } else if (part >= 0 && glintL_push_sloped(L, 1, glintL_find_field(glintL_fields_of(variant), variant->place))) {
         lua_rawgeti(L, -1, part + 1);
     } else if (part >= 0) {
-        push_value(L, class, glintL_find_field(variant->fields, variant->place), object);
+        push_value(L, class, glintL_find_field(glintL_fields_of(variant), variant->place), object);
         lua_pushnumber(L, glintL_to_vector(L, -1)[part]);
     } else if ((function = find_function(variant->getters, name)) != NULL) {
         lua_settop(L, 1);
@@ -140,8 +145,8 @@ static int read_member(lua_State *L)
 static void read_component(lua_State *L, const glintL_variant *variant, int part, description *desc)
 {
     static const char *const names[] = { "x", "y", "z" };
-    const glintL_field *place = glintL_find_field(variant->fields, variant->place);
-    const glintL_field field = { .name = names[part], .kind = GLINTL_NUMBER, .slopes = place->slopes };
+    const glintL_field *place = glintL_find_field(glintL_fields_of(variant), variant->place);
+    const glintL_field field = { .name = names[part], .type = GLINT_TYPE_NUMBER, .takes = place->takes };
     double value;
     glintL_read_field(L, 3, variant->name, &field, &value);
     memcpy(desc->bytes + place->offset + (size_t)part * sizeof value, &value, sizeof value);
@@ -150,7 +155,7 @@ static void read_component(lua_State *L, const glintL_variant *variant, int part
 static const glintL_field *writable_field(lua_State *L, const glintL_class *class, const glintL_variant *variant,
                                           const char *name)
 {
-    const glintL_field *field = glintL_find_field(variant->fields, name);
+    const glintL_field *field = glintL_find_field(glintL_fields_of(variant), name);
     if (field)
         return field;
     if (find_function(variant->getters, name))
@@ -169,8 +174,8 @@ static void *read_nested(lua_State *L, const glintL_class *class, const glintL_f
     glintL_read_field(L, 3, class->variant(glintL_check_object(L, 1, class->type))->name, field, &fields);
     void *object = glintL_check_object(L, 1, class->type);
     class->get(object, desc);
-    for (const glintL_field *f = field->nested; f->name; f++) {
-        memcpy(desc->bytes + f->offset, fields.bytes + f->offset, (f->kind == GLINTL_COLOR ? 3 : 1) * sizeof(double));
+    for (const glintL_field *f = field->parts; f->name; f++) {
+        memcpy(desc->bytes + f->offset, fields.bytes + f->offset, (f->type == GLINT_TYPE_COLOR ? 3 : 1) * sizeof(double));
         if (f->set_offset)
             desc->bytes[f->set_offset] = fields.bytes[f->set_offset];
     }
@@ -192,7 +197,7 @@ static int write_member(lua_State *L)
     if (part < 0)
         field = writable_field(L, class, variant, name);
     class->get(object, &desc);
-    if (field && field->kind == GLINTL_NESTED)
+    if (field && field->type == GLINT_TYPE_TABLE)
         object = read_nested(L, class, field, &desc);
     else if (field)
         glintL_read_field(L, 3, variant->name, field, &desc);
@@ -201,12 +206,12 @@ static int write_member(lua_State *L)
     if (field && class->assigned)
         class->assigned(L, field, &desc);
     glintL_check_status(L, variant->name, &error, class->set(object, &desc, &error));
-    if (field && field->kind == GLINTL_OBJECT)
+    if (field && field->type == GLINT_TYPE_OBJECT)
         glintL_keep(L, 1, field->name, 3);
     if (field)
         glintL_keep_slopes(L, 1, field, 3);
     else
-        glintL_keep_part_slopes(L, 1, glintL_find_field(variant->fields, variant->place), part, 3);
+        glintL_keep_part_slopes(L, 1, glintL_find_field(glintL_fields_of(variant), variant->place), part, 3);
     if (field && field->program_offset)
         glintL_get_tracing(L)->keep(L, 1, field, 3);
     if (field && class->accepted)
@@ -245,7 +250,7 @@ static int to_string(lua_State *L)
     const void *object = glintL_test_object(L, 1, class->type);
     if (object) {
         const glintL_variant *variant = class->variant(object);
-        const glintL_field *field = glintL_find_field(variant->fields, "name");
+        const glintL_field *field = glintL_find_field(glintL_fields_of(variant), "name");
         if (field)
             push_value(L, class, field, object);
         if (field && *lua_tostring(L, -1))
@@ -298,7 +303,7 @@ void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL
 {
     glintL_push_table(L, &LISTED);
     lua_newtable(L);
-    for (const glintL_field *field = variant->fields; field && field->name; field++) {
+    for (const glintL_field *field = glintL_fields_of(variant); field && field->name; field++) {
         lua_pushliteral(L, "field");
         lua_setfield(L, -2, field->name);
     }
@@ -306,6 +311,8 @@ void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL
     list_functions(L, methods, "method");
     lua_setfield(L, -2, variant->name);
     lua_pop(L, 1);
+    if (variant->kind)
+        glintL_note_rows(L, variant);
 }
 
 void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *class)
@@ -319,6 +326,45 @@ void glintL_list_object(lua_State *L, const glintL_variant *variant, const glint
     list_functions(L, variant->methods, "method");
     list_functions(L, close, "method");
     lua_pop(L, 2);
+}
+
+// Upvalues: the class, the variant, its number.
+static int new_object(lua_State *L)
+{
+    const glintL_class *class = this_class(L);
+    const glintL_variant *variant = lua_touserdata(L, lua_upvalueindex(2));
+    const glintL_field *fields = glintL_fields_of(variant);
+    description desc;
+    void *object;
+    glint_error error;
+    lua_settop(L, 1);
+    glintL_box *box = glintL_new_box(L, class->type);
+    class->begin((int)lua_tointeger(L, lua_upvalueindex(3)), &desc);
+    glintL_read_table(L, 1, variant->name, fields, &desc, variant->is_list);
+    if (class->given)
+        class->given(L, variant, &desc);
+    glintL_check_status(L, variant->name, &error, class->create(&desc, &object, &error));
+    box->object = object;
+    glintL_remember(L, object);
+    glintL_keep_sources(L, 2, 1, fields);
+    glintL_keep_table_slopes(L, 2, 1, fields);
+    if (class->made)
+        class->made(L, &desc);
+    lua_settop(L, 2);
+    return 1;
+}
+
+void glintL_open_objects(lua_State *L, const glintL_class *class, const glintL_variant *variants, int count)
+{
+    glintL_open_class(L, class);
+    for (int i = 0; i < count; i++) {
+        glintL_list_object(L, &variants[i], class);
+        lua_pushlightuserdata(L, (void *)(uintptr_t) class);
+        lua_pushlightuserdata(L, (void *)(uintptr_t)&variants[i]);
+        lua_pushinteger(L, i);
+        lua_pushcclosure(L, new_object, 3);
+        lua_setfield(L, -2, variants[i].name);
+    }
 }
 
 void glintL_push_listed(lua_State *L) { glintL_push_table(L, &LISTED); }

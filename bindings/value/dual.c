@@ -307,7 +307,7 @@ typedef struct slopes {
 
 static int count_of(const glintL_field *field)
 {
-    return field->kind == GLINTL_VECTOR || field->kind == GLINTL_COLOR ? 3 : 1;
+    return field->type >= GLINT_TYPE_VECTOR && field->type <= GLINT_TYPE_COLOR ? 3 : 1;
 }
 
 static void key_of(const glintL_field *field, char key[64]) { snprintf(key, 64, "d:%s", field->name); }
@@ -366,7 +366,7 @@ void glintL_note_sloped(lua_State *L, int index)
 void glintL_keep_slopes(lua_State *L, int index, const glintL_field *field, int value)
 {
     slopes s;
-    if (!field->slopes)
+    if (!(field->takes & GLINT_TAKES_VARIABLE))
         return;
     luaL_checkstack(L, 8, "field");
     put_slopes(L, lua_absindex(L, index), field, find_slopes(L, value, field, &s) ? &s : NULL);
@@ -392,7 +392,7 @@ void glintL_keep_part_slopes(lua_State *L, int index, const glintL_field *field,
 void glintL_keep_table_slopes(lua_State *L, int index, int table, const glintL_field *fields)
 {
     for (const glintL_field *field = fields; field->name; field++) {
-        if (!field->slopes)
+        if (!(field->takes & GLINT_TAKES_VARIABLE))
             continue;
         lua_pushstring(L, field->name);
         lua_rawget(L, table);
@@ -404,7 +404,7 @@ void glintL_keep_table_slopes(lua_State *L, int index, int table, const glintL_f
 bool glintL_push_sloped(lua_State *L, int index, const glintL_field *field)
 {
     char key[64];
-    if (!field->slopes)
+    if (!(field->takes & GLINT_TAKES_VARIABLE))
         return false;
     key_of(field, key);
     if (!glintL_push_kept(L, index, key))
@@ -429,7 +429,7 @@ bool glintL_get_slope(lua_State *L, int index, const glintL_field *field, int va
 {
     char key[64];
     bool any = false;
-    if (!field->slopes)
+    if (!(field->takes & GLINT_TAKES_VARIABLE))
         return false;
     key_of(field, key);
     if (!glintL_push_kept(L, index, key))

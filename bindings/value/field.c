@@ -148,6 +148,16 @@ static void read_distance(lua_State *L, int index, const char *path, glintL_dist
     glintL_refuse(L, -1, path, "number > 0 or {x, y, z}");
 }
 
+void glintL_begin_table(const glintL_field *parts, void *desc)
+{
+    for (const glintL_field *f = parts; f->name; f++) {
+        if (f->set_offset)
+            ((bool *)desc)[f->set_offset] = false;
+        else
+            memcpy((char *)desc + f->offset, f->initial, sizeof *f->initial);
+    }
+}
+
 // Reads a table pushed by push_nested from the table behind it.
 static void read_nested(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
 {
@@ -157,8 +167,8 @@ static void read_nested(lua_State *L, int index, const char *path, const glintL_
     const int top = lua_gettop(L);
     if (luaL_getmetafield(L, index, "__index") != LUA_TTABLE)
         lua_pushvalue(L, index);
-    field->begin_nested(desc);
-    glintL_read_table(L, -1, path, field->nested, desc, false);
+    glintL_begin_table(field->parts, desc);
+    glintL_read_table(L, -1, path, field->parts, desc, false);
     lua_settop(L, top);
 }
 
@@ -191,12 +201,12 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
     if (field->program_offset) {
         glint_program *const none = NULL;
         memcpy(base + field->program_offset, &none, sizeof none);
-        if (glintL_get_tracing(L)->is_source(L, index, field->kind == GLINTL_ENUM)) {
+        if (glintL_get_tracing(L)->is_source(L, index, field->type == GLINT_TYPE_CHOICE)) {
             if (field->set_offset)
                 memcpy(base + field->set_offset, &set, sizeof set);
             return;
         }
-        refuse_source(L, index, full, field->kind == GLINTL_ENUM);
+        refuse_source(L, index, full, field->type == GLINT_TYPE_CHOICE);
     }
     if (field->set_offset && !field->required && lua_isnil(L, index)) {
         set = false;
@@ -204,56 +214,58 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
         return;
     }
     double x;
-    switch (field->kind) {
-    case GLINTL_NUMBER:
-    case GLINTL_DEGREES:
-        if (!field->slopes || !glintL_read_duals(L, index, full, false, 1, &x))
-            x = read_finite(L, index, full);
-        x = field->kind == GLINTL_DEGREES ? x * PI / 180 : x;
+    switch (field->type) {
+    case GLINT_TYPE_NUMBER:
+    case GLINT_TYPE_WHOLE:
+    case GLINT_TYPE_ANGLE:
+        if (!(field->takes & GLINT_TAKES_VARIABLE) || !glintL_read_duals(L, index, full, false, 1, &x))
+            x = isinf(field->high) ? glintL_read_number(L, index, full) : read_finite(L, index, full);
+        x = field->type == GLINT_TYPE_ANGLE ? x * PI / 180 : x;
         memcpy(out, &x, sizeof x);
         break;
-    case GLINTL_BOOLEAN:
+    case GLINT_TYPE_FLAG:
         if (!lua_isboolean(L, index))
             glintL_refuse(L, index, full, "boolean");
         *(bool *)out = lua_toboolean(L, index);
         break;
-    case GLINTL_VECTOR:
-        if (!field->slopes || !glintL_read_duals(L, index, full, false, 3, out))
+    case GLINT_TYPE_VECTOR:
+    case GLINT_TYPE_DIRECTION:
+        if (!(field->takes & GLINT_TAKES_VARIABLE) || !glintL_read_duals(L, index, full, false, 3, out))
             glintL_read_vector(L, index, full, out);
         break;
-    case GLINTL_COLOR:
-        if (!field->slopes || !glintL_read_duals(L, index, full, true, 3, out))
+    case GLINT_TYPE_COLOR:
+        if (!(field->takes & GLINT_TAKES_VARIABLE) || !glintL_read_duals(L, index, full, true, 3, out))
             glintL_read_color(L, index, full, out);
         break;
-    case GLINTL_ENUM:
+    case GLINT_TYPE_CHOICE:
         read_enum(L, index, full, field->names, out);
         break;
-    case GLINTL_STRING:
+    case GLINT_TYPE_TEXT:
         read_string(L, index, full, out);
         break;
-    case GLINTL_OBJECT:
+    case GLINT_TYPE_OBJECT:
         read_object(L, index, full, field, out);
         break;
-    case GLINTL_POINTS:
+    case GLINT_TYPE_POINTS:
         read_points(L, index, full, out);
         break;
-    case GLINTL_DISTANCE:
+    case GLINT_TYPE_DISTANCE:
         read_distance(L, index, full, out);
         break;
-    case GLINTL_TRANSFORM:
+    case GLINT_TYPE_TRANSFORM:
         read_transform(L, index, full, out);
         break;
-    case GLINTL_NESTED:
+    case GLINT_TYPE_TABLE:
         read_nested(L, index, full, field, desc);
         break;
-    case GLINTL_PROGRAM:
+    case GLINT_TYPE_PROGRAM:
         if (!lua_isnil(L, index))
             glintL_refuse(L, index, full, "pattern");
         break;
-    case GLINTL_CUSTOM:
-        field->read(L, index, full, desc);
+    case GLINT_TYPE_CUSTOM:
+        ((const glintL_custom *)field->custom)->read(L, index, full, desc);
         break;
-    case GLINTL_OTHER:
+    case GLINT_TYPE_OTHER:
         break;
     }
     if (field->set_offset)
@@ -338,7 +350,7 @@ static void push_nested(lua_State *L, const glintL_field *field, const void *des
 {
     luaL_checkstack(L, 2, "field");
     lua_newtable(L);
-    for (const glintL_field *f = field->nested; f->name; f++) {
+    for (const glintL_field *f = field->parts; f->name; f++) {
         glintL_push_field(L, f, desc);
         lua_setfield(L, -2, f->name);
     }
@@ -356,48 +368,50 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
         lua_pushnil(L);
         return;
     }
-    switch (field->kind) {
-    case GLINTL_NUMBER:
+    switch (field->type) {
+    case GLINT_TYPE_NUMBER:
+    case GLINT_TYPE_WHOLE:
         lua_pushnumber(L, *(const double *)in);
         break;
-    case GLINTL_DEGREES:
+    case GLINT_TYPE_ANGLE:
         lua_pushnumber(L, to_degrees(*(const double *)in));
         break;
-    case GLINTL_BOOLEAN:
+    case GLINT_TYPE_FLAG:
         lua_pushboolean(L, *(const bool *)in);
         break;
-    case GLINTL_VECTOR:
-    case GLINTL_COLOR:
+    case GLINT_TYPE_VECTOR:
+    case GLINT_TYPE_DIRECTION:
+    case GLINT_TYPE_COLOR:
         glintL_push_vector(L, in);
         break;
-    case GLINTL_ENUM:
+    case GLINT_TYPE_CHOICE:
         memcpy(&value, in, sizeof value);
         lua_pushstring(L, field->names[value]);
         break;
-    case GLINTL_STRING:
+    case GLINT_TYPE_TEXT:
         lua_pushstring(L, in);
         break;
-    case GLINTL_OBJECT:
+    case GLINT_TYPE_OBJECT:
         memcpy(&object, in, sizeof object);
         glintL_push_remembered(L, object);
         break;
-    case GLINTL_POINTS:
+    case GLINT_TYPE_POINTS:
         push_points(L, in);
         break;
-    case GLINTL_DISTANCE:
+    case GLINT_TYPE_DISTANCE:
         push_distance(L, in);
         break;
-    case GLINTL_TRANSFORM:
+    case GLINT_TYPE_TRANSFORM:
         glintL_push_transform(L, in);
         break;
-    case GLINTL_NESTED:
+    case GLINT_TYPE_TABLE:
         push_nested(L, field, desc);
         break;
-    case GLINTL_CUSTOM:
-        field->push(L, desc);
+    case GLINT_TYPE_CUSTOM:
+        ((const glintL_custom *)field->custom)->push(L, desc);
         break;
-    case GLINTL_PROGRAM: // what the userdata keeps is read before
-    case GLINTL_OTHER:
+    case GLINT_TYPE_PROGRAM: // what the userdata keeps is read before
+    case GLINT_TYPE_OTHER:
         lua_pushnil(L);
         break;
     }
@@ -445,7 +459,7 @@ void glintL_read_table(lua_State *L, int index, const char *path, const glintL_f
     // Objects last: see glintL_read_field.
     for (int objects = 0; objects < 2; objects++) {
         for (const glintL_field *field = fields; field->name; field++) {
-            if ((field->kind == GLINTL_OBJECT) != objects)
+            if ((field->type == GLINT_TYPE_OBJECT) != objects)
                 continue;
             lua_pushstring(L, field->name);
             lua_rawget(L, index);

@@ -13,24 +13,15 @@
 
 // ---- check.c: arguments and tables in ----
 
-/// One field of a description struct, and how Lua spells it.
-typedef enum glintL_kind {
-    GLINTL_NUMBER, ///< double
-    GLINTL_DEGREES, ///< double in radians; degrees in Lua
-    GLINTL_BOOLEAN, ///< bool
-    GLINTL_VECTOR, ///< double[3], {x, y, z}
-    GLINTL_COLOR, ///< double[3]: {r, g, b}, one number, "#rrggbb" or a CSS name
-    GLINTL_ENUM, ///< enum; `names` spells its values in order, ends with NULL
-    GLINTL_STRING, ///< char[GLINT_NAME_SIZE]
-    GLINTL_OBJECT, ///< a glintL_box of the type `names[0]`
-    GLINTL_POINTS, ///< const double (*)[3] and after it a size_t, how many: {{x, y, z}, ...}
-    GLINTL_DISTANCE, ///< glintL_distance: a number > 0 or {x, y, z}; nil: neither
-    GLINTL_TRANSFORM, ///< glint_transform; nil: the identity
-    GLINTL_PROGRAM, ///< a pattern or nil; see program_offset
-    GLINTL_NESTED, ///< a table of `nested` fields of the same description, numbers and colours; `set_offset` is needed
-    GLINTL_CUSTOM, ///< `read` and `push` of the field do it
-    GLINTL_OTHER ///< known by name only; the caller reads it
-} glintL_kind;
+/// One field of a description, and how Lua spells it: of the objects rows of glint_object_fields, of other tables the binding's own.
+typedef glint_object_field glintL_field;
+
+/// How a binding's own field is read and written: GLINT_TYPE_CUSTOM.
+typedef struct glintL_custom {
+    void (*read)(lua_State *L, int index, const char *path, void *desc); ///< raises for a wrong value
+    void (*push)(lua_State *L, const void *desc);
+} glintL_custom;
+#define GLINTL_CUSTOM(read, push) .type = GLINT_TYPE_CUSTOM, .custom = &(const glintL_custom) { read, push }
 
 /// How far away something is, or where.
 typedef struct glintL_distance {
@@ -38,24 +29,6 @@ typedef struct glintL_distance {
     bool has_point;
     double point[3];
 } glintL_distance;
-
-typedef struct glintL_field {
-    const char *name;
-    glintL_kind kind;
-    size_t offset; ///< in the description
-    size_t set_offset; ///< of a bool that says the field was set (has_ambient ...); 0: none
-    const char *const *names; ///< GLINTL_ENUM, GLINTL_OBJECT
-    bool required; ///< in the constructor's table
-    const struct glintL_field *nested; ///< GLINTL_NESTED
-    void (*begin_nested)(void *desc); ///< GLINTL_NESTED: writes the defaults of its fields
-    /// Offset of a glint_program * that replaces the number if the field has a pattern (an enum: a shader); read as
-    /// NULL, and set when a frame is planned. The object's userdata keeps the pattern under the field's name. 0: none
-    size_t program_offset;
-    void (*read)(lua_State *L, int index, const char *path, void *desc); ///< GLINTL_CUSTOM: raises for a wrong value
-    void (*push)(lua_State *L, const void *desc); ///< likewise
-    bool slopes; ///< takes dual numbers, whose slopes the object's userdata keeps: see dual.c
-    const char *follows; ///< the field whose pattern it has while it is not set, or NULL
-} glintL_field;
 
 /// Pushes "<file>:<line>: " of the Lua code that called; "" where there is none.
 void glintL_push_position(lua_State *L);
@@ -65,6 +38,8 @@ int glintL_error(lua_State *L, const char *format, ...);
 void glintL_check_status(lua_State *L, const char *path, const glint_error *error, glint_status status);
 /// Reads the value at `index` into the field of `desc`; raises "<path>.<field>: ... expected, got ...".
 void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc);
+/// Writes the defaults of a table's parts.
+void glintL_begin_table(const glintL_field *parts, void *desc);
 /// Pushes the field's value as Lua sees it.
 void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc);
 /// Replaces the table on top of the stack by an empty one that reads like it: assigning to a part of a value read from an
@@ -272,11 +247,15 @@ void glintL_charge(lua_State *L, size_t bytes);
 /// The script's view of one class of objects.
 typedef struct glintL_variant {
     const char *name; ///< "point_light": the path in messages
+    glint_object_kind kind; ///< the table of its fields; GLINT_OBJECT_NONE: `fields`
     const glintL_field *fields; ///< ends with a NULL name
+    bool is_list; ///< its constructor's table may hold a list, too
     const char *place; ///< the vector field that `x`, `y` and `z` are parts of; NULL: none
     const luaL_Reg *getters; ///< fields that are only read: functions of the object; NULL: none
     const luaL_Reg *methods; ///< in addition to the class's; NULL: none
 } glintL_variant;
+
+const glintL_field *glintL_fields_of(const glintL_variant *variant); ///< NULL: it has none
 
 /// How the objects of one type are read and written. `desc` is a copy of the description, of at most
 /// GLINTL_DESC_SIZE bytes.
@@ -294,7 +273,30 @@ typedef struct glintL_class {
     /// `field` was taken over by the object: the place for a warning. NULL: nothing to do.
     void (*accepted)(lua_State *L, const glintL_field *field, const void *desc);
     const luaL_Reg *methods; ///< besides close; NULL: none
+    // For glintL_open_objects:
+    void (*begin)(int variant, void *desc); ///< writes the defaults of the variant with this number
+    glint_status (*create)(const void *desc, void **out, glint_error *error);
+    /// The constructor's table, at 1, was read: checks what its fields are together. NULL: nothing to do.
+    void (*given)(lua_State *L, const glintL_variant *variant, const void *desc);
+    void (*made)(lua_State *L, const void *desc); ///< the userdata, at 2, has its object. NULL: nothing to do
 } glintL_class;
+
+/// Defines get, set, retain, release and create of a class whose objects have a description glint_NAME_desc.
+#define GLINTL_FUNCTIONS(name) \
+    static void get(const void *object, void *desc) { memcpy(desc, glint_##name##_get(object), sizeof(glint_##name##_desc)); } \
+    static glint_status set(void *object, const void *desc, glint_error *error) { return glint_##name##_set(object, desc, error); } \
+    static void *retain(void *object) { return glint_##name##_retain(object); } \
+    static void release(void *object) { glint_##name##_release(object); } \
+    static glint_status create(const void *desc, void **out, glint_error *error) \
+    { \
+        glint_##name *made = NULL; \
+        const glint_status status = glint_##name##_create(desc, &made, error); \
+        *out = made; \
+        return status; \
+    } \
+    _Static_assert(sizeof(glint_##name##_desc) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE")
+/// Members of the class that are these.
+#define GLINTL_FUNCTION_MEMBERS .get = get, .set = set, .retain = retain, .release = release, .create = create
 
 #define GLINTL_DESC_SIZE 2048
 
@@ -309,11 +311,17 @@ void glintL_push_weak_table(lua_State *L, const void *key, const char *mode);
 
 /// Makes the metatable of a class.
 void glintL_open_class(lua_State *L, const glintL_class *type);
+/// The same, and adds the constructors of its variants to the table on top of the stack.
+void glintL_open_objects(lua_State *L, const glintL_class *type, const glintL_variant *variants, int count);
 /// Lists a sort of object, its fields and its methods in glint._fields(), which the test of meta/glint.lua reads.
 /// `methods` may be NULL.
 void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL_Reg *methods);
 /// The same for a variant of a class, with the methods of every object.
 void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *type);
+/// rows.c: glint._rows(name): a list of { name, type, doc, unit, follows, required, default } of each field, empty where the object
+/// has no table of the engine.
+int glintL_list_rows(lua_State *L);
+void glintL_note_rows(lua_State *L, const glintL_variant *variant); ///< lists a variant there
 /// The result of glint._fields(): variant -> name -> "field" or "method".
 void glintL_push_listed(lua_State *L);
 /// Pushes what messages call the object at `index` ("plane", "closed shape"); false, and nothing pushed, when it is

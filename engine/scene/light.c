@@ -1,28 +1,122 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/area_light.h"
+#include "engine/scene/fields.h"
 #include "engine/scene/objects.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #define PI 0x1.921fb54442d18p+1
 
+// ---- The tables of fields ----
+
+typedef glint_light_desc DESC;
+
+static const char *const shadows[] = { "rays", "hard", "caps", NULL };
+
+#define GIVEN(field) .set_offset = offsetof(DESC, field)
+#define SLOPES .takes = GLINT_TAKES_VARIABLE
+#define NONZERO(field, text) { GLINT_ROW(field, DIRECTION), .required = true, .initial = { 0, -1, 0 }, .doc = text }
+#define AIM(text) { GLINT_ROW(direction, DIRECTION), .required = true, .initial = { 0, -1, 0 }, SLOPES, .doc = text }
+#define PLACE(text) { GLINT_ROW(position, VECTOR), .required = true, SLOPES, .unit = "world units", .doc = text }
+#define RADIUS(text) { GLINT_ROW(radius, NUMBER), .required = true, GLINT_AT_LEAST_0, .initial = { 1 }, .unit = "world units", .doc = text }
+
+// clang-format off
+#define EVERY_LIGHT(slopes_of_distance) \
+    { GLINT_ROW(color, COLOR), .initial = { 1, 1, 1 }, SLOPES, .doc = "the light's colour, >= 0" }, \
+    { GLINT_ROW(intensity, NUMBER), GLINT_AT_LEAST_0, .initial = { 1 }, SLOPES, .doc = ">= 0, multiplies each of the three terms" }, \
+    { GLINT_ROW(ambient, COLOR), SLOPES, \
+      .doc = ">= 0, adds to the scene's ambient light; neither attenuated nor shadowed" }, \
+    { GLINT_ROW(diffuse, COLOR), GIVEN(has_diffuse), .follows = "color", SLOPES, .doc = "colour of the diffuse term, >= 0" }, \
+    { GLINT_ROW(specular, COLOR), GIVEN(has_specular), .follows = "color", SLOPES, .doc = "colour of the highlight, >= 0" }, \
+    { GLINT_ROW(attenuation, VECTOR), .high = DBL_MAX, .initial = { 1, 0, 0 }, .takes = slopes_of_distance, \
+      .doc = "{c0, c1, c2} of A = 1 / (c0 + c1 d + c2 d^2), each >= 0, not all 0" }, \
+    { GLINT_ROW(shadows, FLAG), .initial = { true }, .doc = "whether it casts shadows" }, \
+    { GLINT_ROW(visible, FLAG), \
+      .doc = "whether the eye, mirrors and glass see its surface, from the sides that shine. By `radiance` L it shows pi L color, by " \
+             "`intensity` I color I A(D) with D its radius (of a polygon, the radius of a disk of its area). The surface casts no shadow and is " \
+             "no object: to the passes it is background with a depth and a normal. Does nothing to lights without a surface" }, \
+    { GLINT_ROW(name, TEXT), .doc = "for messages, `glint explain` and its pass \"light:NAME\", at most 63 bytes" }, \
+    { GLINT_ROW(group, TEXT), \
+      .doc = "the pass \"light:GROUP\" holds the light of all lights of this group together, at most 63 bytes. Default \"\": by `name`" }
+
+#define EVERY_AREA_LIGHT \
+    EVERY_LIGHT(GLINT_TAKES_VARIABLE), \
+    { GLINT_ROW(samples, WHOLE), .low = 1, .high = 65536, .initial = { 16 }, \
+      .doc = "points of the surface a sample of a pixel, 1 .. 65536; other ones for each pixel of a 4 x 4 block, so that 16 samples look " \
+             "like 256 from afar" }, \
+    { GLINT_ROW(shadow, CHOICE), .names = shadows, \
+      .doc = "rays: by one to each sample. hard: by one to the light's middle, for all samples. caps: sphere lights, in closed form, " \
+             "without noise: the terms of a point at its centre (of `radiance` L, of irradiance pi L r^2/d^2 (n.l)) times the share of the " \
+             "light that is seen, exact past one sphere, past several the product of what each leaves. Scenes with other shapes than " \
+             "spheres and planes, or with transparent ones, have rays all the same; `glint explain` says which. By `radiance` caps are the " \
+             "limit of rays, except for how the cosine changes across the light. By `intensity` they are not: its rays go to all of the " \
+             "surface, the far side as well, since it is a mean over that" }, \
+    { GLINT_ROW(radiance, NUMBER), GIVEN(has_radiance), GLINT_AT_LEAST_0, SLOPES, \
+      .doc = ">= 0, beside an intensity of 1. nil: `intensity` counts. Default nil" }
+
+static const glint_object_field point_fields[] = {
+    EVERY_LIGHT(GLINT_TAKES_VARIABLE),
+    PLACE("where it is"),
+    { .name = NULL },
+};
+
+static const glint_object_field directional_fields[] = {
+    EVERY_LIGHT(0),
+    AIM("in which the light travels; not zero, need not be unit"),
+    { .name = NULL },
+};
+
+static const glint_object_field spot_fields[] = {
+    EVERY_LIGHT(GLINT_TAKES_VARIABLE),
+    PLACE("where it is"),
+    AIM("in which its axis points; not zero, need not be unit"),
+    { GLINT_NAMED("inner", inner_rad, ANGLE), .required = true, .high = PI, .initial = { 20 * PI / 180 }, SLOPES, .unit = "degrees",
+      .doc = "half angle of the full light, 0 <= inner <= outer" },
+    { GLINT_NAMED("outer", outer_rad, ANGLE), .required = true, .high = PI, .initial = { 30 * PI / 180 }, SLOPES, .unit = "degrees",
+      .doc = "half angle beyond which there is none, <= 180; between the two a smoothstep of the cosine" },
+    { GLINT_ROW(exponent, NUMBER), GLINT_AT_LEAST_0, SLOPES, .doc = ">= 0: the light also falls off as cos^exponent from the axis" },
+    { .name = NULL },
+};
+
+static const glint_object_field disk_fields[] = {
+    EVERY_AREA_LIGHT,
+    PLACE("its centre"),
+    NONZERO(normal, "the side that shines; not zero, need not be unit"),
+    RADIUS(">= 0; 0 is a point"),
+    { .name = NULL },
+};
+
+static const glint_object_field polygon_fields[] = {
+    EVERY_AREA_LIGHT,
+    { GLINT_ROW(vertices, POINTS), .required = true, .unit = "world units",
+      .doc = "3 .. 4096 corners, convex, in one plane; it shines to the side from which they run counter-clockwise" },
+    { GLINT_ROW(two_sided, FLAG), .doc = "shines to both sides" },
+    { .name = NULL },
+};
+_Static_assert(offsetof(DESC, vertex_count) == offsetof(DESC, vertices) + sizeof(void *), "GLINT_TYPE_POINTS");
+
+static const glint_object_field sphere_fields[] = {
+    EVERY_AREA_LIGHT,
+    PLACE("its centre"),
+    RADIUS(">= 0; 0 is a point light, bit for bit"),
+    { .name = NULL },
+};
+// clang-format on
+
+const glint_object_field *const glint_light_fields[] = {
+    [GLINT_LIGHT_POINT] = point_fields, [GLINT_LIGHT_DIRECTIONAL] = directional_fields, [GLINT_LIGHT_SPOT] = spot_fields,
+    [GLINT_LIGHT_DISK] = disk_fields,   [GLINT_LIGHT_POLYGON] = polygon_fields,         [GLINT_LIGHT_SPHERE] = sphere_fields,
+};
+
 glint_light_desc glint_light_desc_default(glint_light_kind kind)
 {
-    return (glint_light_desc) { .kind = kind,
-                                .color = { 1, 1, 1 },
-                                .intensity = 1,
-                                .attenuation = { 1, 0, 0 },
-                                .shadows = true,
-                                .direction = { 0, -1, 0 },
-                                .inner_rad = 20 * PI / 180,
-                                .outer_rad = 30 * PI / 180,
-                                .normal = { 0, -1, 0 },
-                                .radius = 1,
-                                .samples = 16 };
+    glint_light_desc desc = { .kind = kind };
+    for (int k = GLINT_LIGHT_POINT; k <= GLINT_LIGHT_SPHERE; k++)
+        glint_fields_reset(glint_light_fields[k], &desc);
+    return desc;
 }
 
 static bool has_area(glint_light_kind kind)
@@ -32,41 +126,23 @@ static bool has_area(glint_light_kind kind)
 
 // ---- Checks ----
 
-static glint_status check_colors(const glint_light_desc *desc, glint_error *error)
-{
-    glint_status status = glint_check_color("color", desc->color, error);
-    if (!status)
-        status = glint_check_color("ambient", desc->ambient, error);
-    if (!status && desc->has_diffuse)
-        status = glint_check_color("diffuse", desc->diffuse, error);
-    if (!status && desc->has_specular)
-        status = glint_check_color("specular", desc->specular, error);
-    return status;
-}
-
 static glint_status check_spot(const glint_light_desc *desc, glint_error *error)
 {
     const double inner = desc->inner_rad, outer = desc->outer_rad;
-    glint_status status = glint_check_direction("direction", desc->direction, error);
-    if (!status)
-        status = glint_check_range("exponent", desc->exponent, 0, DBL_MAX, "number >= 0", error);
-    if (!status && !(0 <= inner && inner <= outer && outer <= PI))
-        status = glint_fail(error, GLINT_ERR_INVALID,
-                            "%s: half angles 0 <= inner <= outer <= 180 expected, got inner %.12g and outer %.12g",
-                            outer <= PI ? "inner" : "outer", inner * 180 / PI, outer * 180 / PI);
-    return status;
+    if (0 <= inner && inner <= outer && outer <= PI)
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID,
+                      "%s: half angles 0 <= inner <= outer <= 180 expected, got inner %.12g and outer %.12g",
+                      outer <= PI ? "inner" : "outer", inner * 180 / PI, outer * 180 / PI);
 }
 
 static glint_status check_area(const glint_light_desc *desc, glint_error *error)
 {
-    glint_status status = glint_check_whole("samples", desc->samples, 1, 65536, error);
-    if (!status && desc->has_radiance)
-        status = glint_check_range("radiance", desc->radiance, 0, DBL_MAX, "number >= 0", error);
-    if (!status && desc->has_radiance && desc->intensity != 1)
+    glint_status status = GLINT_OK;
+    if (desc->has_radiance && desc->intensity != 1)
         status =
             glint_fail(error, GLINT_ERR_INVALID, "intensity: 1 expected beside a radiance, got %.15g", desc->intensity);
-    if (!status &&
-        (desc->shadow > GLINT_SHADOW_CAPS || (desc->shadow == GLINT_SHADOW_CAPS && desc->kind != GLINT_LIGHT_SPHERE)))
+    if (!status && desc->shadow == GLINT_SHADOW_CAPS && desc->kind != GLINT_LIGHT_SPHERE)
         status = glint_fail(error, GLINT_ERR_INVALID, "shadow: rays or hard expected, caps of a sphere light alone");
     const double *a = desc->attenuation;
     if (!status && desc->shadow == GLINT_SHADOW_CAPS && desc->has_radiance && (a[0] != 1 || a[1] != 0 || a[2] != 0))
@@ -74,13 +150,9 @@ static glint_status check_area(const glint_light_desc *desc, glint_error *error)
             glint_fail(error, GLINT_ERR_INVALID,
                        "attenuation: {1, 0, 0} expected beside a radiance and shadow = caps, got {%.9g, %.9g, %.9g}",
                        a[0], a[1], a[2]);
-    if (!status && desc->kind != GLINT_LIGHT_POLYGON)
-        status = glint_check_range("radius", desc->radius, 0, DBL_MAX, "number >= 0", error);
     if (!status && desc->kind != GLINT_LIGHT_POLYGON && desc->has_radiance && desc->radius > 0) // which is squared
         status = glint_check_range("radius", desc->radius, 1e-150, 1e150,
                                    "0 or a number 1e-150 .. 1e150 beside a radiance", error);
-    if (!status && desc->kind == GLINT_LIGHT_DISK)
-        status = glint_check_direction("normal", desc->normal, error);
     if (!status && desc->kind == GLINT_LIGHT_POLYGON)
         status = glint_light_sample_check_polygon(desc, error);
     return status;
@@ -88,18 +160,10 @@ static glint_status check_area(const glint_light_desc *desc, glint_error *error)
 
 static glint_status check(const glint_light_desc *desc, glint_error *error)
 {
-    glint_status status = check_colors(desc, error);
-    if (!status)
-        status = glint_check_range("intensity", desc->intensity, 0, DBL_MAX, "number >= 0", error);
-    if (!status)
-        status = glint_check_color("attenuation", desc->attenuation, error);
+    glint_status status = glint_fields_check(glint_light_fields[desc->kind], desc, error);
     const double *a = desc->attenuation;
     if (!status && a[0] == 0 && a[1] == 0 && a[2] == 0)
         status = glint_fail(error, GLINT_ERR_INVALID, "attenuation: one number > 0 expected, got {0, 0, 0}");
-    if (!status && desc->kind == GLINT_LIGHT_DIRECTIONAL)
-        status = glint_check_direction("direction", desc->direction, error);
-    else if (!status && desc->kind != GLINT_LIGHT_POLYGON)
-        status = glint_check_vector("position", desc->position, error);
     if (!status && desc->kind == GLINT_LIGHT_SPOT)
         status = check_spot(desc, error);
     if (!status && has_area(desc->kind))

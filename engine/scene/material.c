@@ -1,119 +1,108 @@
 #include "engine/base/status.h"
+#include "engine/scene/fields.h"
 #include "engine/scene/objects.h"
 #include "engine/stages/stages.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+// ---- The table of fields ----
+
+typedef glint_material_desc DESC;
+
+static const char *const models[] = { "phong", "blinn_phong", "lambert", "cook_torrance", NULL };
+static const char *const opacity_modes[] = { "auto", "cut", "blend", NULL };
+static const char *const distributions[] = { "ggx", "beckmann", NULL };
+
+#define GIVEN(member) .set_offset = offsetof(DESC, member)
+#define PROGRAM(member) .program_offset = offsetof(DESC, program.member)
+#define COLORS (GLINT_TAKES_PATTERN | GLINT_TAKES_TEXTURE | GLINT_TAKES_VARIABLE)
+#define NUMBERS (GLINT_TAKES_PATTERN | GLINT_TAKES_VARIABLE)
+
+// clang-format off
+const glint_object_field glint_material_fields[] = {
+    { GLINT_ROW(model, CHOICE), .names = models, PROGRAM(shader), .takes = GLINT_TAKES_SHADER,
+      .doc = "how the highlight falls off; \"lambert\" has none; \"cook_torrance\" is of microfacets" },
+    { GLINT_ROW(ambient, COLOR), GIVEN(has_ambient), .follows = "diffuse", PROGRAM(ambient), .takes = COLORS,
+      .doc = "reflectance >= 0 of ambient light" },
+    { GLINT_ROW(diffuse, COLOR), .initial = { 0.8, 0.8, 0.8 }, PROGRAM(diffuse), .takes = COLORS,
+      .doc = "reflectance >= 0; above 1 is allowed and warned about once" },
+    { GLINT_ROW(specular, COLOR), GIVEN(has_specular), PROGRAM(specular), .takes = COLORS,
+      .doc = "strength >= 0 of the highlight. Default 0, with \"cook_torrance\" 1; nil: the default again" },
+    { GLINT_ROW(shininess, NUMBER), GLINT_AT_LEAST_0, .initial = { 32 }, PROGRAM(shininess), .takes = NUMBERS,
+      .doc = "exponent >= 0 of the highlight: higher is smaller and sharper" },
+    { GLINT_ROW(normalized, FLAG),
+      .doc = "of both Phongs: (s + 2)/2 (r.v)^s (n.l) or its like for n.h; reciprocal, gives off no more light than it gets" },
+    { GLINT_ROW(matched, FLAG), .doc = "of \"blinn_phong\": the exponent is 4 shininess, which looks most like Phong" },
+    { GLINT_ROW(mirror, COLOR), GIVEN(has_mirror), PROGRAM(mirror), .takes = COLORS,
+      .doc = "share >= 0 of the light that a mirrored ray brings. Default 0, with `fresnel` 1; nil: the default again" },
+    { GLINT_ROW(transmission, COLOR), PROGRAM(transmission), .takes = COLORS,
+      .doc = "share >= 0 of the light that a refracted ray brings, at each surface; total reflection crosses none, and all of its light goes on" },
+    { GLINT_ROW(ior, NUMBER), GLINT_ABOVE_0, .initial = { 1.5 }, .takes = GLINT_TAKES_VARIABLE,
+      .doc = "refractive index inside, > 0; outside is 1 or the index of the object around" },
+    { GLINT_ROW(fresnel, FLAG),
+      .doc = "true: `mirror` times what a dielectric reflects at that angle, `transmission` times the rest" },
+    { GLINT_ROW(absorption, COLOR), .takes = GLINT_TAKES_VARIABLE,
+      .doc = ">= 0 per world unit: exp(-absorption * distance) of the light is left inside" },
+    { GLINT_ROW(roughness, NUMBER), GLINT_SHARE, .initial = { 0.3 }, PROGRAM(roughness), .takes = NUMBERS,
+      .doc = "of \"cook_torrance\", 0 .. 1; the distribution's width is its square. Below 1e-9 as 1e-9" },
+    { GLINT_ROW(distribution, CHOICE), .names = distributions, .doc = "of \"cook_torrance\": the slopes of its facets" },
+    { GLINT_ROW(f0, COLOR), GIVEN(has_f0), .high = 1, .expected = "no surface reflects more", .follows = "ior",
+      .takes = GLINT_TAKES_VARIABLE,
+      .doc = "of \"cook_torrance\", 0 .. 1: what it reflects head-on; coloured for metals" },
+    { .name = "bump", .type = GLINT_TYPE_PROGRAM, PROGRAM(bump), .takes = GLINT_TAKES_PATTERN, .unit = "world units",
+      .doc = "height over the surface: light, mirrors and glass see the normals that it would have" },
+    { GLINT_ROW(opacity, NUMBER), GLINT_SHARE, .initial = { 1 }, PROGRAM(opacity), .takes = NUMBERS,
+      .doc = "0 .. 1: a number o lets 1 - o of each ray and of the light straight through, at each surface; where a pattern is below 0.5, or "
+             "NaN, the surface is not there for any ray of a frame. scene:cast hits it all the same" },
+    { GLINT_ROW(opacity_mode, CHOICE), .names = opacity_modes,
+      .doc = "\"blend\": a pattern, too, lets 1 - o through; \"cut\": a number, too, cuts at 0.5; \"auto\": numbers blend, patterns cut" },
+    { GLINT_ROW(name, TEXT), .doc = "for messages and `glint explain`, at most 63 bytes" },
+    { .name = NULL },
+};
+// clang-format on
+
 glint_material_desc glint_material_desc_default(void)
 {
-    return (glint_material_desc) {
-        .model = GLINT_MODEL_PHONG, .diffuse = { 0.8, 0.8, 0.8 }, .shininess = 32, .roughness = 0.3, .ior = 1.5, .opacity = 1
-    };
-}
-
-static glint_status check_f0(const double f0[3], glint_error *error)
-{
-    glint_status status = glint_check_color("f0", f0, error);
-    for (int c = 0; c < 3 && !status; c++)
-        if (f0[c] > 1)
-            status =
-                glint_fail(error, GLINT_ERR_INVALID, "f0: at most 1 expected, got %g: no surface reflects more", f0[c]);
-    return status;
-}
-
-static glint_status check(const glint_material_desc *desc, glint_error *error)
-{
-    glint_status status = GLINT_OK;
-    if (desc->model > GLINT_MODEL_COOK_TORRANCE)
-        status = glint_fail(error, GLINT_ERR_INVALID, "model: no such model");
-    if (!status && desc->has_ambient)
-        status = glint_check_color("ambient", desc->ambient, error);
-    if (!status)
-        status = glint_check_color("diffuse", desc->diffuse, error);
-    if (!status)
-        status = glint_check_color("specular", desc->specular, error);
-    if (!status)
-        status = glint_check_range("shininess", desc->shininess, 0, 1.7976931348623157e308, "number >= 0", error);
-    if (!status && desc->has_mirror)
-        status = glint_check_color("mirror", desc->mirror, error);
-    if (!status)
-        status = glint_check_color("transmission", desc->transmission, error);
-    if (!status)
-        status =
-            glint_check_range("ior", desc->ior, 4.9406564584124654e-324, 1.7976931348623157e308, "number > 0", error);
-    if (!status)
-        status = glint_check_color("absorption", desc->absorption, error);
-    if (!status)
-        status = glint_check_range("roughness", desc->roughness, 0, 1, "number 0 .. 1", error);
-    if (!status)
-        status = glint_check_range("opacity", desc->opacity, 0, 1, "number 0 .. 1", error);
-    if (!status && desc->opacity_mode > GLINT_OPACITY_BLEND)
-        status = glint_fail(error, GLINT_ERR_INVALID, "opacity_mode: no such mode");
-    if (!status && desc->distribution > GLINT_DISTRIBUTION_BECKMANN)
-        status = glint_fail(error, GLINT_ERR_INVALID, "distribution: no such distribution");
-    if (!status && desc->has_f0)
-        status = check_f0(desc->f0, error);
-    return status;
+    glint_material_desc desc = { .has_ambient = false };
+    glint_fields_reset(glint_material_fields, &desc);
+    return desc;
 }
 
 // ---- Programs ----
 
-/// A field that takes a program: where it is, and where its numbers are.
-typedef struct program_field {
-    const char *name;
-    size_t program, number; ///< offsets; number 0: none
-    size_t count; ///< of numbers
-    double most; ///< that they may be
-    size_t set; ///< of the flag that they are given; 0: none
-} program_field;
-
-#define AT(member) offsetof(glint_material_desc, member)
-
-static const program_field program_fields[] = {
-    { "diffuse", AT(program.diffuse), AT(diffuse), 3, GLINT_REFLECTANCE_MAX, 0 },
-    { "ambient", AT(program.ambient), AT(ambient), 3, GLINT_REFLECTANCE_MAX, AT(has_ambient) },
-    { "specular", AT(program.specular), AT(specular), 3, GLINT_REFLECTANCE_MAX, AT(has_specular) },
-    { "mirror", AT(program.mirror), AT(mirror), 3, GLINT_REFLECTANCE_MAX, AT(has_mirror) },
-    { "transmission", AT(program.transmission), AT(transmission), 3, GLINT_REFLECTANCE_MAX, 0 },
-    { "shininess", AT(program.shininess), AT(shininess), 1, GLINT_REFLECTANCE_MAX, 0 },
-    { "roughness", AT(program.roughness), AT(roughness), 1, 1, 0 },
-    { "bump", AT(program.bump), 0, 1, 0, 0 },
-    { "opacity", AT(program.opacity), AT(opacity), 1, 1, 0 },
-    { "model", AT(program.shader), 0, 0, 0, 0 },
-};
-
-static glint_program **program_at(const glint_material_programs *programs, const program_field *field)
+static glint_program **program_at(const glint_material_desc *desc, const glint_object_field *field)
 {
-    const size_t at = field->program - AT(program);
-    return (glint_program **)(void *)((char *)(uintptr_t)programs + at);
+    return (glint_program **)(void *)((char *)(uintptr_t)desc + field->program_offset);
 }
 
-#define EACH_FIELD(f) \
-    for (const program_field *f = program_fields; f < program_fields + sizeof program_fields / sizeof *f; f++)
+#define EACH_PROGRAM(f) \
+    for (const glint_object_field *f = glint_material_fields; f->name; f++) \
+        if (f->program_offset)
 
-static void hold_programs(const glint_material_programs *programs)
+static void hold_programs(const glint_material_desc *desc)
 {
-    EACH_FIELD(f)
-    if (*program_at(programs, f))
-        glint_program_retain(*program_at(programs, f));
+    EACH_PROGRAM(f)
+    if (*program_at(desc, f))
+        glint_program_retain(*program_at(desc, f));
 }
 
-static void release_programs(const glint_material_programs *programs)
+static void release_programs(const glint_material_desc *desc)
 {
-    EACH_FIELD(f)
-    glint_program_release(*program_at(programs, f));
+    EACH_PROGRAM(f)
+    glint_program_release(*program_at(desc, f));
 }
 
-static glint_status check_program(const program_field *field, const glint_program *program, glint_error *error)
+static glint_status check_program(const glint_object_field *field, const glint_program *program, glint_error *error)
 {
-    const bool shader = glint_program_kind_of(program) == GLINT_PROGRAM_SHADER, wanted = field->count == 0;
+    const bool shader = glint_program_kind_of(program) == GLINT_PROGRAM_SHADER, wanted = field->takes & GLINT_TAKES_SHADER;
     const size_t count = glint_program_output_count(program);
     if (shader != wanted)
         return glint_fail(error, GLINT_ERR_INVALID, "%s: a %s expected, got a %s", field->name,
                           wanted ? "shader" : "pattern", wanted ? "pattern" : "shader");
-    if (field->count == 1 && count != 1)
+    if (!wanted && field->type != GLINT_TYPE_COLOR && count != 1)
         return glint_fail(error, GLINT_ERR_INVALID, "%s: a pattern of one number expected, got one of %zu", field->name,
                           count);
     return GLINT_OK;
@@ -132,42 +121,43 @@ bool glint_pattern_numbers(const glint_program *program, double most, double out
 }
 
 /// Returns whether a number means the same as a pattern of that number. An opacity does not: by default patterns cut and numbers blend.
-static bool means_the_same(const program_field *field, const double *value)
+static bool means_the_same(const glint_object_field *field, const double *value)
 {
-    return field->number != AT(opacity) || value[0] == 0 || value[0] == 1;
+    return field->offset != offsetof(DESC, opacity) || value[0] == 0 || value[0] == 1;
 }
 
-/// A pattern of numbers alone is these numbers. One height everywhere is no bump.
-static void fold_program(const program_field *field, glint_material_desc *desc)
+/// Puts the numbers of a pattern that is the same everywhere into its field. One height everywhere is no bump.
+static void fold_program(const glint_object_field *field, glint_material_desc *desc)
 {
     double value[GLINT_PROGRAM_OUTPUTS_MAX];
-    glint_program **program = program_at(&desc->program, field);
-    if (field->count == 0 || (field->number ? !glint_pattern_numbers(*program, field->most, value)
-                                            : !glint_program_constant(*program, value)) ||
-        !means_the_same(field, value))
+    glint_program **program = program_at(desc, field);
+    const int count = glint_field_numbers(field);
+    const double most = count == 1 ? fmin(field->high, GLINT_REFLECTANCE_MAX) : GLINT_REFLECTANCE_MAX;
+    if (field->takes & GLINT_TAKES_SHADER || (count ? !glint_pattern_numbers(*program, most, value) : !glint_program_constant(*program, value)))
         return;
-    if (field->number)
-        memcpy((char *)desc + field->number, value, field->count * sizeof *value);
-    if (field->set)
-        *((bool *)desc + field->set) = true;
+    if (count && !means_the_same(field, value))
+        return;
+    memcpy((char *)desc + field->offset, value, (size_t)count * sizeof *value);
+    if (field->set_offset)
+        ((bool *)desc)[field->set_offset] = true;
     *program = NULL;
 }
 
 /// Normalises -0 to 0, so that both hash to the same key.
 static void drop_signs_of_zeros(glint_material_desc *desc)
 {
-    EACH_FIELD(f)
-    for (size_t i = 0; f->number && i < f->count; i++)
-        ((double *)(void *)((char *)desc + f->number))[i] += 0.0;
+    for (const glint_object_field *f = glint_material_fields; f->name; f++)
+        for (int i = 0; i < glint_field_numbers(f); i++)
+            ((double *)(void *)((char *)desc + f->offset))[i] += 0.0;
 }
 
-/// Checks a description, and puts numbers where its programs are nothing else.
+/// Checks a description, and puts numbers in the place of programs that are the same everywhere.
 static glint_status take(const glint_material_desc *desc, glint_material_desc *out, glint_error *error)
 {
     *out = *desc;
-    EACH_FIELD(f)
+    EACH_PROGRAM(f)
     {
-        const glint_program *program = *program_at(&desc->program, f);
+        const glint_program *program = *program_at(desc, f);
         glint_status status = program ? check_program(f, program, error) : GLINT_OK;
         if (status)
             return status;
@@ -175,7 +165,8 @@ static glint_status take(const glint_material_desc *desc, glint_material_desc *o
             fold_program(f, out);
     }
     drop_signs_of_zeros(out);
-    return check(out, error);
+    const glint_status status = glint_fields_check(glint_material_fields, out, error);
+    return status ? status : glint_check_color("specular", out->specular, error); // which counts unset, too
 }
 
 glint_status glint_material_create(const glint_material_desc *desc, glint_material **out, glint_error *error)
@@ -189,7 +180,7 @@ glint_status glint_material_create(const glint_material_desc *desc, glint_materi
     glint_material *material = malloc(sizeof *material);
     if (!material)
         return glint_fail_nomem(error);
-    hold_programs(&taken.program);
+    hold_programs(&taken);
     *material = (glint_material) { .references = 1, .desc = taken };
     *out = material;
     return GLINT_OK;
@@ -203,8 +194,8 @@ glint_status glint_material_set(glint_material *material, const glint_material_d
     glint_status status = take(desc, &taken, error);
     if (status)
         return status;
-    hold_programs(&taken.program);
-    release_programs(&material->desc.program);
+    hold_programs(&taken);
+    release_programs(&material->desc);
     material->desc = taken;
     return GLINT_OK;
 }
@@ -222,7 +213,7 @@ void glint_material_release(glint_material *material)
 {
     if (!material || --material->references > 0)
         return;
-    release_programs(&material->desc.program);
+    release_programs(&material->desc);
     free(material);
 }
 

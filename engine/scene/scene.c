@@ -1,10 +1,59 @@
 #include "engine/base/status.h"
+#include "engine/scene/fields.h"
 #include "engine/scene/objects.h"
 #include "engine/stages/stages.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
+
+// ---- The table of fields ----
+
+typedef glint_scene_desc DESC;
+
+static const char *const cameras[] = { "glint.camera", NULL };
+
+#define GIVEN(field) .set_offset = offsetof(DESC, field)
+
+// clang-format off
+static const glint_object_field depth_cue_parts[] = {
+    { GLINT_NAMED("color", depth_cue_color, COLOR), GIVEN(has_depth_cue_color) },
+    { GLINT_NAMED("near", depth_cue_near, NUMBER), .low = 0, .high = DBL_MAX, .expected = "finite number >= 0" },
+    { GLINT_NAMED("far", depth_cue_far, NUMBER), .required = true },
+    { .name = NULL },
+};
+
+static const glint_object_field indirect_parts[] = {
+    { GLINT_NAMED("samples", indirect_samples, WHOLE), .low = 1, .high = 65536, .initial = { 16 } },
+    { GLINT_NAMED("bounces", indirect_bounces, WHOLE), .low = 0, .high = 0x1p31, .initial = { 2 } },
+    { .name = NULL },
+};
+
+static const glint_object_field ambient_occlusion_parts[] = {
+    { GLINT_NAMED("samples", ambient_occlusion_samples, WHOLE), .low = 1, .high = 65536, .initial = { 16 } },
+    { GLINT_NAMED("distance", ambient_occlusion_distance, NUMBER), .low = 4.9406564584124654e-324, .high = HUGE_VAL,
+      .expected = "number > 0", .initial = { HUGE_VAL } },
+    { .name = NULL },
+};
+
+const glint_object_field glint_scene_fields[] = {
+    { GLINT_ROW(camera, OBJECT), .names = cameras, .doc = "needed for a frame; nil: none" },
+    { GLINT_ROW(ambient, COLOR), .takes = GLINT_TAKES_VARIABLE, .doc = "light from everywhere, >= 0" },
+    { GLINT_ROW(background, COLOR), .program_offset = offsetof(DESC, background_program),
+      .takes = GLINT_TAKES_PATTERN | GLINT_TAKES_TEXTURE | GLINT_TAKES_VARIABLE,
+      .doc = "what a ray sees that hits nothing, >= 0; of a pattern p is the unit direction, and a texture is a picture of all "
+             "directions with -z in its middle, +x three quarters from the left, +y above" },
+    { .name = "depth_cue", .type = GLINT_TYPE_TABLE, GIVEN(has_depth_cue), .parts = depth_cue_parts,
+      .doc = "light fades to color (default: the background, if that is a colour) from distance near (default 0) to far. Default "
+             "nil: it does not" },
+    { .name = "indirect", .type = GLINT_TYPE_TABLE, GIVEN(has_indirect), .parts = indirect_parts,
+      .doc = "light from surface to surface instead of `ambient`, by so many samples (16) and bounces (2); what a material's `ambient` "
+             "has beyond its `diffuse` is its own light and stays. Default nil: off" },
+    { .name = "ambient_occlusion", .type = GLINT_TYPE_TABLE, GIVEN(has_ambient_occlusion), .parts = ambient_occlusion_parts,
+      .doc = "ambient light as far as the sky is open, by so many samples (16), up to a distance (infinite); not together with "
+             "indirect. Default nil: off" },
+    { .name = NULL },
+};
+// clang-format on
 
 glint_status glint_scene_create(glint_scene **out, glint_error *error)
 {
@@ -17,21 +66,8 @@ glint_status glint_scene_create(glint_scene **out, glint_error *error)
     return GLINT_OK;
 }
 
-static glint_status check_depth_cue(const glint_scene_desc *desc, glint_error *error)
-{
-    glint_status status = GLINT_OK;
-    if (desc->has_depth_cue_color)
-        status = glint_check_color("depth_cue.color", desc->depth_cue_color, error);
-    if (!status)
-        status = glint_check_range("depth_cue.near", desc->depth_cue_near, 0, DBL_MAX, "finite number >= 0", error);
-    if (!status && !(desc->depth_cue_far > desc->depth_cue_near && isfinite(desc->depth_cue_far)))
-        status =
-            glint_fail(error, GLINT_ERR_INVALID, "depth_cue.far: finite number above near, %.10g, expected, got %.10g",
-                       desc->depth_cue_near, desc->depth_cue_far);
-    return status;
-}
-
-static glint_status check_background(const glint_scene_desc *desc, glint_error *error)
+/// Checks what the fields are together.
+static glint_status check_together(const glint_scene_desc *desc, glint_error *error)
 {
     const glint_program *program = desc->background_program;
     if (program && glint_program_kind_of(program) != GLINT_PROGRAM_PATTERN)
@@ -39,19 +75,13 @@ static glint_status check_background(const glint_scene_desc *desc, glint_error *
     if (program && desc->has_depth_cue && !desc->has_depth_cue_color)
         return glint_fail(error, GLINT_ERR_INVALID,
                           "depth_cue.color: a colour expected where the background, which it follows, is a pattern");
-    return glint_check_color("background", desc->background, error);
-}
-
-static glint_status check_ambient_occlusion(const glint_scene_desc *desc, glint_error *error)
-{
-    if (desc->has_indirect)
+    if (desc->has_depth_cue && !(desc->depth_cue_far > desc->depth_cue_near && isfinite(desc->depth_cue_far)))
+        return glint_fail(error, GLINT_ERR_INVALID, "depth_cue.far: finite number above near, %.10g, expected, got %.10g",
+                          desc->depth_cue_near, desc->depth_cue_far);
+    if (desc->has_indirect && desc->has_ambient_occlusion)
         return glint_fail(error, GLINT_ERR_INVALID, "ambient_occlusion: either this or indirect expected: indirect light "
                                                     "is dim where little of the sky is open by itself");
-    glint_status status = glint_check_whole("ambient_occlusion.samples", desc->ambient_occlusion_samples, 1, 65536, error);
-    if (!status && !(desc->ambient_occlusion_distance > 0))
-        status = glint_fail(error, GLINT_ERR_INVALID, "ambient_occlusion.distance: number > 0 expected, got %.15g",
-                            desc->ambient_occlusion_distance);
-    return status;
+    return GLINT_OK;
 }
 
 glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *given, glint_error *error)
@@ -64,17 +94,9 @@ glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *given, 
     if (given->background_program &&
         glint_pattern_numbers(given->background_program, GLINT_REFLECTANCE_MAX, folded.background))
         folded.background_program = NULL;
-    glint_status status = glint_check_color("ambient", desc->ambient, error);
+    glint_status status = glint_fields_check(glint_scene_fields, desc, error);
     if (!status)
-        status = check_background(desc, error);
-    if (!status && desc->has_depth_cue)
-        status = check_depth_cue(desc, error);
-    if (!status && desc->has_indirect)
-        status = glint_check_whole("indirect.samples", desc->indirect_samples, 1, 65536, error);
-    if (!status && desc->has_indirect)
-        status = glint_check_whole("indirect.bounces", desc->indirect_bounces, 0, 0x1p31, error);
-    if (!status && desc->has_ambient_occlusion)
-        status = check_ambient_occlusion(desc, error);
+        status = check_together(desc, error);
     if (status)
         return status;
     glint_camera_retain(desc->camera);

@@ -75,30 +75,61 @@ typedef struct field {
 #member, offsetof(type, member), sizeof(((type *)0)->member), kind, low, high \
     }
 
-static const field material_fields[] = {
-#define M(...) FIELD(glint_material_desc, __VA_ARGS__)
-    M(model, CHOICE, 0, 4),       M(has_specular, FLAG, 0, 1), M(normalized, FLAG, 0, 1),
-    M(matched, FLAG, 0, 1),       M(roughness, NUMBER, 0, 1),  M(distribution, CHOICE, 0, 2),
-    M(has_f0, FLAG, 0, 1),        M(f0, COLOR, 0, 1),          M(has_ambient, FLAG, 0, 1),
-    M(ambient, COLOR, 0, 1),      M(diffuse, COLOR, 0, 1),     M(specular, COLOR, 0, 1),
-    M(shininess, NUMBER, 0, 300), M(has_mirror, FLAG, 0, 1),   M(mirror, COLOR, 0, 1),
-    M(transmission, COLOR, 0, 1), M(ior, NUMBER, 0.5, 2),      M(fresnel, FLAG, 0, 1),
-    M(absorption, COLOR, 0, 1),   M(opacity, NUMBER, 0, 1),    M(opacity_mode, CHOICE, 0, 3),
-    M(program, FIXED, 0, 0),      M(name, FIXED, 0, 0),
-#undef M
-};
+#define ROWS_MAX 64
+static field material_fields[ROWS_MAX], light_fields[ROWS_MAX];
+static size_t material_count, light_count;
 
-static const field light_fields[] = {
-#define L(...) FIELD(glint_light_desc, __VA_ARGS__)
-    L(kind, FIXED, 0, 0),         L(color, COLOR, 0, 1),        L(intensity, NUMBER, 0, 2), L(has_diffuse, FLAG, 0, 1),
-    L(has_specular, FLAG, 0, 1),  L(ambient, COLOR, 0, 1),      L(diffuse, COLOR, 0, 1),    L(specular, COLOR, 0, 1),
-    L(attenuation, VECTOR, 0, 1), L(shadows, FLAG, 0, 1),       L(shadow, CHOICE, 0, 3),    L(visible, FLAG, 0, 1),
-    L(position, VECTOR, -6, 6),   L(direction, VECTOR, -1, 1),  L(name, FIXED, 0, 0),       L(inner_rad, NUMBER, 0, 1),
-    L(outer_rad, NUMBER, 0.5, 3), L(exponent, NUMBER, 0, 20),   L(normal, VECTOR, -1, 1),   L(radius, NUMBER, 0, 2),
-    L(vertices, FIXED, 0, 0),     L(vertex_count, FIXED, 0, 0), L(two_sided, FLAG, 0, 1),   L(samples, WHOLE, 1, 20),
-    L(has_radiance, FLAG, 0, 1),  L(radiance, NUMBER, 0, 9),  L(group, FIXED, 0, 0),
-#undef L
-};
+static void add_field(field *list, size_t *count, field f)
+{
+    for (size_t i = 0; i < *count; i++)
+        if (list[i].offset == f.offset)
+            return;
+    assert_true(*count < ROWS_MAX);
+    list[(*count)++] = f;
+}
+
+/// Adds the fields of an object's table, with the flags that say that they are set and with the places of programs, once each. Numbers
+/// without a narrow range go to four times the default.
+static void add_rows(glint_object_kind object, field *list, size_t *count)
+{
+    static const struct {
+        enum kind kind;
+        size_t size;
+        double low, high;
+    } of[] = {
+        [GLINT_TYPE_NUMBER] = { NUMBER, 8, 0, 0 },      [GLINT_TYPE_WHOLE] = { WHOLE, 8, 0, 0 },  [GLINT_TYPE_ANGLE] = { NUMBER, 8, 0, 0 },
+        [GLINT_TYPE_FLAG] = { FLAG, 1, 0, 1 },          [GLINT_TYPE_VECTOR] = { VECTOR, 24, -6, 6 },
+        [GLINT_TYPE_DIRECTION] = { VECTOR, 24, -1, 1 }, [GLINT_TYPE_COLOR] = { COLOR, 24, 0, 1 }, [GLINT_TYPE_CHOICE] = { CHOICE, 4, 0, 0 },
+        [GLINT_TYPE_TEXT] = { FIXED, 64, 0, 0 },        [GLINT_TYPE_POINTS] = { FIXED, 16, 0, 0 },
+    };
+    for (const glint_object_field *f = glint_object_fields(object, NULL); f->name; f++) {
+        double low = of[f->type].low, high = of[f->type].high;
+        for (int i = 0; f->type == GLINT_TYPE_CHOICE && f->names[i]; i++)
+            high = i + 1;
+        if (f->type == GLINT_TYPE_VECTOR && f->high > 0)
+            low = 0, high = 1;
+        if (f->type <= GLINT_TYPE_ANGLE) {
+            low = fmax(f->low, f->low > 0 ? 0.3 * f->initial[0] : f->low);
+            high = fmin(f->high, f->type == GLINT_TYPE_WHOLE ? 20 : f->initial[0] > 0 ? 4 * f->initial[0] : 9);
+        }
+        if (f->member)
+            add_field(list, count, (field) { f->name, f->offset, of[f->type].size, of[f->type].kind, low, high });
+        if (f->set_offset)
+            add_field(list, count, (field) { f->name, f->set_offset, 1, FLAG, 0, 1 });
+        if (f->program_offset)
+            add_field(list, count, (field) { f->name, f->program_offset, sizeof(void *), FIXED, 0, 0 });
+    }
+}
+
+static int make_tables(void **unused)
+{
+    (void)unused;
+    add_rows(GLINT_OBJECT_MATERIAL, material_fields, &material_count);
+    add_field(light_fields, &light_count, (field) FIELD(glint_light_desc, kind, FIXED, 0, 0));
+    for (int k = GLINT_LIGHT_POINT; k <= GLINT_LIGHT_SPHERE; k++)
+        add_rows((glint_object_kind)(GLINT_OBJECT_POINT_LIGHT + k), light_fields, &light_count);
+    return 0;
+}
 
 static const field camera_fields[] = {
 #define C(...) FIELD(glint_camera_desc, __VA_ARGS__)
@@ -247,8 +278,8 @@ static const field *pick(const field *fields, size_t count)
     return f;
 }
 
-/// The tables above must name every byte of every description but padding: who adds a field adds it here, and the edits
-/// below find out whether the plan's keys know of it.
+/// The tables must name every byte of every description except padding: a field without a row is found here, and the edits below
+/// find out whether the plan's keys know of a field.
 static void table_names_all(const char *what, const field *fields, size_t count, size_t size)
 {
     char *named = calloc(1, size);
@@ -268,8 +299,8 @@ static void table_names_all(const char *what, const field *fields, size_t count,
 static void tables_name_every_field(void **unused)
 {
     (void)unused;
-    table_names_all("material", material_fields, COUNT(material_fields), sizeof(glint_material_desc));
-    table_names_all("light", light_fields, COUNT(light_fields), sizeof(glint_light_desc));
+    table_names_all("material", material_fields, material_count, sizeof(glint_material_desc));
+    table_names_all("light", light_fields, light_count, sizeof(glint_light_desc));
     table_names_all("camera", camera_fields, COUNT(camera_fields), sizeof(glint_camera_desc));
     table_names_all("shape", shape_fields, COUNT(shape_fields), sizeof(glint_shape_desc));
     table_names_all("scene", scene_fields, COUNT(scene_fields), sizeof(glint_scene_desc));
@@ -282,7 +313,7 @@ static void edit_material(world *w)
 {
     glint_material *material = w->materials[draw(SHAPES)];
     glint_material_desc d = *glint_material_get(material);
-    set_field(pick(material_fields, COUNT(material_fields)), &d);
+    set_field(pick(material_fields, material_count), &d);
     glint_material_set(material, &d, NULL);
 }
 
@@ -305,7 +336,7 @@ static void edit_light(world *w)
         d.vertices = (const double(*)[3])corners;
         d.vertex_count = 3 + draw(2);
     } else {
-        set_field(pick(light_fields, COUNT(light_fields)), &d);
+        set_field(pick(light_fields, light_count), &d);
         d.intensity = d.has_radiance ? 1 : d.intensity;
     }
     glint_light_set(w->lights[i], &d, NULL);
@@ -897,5 +928,5 @@ int main(void)
         cmocka_unit_test(reused_equals_fresh_without_memory),
         cmocka_unit_test(reused_equals_fresh_with_little_memory),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_tables, NULL);
 }

@@ -58,14 +58,6 @@ local FIELDS = {
   sphere_mesh = { "center", "radius", "segments", "shading" }, group = { "transform" },
   union = { "material", "transform", "two_sided", "part" }, intersection = { "material", "part" },
   difference = { "transform", "part" },
-  point_light = { "position", "intensity", "color", "attenuation", "shadows" },
-  directional_light = { "direction", "intensity", "color", "shadows" },
-  spot_light = { "position", "direction", "inner", "outer", "exponent" },
-  disk_light = { "position", "normal", "radius", "radiance", "visible" },
-  polygon_light = { "vertices", "two_sided", "radiance", "visible" },
-  sphere_light = { "position", "radius", "intensity", "visible" },
-  material = { "model", "diffuse", "specular", "shininess", "ambient", "mirror", "transmission", "ior", "fresnel", "roughness", "absorption",
-    "distribution", "normalized", "matched", "f0", "bump", "opacity", "opacity_mode" },
   camera = { "eye", "at", "direction", "up", "fov", "projection", "height", "pixel_offset", "aperture", "focus", "blades", "blade_rotation",
     "shutter", "shutter_times" },
   ambient_occlusion = { "distance" },
@@ -73,6 +65,10 @@ local FIELDS = {
   colorbar = { "map", "low", "high", "title", "ticks", "orientation", "length", "at", "size", "background" },
   axes = { "labels", "length", "at", "position", "size", "box", "values" },
 }
+for _, name in ipairs { "material", "point_light", "directional_light", "spot_light", "disk_light", "polygon_light", "sphere_light" } do
+  FIELDS[name] = {}
+  for i, row in ipairs(glint._rows(name)) do FIELDS[name][i] = row.name end
+end
 local NAMES = {}
 for name in pairs(FIELDS) do NAMES[#NAMES + 1] = name end
 table.sort(NAMES)
@@ -112,6 +108,7 @@ local function field_value(field, made)
     local ok, t = pcall(function() return glint.translate(number(), number(), number()) * glint.scale(number(), number(), number()) end)
     return ok and t or glint.translate(0, 0, 0)
   end
+  if field == "samples" then return 1 + next_byte() % 4 end
   if field == "segments" then return next_byte() % 40 end -- 16384 is good, and takes long
   return value()
 end

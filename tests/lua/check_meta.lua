@@ -2,12 +2,19 @@
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
+local fill = dofile "bindings/meta/fill.lua"
+
+local function filled(path)
+  local text = fill(assert(io.open(path)):read "a")
+  check(not text:find "@fields" and not text:find '\\" fields', "%s: fields are left out", path)
+  return text
+end
 
 -- Reads the annotations: classes[name] = { parents, fields = {name -> line}, methods = {} }, and functions of `glint`.
-local function read_meta(path)
+local function read_meta(text)
   local classes, functions, owners, current = {}, {}, {}, nil
   local number = 0
-  for line in io.lines(path) do
+  for line in text:gmatch "([^\n]*)\n" do
     number = number + 1
     local name, parents = line:match "^%-%-%-@class ([%w_.]+):?%s*(.*)$"
     local field = line:match "^%-%-%-@field ([%w_]+)%??%s+%S"
@@ -52,7 +59,7 @@ local function all_fields(classes, name, into)
 end
 
 local root = arg[0]:match "^(.*)/tests/[^/]*$" or "."
-local classes, functions = read_meta(root .. "/bindings/meta/glint.lua")
+local classes, functions = read_meta(filled(root .. "/bindings/meta/glint.lua"))
 
 -- The module's table.
 local values = all_fields(classes, "glint")
@@ -115,7 +122,7 @@ for name in pairs(functions) do
 end
 
 -- The manual page names every object, field, method and function.
-local page = assert(io.open(root .. "/bindings/glint.1")):read "a"
+local page = filled(root .. "/bindings/glint.1")
 local section = page:match "%.SH SCRIPTS\n(.-)\n%.SH "
 check(section, "the manual page has a section SCRIPTS")
 local named = {}

@@ -129,7 +129,7 @@ function block(lines) {
 }
 
 function reference() {
-  const html = `<h1 id="reference">Reference</h1>\n${blocks(read("bindings/meta/glint.lua")).map(block).filter(Boolean).join("\n")}`
+  const html = `<h1 id="reference">Reference</h1>\n${blocks(readFileSync(join(web, "../meta/glint.lua"), "utf8")).map(block).filter(Boolean).join("\n")}`
   sections("reference.html", "Reference", html)
   writeFileSync(join(out, "reference.html"), layout("Reference", html))
 }

@@ -2,84 +2,58 @@
 #include "engine/base/status.h"
 #include "engine/effects/derivative/slopes.h"
 #include "engine/program/program.h"
+#include "engine/scene/fields.h"
 
 #include <stdio.h>
 #include <string.h>
 
-typedef struct slope_field {
-    const char *name;
-    size_t offset;
-    int count; ///< components
-    unsigned kinds; ///< kinds of lights that have it, one bit each
-} slope_field;
+/// Fields of descriptions that scripts cannot derive by, or not by that name; the rest are in the objects' own tables.
+#define FIELD(desc, field, kind) \
+    { .name = #field, .member = #field, .type = GLINT_TYPE_##kind, .offset = offsetof(glint_##desc##_desc, field), .takes = GLINT_TAKES_VARIABLE }
+#define LIST(...) (const glint_object_field[]) { __VA_ARGS__, { .name = NULL } }
 
-#define MATERIAL(name, count) { #name, offsetof(glint_material_desc, name), count, 0 }
-#define LIGHT(name, count, kinds) { #name, offsetof(glint_light_desc, name), count, kinds }
-#define SCENE(name, count) { #name, offsetof(glint_scene_desc, name), count, 0 }
-#define KIND(name) (1u << GLINT_LIGHT_##name)
-#define AREA (KIND(DISK) | KIND(POLYGON) | KIND(SPHERE))
-#define ALL (KIND(POINT) | KIND(DIRECTIONAL) | KIND(SPOT) | AREA)
+static const glint_object_field *const sphere_fields = LIST(FIELD(shape, center, VECTOR), FIELD(shape, radius, NUMBER));
+static const glint_object_field *const plane_fields = LIST(FIELD(shape, point, VECTOR), FIELD(shape, normal, VECTOR));
+static const glint_object_field *const camera_fields =
+    LIST(FIELD(camera, eye, VECTOR), FIELD(camera, at, VECTOR), FIELD(camera, direction, VECTOR), FIELD(camera, up, VECTOR),
+         FIELD(camera, fov_y_rad, NUMBER), FIELD(camera, height, NUMBER), FIELD(camera, aperture, NUMBER),
+         FIELD(camera, focus, NUMBER), FIELD(camera, focus_point, VECTOR));
+static const glint_object_field *const scene_fields =
+    LIST(FIELD(scene, ambient, VECTOR), FIELD(scene, background, VECTOR), FIELD(scene, depth_cue_color, VECTOR),
+         FIELD(scene, depth_cue_near, NUMBER), FIELD(scene, depth_cue_far, NUMBER));
 
-static const slope_field material_fields[] = {
-    MATERIAL(diffuse, 3),   MATERIAL(ambient, 3), MATERIAL(specular, 3), MATERIAL(shininess, 1),
-    MATERIAL(roughness, 1), MATERIAL(f0, 3),      MATERIAL(mirror, 3),   MATERIAL(transmission, 3),
-    MATERIAL(ior, 1),       MATERIAL(absorption, 3), MATERIAL(opacity, 1), { NULL, 0, 0, 0 },
-};
-static const slope_field light_fields[] = {
-    LIGHT(color, 3, ALL),
-    LIGHT(intensity, 1, ALL),
-    LIGHT(ambient, 3, ALL),
-    LIGHT(diffuse, 3, ALL),
-    LIGHT(specular, 3, ALL),
-    LIGHT(attenuation, 3, ALL & ~KIND(DIRECTIONAL)),
-    LIGHT(position, 3, ALL & ~(KIND(DIRECTIONAL) | KIND(POLYGON))),
-    LIGHT(direction, 3, KIND(DIRECTIONAL) | KIND(SPOT)),
-    LIGHT(inner_rad, 1, KIND(SPOT)),
-    LIGHT(outer_rad, 1, KIND(SPOT)),
-    LIGHT(exponent, 1, KIND(SPOT)),
-    LIGHT(radiance, 1, AREA),
-    { NULL, 0, 0, 0 },
-};
-#define SHAPE(name, count, kind) { #name, offsetof(glint_shape_desc, name), count, 1u << GLINT_SHAPE_##kind }
-#define CAMERA(name, count) { #name, offsetof(glint_camera_desc, name), count, 0 }
-static const slope_field shape_fields[] = {
-    SHAPE(center, 3, SPHERE), SHAPE(radius, 1, SPHERE), SHAPE(point, 3, PLANE), SHAPE(normal, 3, PLANE),
-    { NULL, 0, 0, 0 },
-};
-static const slope_field camera_fields[] = {
-    CAMERA(eye, 3), CAMERA(at, 3), CAMERA(direction, 3), CAMERA(up, 3), CAMERA(fov_y_rad, 1),
-    CAMERA(height, 1), CAMERA(aperture, 1), CAMERA(focus, 1), CAMERA(focus_point, 3), { NULL, 0, 0, 0 },
-};
-static const slope_field scene_fields[] = {
-    SCENE(ambient, 3),        SCENE(background, 3),    SCENE(depth_cue_color, 3),
-    SCENE(depth_cue_near, 1), SCENE(depth_cue_far, 1), { NULL, 0, 0, 0 },
-};
+static const glint_object_field *shape_fields(glint_shape_kind kind)
+{
+    static const glint_object_field none = { .name = NULL };
+    return kind == GLINT_SHAPE_SPHERE ? sphere_fields : kind == GLINT_SHAPE_PLANE ? plane_fields : &none;
+}
 
-/// kinds: the kinds of objects that have the field, one bit each; 0: all.
-static const slope_field *find_field(const slope_field *fields, const char *name, unsigned kinds)
+static bool has_derivative(const glint_object_field *field) { return field->takes & GLINT_TAKES_VARIABLE; }
+
+static const glint_object_field *find_field(const glint_object_field *fields, const char *name)
 {
     for (; name && fields->name; fields++)
-        if (strcmp(fields->name, name) == 0 && (fields->kinds & kinds) == kinds)
+        if (has_derivative(fields) && strcmp(fields->member, name) == 0)
             return fields;
     return NULL;
 }
 
 static glint_status refuse_field(const glint_derivative *d, const char *object, const char *field,
-                                 const slope_field *offered, unsigned kinds, glint_error *error)
+                                 const glint_object_field *offered, glint_error *error)
 {
     char list[256] = "";
     size_t used = 0;
     for (; offered->name; offered++)
-        if (offered->kinds == kinds || offered->kinds & kinds)
-            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", offered->name);
+        if (has_derivative(offered))
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", offered->member);
     return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s.%s: no derivative goes through this field; of %s: %s",
                       d->name, object, field ? field : "(null)", object, used ? list : "none");
 }
 
-static void add(void *desc, const slope_field *field, const double slope[3])
+static void add(void *desc, const glint_object_field *field, const double slope[3])
 {
     double *to = (double *)((char *)desc + field->offset);
-    for (int c = 0; c < field->count; c++)
+    for (int c = 0; c < (field->type >= GLINT_TYPE_VECTOR ? 3 : 1); c++)
         to[c] += slope[c];
 }
 
@@ -102,9 +76,9 @@ static glint_status add_program(const glint_plan *plan, const glint_derivative *
     if (i == list->count)
         return GLINT_OK;
     if (field == GLINT_FIELD_COUNT)
-        return refuse_field(d, "material", s->field, material_fields, 0, error);
+        return refuse_field(d, "material", s->field, glint_material_fields, error);
     const glint_program *own = plan->patterns ? plan->patterns->of[i].program[field] : NULL;
-    if (!own && glint_pattern_program_of(&s->material->desc.program, field)) // the number is not read
+    if (!own && glint_pattern_program_of(&s->material->desc, field)) // the number is not read
         return GLINT_OK;
     if (!own || own->code.output_count != s->program->code.output_count || own->kind != s->program->kind)
         return glint_fail(error, GLINT_ERR_INVALID,
@@ -143,9 +117,9 @@ static glint_status add_material(const glint_plan *plan, const glint_derivative 
     if (s->program)
         return add_program(plan, d, s, out, error);
     const glint_list *list = &plan->geometry->materials;
-    const slope_field *field = find_field(material_fields, s->field, 0);
+    const glint_object_field *field = find_field(glint_material_fields, s->field);
     if (!field)
-        return refuse_field(d, "material", s->field, material_fields, 0, error);
+        return refuse_field(d, "material", s->field, glint_material_fields, error);
     for (size_t i = 0; i < list->count; i++) {
         if (list->items[i] != s->material)
             continue;
@@ -161,13 +135,12 @@ static glint_status add_material(const glint_plan *plan, const glint_derivative 
 static glint_status add_light(const glint_scene *scene, const glint_derivative *d, const glint_slope *s,
                               glint_scene_slopes *out, glint_error *error)
 {
-    const unsigned kind = 1u << s->light->desc.kind;
-    const slope_field *field = find_field(light_fields, s->field, kind);
+    const glint_object_field *fields = glint_light_fields[s->light->desc.kind], *field = find_field(fields, s->field);
     char name[2 * GLINT_NAME_SIZE];
     if (!field) {
         glint_describe_light(&s->light->desc, 0, name, sizeof name);
         name[strcspn(name, " ")] = '\0';
-        return refuse_field(d, name, s->field, light_fields, kind, error);
+        return refuse_field(d, name, s->field, fields, error);
     }
     for (size_t i = 0; i < scene->lights.count; i++)
         if (scene->lights.items[i] == s->light)
@@ -178,12 +151,11 @@ static glint_status add_light(const glint_scene *scene, const glint_derivative *
 static glint_status add_shape(const glint_plan *plan, const glint_derivative *d, const glint_slope *s,
                               glint_scene_slopes *out, glint_error *error)
 {
-    const unsigned kind = 1u << s->shape->desc.kind;
-    const slope_field *field = find_field(shape_fields, s->field, kind);
-    const bool known = kind & (1u << GLINT_SHAPE_SPHERE | 1u << GLINT_SHAPE_PLANE);
+    const glint_shape_kind kind = s->shape->desc.kind;
+    const glint_object_field *field = find_field(shape_fields(kind), s->field);
     if (!field)
-        return refuse_field(d, kind == 1u << GLINT_SHAPE_SPHERE ? "sphere" : known ? "plane" : "shape", s->field,
-                            shape_fields, known ? kind : 1u << 31, error);
+        return refuse_field(d, kind == GLINT_SHAPE_SPHERE ? "sphere" : kind == GLINT_SHAPE_PLANE ? "plane" : "shape", s->field,
+                            shape_fields(kind), error);
     for (uint32_t i = 0; i < plan->geometry->part_count; i++)
         if (plan->geometry->parts[i].shape == s->shape)
             add(&out->shapes[i], field, s->slope);
@@ -193,9 +165,9 @@ static glint_status add_shape(const glint_plan *plan, const glint_derivative *d,
 static glint_status add_camera(const glint_scene *scene, const glint_derivative *d, const glint_slope *s,
                                glint_scene_slopes *out, glint_error *error)
 {
-    const slope_field *field = find_field(camera_fields, s->field, 0);
+    const glint_object_field *field = find_field(camera_fields, s->field);
     if (!field)
-        return refuse_field(d, "camera", s->field, camera_fields, 0, error);
+        return refuse_field(d, "camera", s->field, camera_fields, error);
     if (scene->desc.camera == s->camera)
         add(&out->camera, field, s->slope);
     return GLINT_OK;
@@ -219,9 +191,9 @@ glint_status glint_derivative_add(const glint_plan *plan, const glint_scene *sce
         return add_shape(plan, d, s, out, error);
     if (s->camera)
         return add_camera(scene, d, s, out, error);
-    const slope_field *field = find_field(scene_fields, s->field, 0);
+    const glint_object_field *field = find_field(scene_fields, s->field);
     if (!field)
-        return refuse_field(d, "scene", s->field, scene_fields, 0, error);
+        return refuse_field(d, "scene", s->field, scene_fields, error);
     add(&out->scene, field, s->slope);
     return GLINT_OK;
 }

@@ -3,6 +3,7 @@
 #include "engine/base/vec.h"
 #include "engine/plan/plan.h"
 #include "engine/program/program.h"
+#include "engine/scene/fields.h"
 
 #include <stdlib.h>
 
@@ -11,39 +12,26 @@
 
 // ---- A material's programs ----
 
+#define PROGRAM(field, member) [GLINT_FIELD_##field] = offsetof(glint_material_desc, program.member)
+
+/// Where the descriptions of materials have the programs.
+static const size_t program_offsets[GLINT_FIELD_COUNT] = {
+    PROGRAM(DIFFUSE, diffuse),     PROGRAM(AMBIENT, ambient),     PROGRAM(REST, ambient), PROGRAM(SPECULAR, specular),
+    PROGRAM(MIRROR, mirror),       PROGRAM(TRANSMISSION, transmission), PROGRAM(SHININESS, shininess),
+    PROGRAM(ROUGHNESS, roughness), PROGRAM(BUMP, bump),           PROGRAM(OPACITY, opacity), PROGRAM(CLEAR, opacity),   PROGRAM(SHADER, shader),
+};
+
 const char *glint_field_name(int field)
 {
-    static const char *const names[] = { "diffuse",   "ambient",   "ambient", "specular", "mirror", "transmission",
-                                         "shininess", "roughness", "opacity", "bump",     "opacity", "model",       "background" };
-    return names[field];
+    for (const glint_object_field *f = glint_material_fields; f->name && field < GLINT_FIELD_COUNT; f++)
+        if (f->program_offset == program_offsets[field])
+            return f->name;
+    return "background";
 }
 
-const glint_program *glint_pattern_program_of(const glint_material_programs *programs, int field)
+const glint_program *glint_pattern_program_of(const glint_material_desc *desc, int field)
 {
-    switch (field) {
-    case GLINT_FIELD_DIFFUSE:
-        return programs->diffuse;
-    case GLINT_FIELD_AMBIENT:
-        return programs->ambient;
-    case GLINT_FIELD_SPECULAR:
-        return programs->specular;
-    case GLINT_FIELD_MIRROR:
-        return programs->mirror;
-    case GLINT_FIELD_TRANSMISSION:
-        return programs->transmission;
-    case GLINT_FIELD_SHININESS:
-        return programs->shininess;
-    case GLINT_FIELD_ROUGHNESS:
-        return programs->roughness;
-    case GLINT_FIELD_BUMP:
-        return programs->bump;
-    case GLINT_FIELD_OPACITY:
-        return programs->opacity;
-    case GLINT_FIELD_SHADER:
-        return programs->shader;
-    default:
-        return NULL;
-    }
+    return field == GLINT_FIELD_REST || field == GLINT_FIELD_CLEAR ? NULL : *(glint_program *const *)(const void *)((const char *)desc + program_offsets[field]);
 }
 
 /// Returns whether the material's model reads a field.
@@ -114,7 +102,7 @@ static const glint_program *program_of(const glint_plan *plan, size_t i, int fie
 {
     if (field == GLINT_FIELD_CLEAR)
         return plan->translucent ? plan->translucent[i].program : NULL;
-    return glint_pattern_program_of(&glint_plan_material(plan, i)->program, field);
+    return glint_pattern_program_of(glint_plan_material(plan, i), field);
 }
 
 static void add_material(const glint_plan *plan, size_t i, bool indirect)

@@ -33,7 +33,7 @@ typedef enum glint_field {
 /// "diffuse", "model", "background"
 const char *glint_field_name(int field);
 /// Returns the program of a material's field. NULL: none.
-const glint_program *glint_pattern_program_of(const glint_material_programs *programs, int field);
+const glint_program *glint_pattern_program_of(const glint_material_desc *desc, int field);
 /// Returns the number of channels of a field.
 static inline int glint_field_channels(int field) { return field < GLINT_FIELD_SHININESS ? 3 : 1; }
 

@@ -1,0 +1,70 @@
+-- Puts the fields of objects into the API for editors and the manual page, from the engine's tables: where a line is
+-- `---@fields OBJECT` or `.\" fields OBJECT...`; of several objects each field is named once. As a script of glint, with
+-- FROM=FILE in the environment, it prints the whole text.
+local glint = require "glint"
+
+local function number(x) return ("%.14g"):format(x) end
+
+-- A default as text; nil where there is none that says something.
+local function default(row)
+  local value = row.default
+  if row.required or value == nil then return nil end
+  if type(value) == "userdata" then
+    local x, y, z = value:unpack()
+    return x == y and y == z and number(x) or ("{%s, %s, %s}"):format(number(x), number(y), number(z))
+  end
+  return type(value) == "number" and number(value) or tostring(value)
+end
+
+-- What editors call a row's values.
+local function type_of(row)
+  if not row.parts then return row.type end
+  local parts = {}
+  for i, part in ipairs(row.parts) do parts[i] = part.name .. ": " .. part.type .. (part.required and "" or "?") end
+  return "{ " .. table.concat(parts, ", ") .. " }"
+end
+
+-- "---@field shininess? number|glint.pattern  exponent >= 0 of the highlight. Default 32"
+local function annotation(row)
+  local text, value = row.doc .. (row.unit and ", " .. row.unit or ""), default(row)
+  if row.follows then
+    text = ("%s. Follows `%s` until set; nil: follows again"):format(text, row.follows)
+  elseif value and not text:find "Default" then
+    text = text .. ". Default " .. (type(row.default) == "string" and ("%q"):format(value) or value)
+  end
+  return ("---@field %s%s %s  %s"):format(row.name, row.required and "" or "?", type_of(row), text)
+end
+
+-- "shininess (32)", "model (phong, blinn_phong)", "ambient (as diffuse)"
+local function item(row)
+  local names, value = {}, default(row)
+  for name in row.type:gmatch '"([^"]+)"' do names[#names + 1] = name end
+  local note = #names > 0 and table.concat(names, ", ") or row.follows and "as " .. row.follows
+    or value and value ~= "" and value ~= "false" and value
+  return row.name .. (note and " (" .. note .. ")" or "")
+end
+
+local function fill(text)
+  text = text:gsub("%-%-%-@fields ([%w_]+)", function(object)
+    local lines = {}
+    for i, row in ipairs(glint._rows(object)) do lines[i] = annotation(row) end
+    return table.concat(lines, "\n")
+  end)
+  return (text:gsub('%.\\" fields ([%w_ ]+)', function(objects)
+    local items, known = {}, {}
+    for object in objects:gmatch "[%w_]+" do
+      for _, row in ipairs(glint._rows(object)) do
+        items[#items + 1] = not known[row.name] and item(row) or nil
+        known[row.name] = true
+      end
+    end
+    return table.concat(items, ",\n")
+  end))
+end
+
+local from = os.getenv "FROM"
+if from then
+  io.write(fill(assert(io.open(from)):read "a"))
+  os.exit(true)
+end
+return fill

@@ -1,0 +1,102 @@
+// The rows of an object's table of fields as Lua values, for the documentation that is made of them and for tests.
+#include <stdint.h>
+
+#include "bindings/value/glintL.h"
+
+static void set_text(lua_State *L, const char *key, const char *text)
+{
+    lua_pushstring(L, text);
+    lua_setfield(L, -2, key);
+}
+
+static void push_default(lua_State *L, const glintL_field *field)
+{
+    glintL_field plain = *field;
+    union {
+        double numbers[3];
+        int choice;
+        bool flag;
+        char text[GLINT_NAME_SIZE];
+    } value = { .text = "" };
+    for (int c = 0; c < 3; c++)
+        value.numbers[c] = field->initial[c];
+    if (field->type == GLINT_TYPE_CHOICE)
+        value.choice = (int)field->initial[0];
+    if (field->type == GLINT_TYPE_FLAG)
+        value.flag = field->initial[0] != 0;
+    plain.offset = plain.set_offset = 0;
+    if (field->type <= GLINT_TYPE_TEXT)
+        glintL_push_field(L, &plain, &value);
+    else
+        lua_pushnil(L);
+}
+
+static void push_rows(lua_State *L, const glintL_field *fields);
+
+static void push_row(lua_State *L, const glintL_field *field)
+{
+    // Of each glint_field_type: what editors call it, "" for choices, whose names are listed.
+    static const char *const types[] = { "number", "integer", "number", "boolean", "glint.vec3", "glint.vec3", "glint.color", "", "string",
+                                         "", "glint.vec3[]", "number|glint.vec3", "glint.transform", "", "table", "any", "any" };
+    static const char *const takers[] = { "glint.pattern", "glint.texture", "glint.shader" };
+    luaL_Buffer type;
+    luaL_buffinit(L, &type);
+    luaL_addstring(&type, field->type == GLINT_TYPE_OBJECT ? field->names[0] : types[field->type]);
+    for (size_t i = 0; field->type == GLINT_TYPE_CHOICE && field->names[i]; i++) {
+        luaL_addstring(&type, i ? "|\"" : "\"");
+        luaL_addstring(&type, field->names[i]);
+        luaL_addchar(&type, '"');
+    }
+    for (size_t i = 0; i < sizeof takers / sizeof *takers; i++) {
+        if (!(field->takes >> i & 1))
+            continue;
+        luaL_addstring(&type, luaL_bufflen(&type) ? "|" : "");
+        luaL_addstring(&type, takers[i]);
+    }
+    luaL_pushresult(&type);
+    lua_createtable(L, 0, 8);
+    lua_insert(L, -2);
+    lua_setfield(L, -2, "type");
+    set_text(L, "name", field->name);
+    set_text(L, "doc", field->doc);
+    set_text(L, "unit", field->unit);
+    set_text(L, "follows", field->follows);
+    lua_pushboolean(L, field->required);
+    lua_setfield(L, -2, "required");
+    push_default(L, field);
+    lua_setfield(L, -2, "default");
+    if (field->parts)
+        push_rows(L, field->parts);
+    else
+        lua_pushnil(L);
+    lua_setfield(L, -2, "parts");
+}
+
+static void push_rows(lua_State *L, const glintL_field *fields)
+{
+    luaL_checkstack(L, 8, "rows");
+    lua_newtable(L);
+    for (lua_Integer i = 0; fields && fields[i].name; i++) {
+        push_row(L, &fields[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+}
+
+static const char VARIANTS; // its address is the registry's key of the variants that have rows, by name
+
+void glintL_note_rows(lua_State *L, const glintL_variant *variant)
+{
+    glintL_push_table(L, &VARIANTS);
+    lua_pushlightuserdata(L, (void *)(uintptr_t)variant);
+    lua_setfield(L, -2, variant->name);
+    lua_pop(L, 1);
+}
+
+int glintL_list_rows(lua_State *L)
+{
+    glintL_push_table(L, &VARIANTS);
+    lua_getfield(L, -1, luaL_checkstring(L, 1));
+    const glintL_variant *variant = lua_touserdata(L, -1);
+    push_rows(L, variant ? glintL_fields_of(variant) : NULL);
+    return 1;
+}
