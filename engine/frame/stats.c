@@ -115,7 +115,7 @@ uint64_t glint_count_shifted(const glint_image *image, const glint_extent *exten
 
 // ---- Of several parts ----
 
-static void add_odd(glint_frame_stats *to, const glint_frame_stats *more)
+static void add_odd(glint_odd *to, const glint_odd *more)
 {
     const uint64_t count = to->count + more->count;
     if (!to->count)
@@ -133,7 +133,8 @@ void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more,
     to->rays.refraction += more->rays.refraction;
     to->rays.indirect += more->rays.indirect;
     glint_work_add(&to->work, &more->work);
-    add_odd(to, more);
+    for (int kind = 0; kind < GLINT_ODD_COUNT; kind++)
+        add_odd(&to->odd[kind], &more->odd[kind]);
     for (int i = 0; i < to->stage_count; i++)
         for (int k = 0; k < more->stage_count; k++) {
             if (to->stage_name[i] != more->stage_name[k] || to->stage_name[i] == glint_stage_table[GLINT_STAGE_TONE]->name)

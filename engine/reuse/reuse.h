@@ -32,7 +32,7 @@ typedef struct glint_cached_light {
     glint_key facet; ///< of the following arrays
     float *sine2, *schlick; ///< a block of their own, sine2 first
     glint_key place; ///< the light's place and shadows when the following was computed; all zero: never
-    bool reaches; ///< the light reaches the light reaches some lane
+    bool reaches; ///< the light reaches some lane
     float brightest; ///< the largest log2_specular of lit lanes, in shadow or not
 } glint_cached_light;
 

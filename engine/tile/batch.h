@@ -46,7 +46,7 @@ typedef enum glint_way {
 /// Rays that continue from samples of a tile.
 typedef struct glint_sent {
     uint32_t count;
-    uint16_t sample[GLINT_TILE_SAMPLES]; ///< sample sample where each begins
+    uint16_t sample[GLINT_TILE_SAMPLES]; ///< sample where each begins
     uint8_t way[GLINT_TILE_SAMPLES]; ///< a glint_way
 } glint_sent;
 

@@ -44,7 +44,7 @@ typedef struct glint_tile_counts {
     uint64_t ns[GLINT_STAGE_COUNT], tile_ns;
     uint64_t primary, shadow, mirror, refraction, indirect, clipped, nonfinite;
     glint_work work;
-    glint_odd_pattern odd;
+    glint_odd_patterns odd;
     uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls, and results reused from an earlier frame
 } glint_tile_counts;
 
@@ -70,12 +70,12 @@ typedef struct glint_tile_frame {
     glint_refine *refine; ///< the pixels of the base that get all samples; for a base, the data to compare
     const glint_image *last; ///< the last picture, of the same format, or NULL
     glint_geometry_table geometry; ///< the plan's, with its index
-    const glint_light_grid *grids[GLINT_TILE_GRIDS]; ///< grids grids of some lights; NULL: that light has none
+    const glint_light_grid *grids[GLINT_TILE_GRIDS]; ///< grids of some lights; NULL: that light has none
     uint32_t grid_count;
     const glint_stages *stages;
     glint_image *image;
     const glint_tone_table *tone_table; ///< NULL: no pixel values
-    float gain; ///< factor factor of the exposure
+    float gain; ///< factor of the exposure
     glint_reuse *reuse;
     const atomic_bool *cancelled; ///< the picture is cancelled and may be left unfinished
     bool time_stages, count_work;
@@ -112,7 +112,7 @@ typedef struct glint_tile_sample {
         float *sine2, *schlick; ///< only in frames with microfacets, like `facing`
         uint16_t *lit, *open;
         float *visible; ///< for lights with caps
-        float brightest; ///< the largest log2_specular of the sample, or of all samples samples
+        float brightest; ///< the largest log2_specular of the sample, or of all samples
         bool summed; ///< for samples of an area light: only their sum is stored, in the first one's cosine and
             ///< log2_specular, and each has the `lit` and `open` of all
     } light[GLINT_LIGHT_CHUNK];
@@ -435,7 +435,7 @@ void glint_tile_vertex_gathered(glint_tile *tile, const glint_tile_frame *frame)
 void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
                                uint32_t count, uint32_t first, uint32_t samples);
 
-/// effects/adaptive/refine.c: returns returns whether some pixels of the tile get all samples.
+/// effects/adaptive/refine.c: returns whether some pixels of the tile get all samples.
 bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame);
 /// Makes only these active. Returns whether there are any.
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
