@@ -765,14 +765,14 @@ static void good_files(void **unused)
 static void bad_files(void **unused)
 {
     static const char *const files[][2] = {
-        { CORNERS "f 1 2 5", "line 5: the number of a vertex, 1 .. 4, expected, got '5'" },
-        { CORNERS "f 1 2 -5", "line 5: the number of a vertex, 1 .. 4, expected, got '-5'" },
-        { CORNERS "f 1 2 0", "line 5: the number of a vertex, 1 .. 4, expected, got '0'" },
-        { CORNERS "f 1/x 2 3", "line 5: v, v/vt, v//vn or v/vt/vn expected, got '1/x 2 3'" },
+        { CORNERS "f 1 2 5", ":5: the number of a vertex, 1 .. 4, expected, got '5'" },
+        { CORNERS "f 1 2 -5", ":5: the number of a vertex, 1 .. 4, expected, got '-5'" },
+        { CORNERS "f 1 2 0", ":5: the number of a vertex, 1 .. 4, expected, got '0'" },
+        { CORNERS "f 1/x 2 3", ":5: v, v/vt, v//vn or v/vt/vn expected, got '1/x 2 3'" },
         { CORNERS "f 1 2", "faces expected, got 4 vertices and none" },
-        { CORNERS "f 1 2 3x", "line 5: v, v/vt, v//vn or v/vt/vn expected, got '3x'" },
-        { "v 0 0 zero", "line 1: a number expected, got 'zero'" },
-        { "v 0 0\nv 1 1 1", "line 1: a number expected, got ''" },
+        { CORNERS "f 1 2 3x", ":5: v, v/vt, v//vn or v/vt/vn expected, got '3x'" },
+        { "v 0 0 zero", ":1: a number expected, got 'zero'" },
+        { "v 0 0\nv 1 1 1", ":1: a number expected, got ''" },
         { "v 0 0 inf\nv 1 0 0\nv 0 1 0\nf 1 2 3", "faces expected, got only such with a vertex that is not finite" },
         { "vertex 0 0 0", "faces expected, got 0 vertices and none: is it a Wavefront .obj?" },
         { CORNERS, "faces expected, got 4 vertices and none" },

@@ -328,7 +328,7 @@ bool glint_pattern_any_odd(const glint_pattern_batch *batch)
 static void note_odd(struct glint_pattern *pattern, const glint_pattern_batch *batch, const glint_tile_frame *frame,
                      const glint_pattern_points *points, int field, const glint_program_code *code, glint_tile_counts *counts)
 {
-    double output[GLINT_PROGRAM_OUTPUTS_MAX][GLINT_PROGRAM_LANES];
+    _Alignas(64) double output[GLINT_PROGRAM_OUTPUTS_MAX][GLINT_PROGRAM_LANES];
     glint_program_args args = { .group_count = batch->count, .wanted = batch->called.wanted };
     if (!glint_pattern_any_odd(batch))
         return;
