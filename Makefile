@@ -613,7 +613,7 @@ pages: $(BUILD)/doc/data.md ## the installed manual by topic, in build/doc/
 	@for page in $(PAGES); do \
 	    case $$page in *:bindings/docs/*) shown= ;; *) shown='s|!\[[^]]*\]([^)]*)||g' ;; esac; \
 	    sed -e 's|](\(\.\./\)*bindings/README\.md|](lua-and-command.md|g' -e 's|](\(\.\./\)*engine/README\.md|](engine.md|g' \
-	        -e 's|](bindings/docs/\([a-z-]*\.md\)|](\1|g' -e 's|](\(\.\./\)*scripts/\([a-z]*\.md\)|](\2|g' \
+	        -e 's|](\(bindings/\)*docs/\([a-z-]*\.md\)|](\2|g' -e 's|](\(\.\./\)*scripts/\([a-z]*\.md\)|](\2|g' \
 	        -e 's|](\(\.\./\)*scripts/README\.md|](examples.md|g' -e 's|](\(\.\./\.\./scripts/\)*farm/README\.md|](farms.md|g' \
 	        -e 's|](\.github/CHANGELOG\.md|](CHANGELOG.md|g' -e 's,](\([a-z_]*\.lua\)),](../../glint/examples/\1),g' \
 	        -e 's,](\([a-z_]*\.c\)),](../../glint/examples/\1),g' -e 's,\([ "]\)scripts/\([a-z_]*\.lua\),\1$(examples)/\2,g' \

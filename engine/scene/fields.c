@@ -6,21 +6,6 @@
 
 #define PI 0x1.921fb54442d18p+1
 
-const glint_object_field *glint_object_fields(glint_object_kind kind, size_t *count)
-{
-    const unsigned light = (unsigned)kind - GLINT_OBJECT_POINT_LIGHT;
-    const glint_object_field *fields = kind == GLINT_OBJECT_MATERIAL ? glint_material_fields
-                                       : kind == GLINT_OBJECT_SCENE  ? glint_scene_fields
-                                       : light <= GLINT_LIGHT_SPHERE ? glint_light_fields[light]
-                                                                     : NULL;
-    size_t rows = 0;
-    while (count && fields && fields[rows].name)
-        rows++;
-    if (count)
-        *count = rows;
-    return fields;
-}
-
 int glint_field_numbers(const glint_object_field *field)
 {
     if (field->type <= GLINT_TYPE_ANGLE)

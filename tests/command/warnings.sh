@@ -60,7 +60,7 @@ done
 
 ball='glint.sphere { center = { 0, 0, 0 }, radius = 2 }'
 label() { scene "objects = { $ball, glint.label { $1 } }"; }
-label 'text = "t = 0", size = 5'
+label 'text = "t", size = 5'
 silent "a label that fits"
 label 'text = "somewhere", position = { 500, 0 }'
 warns "a label outside" "label 'somewhere': it lies outside of the picture$"

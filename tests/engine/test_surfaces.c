@@ -772,7 +772,7 @@ static void bad_files(void **unused)
         { CORNERS "f 1 2", "faces expected, got 4 vertices and none" },
         { CORNERS "f 1 2 3x", ":5: v, v/vt, v//vn or v/vt/vn expected, got '3x'" },
         { "v 0 0 zero", ":1: a number expected, got 'zero'" },
-        { "v 0 0\nv 1 1 1", ":1: a number expected, got ''" },
+        { "v 0 0\nv 1 1 1", ":1: a number expected, got the end of the line" },
         { "v 0 0 inf\nv 1 0 0\nv 0 1 0\nf 1 2 3", "faces expected, got only such with a vertex that is not finite" },
         { "vertex 0 0 0", "faces expected, got 0 vertices and none: is it a Wavefront .obj?" },
         { CORNERS, "faces expected, got 4 vertices and none" },

@@ -518,34 +518,3 @@ const glint_shade_planes *glint_tile_shade_planes(const glint_tile *tile, const 
     vec_copy(planes->ambient_light, plan->ambient);
     return planes;
 }
-
-const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
-                                                 glint_bounce_material *room)
-{
-    const uint32_t material = tile->surface.material[i];
-    const glint_bounce_material *m = &plan->bouncing[material];
-    const uint32_t shares = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION | 1u << GLINT_FIELD_CLEAR;
-    double color[3];
-    if (!plan->patterns || !(plan->patterns->of[material].made & shares))
-        return m;
-    *room = *m;
-    vec_copy(room->mirror, glint_color_at(tile->at.planes, plan, GLINT_FIELD_MIRROR, material, i, m->mirror, color));
-    vec_copy(room->transmission,
-             glint_color_at(tile->at.planes, plan, GLINT_FIELD_TRANSMISSION, material, i, m->transmission, color));
-    if (plan->patterns->of[material].made >> GLINT_FIELD_CLEAR & 1)
-        room->clear = (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_CLEAR, 0)[i];
-    return room;
-}
-
-double glint_tile_pattern_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c)
-{
-    const uint32_t material = tile->surface.material[i];
-    const glint_plan_pattern *own = plan->patterns ? &plan->patterns->of[material] : NULL;
-    double room[3];
-    if (own && own->made >> GLINT_FIELD_REST & 1)
-        return (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_REST, c)[i] * plan->ambient[c];
-    if (!own || !(own->made >> GLINT_FIELD_DIFFUSE & 1))
-        return plan->indirect.rest[material][c];
-    const double kd = glint_tile_diffuse(tile, plan, i, room)[c];
-    return (own->ambient_follows ? kd : fmin(kd, own->desc.ambient[c])) * plan->ambient[c];
-}
