@@ -39,7 +39,7 @@ glint_status glint_builder_add(glint_builder *builder, glint_op op, uint32_t tex
 glint_status glint_builder_texture(glint_builder *builder, const glint_texture *texture, uint32_t *out,
                                    glint_error *error);
 
-/// program/load.c: adds the values of a finished program to a builder. instead: for each input the value that replaces it, 0 for the input
+/// Adds the values of a finished program to a builder. instead: for each input the value that replaces it, 0 for the input
 /// itself (value 0 cannot replace an input); NULL: none is replaced.
 glint_status glint_builder_load(glint_builder *builder, const glint_program *program, const glint_value *instead,
                                 glint_value outputs[GLINT_PROGRAM_OUTPUTS_MAX], glint_error *error);
