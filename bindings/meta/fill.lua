@@ -1,6 +1,6 @@
 -- Puts the fields of objects into the API for editors and the manual page, from the engine's tables: where a line is
--- `---@fields OBJECT` or `.\" fields OBJECT...`; of several objects each field is named once. As a script of glint, with
--- FROM=FILE in the environment, it prints the whole text.
+-- `---@fields OBJECT` or `.\" fields OBJECT...`; of several objects each field is named once. As a script of
+-- glint, with FROM=FILE in the environment, it prints the whole text.
 local glint = require "glint"
 
 local function number(x) return ("%.14g"):format(x) end

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bindings/command/points.h"
 #include "bindings/command/untrusted.h"
 #include "bindings/run/carried.h"
 #include "bindings/run/film.h"
@@ -64,6 +65,22 @@ int glintL_film_pipe(glintL_run *run, const glintL_film *film, char message[GLIN
 void cli_carry_dialect(lua_State *L) { (void)L; }
 
 void cli_open_dialect(lua_State *L, const cli_options *options) { (void)L, (void)options; }
+
+int64_t cli_sweep_points(const cli_options *options)
+{
+    (void)options;
+    return 0; // there is no --sweep
+}
+
+void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point) { (void)options, (void)run, (void)point; }
+
+bool cli_order_points(cli_options *options, cli_output *output, glintL_run *run)
+{
+    (void)options, (void)output, (void)run;
+    return true;
+}
+
+void cli_hush_script(lua_State *L) { (void)L; } // there is no --exposure auto, which runs a script twice
 
 // ---- The script's Lua ----
 
