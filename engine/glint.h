@@ -9,7 +9,7 @@
 ///           objects are then as they were. The message starts with the argument's name: "shininess: number >= 0
 ///           expected, got -1". NULL for a pointer that is not optional is GLINT_ERR_INVALID, too: "shape: pointer expected, got NULL".
 /// Ownership `_create` returns a reference the caller owns and gives back with `_release`; `_retain` takes another.
-///           `_release(NULL)` does nothing. What a description struct points to is borrowed for the call only.
+///           `_release(NULL)` does nothing. Pointers in a description struct are borrowed for the call only.
 /// Threads   described objects (material, light, camera, shape, overlay, scene) belong to one thread at a time. A plan is
 ///           immutable; images are, once rendered. A renderer renders one frame at a time.
 #ifndef GLINT_H
@@ -30,7 +30,7 @@ extern "C" {
 #define GLINT_NAME_SIZE 64 ///< bytes of an object's name, with the ending NUL
 #define GLINT_SIDE_MAX 65535 ///< longest side of an image, in pixels
 
-/// What a call that can fail returns.
+/// The result of a call that can fail.
 typedef enum glint_status {
     GLINT_OK = 0, ///< done
     GLINT_ERR_INVALID, ///< an argument is out of its range
@@ -42,7 +42,7 @@ typedef enum glint_status {
     GLINT_ERR_UNSUPPORTED ///< this machine or build cannot do it
 } glint_status;
 
-/// Why a call failed. Written on failure alone.
+/// Why a call failed. Written only on failure.
 typedef struct glint_error {
     glint_status status; ///< never GLINT_OK
     char message[512]; ///< UTF-8, one line, begins with the argument
@@ -67,7 +67,7 @@ typedef uint32_t glint_value; ///< a value of a builder: one double for each poi
 /// A pattern gives a number or a colour at a point, a shader what one light leaves there.
 typedef enum glint_program_kind { GLINT_PROGRAM_PATTERN, GLINT_PROGRAM_SHADER } glint_program_kind;
 
-/// What a program may read of a point. Vectors are unit where they are directions.
+/// The inputs of a program at a point. Directions are unit vectors.
 typedef enum glint_input {
     GLINT_INPUT_P_X, ///< the point in its shape's own space, before the shape's transform and its groups'
     GLINT_INPUT_P_Y, ///< likewise
@@ -81,9 +81,9 @@ typedef enum glint_input {
     GLINT_INPUT_V_X, ///< towards the eye
     GLINT_INPUT_V_Y, ///< likewise
     GLINT_INPUT_V_Z, ///< likewise
-    /// The shape's own coordinates on its surface: of a plane or disk lengths along two tangents, of a box 0 .. 1 on each
-    /// face, of a sphere, cylinder or cone 0 .. 1 around and along, of a torus around it and around its tube, of a mesh those of its corners, between them by
-    /// barycentric coordinates over triangles
+    /// The shape's own coordinates on its surface. Plane and disk: lengths along two tangents; box: 0 .. 1 on each
+    /// face; sphere, cylinder and cone: 0 .. 1 around and along; torus: 0 .. 1 around its axis and around its tube; mesh: interpolated between the corners by
+    /// barycentric coordinates
     GLINT_INPUT_UV_U,
     GLINT_INPUT_UV_V, ///< likewise
     GLINT_INPUT_FOOTPRINT, ///< width of a pixel at the point, world units
@@ -170,16 +170,16 @@ typedef enum glint_op {
 } glint_op;
 
 #define GLINT_OPERANDS_MAX 6 ///< values that an operation reads
-#define GLINT_RESULTS_MAX 8 ///< values that it makes
+#define GLINT_RESULTS_MAX 8 ///< results of an operation
 
-/// What is known of an operation.
+/// The description of an operation.
 typedef struct glint_op_info {
     const char *name; ///< "add"
     uint32_t operands; ///< 1 .. GLINT_OPERANDS_MAX
     uint32_t results; ///< 1 .. GLINT_RESULTS_MAX
 } glint_op_info;
 
-/// What is known of an operation; static. NULL: there is no such operation.
+/// Returns the description of an operation; static. NULL: there is no such operation.
 const glint_op_info *glint_op_info_of(glint_op op);
 /// One operation on plain numbers, with the bits that a program has. Any thread.
 /// op        not a texture's.
@@ -208,7 +208,7 @@ glint_status glint_builder_input(glint_builder *builder, glint_input input, glin
 /// operands  as many values of this builder as the operation has.
 /// out       written: as many values as the operation has results.
 ///
-/// What is made of numbers alone is a number, by the reference kernels; what is there already is not made again.
+/// An operation on numbers gives a number, computed by the reference kernels. A value that exists already is not made again.
 /// GLINT_ERR_INVALID for an operand that is no value of the builder, or an operation that a caller cannot have.
 glint_status glint_builder_op(glint_builder *builder, glint_op op, const glint_value *operands, glint_value *out,
                               glint_error *error);
@@ -250,8 +250,8 @@ size_t glint_program_output_count(const glint_program *program);
 size_t glint_program_length(const glint_program *program); ///< instructions; 0 where all outputs are inputs or numbers
 size_t glint_program_rows(const glint_program *program); ///< intermediate values at the same time
 bool glint_program_reads(const glint_program *program, glint_input input);
-/// A hash of the operations, of what they read and of the textures, but not of the numbers: programs that differ in
-/// numbers alone have the same.
+/// Returns a hash of the operations, their operands and the textures, but not of the numbers: programs that differ only in
+/// numbers have the same hash.
 void glint_program_structure(const glint_program *program, uint64_t key[2]);
 /// True, with `outputs` filled, when all outputs are numbers: the same everywhere.
 bool glint_program_constant(const glint_program *program, double *outputs);
@@ -262,7 +262,7 @@ const glint_program *glint_program_tangent(const glint_program *program, size_t 
 /// same bits. The caller frees it. NULL: out of memory.
 char *glint_program_listing(const glint_program *program);
 
-/// What a texture has beyond u, v in 0 .. 1.
+/// The value of a texture outside u, v in 0 .. 1.
 typedef enum glint_wrap {
     GLINT_WRAP_REPEAT, ///< itself
     GLINT_WRAP_CLAMP, ///< its border
@@ -396,7 +396,7 @@ typedef enum glint_opacity_mode {
     GLINT_OPACITY_BLEND
 } glint_opacity_mode;
 
-/// Programs that a material has in place of its numbers; NULL: the number. A material retains them. What a pattern gives
+/// Programs that replace a material's numbers; NULL: the number. A material retains them. A pattern's result
 /// that is NaN or below 0 is taken as 0, above 2^100 as that, and counted: see glint_frame_stats. A program whose outputs are
 /// numbers is these numbers: they are what glint_material_get gives. An opacity between 0 and 1 stays a pattern.
 typedef struct glint_material_programs {
@@ -407,7 +407,7 @@ typedef struct glint_material_programs {
         ///< the normal unit(n - (g - (g.n) n)), g the height's gradient by `p` and `world`. Only where n.l > 0 with the
         ///< surface's own n, too, is there light
     glint_program *opacity; ///< pattern of one number; see glint_opacity_mode
-    glint_program *shader; ///< in place of `model`: the diffuse term of each light, and the specular one if it has six outputs
+    glint_program *shader; ///< replaces `model`: the diffuse term of each light, and the specular one if it has six outputs
 } glint_material_programs;
 
 /// The fields of a material. Reflectances are shares of light in linear RGB.
@@ -424,7 +424,7 @@ typedef struct glint_material_desc {
     double transmission[3]; ///< share of the light from where a refracted ray leads; >= 0, default 0. Shadows of the
         ///< object have its colour, once for each surface that the light crosses. Where a ray is totally reflected it
         ///< has crossed none: all of its light goes on, max(mirror, 1) of it with `mirror`
-    double ior; ///< refractive index inside, > 0; default 1.5. Outside is 1, or that of the object around
+    double ior; ///< refractive index inside, > 0; default 1.5. Outside is 1, or the index of the object around
     bool fresnel; ///< `mirror` is multiplied by a dielectric's reflectance R, `transmission` by 1 - R; default false
     double absorption[3]; ///< per world unit inside, >= 0; default 0: exp(-absorption distance) of the light is left
     /// phong: S = (s + 2)/2 (r.v)^s (n.l) (E. Lafortune and Y. Willems 1994); blinn_phong:
@@ -500,19 +500,19 @@ typedef struct glint_light_desc {
     double intensity; ///< default 1; finite, >= 0; multiplies each of the three terms
     bool has_diffuse, has_specular; ///< false: the term's colour is `color`
     double ambient[3]; ///< default 0; neither attenuated nor shadowed
-    double diffuse[3], specular[3]; ///< reflectances' own colours of the light; finite, >= 0; default `color`
+    double diffuse[3], specular[3]; ///< colours of the light for these two terms; finite, >= 0; default `color`
     double attenuation[3]; ///< c0, c1, c2 of A = 1/(c0 + c1 d + c2 d^2); >= 0, not all 0; default {1, 0, 0}
     bool shadows; ///< default true
-    /// Area lights; default GLINT_SHADOW_RAYS. Caps: without noise; the light's terms are those of a point at its centre
-    /// (of `radiance` L, of irradiance pi L r^2/d^2 (n.l), which is exact above the horizon), times the share of it that
-    /// is seen. Of one sphere in the way the share is exact; of several it is the product of theirs, where the truth is
-    /// between 1 - the sum of what each covers and the least of the shares. Planes, and spheres that cut the light, take
-    /// their share of its diameter. Scenes with other shapes, or with transparent ones, have rays all the same: see
+    /// Area lights; default GLINT_SHADOW_RAYS. Caps: without noise; the light's terms are computed for a point at its centre
+    /// (of `radiance` L, of irradiance pi L r^2/d^2 (n.l), which is exact above the horizon), times the share of the light that
+    /// is visible. With one sphere as occluder, the share is exact. With several, it is the product of their shares, where the truth is
+    /// between 1 - the sum of the covered shares and the least of the visible shares. Planes, and spheres that cut the light, take
+    /// their share of its diameter. Scenes with other or transparent shapes use rays: see
     /// the effects of the plan
     glint_shadow shadow;
     /// Rays of the eye, of mirrors and of glass see the light's surface, from the sides that shine; default false. It shows
-    /// pi L color by `radiance` L, as the background does: pixels are pi times radiance. By `intensity` I: color I A(D),
-    /// with D its radius, of a polygon that of a disk of its area. It throws no shadow, and is no object: to the passes it
+    /// pi L color with `radiance` L, as the background does: pixels are pi times radiance. With `intensity` I: color I A(D),
+    /// where D is its radius (for a polygon, the radius of a disk with its area). It casts no shadow, and is not an object: in the passes it
     /// is background with a depth and a normal. Lights without a surface may be called visible too, and are not
     bool visible;
     double position[3]; ///< point and spot light; disk and sphere light: the centre
@@ -531,7 +531,7 @@ typedef struct glint_light_desc {
     bool has_radiance; ///< area lights: `radiance` says how strong it is; `intensity` must then be 1
     char group[GLINT_NAME_SIZE]; ///< the light pass that the light belongs to, with all lights of this group; "": that of its name
     double radiance; ///< >= 0: light adds kd times the integral of radiance cos cos' / distance^2 over the surface.
-        ///< With `intensity` it adds the mean over the surface of what a point light there adds
+        ///< With `intensity` it adds the mean light of point lights over the surface
     char name[GLINT_NAME_SIZE];
 } glint_light_desc;
 
@@ -564,7 +564,7 @@ typedef struct glint_camera_desc {
     double at[3], direction[3]; ///< finite; `at` is not the eye, `direction` not zero; default the origin, {0, 0, -1}
     double up[3]; ///< default {0,1,0}; not zero. Parallel to the view: the world axis least aligned with it is taken
     double fov_y_rad; ///< vertical field of view of a perspective camera, in (0, pi); default 40 degrees
-    /// Focal lengths of a perspective camera in pixels, across and down, > 0, in place of `fov_y_rad`; 0, the default: not given. fy 0: fx
+    /// Focal lengths of a perspective camera in pixels, across and down, > 0, instead of `fov_y_rad`; 0, the default: not given. fy 0: fx
     double fx, fy;
     /// The principal point, where the view's direction is seen: pixels from the left edge and from the upper edge of the picture, whose
     /// first pixel has its centre at 0.5; finite. Default its middle
@@ -573,13 +573,13 @@ typedef struct glint_camera_desc {
     double w, h; ///< size of the picture that fx to cy are for; in another they are scaled with its sides. 0, the default: every picture
     double height; ///< vertical extent of an orthographic camera, world units, > 0; default 10
     double pixel_offset; ///< where in a pixel a single sample lies, 0 .. 1; default 0.5, its centre
-    /// How long the shutter is open, as a share of the time from one frame to the next, 0 .. 1; default 0, an instant. Of use to
-    /// those who make frames of several times, see glint_plan_create_exposed
+    /// How long the shutter is open, as a share of the time from one frame to the next, 0 .. 1; default 0, an instant. Used by
+    /// callers that plan frames of several times, see glint_plan_create_exposed
     double shutter;
-    double shutter_times; ///< at how many times they look while it is open, 1 .. GLINT_SHUTTER_TIMES_MAX; default 8
+    double shutter_times; ///< the number of these times while the shutter is open, 1 .. GLINT_SHUTTER_TIMES_MAX; default 8
     /// Radius of the lens, world units, >= 0; default 0: a pinhole, which shows everything sharp. Each sample goes through a
     /// point of the lens, in the plane through the eye across the view, to where the pinhole's ray meets the plane of focus:
-    /// what is at depth d is blurred over a disk that is 2 aperture |1 - d / focus| wide there. An orthographic camera has a
+    /// a point at depth d is blurred over a disk that is 2 aperture |1 - d / focus| wide there. An orthographic camera has a
     /// lens for each ray. Many samples make the blur smooth.
     double aperture;
     double focus; ///< distance of the plane of focus along the view, > 0; default 0: by `focus_point`, else through `at`
@@ -599,8 +599,8 @@ glint_status glint_camera_create(const glint_camera_desc *desc, glint_camera **o
 glint_status glint_camera_set(glint_camera *camera, const glint_camera_desc *desc, glint_error *error);
 /// The description; borrowed, valid until the camera is set or released.
 const glint_camera_desc *glint_camera_get(const glint_camera *camera);
-/// What a picture of that many pixels shows at distance 1 along the view: from window[0] to window[1] to the right, and from
-/// window[2] to window[3] up, world units. Of an orthographic camera the same at every distance.
+/// Computes the window of a picture of that many pixels at distance 1 along the view: from window[0] to window[1] to the right, and from
+/// window[2] to window[3] up, world units. It is the same at every distance for an orthographic camera.
 void glint_camera_window(const glint_camera_desc *desc, double width, double height, double window[4]);
 /// Takes another reference; returns its argument.
 glint_camera *glint_camera_retain(glint_camera *camera);
@@ -612,7 +612,7 @@ void glint_camera_release(glint_camera *camera);
 /// A surface, or a group of them. Shared by reference between groups and scenes.
 typedef struct glint_shape glint_shape;
 
-/// What a shape is; it says which fields of its description mean anything.
+/// The kind of a shape, which determines the fields of its description that are used.
 typedef enum glint_shape_kind {
     GLINT_SHAPE_SPHERE, ///< `center`, `radius`
     GLINT_SHAPE_PLANE, ///< `point`, `normal`; without end
@@ -646,13 +646,13 @@ glint_transform glint_transform_scale(const double by[3]);
 /// are exact.
 glint_transform glint_transform_rotate(const double axis[3], double degrees);
 
-/// Where the light on a mesh is worked out, and with which normal. What the last two leave on a face is the same from
-/// wherever it is seen: in a mirror too, its highlights are those that the eye sees from its own place.
+/// The points where the light on a mesh is computed, and their normals. With the last two, the light on a face is the same from
+/// every direction: a mirror shows the highlights that the eye sees from its own place.
 typedef enum glint_shading {
     GLINT_SHADING_FACETED, ///< for each sample, with the normal of its face
-    /// For each sample, with a normal between those of the corners, which are interpolated in the mesh's own space: a
-    /// transform moves them as it moves the faces. Where surfaces are, and what throws shadows, is decided by the faces
-    /// alone: a face that looks away from a light is dark to its edge, however its normals lean; see glint_mesh_bend
+    /// For each sample, with a normal interpolated between the corners in the mesh's own space: a
+    /// transform moves normals like faces. Hits and shadows are decided only by the faces:
+    /// a face that looks away from a light is dark to its edge, however its normals lean; see glint_mesh_bend
     GLINT_SHADING_PHONG,
     GLINT_SHADING_FLAT, ///< once a face, at its centroid, with its normal
     GLINT_SHADING_GOURAUD ///< once a vertex; between them by barycentric coordinates, over triangles
@@ -1001,7 +1001,7 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
 
 // ---- A frame --------------------------------------------------------------------------------------------------------
 
-/// What decides hits, their order and shadows: binary64, or binary32 to show what that costs.
+/// The arithmetic that decides hits, their order and shadows: binary64, or binary32 to show the cost of that.
 typedef enum glint_precision { GLINT_DOUBLE, GLINT_FLOAT } glint_precision;
 
 /// How it is found what the eye sees. The pictures are the same in every bit, but where a ray runs in the very plane of a
@@ -1012,7 +1012,7 @@ typedef enum glint_visibility {
     GLINT_VISIBILITY_SCAN ///< triangles are projected; what is none is cast
 } glint_visibility;
 
-/// What a picture holds of each pixel, as linear float32. The light is that of the mean of its samples.
+/// The values of a picture's pixels, as linear float32. Light is the mean over the samples.
 typedef enum glint_pass {
     GLINT_PASS_BEAUTY, ///< (((((background + ambient) + diffuse) + specular) + indirect) + mirror) + transmission, in float32
     GLINT_PASS_BACKGROUND, ///< light of pixels that hit nothing, and the depth cue
@@ -1052,7 +1052,7 @@ typedef enum glint_transfer {
 /// How a code between two whole numbers is rounded.
 typedef enum glint_rounding { GLINT_ROUND_NEAREST, GLINT_ROUND_TRUNCATE } glint_rounding;
 
-/// What becomes of bright light, each channel on its own. x is the light after exposure, the result 0 .. 1.
+/// The tone curve, applied to each channel on its own. x is the light after exposure, the result 0 .. 1.
 typedef enum glint_tone_curve {
     GLINT_TONE_CLAMP, ///< min(x, 1)
     GLINT_TONE_REINHARD, ///< x / (1 + x): Reinhard, Stark, Shirley and Ferwerda 2002, equation 3. Nothing is cut off
@@ -1097,8 +1097,8 @@ typedef struct glint_slope {
 } glint_slope;
 
 /// How fast the picture's light, linear beauty, changes with a parameter: exact where surfaces, shadows and the samples of area
-/// lights are seen where they were, a point of a surface moving with what sees it, by the eye, in mirrors and through glass. Rays too
-/// weak to be seen (2^-20 of linear light, a sample) are not followed. Slopes of what the scene does not have count as nothing.
+/// lights are held constant, and a point of a surface moves with its viewer, seen by the eye, in mirrors and through glass. Rays too
+/// weak to be seen (2^-20 of linear light, a sample) are not followed. Slopes of objects outside the scene are ignored.
 ///
 ///   material  diffuse, ambient, specular, shininess, roughness, f0; mirror and transmission where they are above 0, ior, absorption;
 ///             of those that programs give, of built-in models
@@ -1109,11 +1109,11 @@ typedef struct glint_slope {
 ///   camera    eye, at, direction, up, fov_y_rad, height; of a lens aperture, focus, focus_point
 typedef struct glint_derivative {
     const char *name; ///< 1 .. 31 bytes; "lamp_x"
-    const glint_slope *slopes; ///< those of one field add up
-    size_t slope_count; ///< 0: nothing depends on it, which a plan refuses; slopes of 0 are of what depends on it, and is level here
+    const glint_slope *slopes; ///< slopes of the same field add up
+    size_t slope_count; ///< 0: nothing depends on it, which a plan refuses; a slope of 0 marks a field that depends on it with slope 0 here
 } glint_derivative;
 
-/// One frame: its size, samples and what is kept of it.
+/// One frame: its size, samples and passes.
 typedef struct glint_render_desc {
     /// Whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
     double width, height;
@@ -1130,20 +1130,20 @@ typedef struct glint_render_desc {
         ///< where the mirror + transmission of a material that has both is above 1: rays double at each surface. From
         ///< the 17th surface of a chain on one of two rays, drawn by lot, stands for both
     uint32_t passes; ///< bits 1u << GLINT_PASS_...; kept in the image as linear float planes. Beauty may be left out.
-        ///< With `outline` those that it is made of, depth, normal and object_id, are kept too
+        ///< With `outline`, the passes that it needs (depth, normal and object_id) are kept, too
     bool codes; ///< make integer codes of the beauty pass while rendering, by `tone`
     /// Where nothing is hit nothing is shown: the background is black there and codes have alpha, so that a PNG of beauty
-    /// is RGBA. Passes hold light times coverage; codes are of the light alone, beauty / alpha. The background is also left out
+    /// is RGBA. Passes hold light times coverage; codes show only the light, beauty / alpha. The background is also left out
     /// behind glass and translucent surfaces: see GLINT_PASS_ALPHA. Mirrored and totally reflected rays show the scene's
-    /// background. Where beauty is kept, GLINT_PASS_ALPHA is too
+    /// background. If beauty is kept, so is GLINT_PASS_ALPHA
     bool alpha;
-    glint_outline_color outline; ///< in files alone: planes and codes are without; the pass is kept. Default none
+    glint_outline_color outline; ///< only in files: planes and codes do not have it; the pass is kept. Default none
     glint_tone_desc tone;
     /// x, y, width and height, in pixels, of the part of the frame that is rendered, with the bits that the whole has there;
     /// the image has the part's size. Whole numbers within the frame; all 0 (default): the whole
     double region[4];
-    /// Number i is kept in the image as pass GLINT_PASS_DERIVATIVE + i. Borrowed by glint_plan_create; a plan's own
-    /// description has the count alone
+    /// Number i is stored in the image as pass GLINT_PASS_DERIVATIVE + i. Borrowed by glint_plan_create; a plan's own
+    /// description has only the count
     const glint_derivative *derivatives;
     size_t derivative_count; ///< 0 (default) .. GLINT_DERIVATIVES_MAX
     /// Light passes, divided by commas: names of groups of lights, "ambient" for the light that no lamp sends, "*" for all
@@ -1178,7 +1178,7 @@ typedef struct glint_stage_info {
     const char *why; ///< one line for people
 } glint_stage_info;
 
-/// Rays by what they are cast for.
+/// Numbers of rays by purpose.
 typedef struct glint_ray_counts {
     uint64_t primary, shadow, mirror, refraction, indirect; ///< 0 where none is cast
 } glint_ray_counts;
@@ -1188,11 +1188,11 @@ typedef struct glint_ray_counts {
 /// message then begins with "derivative 'NAME': ".
 glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
                                glint_error *error);
-/// What each time of a frame with an open shutter is planned by: the passes that have a mean, and no codes.
+/// Returns the description for each time of a frame with an open shutter: the passes that have a mean, and no codes.
 glint_render_desc glint_shutter_desc(const glint_render_desc *frame);
 /// Plans a frame that is seen while a shutter is open: light and alpha are the mean of `times`, `count` plans of the scene
 /// as it was then, by glint_shutter_desc(desc); 1 .. GLINT_SHUTTER_TIMES_MAX. All else is of `scene` as it is now: what the
-/// plan says, and depth, normal, object_id, albedo, outline and refined. Where lights alone differ, each that does becomes one light for each
+/// plan says, and depth, normal, object_id, albedo, outline and refined. If only lights differ, each such light becomes one light for each
 /// time, with its share of the strength. A derivative of the frame is the mean of those by its name that the times' own descriptions
 /// have; of a time without it, on which nothing depends then, 0.
 /// Takes over the plans and the list, which is from malloc, also when it fails.
@@ -1228,13 +1228,13 @@ typedef struct glint_program_use {
     const glint_program *program; ///< the plan's
 } glint_program_use;
 
-/// Number `index` of the plan's programs, from 0, with what belongs to the plan. False, and nothing written: there are not so
+/// Describes number `index` of the plan's programs, from 0; pointers belong to the plan. Returns false, and writes nothing, if there are not so
 /// many.
 bool glint_plan_program(const glint_plan *plan, size_t index, glint_program_use *out);
 
 // ---- Render -------------------------------------------------------------------------------------------------------
 
-/// Worker threads, and what is kept from frame to frame.
+/// Worker threads, and the cache between frames.
 typedef struct glint_renderer glint_renderer;
 /// A rendered picture: planes of its passes, and codes. Immutable, reference counted; any thread.
 typedef struct glint_image glint_image;
@@ -1254,7 +1254,7 @@ glint_renderer_desc glint_renderer_desc_default(void);
 /// GLINT_ERR_UNSUPPORTED when the machine lacks that instruction set, GLINT_ERR_INVALID when there is none
 /// of that name.
 glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error);
-/// Ends the threads and frees what was kept; no frame may be running. NULL: nothing.
+/// Ends the threads and frees the cache; no frame may be running. NULL: nothing.
 void glint_renderer_destroy(glint_renderer *renderer);
 /// The instruction set in use: "avx2". A static string.
 const char *glint_renderer_isa(const glint_renderer *renderer);
@@ -1270,9 +1270,9 @@ double glint_renderer_progress(const glint_renderer *renderer);
 /// Work that a frame took: free of noise, unlike time.
 typedef struct glint_work {
     uint64_t tests; ///< pairs of a ray and a primitive that were decided: what index and filters could not rule out
-    uint64_t light_samples; ///< pairs of a point and a light, or a sample of an area light, looked at
+    uint64_t light_samples; ///< pairs of a point and a light, or a sample of an area light, evaluated
     uint64_t powers; ///< highlights raised to their exponent
-    uint64_t sites; ///< sides of faces and vertices whose light was worked out once, for flat and gouraud shading
+    uint64_t sites; ///< sides of faces and vertices whose light was computed once, for flat and gouraud shading
     uint64_t lights_seen; ///< rays that end on a visible light
     uint64_t patterns; ///< points for which the programs of a material were run
     uint64_t environment; ///< rays that left the scene, for which the background's was
@@ -1290,7 +1290,7 @@ typedef struct glint_odd {
     double point[3]; ///< in the world; of the background, the direction
 } glint_odd;
 
-/// What a frame took.
+/// The statistics of a frame.
 typedef struct glint_frame_stats {
     double build_ms; ///< wall time of building the spatial index; next to 0 when it was there
     double render_ms; ///< wall time of the stages up to the film
@@ -1303,11 +1303,11 @@ typedef struct glint_frame_stats {
     glint_ray_counts rays; ///< as cast; reused stages cast none
     glint_work work; ///< 0 unless the renderer counts it; what is reused took none
     uint64_t refined; ///< pixels that got all samples, where `adaptive` chooses; else 0
-    uint64_t pixels; ///< rendered: of a region those of the tiles that it touches; `clipped` and `nonfinite` are of these
+    uint64_t pixels; ///< rendered, for a region all pixels of the tiles that it touches; `clipped` and `nonfinite` count these
     uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes
-    uint64_t shifted; ///< pixels beside an edge of a shape or shadow that a derivative's parameter moves, or within a soft
-        ///< shadow: what the edge's way adds to a difference is not in the derivative. 0 without derivatives
+    uint64_t shifted; ///< pixels next to an edge of a shape or shadow that a derivative's parameter moves, or within a soft
+        ///< shadow: the derivative does not include the motion of the edge. 0 without derivatives
     glint_odd odd[GLINT_ODD_COUNT]; ///< what patterns gave and fields cannot take
 } glint_frame_stats;
 
@@ -1324,14 +1324,14 @@ void glint_image_release(glint_image *image);
 /// Size in pixels.
 int glint_image_width(const glint_image *image);
 int glint_image_height(const glint_image *image);
-/// Whether the pass was kept; beauty alone may exist as codes only.
+/// Returns whether the pass is stored; beauty may exist only as codes.
 bool glint_image_has_pass(const glint_image *image, glint_pass pass);
-/// The name of its derivative number `index`, from 0; the image's. NULL: it has not so many.
+/// Returns the name of derivative number `index`, from 0; owned by the image. NULL: it has fewer.
 const char *glint_image_derivative(const glint_image *image, size_t index);
-/// The name of its light pass number `index`, from 0; the image's. NULL: it has not so many.
+/// Returns the name of light pass number `index`, from 0; owned by the image. NULL: it has fewer.
 const char *glint_image_light_pass(const glint_image *image, size_t index);
-/// Whether codes are there and all are 0, but for alpha; without codes, whether no value of beauty is above 0. Looks no
-/// further than the first that is. False where there is neither.
+/// Returns whether all codes are 0, except alpha; without codes, whether no value of beauty is above 0. Stops
+/// at the first other value. False if there is neither.
 bool glint_image_is_black(const glint_image *image);
 /// Stops of glint_tone_desc that the frame's codes have, or would have.
 double glint_image_exposure(const glint_image *image);
@@ -1373,19 +1373,19 @@ typedef struct glint_text {
 /// One pass as a file. Pointers are borrowed for the call.
 typedef struct glint_write_desc {
     /// Ends in .png; in .pfm or .npy for the linear float32 of one pass (.npy: NumPy's, height x width or height x width x 3,
-    /// top row first); or in .exr for those of all passes of the image, as channels of one file: R, G, B, A, depth.Z,
+    /// top row first); or in .exr for all passes of the image, as channels of one file: R, G, B, A, depth.Z,
     /// normal.X ... diffuse.B
     const char *path;
     glint_pass pass; ///< one the image has; an .exr has all
-    /// .png; depth, normal, object_id and derivatives are scaled for viewing, see README. Of an .exr 16 `bits` make light and normals half,
+    /// .png; depth, normal, object_id and derivatives are scaled for viewing, see README. In an .exr, 16 `bits` make light and normals half,
     /// 8 leave them float; the rest is float either way
     glint_tone_desc tone;
     glint_encode encode; ///< .png; default GLINT_ENCODE_FAST
     double dpi; ///< .png: pixels an inch where it is printed, 0 .. 1e6; 0: not said
-    /// .png of depth and derivatives: 1 + a glint_colormap, whose colours show the number in place of a grey; 0: grey. Of depth the
-    /// background stays black, of a derivative the mean of its three components is shown
+    /// .png of depth and derivatives: 1 + a glint_colormap, whose colours replace greys; 0: grey. With depth, the
+    /// background stays black; with a derivative, the mean of its three components is shown
     int colormap;
-    /// .png of depth and derivatives: the numbers that are shown by the ends of the grey or the map, evenly between; finite. Equal (default):
+    /// .png of depth and derivatives: the numbers at the ends of the greys or the map, which is linear between them; finite. Equal (default):
     /// the picture's own, see README
     double range[2];
     const glint_text *text; ///< .png and .exr
@@ -1424,7 +1424,7 @@ bool glint_file_has_key(const char *path, const char *key);
 /// remembers the last picture deflated, about the size of its file, so as not to deflate again what has not changed.
 typedef struct glint_writer glint_writer;
 
-/// What became of one submitted file.
+/// The result of one submitted file.
 typedef struct glint_write_result {
     glint_status status; ///< GLINT_OK: the file is there
     char message[512]; ///< "" when it is; else the file and the reason
@@ -1458,7 +1458,7 @@ typedef struct glint_compare_result {
     uint64_t pixels; ///< width x height
 } glint_compare_result;
 
-/// What counts as different.
+/// Thresholds of differences.
 typedef struct glint_compare_desc {
     double fail, warn; ///< thresholds, default 1e-6 as in idiff
 } glint_compare_desc;
@@ -1521,7 +1521,7 @@ glint_status glint_image_relight(const glint_image *lights, const double (*facto
 /// A file being written: it grows under a hidden name beside its place, which has the whole file or none at any time.
 typedef struct glint_draft glint_draft;
 
-/// Opens a draft for `path`. Missing folders are made, a symbolic link is followed. What exists there and is not a
+/// Opens a draft for `path`. Missing folders are made, a symbolic link is followed. An existing file that is not a
 /// regular file (a pipe, a device) is written in place and never replaced.
 ///
 /// Messages of the three read "<path>: <reason>"; GLINT_ERR_NO_SPACE for ENOSPC and EDQUOT, GLINT_ERR_NOMEM, GLINT_ERR_IO
@@ -1532,10 +1532,10 @@ const char *glint_draft_name(const glint_draft *draft);
 glint_status glint_draft_append(glint_draft *draft, const void *bytes, size_t size, glint_error *error);
 /// Syncs the file and gives it its name; an older one is replaced. Then only glint_draft_destroy may follow.
 glint_status glint_draft_finish(glint_draft *draft, glint_error *error);
-/// Removes what was not finished. NULL does nothing.
+/// Removes an unfinished draft. NULL does nothing.
 void glint_draft_destroy(glint_draft *draft);
 
-/// Removes from a folder the hidden files of drafts whose process was killed: those of this host at once, those of others a
+/// Removes from a folder the hidden files of drafts whose process was killed: drafts of this host at once, drafts of other hosts a
 /// day after they were last written. A process does it once in each folder where it opens a draft or calls glint_file_has_key. Any
 /// thread.
 void glint_drafts_collect(const char *path);

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Runs luacheck on the Lua files and cppcheck on the C files. A tool that is not installed is skipped with a message.
+# Runs luacheck on the Lua files and cppcheck on the C files, and looks for phrases that make comments and pages hard to read. A tool
+# that is not installed is skipped with a message.
 set -u
 bad=0
 if command -v luacheck >/dev/null 2>&1; then
@@ -15,4 +16,6 @@ if command -v cppcheck >/dev/null 2>&1; then
 else
     echo "skip: cppcheck is not installed"
 fi
+${LUA:-lua5.4} tests/english.lua Makefile README.md .github/*.md $(find engine bindings scripts tests -name '*.[ch]' -o -name '*.lua' \
+    -o -name '*.sh' -o -name '*.md' -o -name '*.js' -o -name '*.mjs') || bad=1
 exit $bad

@@ -241,7 +241,7 @@ void cli_set_state(lua_State *L);
 
 /// Has the run render every frame, look at it and write none; *request is how it was.
 void cli_begin_measuring(const cli_options *options, cli_output *output, glintL_run *run, glintL_request *request);
-/// After a script that ended well when `good`: the run is as before that one, with what was found. False: the run has failed.
+/// Ends measuring, after a script that ended well if `good`: restores the run, and applies the results. Returns false if the run failed.
 bool cli_end_measuring(cli_options *options, cli_output *output, glintL_run *run, const glintL_request *request, bool good);
 /// Has the script in `L` print nothing.
 void cli_hush_script(lua_State *L);

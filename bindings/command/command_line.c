@@ -253,7 +253,7 @@ static bool check_input(const cli_options *options, char *message)
     return false;
 }
 
-// What looks at all pictures first is for those who render them.
+// Options that measure all pictures first belong only to commands that render.
 static bool check_auto(const cli_options *options, char *message)
 {
     if ((!options->finds_exposure && !options->finds_range) || options->command == CLI_RENDER || options->help)

@@ -143,7 +143,10 @@ static bool read_render(cli_options *options, const cli_option *option, char *te
 static bool read_exposure(cli_options *options, const cli_option *option, char *text, char *message)
 {
     options->finds_exposure = strcmp(text, "auto") == 0;
-    return options->finds_exposure || read_render(options, option, text, message);
+    if (options->finds_exposure || read_render(options, option, text, message))
+        return true;
+    snprintf(message, MESSAGE, "number -32 .. 32 or auto expected, got '%.200s'", text);
+    return false;
 }
 
 // --colormap NAME:auto takes the range of all pictures.

@@ -7,7 +7,7 @@
 /// Runs the script for each point of the sweep, and renders the frames of all. False: the run has failed, or some points have,
 /// of which *reported says that each is reported.
 bool cli_run_points(cli_options *options, cli_output *output, glintL_run *run, bool *reported);
-/// Finds the axes of the job that has run->explain_frame, those of --sweep among them, and their order into run->explain_order. The
+/// Finds the axes of the job that has run->explain_frame, including those of --sweep, and writes their order to run->explain_order. The
 /// script returns frames and renders none by calls. False: some points have failed, each of which is reported, or the run has.
 bool cli_order_points(cli_options *options, cli_output *output, glintL_run *run);
 

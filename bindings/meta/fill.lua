@@ -16,7 +16,7 @@ local function default(row)
   return type(value) == "number" and number(value) or tostring(value)
 end
 
--- What editors call a row's values.
+-- Returns the editors' type of a row.
 local function type_of(row)
   if not row.parts then return row.type end
   local parts = {}

@@ -148,7 +148,7 @@ function spot_light:close() end
 function glint.spot_light(fields) end
 
 --- Lights with a surface have soft shadows. With `intensity` each adds the mean over its surface of what a point light
---- there adds; with `radiance` L the integral of L cos cos' / distance^2 over its surface, in place of A V (n.l).
+--- there adds; with `radiance` L the integral of L cos cos' / distance^2 over its surface, instead of A V (n.l).
 ---@class glint.disk_light_fields
 ---@fields disk_light
 

@@ -66,7 +66,7 @@ static void put_color(const double color[3], uint8_t out[3])
         out[c] = (uint8_t)(255 * color[c] + 0.5);
 }
 
-// What the function gives for 0 .. 1.
+// The values of the function for 0 .. 1.
 static void read_function(lua_State *L, int index, const char *what, uint8_t rgb[ENTRIES][3])
 {
     char path[96];

@@ -105,7 +105,7 @@ void glintL_find_derivatives(lua_State *L, const glint_scene *scene, glintL_rend
         total += g.count;
         first[i + 1] = total;
     }
-    // What the allocation collects is gathered no more, and a finalizer that it runs may change what is: at most what was counted
+    // Objects that the allocation collects are not gathered, and a finalizer may change the rest: at most the counted number
     // is taken.
     struct {
         glint_derivative of[GLINT_DERIVATIVES_MAX];

@@ -1,4 +1,4 @@
-// What a picture's file says of itself: key, script, its text's hash, parameters, frame, options, place in a sweep; and by that, whether
+// The text entries of a picture's file: key, script, its text's hash, parameters, frame, options, place in a sweep; and from these, whether
 // files belong together.
 #include <inttypes.h>
 #include <stdio.h>
@@ -28,7 +28,7 @@ static void list_options(const glintL_render *render, char *out, size_t room)
                                      glintL_render_fields[field].name, value);
 }
 
-// The axes of the script's sweep and those of --sweep. False: out of memory.
+// Lists the axes of the script's sweep and of --sweep. Returns false when out of memory.
 static bool join_sweeps(glintL_provenance *out, const glintL_run *run, const glintL_work *work)
 {
     const glintL_request *request = &run->request;

@@ -1,5 +1,5 @@
 /// The fields that describe a frame and its file, each once: scene:render{}, animations and sweeps, the options of the
-/// command with their help and completions, and what a file says of itself are all made of this list, in its order.
+/// command with their help and completions, and the text entries of files are all made from this list, in its order.
 #ifndef GLINT_L_RENDER_FIELDS_H
 #define GLINT_L_RENDER_FIELDS_H
 

@@ -16,7 +16,7 @@
 ///   walk.c            one frame of a list of jobs; job_frames.c a list frame by frame
 ///   jobs.c            frames of jobs; job_run.c :run; call.c scene:render
 ///   places.c          the files written so far
-///   brightness.c      clipped values, and what --exposure auto measures
+///   brightness.c      clipped values, and the measurements of --exposure auto
 ///   kept_image.c      the picture of a file that is already there
 ///
 /// Nothing here raises a Lua error while it holds something: Lua code is called under lua_pcall only.
@@ -421,7 +421,7 @@ bool glintL_tone_is_data(const glint_tone_desc *tone);
 /// Adds a picture that is written with that tone to run->brightness, if its codes are data or the run measures. In plain Lua the first
 /// clipped picture is warned of at once.
 void glintL_look_at_brightness(glintL_run *run, const glint_image *image, const glint_tone_desc *tone);
-/// Of what is clipped in the run.
+/// Warns about clipped values of the run.
 void glintL_warn_of_clipping(glintL_run *run);
 
 // ---- places.c ----
@@ -544,7 +544,7 @@ bool glintL_jobs_axes(lua_State *L, int index, glintL_run *run, int64_t i, struc
 bool glintL_jobs_end(lua_State *L, int index, glintL_run *run, glintL_jobs_state *state);
 
 /// The plan of one frame of the list into run->explain_plan, when the frame is among them; run->keeps_scene: what else
-/// is kept of it.
+/// is stored of it.
 bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run);
 
 // ---- call.c ----

@@ -48,7 +48,7 @@ void glintL_keep_points(void);
 /// The folder of the program that runs, "/usr/bin/", links followed; `started_as` is its argv[0]. False: it cannot be told.
 bool glintL_program_folder(const char *started_as, char *folder, size_t size);
 
-/// What a path leads to that is not a file to be read from beginning to end: "device", "pipe", "socket" or "folder". NULL: it
+/// Returns the kind of a path that is not a file to be read from beginning to end: "device", "pipe", "socket" or "folder". NULL: it
 /// is one, or nothing is there. Does not wait for the other end of a pipe, which opening it would.
 const char *glintL_other_kind(const char *path);
 

@@ -31,7 +31,7 @@ int glintL_walk_restore(lua_State *L); ///< for glintL_walk_call: restores the v
 /// Sets the scene to frame n at its own time. False: the run has failed.
 bool glintL_walk_build_frame(glintL_walk *walk, int64_t n, int64_t number);
 /// A job begins with the scene as the jobs before it leave it, whichever of their frames are rendered here: an animation
-/// after its last frame, a sweep as it found it. So a shard's pictures are those of the whole. False: the run has
+/// after its last frame, a sweep as it found it. So a shard's pictures equal those of the whole job. Returns false if the run has
 /// failed.
 bool glintL_walk_settle(glintL_walk *walk, lua_Integer i, int64_t first);
 glint_scene *glintL_walk_scene(glintL_walk *walk); ///< the job's; NULL: it is closed

@@ -346,7 +346,7 @@ void glintL_open_animation(lua_State *L); ///< animation and sweep
 int luaopen_glint(lua_State *L);
 
 /// pattern/colormap.c: a list of colours, evenly from the first to the last, or a function of 0 .. 1, which is called, as 256
-/// sRGB codes. Of a list it allocates nothing.
+/// sRGB codes. With a list it allocates nothing.
 void glintL_read_colors(lua_State *L, int index, const char *path, uint8_t rgb[256][3]);
 /// picture.c: glint.read_image.
 void glintL_open_picture(lua_State *L);

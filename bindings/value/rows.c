@@ -35,7 +35,7 @@ static void push_rows(lua_State *L, const glintL_field *fields);
 
 static void push_row(lua_State *L, const glintL_field *field)
 {
-    // Of each glint_field_type: what editors call it, "" for choices, whose names are listed.
+    // The editors' type for each glint_field_type, "" for choices, whose names are listed.
     static const char *const types[] = { "number", "integer", "number", "boolean", "glint.vec3", "glint.vec3", "glint.color", "", "string",
                                          "", "glint.vec3[]", "number|glint.vec3", "glint.transform", "", "table", "any", "any" };
     static const char *const takers[] = { "glint.pattern", "glint.texture", "glint.shader" };

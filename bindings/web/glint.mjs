@@ -23,7 +23,7 @@ export class GlintError extends Error {
   }
 }
 
-// What a parameter or an option is in text, as after --set NAME=.
+// Returns a parameter or an option as text, as after --set NAME=.
 const spell = value => Array.isArray(value) ? value.join(",") : String(value)
 const spellAll = values => Object.fromEntries(Object.entries(values ?? {}).map(([name, value]) => [name, spell(value)]))
 

@@ -1,4 +1,4 @@
-// The worker of one job: the loader of emscripten (createGlint, before this) and what answers the messages of glint.mjs. One file
+// The worker of one job: the loader of emscripten (createGlint, before this) and the answers to the messages of glint.mjs. One file
 // without imports, so that a page may make a worker of its text.
 //
 // A message is { call, ... }; the answer is { result } or { failed: message }. { rendering } says whether the time that passes

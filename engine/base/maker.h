@@ -18,23 +18,35 @@ static inline glint_value glint_maker_input(glint_maker *m, glint_input which)
     return out;
 }
 
-/// An operation of one or two values.
-static inline glint_value glint_maker_apply(glint_maker *m, glint_op op, glint_value a, glint_value b)
+static inline glint_value glint_maker_number(glint_maker *m, double number)
 {
-    const glint_value operands[] = { a, b };
+    glint_value out = 0;
+    if (!m->status)
+        m->status = glint_builder_number(m->builder, number, &out, m->error);
+    return out;
+}
+
+/// Applies an operation to three values, or to fewer: the others are not read.
+static inline glint_value glint_maker_apply3(glint_maker *m, glint_op op, glint_value a, glint_value b, glint_value c)
+{
+    const glint_value operands[] = { a, b, c };
     glint_value out = 0;
     if (!m->status)
         m->status = glint_builder_op(m->builder, op, operands, &out, m->error);
     return out;
 }
 
-/// An operation of a value and a number. A builder numbers values in the order in which they are made, and C leaves that of
-/// arguments open: the number is made here, after the value, so that the program is the same whatever compiles this.
+/// Applies an operation to one or two values.
+static inline glint_value glint_maker_apply(glint_maker *m, glint_op op, glint_value a, glint_value b)
+{
+    return glint_maker_apply3(m, op, a, b, 0);
+}
+
+/// Applies an operation to a value and a number. A builder numbers values in the order in which they are made, and C does not define
+/// the order of arguments. The number is made here, after the value, so that every compiler makes the same program.
 static inline glint_value glint_maker_with(glint_maker *m, glint_op op, glint_value a, double number)
 {
-    glint_value b = 0;
-    if (!m->status)
-        m->status = glint_builder_number(m->builder, number, &b, m->error);
+    const glint_value b = glint_maker_number(m, number);
     return glint_maker_apply(m, op, a, b);
 }
 

@@ -26,7 +26,7 @@ static bool has_grid(const glint_plan_light *light)
     return light->shadows && !light->light_samples && !light->cap;
 }
 
-/// Marks those of the plan's lights that an earlier frame noted, and drops the rest.
+/// Marks the plan's lights that an earlier frame recorded, and drops the rest.
 static void keep_used(glint_grids *grids, const glint_plan *plan)
 {
     uint32_t kept = 0;

@@ -1,5 +1,5 @@
 /// The keys of a plan: what each stage declares to read, hashed. A stage's key holds the keys of the stages before it,
-/// whose results it reads too. A new stage gets reuse by what it declares (plan/stage.h); tests/engine/test_reuse.c changes every field of
+/// whose results it reads too. A new stage gets reuse from its declaration (plan/stage.h); tests/engine/test_reuse.c changes every field of
 /// every description and finds what a row forgets.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"

@@ -107,7 +107,7 @@ typedef struct glint_plan_indirect {
     double distance; ///< ambient occlusion: distance within which surfaces block the sky; may be infinite
 } glint_plan_indirect;
 
-#define GLINT_BOUNCE_LEVELS 32 ///< number of times that the weaker of two rays may be followed first; see effects/bounce/bounce.c
+#define GLINT_BOUNCE_DEPTH 31 ///< largest max_depth if a material's mirror + transmission is above 1
 #define GLINT_BOUNCE_SPLITS 16 ///< number of surfaces in a chain at which both rays are followed
 #define GLINT_BOUNCE_LOSS 0x1p-20 ///< limit, in linear light per sample, for the total of weak rays that are not followed
 

@@ -93,7 +93,7 @@ static bool find_light(glint_reuse *reuse, uint32_t row, glint_key key)
     return again;
 }
 
-/// Results of other pixels than all, which adaptive sampling chooses, are not told apart by their keys.
+/// Drops results of only some pixels, chosen by adaptive sampling: their keys do not distinguish them.
 static void forget_lights(glint_reuse *reuse)
 {
     for (int s = 0; s < GLINT_EARLIER_MAX; s++) {

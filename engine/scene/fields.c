@@ -44,6 +44,12 @@ static glint_status check_choice(const glint_object_field *f, unsigned value, gl
     return value < count ? GLINT_OK : glint_fail(error, GLINT_ERR_INVALID, "%s: no such %s", f->name, f->name);
 }
 
+/// Returns whether a field has a value: it has no flag, or its flag is true.
+static bool is_given(const glint_object_field *f, const void *desc)
+{
+    return !f->set_offset || *((const bool *)desc + f->set_offset);
+}
+
 static glint_status check(const glint_object_field *f, const char *desc, glint_error *error);
 
 /// Checks the parts of a table; messages have "table.part".
@@ -55,7 +61,7 @@ static glint_status check_parts(const glint_object_field *table, const char *des
         glint_object_field part = *f;
         part.name = name;
         snprintf(name, sizeof name, "%s.%s", table->name, f->name);
-        if (!f->set_offset || *(const bool *)(desc + f->set_offset))
+        if (is_given(f, desc))
             status = check(&part, desc, error);
     }
     return status;
@@ -96,7 +102,7 @@ glint_status glint_fields_check(const glint_object_field *fields, const void *de
 {
     glint_status status = GLINT_OK;
     for (const glint_object_field *f = fields; f->name && !status; f++)
-        if (!f->set_offset || ((const bool *)desc)[f->set_offset])
+        if (is_given(f, desc))
             status = check(f, desc, error);
     return status;
 }

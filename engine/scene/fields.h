@@ -1,4 +1,4 @@
-/// What follows from the tables of fields. Internal.
+/// Defaults and checks from the tables of fields. Internal.
 #ifndef GLINT_FIELDS_H
 #define GLINT_FIELDS_H
 

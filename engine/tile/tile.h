@@ -30,7 +30,7 @@ void glint_odd_pattern_add(glint_odd_pattern *to, const glint_odd_pattern *more)
 void glint_odd_patterns_add(glint_odd_patterns *to, const glint_odd_patterns *more);
 /// Adds a point at which the outputs of a pattern, `step` numbers from one to the next, are not all fit to be taken.
 void glint_odd_patterns_note(glint_odd_patterns *to, const glint_odd_pattern *one, const double *outputs, size_t step, uint32_t count);
-/// Of all kinds.
+/// Returns the count over all kinds.
 static inline uint64_t glint_odd_patterns_count(const glint_odd_patterns *odd)
 {
     uint64_t count = 0;
@@ -568,7 +568,7 @@ void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const gl
 /// At the first call of a sample, adds the part without lights; then the part of `count` lights of the plan from `from` on, whose
 /// shadows must be known. The points must be known.
 void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
-/// Of light through transparent objects: before the first step of its rays; ray `ray` crosses a surface, at which `share` and
+/// For light through transparent surfaces: before the first step of its rays; ray `ray` crosses a surface, at which `share` and
 /// `left` multiply channel c of its colour; when it arrives at sample i; when a light in `slot` is added to samples this way.
 void glint_tile_begin_tints(const glint_tile *tile, const glint_plan *plan);
 void glint_tile_derive_tint(const glint_tile *tile, const glint_plan *plan, uint32_t material, uint32_t ray, int c,

@@ -89,7 +89,7 @@ exits 2 "standard input" - --exposure auto
 exits 2 "explain" explain film.lua --exposure auto
 says "explain" '--exposure: auto is for glint render'
 exits 2 "no number" film.lua --exposure bright
-says "no number" '--exposure: number -32 .. 32 expected'
+says "no number" '--exposure: number -32 .. 32 or auto expected'
 cat >swept.lua <<'E2'
 local glint = require "glint"
 local P = glint.params { light = { 1, min = 0, max = 9 } }

@@ -9,7 +9,7 @@
 
 // ---- The base ----
 
-/// A renderer that keeps its own, half of what may be kept, and shares the rest.
+/// Makes a renderer with its own cache (half of the budget) that shares everything else.
 static glint_status open_base(glint_renderer *renderer, glint_error *error)
 {
     glint_renderer *base = renderer->base;
@@ -95,7 +95,7 @@ static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const
             to->stage_ms[i] = choose_ms + compare_ms;
 }
 
-/// What comparing took of the time of the tiles last rendered, where stages are timed.
+/// Returns the share of comparing in the time of the last tiles, if stages are timed.
 static double comparing_ms(const glint_renderer *renderer)
 {
     double ms = 0;
@@ -111,7 +111,7 @@ static glint_status refine_base(glint_renderer *renderer, const glint_plan *plan
 {
     const double compare_ms = comparing_ms(renderer), start = glint_frame_now_ms();
     const glint_extent extent = glint_plan_extent(&plan->desc);
-    renderer->refine->base = base; // it may be that of the last frame
+    renderer->refine->base = base; // it may be the last frame's
     glint_refine_choose(renderer->refine, &extent, plan->lens != NULL, renderer->pool);
     const double choose_ms = glint_frame_now_ms() - start;
     const glint_status status = glint_renderer_run(renderer, plan, image, base, table, stats, error);

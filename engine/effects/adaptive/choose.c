@@ -119,7 +119,7 @@ static void join_columns(const glint_refine *refine, glint_refine_tile *left, gl
         right->chosen[__builtin_ctz(other)] |= 1;
 }
 
-/// Compares what lies in `column` of a row of tiles' last row of pixels with what is below it.
+/// Compares the pixels in `column` of a row of tiles' last row of pixels with those below.
 static void join_rows(const joiner *j, uint32_t column, uint32_t row)
 {
     glint_refine *refine = j->refine;
@@ -146,7 +146,7 @@ static void join_rows(const joiner *j, uint32_t column, uint32_t row)
         tile_at(refine, column + 1, row + 1)->above |= 1;
 }
 
-/// A row of tiles: those beside each other, and those of the row below, of which `above` alone is written.
+/// Compares a row of tiles with each other and with the row below; writes only `above`.
 static void join_row(void *context, size_t index, int worker)
 {
     const joiner *j = context;
@@ -175,7 +175,7 @@ static uint32_t *word_at(const glint_refine *refine, uint32_t column, int y)
     return &tile_at(refine, column, (uint32_t)y / GLINT_TILE_HEIGHT)->chosen[y % GLINT_TILE_HEIGHT];
 }
 
-/// Of a row of pixels, those that are near a chosen one of it.
+/// Returns the pixels of a row that are near a chosen one.
 static void spread_row(const glint_refine *refine, const glint_extent *e, int y)
 {
     uint32_t before = 0;
@@ -191,7 +191,7 @@ static void spread_row(const glint_refine *refine, const glint_extent *e, int y)
     }
 }
 
-/// Of a column of tiles, the pixels that are near a chosen one above or below.
+/// Adds the pixels of a column of tiles that are near a chosen one above or below.
 static void spread_column(const glint_refine *refine, const glint_extent *e, uint32_t column)
 {
     uint32_t before[GLINT_REFINE_SPREAD] = { 0 }; // rows above as they were, the nearest first

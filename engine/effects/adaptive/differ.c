@@ -1,4 +1,4 @@
-/// The pixels of a base that differ from a neighbour in their tile, and what the tiles around it compare.
+/// Finds the pixels of a base that differ from a neighbour in their tile, and stores the pixels that neighbouring tiles compare.
 #include "engine/base/alloc.h"
 #include "engine/film/tone.h"
 #include "engine/effects/adaptive/refine.h"
@@ -84,7 +84,7 @@ static void take_codes(const glint_tile *tile, const glint_image *base, struct g
     }
 }
 
-/// Brings values from the order of groups into rows: those in `open`, and what is below each.
+/// Reorders values from groups into rows: those in `open`, and the values below each.
 static void make_rows(const glint_tile *tile, const tile_values *values, uint32_t open, struct glint_differ_work *work)
 {
     const uint32_t wanted = open | open << 1;
@@ -136,7 +136,7 @@ void glint_tile_prefetch_borders(const glint_tile *tile, const glint_refine *ref
             glint_prefetch(glint_refine_edge(refine, row, last, v) + tile->x0, tile->width * sizeof(float));
 }
 
-/// What the tiles around this one read.
+/// Stores the pixels that neighbouring tiles read.
 static void note_borders(const glint_tile *tile, const glint_refine *refine, const tile_values *values)
 {
     glint_refine_tile *own = &refine->tiles[tile->index];
@@ -195,7 +195,7 @@ bool glint_refine_alike(const glint_refine *refine, const glint_refine_range *a,
         bend += turn * turn;
         sum += spread_of(a->code[c], b->code[c]);
     }
-    return bend < 2 * (1 - GLINT_REFINE_NORMAL) - 0.01f && sum <= refine->low; // normals are unit but for rounding
+    return bend < 2 * (1 - GLINT_REFINE_NORMAL) - 0.01f && sum <= refine->low; // normals have length 1 up to rounding
 }
 
 /// Which rows of a tile may differ from themselves or the next: a bit a row, by the ranges of rows of groups. Finds that of the tile.

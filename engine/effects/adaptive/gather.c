@@ -154,7 +154,7 @@ void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const ui
 
 // ---- From one pixel after the other to one sample after the other ----
 
-/// Of 16 pixels with 16 samples each.
+/// For 16 pixels with 16 samples each.
 static void stack_square(const uint32_t *from, uint32_t *to, size_t stride)
 {
     for (size_t k = 0; k < GLINT_GROUP; k++)
@@ -207,7 +207,7 @@ static void stack_lanes(uint16_t *lanes, uint32_t groups, uint32_t count, uint32
     memcpy(lanes, to, samples * blocks * sizeof *lanes);
 }
 
-/// What shade reads.
+/// Gathers the input of shade.
 static void stack_samples(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, uint32_t count, uint32_t samples)
 {
     const glint_plan *plan = frame->plan;

@@ -89,7 +89,7 @@ static void take_coverage(glint_tile *tile, const glint_tile_frame *frame)
             tile->film.covered[i] = (double)alpha[i] * frame->plan->desc.samples;
 }
 
-/// What is of the base for all pixels.
+/// Copies the planes that come from the base for all pixels.
 static void copy_whole(const glint_tile *tile, const glint_tile_frame *frame)
 {
     static const glint_pass whole[] = { GLINT_PASS_DEPTH, GLINT_PASS_NORMAL, GLINT_PASS_OBJECT_ID, GLINT_PASS_ALBEDO };

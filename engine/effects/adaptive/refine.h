@@ -1,8 +1,8 @@
-/// What adaptive sampling remembers of a base: which pixels of a tile are worth all samples, and what its neighbours compare. Internal.
+/// The data of a base for adaptive sampling: the pixels of a tile that need all samples, and the pixels that its neighbours compare. Internal.
 ///
 /// A frame with it is two: a base, of one sample in the middle of each pixel, and of the pixels chosen here the frame with
 /// all its samples. Each pixel has the bits of the one or of the other. Pixels of one tile are compared as soon as it is rendered,
-/// those at its borders when all are (effects/adaptive/choose.h), so that the choice does not depend on tiles, threads or what was kept.
+/// those at its borders when all are (effects/adaptive/choose.h), so that the choice does not depend on tiles, threads or the cache.
 ///
 /// Two of eight neighbours are both chosen where they show two objects, or one and nothing; where their normals are more
 /// than 25.8 degrees apart; or where the codes that they would be shown with differ, red, green and blue together, by more
@@ -31,7 +31,7 @@ typedef struct glint_refine_tile {
     uint64_t clipped, nonfinite; ///< counts of the base's pixels, where it has codes
     glint_refine_range range; ///< of all pixels
     bool ranged; ///< that is known
-    /// What is compared of the first and last column; light where codes are estimated
+    /// The compared values of the first and last column; light if codes are estimated
     float side[2][GLINT_DIFFER_VALUES][GLINT_DIFFER_LENGTH];
 } glint_refine_tile;
 

@@ -1,4 +1,4 @@
-/// What lies beyond the first surface of a tile: mirrored and refracted rays, and what they find.
+/// Rays beyond the first surface of a tile: mirrored, refracted and straight ones, and their light.
 ///
 /// Rays wait in levels, each with space for the samples of one tile. A batch is all the rays of the highest level. Where a surface sends
 /// on several rays, the strongest stays in the batch's level, the second goes one level up and the third two levels: a level never
@@ -362,7 +362,7 @@ static void follow(glint_tile *tile, const glint_tile_frame *frame)
     glint_batch_end(&bounce->batch, tile);
 }
 
-/// What materials send on, how far, and through what.
+/// The key of mirror, transmission, opacity, depth and media.
 static glint_key own_key(const glint_plan *plan, glint_key key)
 {
     GLINT_KEY_ADD(key, plan->desc.max_depth);
@@ -382,7 +382,7 @@ static bool called(const glint_plan *plan)
            (plan->clears || ((plan->mirrors || plan->transmits) && plan->desc.max_depth > 0));
 }
 
-/// What materials send on.
+/// The key of mirror, transmission and opacity.
 static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     if (!walk->any || tile->direct || !glint_tile_sends_on(tile, frame))

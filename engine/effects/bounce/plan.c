@@ -1,4 +1,4 @@
-/// What rays do beyond the first surface: which materials send them on, and how bright anything they find can be.
+/// The plan of rays beyond the first surface: the materials that send rays on, and a bound of their light.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -15,7 +15,7 @@ static void bounded(double out[3], const double color[3])
         out[c] = fmin(color[c], STRENGTH_MAX);
 }
 
-/// What there is of a mirror: where it was never set, it follows `fresnel`.
+/// Returns the mirror of a material: if it was never set, it follows `fresnel`.
 static const double *mirror_of(const glint_material_desc *desc)
 {
     static const double black[3] = { 0 }, white[3] = { 1, 1, 1 };
@@ -43,7 +43,7 @@ static void bounce_material_init(glint_bounce_material *out, const glint_plan *p
 /// beyond, at most the larger of the two. So the bound holds however many translucent surfaces a ray crosses.
 static double opaque(const glint_bounce_material *m, double bound) { return bound / (1 - m->clear); }
 
-/// A bound of what a material sends on of the light its rays bring, where they are not totally reflected.
+/// Bounds the share of its rays' light that a material sends on, without total reflection.
 static double gain(const glint_bounce_material *m)
 {
     double most = 0;
@@ -58,7 +58,7 @@ static double gain_anywhere(const glint_bounce_material *m)
     return m->transmits && !m->fresnel ? fmax(gain(m), 1) : gain(m);
 }
 
-/// A bound of what a program gives: 1 where there is none, and a number of the table stands for itself.
+/// Bounds a program's result: 1 without a program, where the table has the number.
 static double most_of(const glint_plan *plan, uint32_t i, glint_field field)
 {
     return plan->patterns && plan->patterns->of[i].made >> field & 1 ? GLINT_REFLECTANCE_MAX : 1;
@@ -132,7 +132,7 @@ static double geometric(double g, double depth)
 
 // ---- How bright ----
 
-/// Bounds what a ray can bring, and with it what a path of indirect light must still weigh: two bounds' worth of what all
+/// Bounds the light along a ray, and with it the least weight of a path of indirect light: two bounds' worth of what all
 /// rays of a sample may lose together is left to mirrored and refracted ones.
 static void bound_light(glint_plan *plan)
 {
@@ -149,12 +149,12 @@ static void bound_light(glint_plan *plan)
 /// Below 1 in sum, mirror and transmission share a ray's weight out; above, the number of rays doubles at each surface.
 static glint_status check_depth(const glint_plan *plan, double most, glint_error *error)
 {
-    if (most <= 1 || plan->desc.max_depth < GLINT_BOUNCE_LEVELS)
+    if (most <= 1 || plan->desc.max_depth <= GLINT_BOUNCE_DEPTH)
         return GLINT_OK;
     return glint_fail(error, GLINT_ERR_INVALID,
                       "max_depth: at most %d expected where a material's mirror + transmission is above 1 (here %.9g), "
                       "got %.0f",
-                      GLINT_BOUNCE_LEVELS - 1, most, plan->desc.max_depth);
+                      GLINT_BOUNCE_DEPTH, most, plan->desc.max_depth);
 }
 
 glint_status glint_plan_bounce(glint_plan *plan, glint_error *error)

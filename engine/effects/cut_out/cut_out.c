@@ -78,7 +78,7 @@ void glint_tile_find_holes(glint_tile *tile, const glint_tile_frame *frame, cons
         find_material_holes(tile, frame, points, entries, taken, holes);
 }
 
-/// Keeps those of cut->hits whose materials have holes. Returns whether there are any.
+/// Reduces cut->hits to lanes whose materials have holes. Returns whether there are any.
 static bool choose_cut(struct glint_cut_out *cut, const glint_tile *tile, const glint_tile_frame *frame)
 {
     unsigned any = 0;

@@ -7,7 +7,7 @@
 struct glint_cut_out *glint_cut_out_create(void);
 void glint_cut_out_destroy(struct glint_cut_out *cut_out); ///< NULL: nothing
 
-/// Of points on surfaces those that are holes, a bit a lane.
+/// Finds the points on surfaces that are in holes, one bit per lane.
 void glint_tile_find_holes(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
                            uint16_t *holes);
 

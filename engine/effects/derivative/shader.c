@@ -250,7 +250,7 @@ static void add_tangent(const shading *s, size_t index, const glint_program *tan
                 slopes->of[index].sum[k % 3][i] += slopes->tangent[k][i];
 }
 
-/// Adds the sums to those of the samples. Values without a slope, such as the root of a constant 0, add nothing.
+/// Adds the sums to the samples' sums. Values without a slope, such as the root of a constant 0, add nothing.
 static void add_sums(const shading *s, size_t index)
 {
     double (*to)[GLINT_TILE_SAMPLES] = glint_derivative_of(s->tile)->sum[index];

@@ -83,7 +83,7 @@ void glint_tints_find(glint_tints *tints, const glint_plan *plan, const glint_ge
 
 // ---- Rays ----
 
-/// A light as seen from some points: how far from them it is at most, and what rounding may do on the way.
+/// A light seen from some points: its largest distance, and the rounding error along the segments.
 static double slack_of(const glint_tints *tints, double points, const glint_tint_light *light)
 {
     const double far = light->directional ? tints->extent : sqrt(vec_dot(light->place, light->place)) + light->radius;

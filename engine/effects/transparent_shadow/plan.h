@@ -1,4 +1,4 @@
-/// Where a ray to a light may meet something transparent: by bounds alone, so that other rays are not followed. Internal.
+/// Finds shadow rays that may hit something transparent, using only bounds, so that other rays are not followed. Internal.
 #ifndef GLINT_TINTS_H
 #define GLINT_TINTS_H
 
@@ -18,7 +18,7 @@ typedef struct glint_tints {
     glint_ball of[GLINT_TINTS_MAX];
 } glint_tints;
 
-/// Of a plan with `tints`: one ball for each primitive, or for neighbours in the order of the table where there are more.
+/// For a plan with `tints`: one ball for each primitive, or for neighbours in the order of the table if there are more.
 void glint_tints_find(glint_tints *tints, const glint_plan *plan, const glint_geometry_table *table);
 
 /// Where a point's rays to one light go.

@@ -44,7 +44,7 @@ struct glint_transparent_shadow {
     _Alignas(64) float attenuation[3][GLINT_TILE_SAMPLES]; ///< the light's, times the colour, for each channel
     uint16_t reached[GLINT_TILE_GROUPS];
     uint16_t tinted[GLINT_TILE_GROUPS]; ///< points whose rays to the light are followed
-    float *planes; ///< of what programs give; NULL: the plan has none for transmission and opacity
+    float *planes; ///< planes of programs; NULL: the plan has none for transmission and opacity
 };
 
 static void *create(const glint_plan *plan)
@@ -55,7 +55,7 @@ static void *create(const glint_plan *plan)
 
 static struct glint_transparent_shadow *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_TINT]; }
 
-/// What is around a sample's point, on the side of the viewer, to which the light comes as well.
+/// Returns the medium on the viewer's side of the shaded point. The light arrives through the same medium.
 static glint_media media_at(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
 {
     const glint_plan *plan = frame->plan;
@@ -95,7 +95,7 @@ bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame)
     return any;
 }
 
-/// Whether the light in `slot` is kept from any point, or dimmed on its way to one.
+/// Returns whether the light in `slot` is hidden or dimmed at any point.
 static bool is_kept_off(const glint_tile *tile, const glint_plan *plan, uint32_t slot)
 {
     for (uint32_t g = 0; g < tile->group_count; g++) {
@@ -138,7 +138,7 @@ static bool ball_around(const glint_tile *tile, glint_ball *ball)
     return true;
 }
 
-/// Finds those of `lanes` whose rays to a light may meet something transparent. Returns whether there are any.
+/// Finds the lanes whose shadow rays may hit something transparent. Returns whether there are any.
 static bool find_tinted(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
                         const uint16_t *lanes, uint16_t *tinted)
 {
@@ -223,7 +223,7 @@ static void aim(struct glint_transparent_shadow *transparent_shadow, glint_preci
     transparent_shadow->ray_of[to] = (uint16_t)ray;
 }
 
-/// What a medium leaves of channel c over a distance.
+/// Returns the share of channel c that a medium transmits over a distance.
 static double left_of(const glint_plan *plan, uint32_t medium, int c, double way)
 {
     return glint_plan_left(medium == GLINT_NO_MEDIUM ? 0 : plan->bouncing[medium].absorption[c], way);
@@ -395,7 +395,7 @@ static void cast(struct glint_transparent_shadow *transparent_shadow, glint_tile
     stages->surface(&surfaces);
 }
 
-/// What programs give of the surfaces that are met: their transmission and opacity, and where they have holes.
+/// Runs the programs of the surfaces hit: transmission, opacity and holes.
 static void find_transmission(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile,
                               const glint_tile_frame *frame)
 {
@@ -493,7 +493,7 @@ static void shade(struct glint_transparent_shadow *transparent_shadow, glint_til
     glint_tile_shader(tile, frame, &reach, 1);
 }
 
-/// What row `row` of the light, in `slot`, gives along the rays that have arrived.
+/// Adds the light of row `row`, in `slot`, along the rays that have arrived.
 static void add_row(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile, const glint_tile_frame *frame,
                     const glint_plan_light *light, uint32_t row, uint32_t slot)
 {
@@ -590,7 +590,7 @@ void glint_tile_transparent_shadows(glint_tile *tile, const glint_tile_frame *fr
 
 static bool called(const glint_plan *plan) { return plan->tints; }
 
-/// What a chunk of lights gives through transparent objects.
+/// Adds the light of a chunk of lights through transparent objects.
 static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     if (tile->direct || !glint_tile_is_shadowed(tile, frame->plan, walk->from, walk->count))
