@@ -257,7 +257,7 @@ await test("a script without an end is stopped, wherever it is", async () => {
   await refused(glint.open("while true do pcall(function() while true do end end) end", { name: "loop.lua", seconds: 0.2 }), "loop.lua", 1, /took longer/)
   await refused(glint.open("coroutine.wrap(function() while true do end end)()", { seconds: 0.2 }), "scene.lua", 1, /took longer/)
   await refused(glint.open("string.find(('a'):rep(40), ('a?'):rep(40) .. ('a'):rep(40))", { seconds: 0.2 }), undefined, undefined, /took longer/)
-  const job = await glint.open(ball.replace("lamp.position = {", "while P.radius == 6 do end lamp.position = {"), { seconds: 0.3 })
+  const job = await glint.open(ball.replace("lamp.position = {", "while P.radius == 6 do end lamp.position = {"), { seconds: 1 })
   const before = await job.render(planes)
   await refused(job.render({ set: { radius: 6 } }), "scene.lua", 10, /took longer/)
   assert(sameImages(await job.render(planes), before))
