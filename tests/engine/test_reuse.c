@@ -96,7 +96,7 @@ static void add_rows(glint_object_kind object, field *list, size_t *count)
         enum kind kind;
         size_t size;
         double low, high;
-    } of[] = {
+    } of[GLINT_TYPE_OTHER + 1] = {
         [GLINT_TYPE_NUMBER] = { NUMBER, 8, 0, 0 },      [GLINT_TYPE_WHOLE] = { WHOLE, 8, 0, 0 },  [GLINT_TYPE_ANGLE] = { NUMBER, 8, 0, 0 },
         [GLINT_TYPE_FLAG] = { FLAG, 1, 0, 1 },          [GLINT_TYPE_VECTOR] = { VECTOR, 24, -6, 6 },
         [GLINT_TYPE_DIRECTION] = { VECTOR, 24, -1, 1 }, [GLINT_TYPE_COLOR] = { COLOR, 24, 0, 1 }, [GLINT_TYPE_CHOICE] = { CHOICE, 4, 0, 0 },
