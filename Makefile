@@ -139,13 +139,13 @@ ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/*/*/*.c))
 WEB_SRC      := $(filter-out bindings/run/film_pipe.c,$(wildcard $(addsuffix /*.c,$(addprefix bindings/,lua pattern run value web)))) \
                   $(addprefix bindings/command/,$(addsuffix .c,describe events explain json output progress script signals untrusted_lua))
 BINDINGS_SRC := $(sort $(if $(WASM),$(WEB_SRC),$(filter-out bindings/web/%,$(wildcard bindings/*/*.c))))
-# The instruction sets of this machine's kind. KERNELS=native compiles generic and the best that this very machine runs; KERNELS=avx2
+# The instruction sets of this kind of machine. KERNELS=native compiles only the best one of this very machine, KERNELS=avx2
 # only that one, for work on a kernel.
 KERNELS := generic $(if $(PORTABLE),,$(if $(filter x86_64-% amd64-%,$(TARGET)),avx2 avx512))
 NATIVE   = $(shell $(CC) -march=native -dM -E - </dev/null 2>/dev/null)
+native_has = $(if $(PORTABLE),,$(if $(filter-out $(foreach one,$(1),$(findstring $(one),$(NATIVE))),$(1)),,yes))
 ifeq ($(KERNELS),native)
-  override KERNELS := generic $(if $(PORTABLE),,$(if $(and $(findstring __AVX512BW__,$(NATIVE)),$(findstring __AVX512DQ__,$(NATIVE)),$(findstring \
-                        __AVX512VL__,$(NATIVE))),avx512,$(if $(and $(findstring __AVX2__,$(NATIVE)),$(findstring __FMA__,$(NATIVE))),avx2)))
+  override KERNELS := $(if $(call native_has,__AVX512BW__ __AVX512DQ__ __AVX512VL__),avx512,$(if $(call native_has,__AVX2__ __FMA__),avx2,generic))
 endif
 # The stages are compiled for each instruction set. The geometry and light stages are also compiled for each precision.
 STAGE_SRC    := $(filter-out engine/stages/ref/% engine/stages/simd/select.c,$(filter engine/stages/%,$(ENGINE_SRC)))
