@@ -53,36 +53,35 @@ static void accepted(lua_State *L, const glintL_field *field, const void *desc)
                                 : "material.diffuse above 1: the surface gives off more light than it gets");
 }
 
-// Whether the table at 2 says n, l and v, as shaders do.
-static bool has_short_name(lua_State *L)
+// The name that the table at 2 gives a direction: the long one, or the short one of shaders.
+static const char *name_in(lua_State *L, const char *long_name, const char *short_name)
 {
-    bool has = false;
-    for (const char *name = "n\0l\0v\0"; *name && !has && lua_istable(L, 2); name += 2) {
-        lua_pushstring(L, name);
-        has = lua_rawget(L, 2) != LUA_TNIL;
-        lua_pop(L, 1);
-    }
-    return has;
+    if (!lua_istable(L, 2))
+        return long_name;
+    lua_pushstring(L, short_name);
+    const bool is_short = lua_rawget(L, 2) != LUA_TNIL;
+    lua_pushstring(L, long_name);
+    if (lua_rawget(L, 2) != LUA_TNIL && is_short)
+        glintL_error(L, "evaluate: %s and %s are the same direction; give one of them", short_name, long_name);
+    lua_pop(L, 2);
+    return is_short ? short_name : long_name;
 }
 
 static int evaluate(lua_State *L)
 {
     typedef glintL_geometry geometry;
-#define DIRECTIONS(n, l, v)                                                                                               \
-    {                                                                                                                     \
-        { .name = (n), .type = GLINT_TYPE_VECTOR, .offset = offsetof(geometry, normal), .required = true },                   \
-        { .name = (l), .type = GLINT_TYPE_VECTOR, .offset = offsetof(geometry, to_light), .required = true },                 \
-        { .name = (v), .type = GLINT_TYPE_VECTOR, .offset = offsetof(geometry, to_eye), .required = true },                   \
-        { .name = "p", .type = GLINT_TYPE_VECTOR, .offset = offsetof(geometry, p) },                                          \
-        { .name = NULL },                                                                                                 \
-    }
-    static const glintL_field long_names[] = DIRECTIONS("normal", "to_light", "to_eye"), short_names[] = DIRECTIONS("n", "l", "v");
-#undef DIRECTIONS
+    const glintL_field fields[] = {
+        { .name = name_in(L, "normal", "n"), .type = GLINT_TYPE_VECTOR, .offset = offsetof(geometry, normal), .required = true },
+        { .name = name_in(L, "to_light", "l"), .type = GLINT_TYPE_VECTOR, .offset = offsetof(geometry, to_light), .required = true },
+        { .name = name_in(L, "to_eye", "v"), .type = GLINT_TYPE_VECTOR, .offset = offsetof(geometry, to_eye), .required = true },
+        { .name = "p", .type = GLINT_TYPE_VECTOR, .offset = offsetof(geometry, p) },
+        { .name = NULL },
+    };
     geometry at = { .p = { 0 } };
     glint_reflection out;
     glint_error error;
     glintL_check_object(L, 1, GLINTL_MATERIAL);
-    glintL_read_table(L, 2, "evaluate", has_short_name(L) ? short_names : long_names, &at, false);
+    glintL_read_table(L, 2, "evaluate", fields, &at, false);
     glintL_trace_material(L, 1);
     const glint_material *material = glintL_check_object(L, 1, GLINTL_MATERIAL); // again: reading may run finalizers
     glintL_check_status(L, "evaluate", &error, glintL_evaluate_material(material, &at, &out, &error));

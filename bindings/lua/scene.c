@@ -308,7 +308,8 @@ static void refuse_named(lua_State *L)
     if (!lua_istable(L, 1))
         return;
     for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1))
-        if (lua_type(L, -2) == LUA_TSTRING && !glintL_find_field(glintL_fields_of(&SCENE), lua_tostring(L, -2)) && has_object(L, -1))
+        if (lua_type(L, -2) == LUA_TSTRING && !glintL_find_field(glintL_fields_of(&SCENE), lua_tostring(L, -2)) &&
+            (has_object(L, -1) || strcmp(lua_tostring(L, -2), "lights") == 0))
             glintL_error(L, "scene.%s: shapes and lights stand in a scene without a name: glint.scene { camera = ..., lamp, ball }",
                          lua_tostring(L, -2));
 }

@@ -102,7 +102,7 @@ static glint_status read_normal(reader *r, const char *at)
         return status;
     if (!isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]) || vec_max_abs(v) == 0) {
         v[0] = v[1] = v[2] = 0;
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_NORMAL, r->text.number, "a normal of length 0 is none");
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_NORMAL, r->text.number, "a normal of length 0 is ignored");
     }
     return append(r, &r->normals, v);
 }

@@ -207,6 +207,8 @@ function tests.evaluate()
   check(next(reflection, next(reflection, next(reflection))) == nil, "two fields")
   raises("evaluate: table expected, got nil", function() m:evaluate(nil) end)
   raises("evaluate.normal: {x, y, z} expected, got nil", function() m:evaluate {} end)
+  check(m:evaluate({ n = at.normal, to_light = at.to_light, v = at.to_eye }).specular == reflection.specular, "short names and long ones")
+  raises("evaluate: n and normal are the same direction; give one of them", function() m:evaluate { n = at.normal, normal = at.normal } end)
   raises("evaluate.to_light: vector that is not zero expected, got {0, 0, 0}",
     function() m:evaluate(with(at, "to_light", { 0, 0, 0 })) end)
   raises("evaluate.to_eye[1]: finite number expected, got nan",

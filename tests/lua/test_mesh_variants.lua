@@ -100,7 +100,7 @@ function tests.faces_that_are_none()
   path = write("n.obj", TRIANGLE .. "vn 0 0 1\nvn 0 0 0\nvn nan 0 0\nf 1//1 2//2 3//1\n")
   local mesh = glint.mesh { file = path }
   check(mesh.count == 1 and mesh.shading == "phong", "a normal of 0 is none")
-  warns(":5: a normal of length 0 is none, and 1 more", path)
+  warns(":5: a normal of length 0 is ignored, and 1 more", path)
   path = write("nan.obj", TRIANGLE .. "v nan 0 0\nv inf 0 0\nf 1 2 3\nf 1 2 4\nf 3 2 5\n")
   mesh = glint.mesh { file = path }
   check(mesh.count == 1 and mesh.max.x == 1, "faces of vertices that are not finite")

@@ -48,6 +48,7 @@ end
 function tests.objects_of_a_scene_have_no_names()
   local cure = ": shapes and lights stand in a scene without a name: glint.scene { camera = ..., lamp, ball }"
   wrong("scene.lights" .. cure, "glint.scene { lights = { lamp } }")
+  wrong("scene.lights" .. cure, "glint.scene { lights = { position = { 0, 5, 0 } } }")
   wrong("scene.objects" .. cure, "glint.scene { objects = { ball } }")
   wrong("scene.ball" .. cure, "glint.scene { ball = ball }")
   wrong("scene[2]: shape, light, label, colorbar or axes expected, got a list; its objects stand in the scene itself",
