@@ -19,7 +19,8 @@ LUA      ?= $(shell for name in $(LUA_NAMES); do command -v $$name >/dev/null &&
 LUA_PACKAGE := $(shell for name in $(LUA_NAMES); do pkg-config --exists $$name 2>/dev/null && echo $$name && break; done)
 comma    := ,
 
-PREFIX   ?= /usr/local
+prefix   ?= /usr/local
+PREFIX   ?= $(prefix)
 bindir   ?= $(PREFIX)/bin
 # Debian installs the libraries of system packages in one folder per architecture.
 MULTIARCH := $(if $(filter /usr,$(PREFIX)),$(shell $(CC) -print-multiarch 2>/dev/null))
