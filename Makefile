@@ -320,7 +320,7 @@ check-run: tests
 	@T="$(T)" $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
 
 # Tests worth running under a sanitizer: C, Lua and the command line. Tests that run none of our programs are left out.
-SANITIZED := $(filter-out $(addprefix tests/,$(addprefix command/,povray.sh gallery.sh install.sh) machines/systems.sh),$(SCRIPTED))
+SANITIZED := $(filter-out $(addprefix tests/,$(addprefix command/,povray.sh gallery.sh install.sh readme.sh) machines/systems.sh),$(SCRIPTED))
 # Tests of threads: tiles, index, bands of rows, the writer, the cache between frames, the server of watch. With two of
 # the instruction sets: what threads share is the same in all.
 THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image reuse reuse_turns soft) \

@@ -366,7 +366,7 @@ for script in "$root"/scripts/*.lua; do
     [[ $name != gr_* ]] || dialect=--dialect=gr
     [ "$name" != lobes.lua ] || size=64x25 # a wide picture, whose ends a narrower one cuts off
     [ "$name" != labels.lua ] || size=320x180 # letters of 10 pixels fit
-    run "$script" --size $size --samples 1 --warnings=error $dialect
+    run "$script" --size $size --samples 1 --warnings=error $dialect ${PRELOAD:+-f 1} # all frames take a sanitizer minutes
     result $? "$name"
 done
 # ---- Black pictures ----
