@@ -26,7 +26,7 @@
 extern "C" {
 #endif
 
-#define GLINT_VERSION "0.1.0"
+#define GLINT_VERSION "0.2.0"
 
 #define GLINT_NAME_SIZE 64 ///< bytes of an object's name, with the ending NUL
 #define GLINT_SIDE_MAX 65535 ///< longest side of an image, in pixels
