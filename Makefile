@@ -145,8 +145,9 @@ BINDINGS_SRC := $(sort $(if $(WASM),$(WEB_SRC),$(filter-out bindings/web/%,$(wil
 KERNELS := generic $(if $(PORTABLE),,$(if $(filter x86_64-% amd64-%,$(TARGET)),avx2 avx512))
 NATIVE   = $(shell $(CC) -march=native -dM -E - </dev/null 2>/dev/null)
 native_has = $(if $(PORTABLE),,$(if $(filter-out $(foreach one,$(1),$(findstring $(one),$(NATIVE))),$(1)),,yes))
+BEST     = $(if $(call native_has,__AVX512BW__ __AVX512DQ__ __AVX512VL__),avx512,$(if $(call native_has,__AVX2__ __FMA__),avx2,generic))
 ifeq ($(KERNELS),native)
-  override KERNELS := $(if $(call native_has,__AVX512BW__ __AVX512DQ__ __AVX512VL__),avx512,$(if $(call native_has,__AVX2__ __FMA__),avx2,generic))
+  override KERNELS := $(BEST)
 endif
 # The stages are compiled for each instruction set. The geometry and light stages are also compiled for each precision.
 STAGE_SRC    := $(filter-out engine/stages/ref/% engine/stages/simd/select.c,$(filter engine/stages/%,$(ENGINE_SRC)))
@@ -326,10 +327,10 @@ SANITIZED := $(filter-out $(addprefix tests/,$(addprefix command/,povray.sh gall
 THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image reuse reuse_turns soft) \
                hard/hard_limits) tests/lua/test_patterned.lua tests/command/watch.sh
 
-asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
+asan: ## the tests under AddressSanitizer and UBSan, in build-asan/, with the generic kernels and the best of this machine
 	@tests/deps.sh build test
 	@$(MAKE) --no-print-directory san-run BUILD=build-asan CFLAGS="-O1 -g1" KERNEL_CFLAGS=-O1 \
-	    SANITIZE=address,undefined,float-cast-overflow PRELOAD=libasan.so ITEMS='$$(TEST_BIN) $$(HARD_BIN) $$(SANITIZED)'
+	    SANITIZE=address,undefined,float-cast-overflow KERNELS="$(sort generic $(BEST))" PRELOAD=libasan.so ITEMS='$$(TEST_BIN) $$(HARD_BIN) $$(SANITIZED)'
 
 tsan: ## the tests with threads under ThreadSanitizer, in build-tsan/
 	@tests/deps.sh build test
