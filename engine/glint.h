@@ -767,7 +767,7 @@ typedef struct glint_mesh_desc {
     bool two_sided;
     char name[GLINT_NAME_SIZE];
     void (*reads)(void *context, const char *path); ///< glint_mesh_load: a file is about to be opened; NULL: nothing
-    /// glint_mesh_load: something that the file has or names is passed over; the message names the file; NULL: nothing
+    /// glint_mesh_load: something that the file has or names is ignored; the message names the file; NULL: nothing
     void (*warns)(void *context, const char *message);
     void *context; ///< of both
 } glint_mesh_desc;
@@ -792,9 +792,9 @@ glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, g
 /// else  Wavefront .obj: v (x y z, and r g b as in .ply), vt, vn and f (any polygon; numbers from the end where negative), and, where `desc`
 ///       has no material, usemtl and mtllib: Kd, Ks, Ns, d (or Tr), Pr and Pm (microfacets), illum 3 .. 7 (mirror of Ks; 5, 7 fresnel; 6, 7 Ni),
 ///       map_Kd, map_Ks, map_d (holes where red is below one half), map_Bump (grey, -bm is its height). d < 1 is not refracted otherwise, and
-///       leaves d of Kd and Ks. Groups, lines and points are passed over.
+///       leaves d of Kd and Ks. Groups, lines and points are ignored.
 /// Faces without an area, of fewer than 3 corners or of vertices that are not finite are left out, polygons that cross themselves are cut as
-/// fans, normals of length 0 are none, wrong lines of .mtl files and unknown statements are passed over: one call of `warns` a kind.
+/// fans, normals of length 0 are none, wrong lines of .mtl files and unknown statements are ignored: one call of `warns` a kind.
 glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
 /// A sphere of `segments` (whole number, 3 .. 16384) around the equator and half as many, rounded up, from pole to pole,
 /// with the sphere's own normals at the vertices. `desc` gives shading (default phong), material, sides and name.

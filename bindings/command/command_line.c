@@ -196,7 +196,7 @@ static bool read_words(int count, char **words, cli_options *options, char *mess
     if (near && used == 1)
         snprintf(message, MESSAGE, "%.200s: no such command; did you mean '%s'?", words[0], near);
     else
-        snprintf(message, MESSAGE, "'%.200s' is one word too many; arguments of the script follow --", words[used]);
+        snprintf(message, MESSAGE, "unexpected argument '%.200s'; put the script's own arguments after --", words[used]);
     return false;
 }
 
@@ -209,7 +209,7 @@ static bool check_output(cli_options *options, char *message)
     if (!options->output || !(options->command & (CLI_RENDER | CLI_EXPLAIN)))
         return true;
     if (options->request.fps > 0 && glintL_film_kind_of(options->output, options->request.apng) == GLINTL_FILM_NONE) {
-        snprintf(message, MESSAGE, "--fps: it means something to films alone; -o '%.200s' is a picture",
+        snprintf(message, MESSAGE, "--fps: only films have a frame rate; -o '%.200s' is a picture",
                  options->output);
         return false;
     }
@@ -267,12 +267,12 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
 {
     for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
         if (used[i] && !options->help && !(cli_option_list[i].commands & options->command)) {
-            snprintf(message, MESSAGE, "--%s: it means nothing to this command; --help lists what does", cli_option_list[i].name);
+            snprintf(message, MESSAGE, "--%s: this command does not have this option; --help lists those it has", cli_option_list[i].name);
             return false;
         }
     }
     if (options->verbose && !options->version) {
-        snprintf(message, MESSAGE, "--verbose: it means something with --version alone");
+        snprintf(message, MESSAGE, "--verbose: --version expected with it");
         return false;
     }
     if (options->has_frames && options->command == CLI_RENDER && (options->start || options->end || options->jump)) {

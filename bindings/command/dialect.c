@@ -162,7 +162,7 @@ bool cli_check_dialect(const cli_options *options, char message[GLINTL_MESSAGE_S
 {
     for (int i = 0; i < CLI_DIALECT_OPTIONS && !options->dialect; i++)
         if (options->dialect_text[i]) {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "--gr-%s: it means something with --dialect gr alone",
+            snprintf(message, GLINTL_MESSAGE_SIZE, "--gr-%s: --dialect gr expected with it",
                      cli_dialect_options[i]);
             return false;
         }

@@ -148,7 +148,7 @@ static bool is_among(const cli_file_list *list, const char *output, char *messag
         return false;
     for (size_t i = 0; i < list->count; i++)
         if (stat(list->files[i], &file) == 0 && file.st_dev == out.st_dev && file.st_ino == out.st_ino) {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "-o: a file that is none of the pictures expected, got '%.200s'",
+            snprintf(message, GLINTL_MESSAGE_SIZE, "-o: '%.200s' is one of the pictures; give another file",
                      output);
             return true;
         }

@@ -80,7 +80,7 @@ static bool read_part(join *j, size_t i)
         return complain(j, path, "a .png that --region has rendered expected");
     if (strcmp(whole, glint_picture_text(j->pictures[0], "glint:whole")) != 0) {
         snprintf(j->message, GLINTL_MESSAGE_SIZE,
-                 "%.300s is no part of the frame that %.300s is of: scene, frame, options, version or encoder differ",
+                 "%.300s and %.300s are parts of different frames: scene, frame, options, version or encoder differ",
                  path, j->list.files[0]);
         return false;
     }
@@ -172,7 +172,7 @@ static void report(cli_output *output, const char *path, size_t count)
         fprintf(output->data, ",\"parts\":%zu}", count);
         cli_end_line(output);
     } else if (!output->quiet) {
-        fprintf(stderr, "%s: joined of %zu part%s\n", path, count, count == 1 ? "" : "s");
+        fprintf(stderr, "%s: joined from %zu part%s\n", path, count, count == 1 ? "" : "s");
     }
 }
 

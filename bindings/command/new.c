@@ -148,7 +148,7 @@ int cli_new(const cli_options *options, cli_output *output)
     }
     code = code ? code : write_all(path, settings, options->program);
     if (code == EEXIST)
-        return refuse(output, GLINTL_EXIT_USAGE, path, "it is there already, and stays as it is");
+        return refuse(output, GLINTL_EXIT_USAGE, path, "it exists already and was not changed");
     if (code == ENOENT)
         return refuse(output, GLINTL_EXIT_FAILED, path, "its folder is not there; mkdir makes it");
     if (code)

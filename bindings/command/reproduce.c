@@ -149,7 +149,7 @@ static int make_request(reproduction *r, glintL_run *run, char *message)
     const char *frame = text_of(r, "glint:frame"), *temporary = getenv("TMPDIR");
     glintL_request *request = &run->request;
     if (!*text_of(r, "glint:key") || !*frame) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%.300s: it has no key and frame number of glint", r->file);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%.300s: it has no key and frame number by which glint could render it again", r->file);
         return UNREADABLE;
     }
     r->params = strdup(text_of(r, "glint:params"));
@@ -168,7 +168,7 @@ static int make_request(reproduction *r, glintL_run *run, char *message)
     collect_folders(temporary);
     snprintf(r->folder, sizeof r->folder, "%.180s/glint.%s.%ld.XXXXXX", temporary, host_name(), (long)getpid());
     if (!mkdtemp(r->folder)) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: no folder can be made", r->folder);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: this folder cannot be made", r->folder);
         r->folder[0] = '\0';
         return GLINTL_EXIT_FAILED;
     }

@@ -228,7 +228,7 @@ static const char *missing_hint(const cli_options *options, char out[GLINTL_PATH
     if (access(path, F_OK) == 0)
         snprintf(out, GLINTL_PATH_SIZE + 32, "; did you mean %s?", path);
     else if (options->command == CLI_RENDER && !strpbrk(word, "./"))
-        return "; no command has this name, either: glint --help lists them";
+        return "; and no command has this name; glint --help lists them";
     else
         return "";
     return out;

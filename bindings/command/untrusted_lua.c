@@ -90,7 +90,7 @@ static int require_glint(lua_State *L)
 {
     const char *name = luaL_checkstring(L, 1);
     if (strcmp(name, "glint") != 0)
-        return luaL_error(L, "module '%s' not found: an untrusted script has the module glint alone", name);
+        return luaL_error(L, "module '%s' not found: an untrusted script has only the module glint", name);
     lua_pushvalue(L, lua_upvalueindex(1));
     return 1;
 }

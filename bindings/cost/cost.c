@@ -150,7 +150,7 @@ static bool name_unmeasured(cost_study *study)
         if (study->cases[study->rows[i].measured].run_count > 0)
             continue;
         cost_row_name(&study->rows[i], name);
-        if (!cost_leave_out(study, "%s: not measured, the budget leaves no time for it", name))
+        if (!cost_leave_out(study, "%s: not measured: the budget has no time for it", name))
             return false;
     }
     return true;

@@ -187,7 +187,7 @@ static void spell_step(const cost_study *study, const cost_row *row, char out[2 
     char own[32];
     const cost_knob *knob = cost_row_knob(row);
     if (!knob) {
-        snprintf(out, 2 * COST_LABEL_SIZE, "%s in place of the script's setting", row->label);
+        snprintf(out, 2 * COST_LABEL_SIZE, "%s instead of the script's setting", row->label);
         return;
     }
     cost_value_text(study->values[row->knob].value[study->values[row->knob].own], own);

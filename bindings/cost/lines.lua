@@ -50,8 +50,8 @@ local function rows_together(study)
     together = together + (row.apart and 0 or 1)
     runs = math.max(runs, row.case.runs)
   end
-  return together == 0 and "" or format("%d of %d rows do not part in time from the row next to them, after up to "
-    .. "%d runs.\n",
+  return together == 0 and "" or format("%d of %d rows take about as long as the row next to them: after up to %d "
+    .. "runs their times still overlap.\n",
     together, #study.rows, runs)
 end
 

@@ -84,8 +84,8 @@ local function reference_of(study)
   local reference = study.reference
   if not reference then return "No reference was rendered, so no error is known." end
   return format("Errors are against the mean of %d pictures of %.0f samples a pixel, decided in double, of seeds "
-    .. "%s%s. By how they differ that mean is itself %.2g RMSE from the truth; an error under ten times that is "
-    .. "marked as not resolved.", #reference.seeds, reference.samples, the.seeds_of(reference), study.truth,
+    .. "%s%s. Their spread says that this mean is itself %.2g RMSE from the truth; an error below ten times "
+    .. "that is marked as not resolved.", #reference.seeds, reference.samples, the.seeds_of(reference), study.truth,
     reference.rmse)
 end
 

@@ -56,7 +56,7 @@ static bool drop_slowest(cost_study *study)
         return false;
     study->cases[slowest].is_left_out = true;
     name_case(study, slowest, name);
-    return cost_leave_out(study, "%s: timed once, the budget leaves no time for %d runs", name, COST_RUNS_LEAST);
+    return cost_leave_out(study, "%s: timed once: the budget has no time for %d runs", name, COST_RUNS_LEAST);
 }
 
 static bool fit_budget(cost_study *study)

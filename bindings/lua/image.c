@@ -109,14 +109,14 @@ static glint_pass check_pass(lua_State *L, int index, const char *path)
         const char *name = lua_tostring(L, index) + 2;
         pass = find_derivative(glintL_check_object(L, 1, GLINTL_IMAGE), name);
         if (pass == GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX)
-            glintL_error(L, "%s: 'd:%s' was not kept in this image", path, name);
+            glintL_error(L, "%s: 'd:%s' is not stored in this image", path, name);
         return pass;
     }
     if (pass == GLINT_PASS_COUNT && lua_type(L, index) == LUA_TSTRING && strncmp(lua_tostring(L, index), "light:", 6) == 0) {
         const char *name = lua_tostring(L, index) + 6;
         pass = find_light_pass(glintL_check_object(L, 1, GLINTL_IMAGE), name);
         if (pass == GLINT_PASS_COUNT)
-            glintL_error(L, "%s: 'light:%s' was not kept in this image", path, name);
+            glintL_error(L, "%s: 'light:%s' is not stored in this image", path, name);
     }
     if (pass == GLINT_PASS_COUNT)
         glintL_refuse(L, index, path, "name of a pass");

@@ -384,7 +384,7 @@ static void assigned(lua_State *L, const glintL_field *field, void *desc)
     if (strcmp(field->name, "at") != 0)
         return;
     if (d->has_box)
-        glintL_error(L, "axes.at: of axes without a box; with one they lie at its edges");
+        glintL_error(L, "axes.at: only axes without a box have it; with a box they lie at its edges");
     d->has_position = false;
 }
 

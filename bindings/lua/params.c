@@ -226,7 +226,7 @@ static int read_param(lua_State *L)
 static int write_param(lua_State *L)
 {
     const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "?";
-    return glintL_error(L, "params.%s: a parameter is only read; --set %s=... sets it", name, name);
+    return glintL_error(L, "params.%s: a parameter is read-only; --set %s=... sets it", name, name);
 }
 
 static int next_param(lua_State *L)

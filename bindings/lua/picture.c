@@ -89,7 +89,7 @@ static int read_member(lua_State *L)
 
 static int write_member(lua_State *L)
 {
-    return glintL_error(L, "picture.%s: a picture is only read", luaL_tolstring(L, 2, NULL));
+    return glintL_error(L, "picture.%s: a picture is read-only", luaL_tolstring(L, 2, NULL));
 }
 
 typedef struct held { // by Lua, so that an error frees it

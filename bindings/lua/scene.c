@@ -150,7 +150,7 @@ static int add(lua_State *L)
 {
     glintL_check_object(L, 1, GLINTL_SCENE);
     glintL_refuse_within_trace(L, "scene.add");
-    if (lua_gettop(L) > 2) // an object that is passed over would be missing from the picture
+    if (lua_gettop(L) > 2) // an object that is ignored would be missing from the picture
         return glintL_error(L, "scene.add: one object expected, got %d", lua_gettop(L) - 1);
     lua_settop(L, 2);
     add_member(L, 1, 2, "scene.add");

@@ -618,13 +618,13 @@ function glint.axes(fields) end
 
 -- ---- Scene ----
 
---- Read from a scene its fields are only read: assign a whole table.
+--- Read from a scene its fields are read-only: assign a whole table.
 ---@class glint.indirect
 ---@field samples? integer  ways of light followed from each point seen, 1 .. 65536. Default 16
 ---@field bounces? integer  matt surfaces on a way that light is followed beyond, 0 .. 2^31; then `ambient` stands for the rest. Default 2
 
 --- Ambient light times the share of the sky that is open, weighed by the cosine. Read from a scene, or made by
---- glint.ambient_occlusion, its fields are only read: assign a whole table.
+--- glint.ambient_occlusion, its fields are read-only: assign a whole table.
 ---@class glint.ambient_occlusion
 ---@field samples? integer  rays from each point seen, 1 .. 65536. Default 16
 ---@field distance? number  world units, > 0: surfaces farther away close nothing. Default math.huge

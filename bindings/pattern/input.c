@@ -88,7 +88,7 @@ static int read_surroundings(lua_State *L)
 
 static int write_surroundings(lua_State *L)
 {
-    return glintL_error(L, "s.%s: what is known of a point is only read", luaL_tolstring(L, 2, NULL));
+    return glintL_error(L, "s.%s: the values of a point are read-only", luaL_tolstring(L, 2, NULL));
 }
 
 void glintL_push_surroundings(lua_State *L)

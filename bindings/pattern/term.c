@@ -228,7 +228,7 @@ void glintL_read_operand(lua_State *L, int index, const char *path, glintL_opera
         return;
     if (lua_istable(L, index) && luaL_getmetafield(L, index, "__name") == LUA_TSTRING &&
         strcmp(lua_tostring(L, -1), GLINTL_SURROUNDINGS) == 0)
-        glintL_error(L, "%s: number, symbol or vector expected, got s, what is known of the point; a pattern is a function(p, s), "
+        glintL_error(L, "%s: number, symbol or vector expected, got s, the values of the point; a pattern is a function(p, s), "
                         "where p has x, y and z",
                      path);
     if (lua_istable(L, index))

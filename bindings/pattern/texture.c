@@ -168,7 +168,7 @@ static int read_member(lua_State *L)
 
 static int write_member(lua_State *L)
 {
-    return glintL_error(L, "texture.%s: a texture does not change; make another one", luaL_tolstring(L, 2, NULL));
+    return glintL_error(L, "texture.%s: a texture cannot be changed; make another one", luaL_tolstring(L, 2, NULL));
 }
 
 static int to_string(lua_State *L)

@@ -193,7 +193,7 @@ static int read_field(lua_State *L)
 
 static int write_field(lua_State *L)
 {
-    return glintL_error(L, "vector.%s: a vector has x, y and z alone", luaL_tolstring(L, 2, NULL));
+    return glintL_error(L, "vector.%s: a vector has only x, y and z", luaL_tolstring(L, 2, NULL));
 }
 
 static int equal(lua_State *L)

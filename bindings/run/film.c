@@ -80,7 +80,7 @@ bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *re
     if (kind == GLINTL_FILM_NONE)
         return true;
     if (run->request.is_untrusted)
-        return refuse(message, path, "an untrusted script writes pictures alone; make the film with glint assemble");
+        return refuse(message, path, "an untrusted script can write only pictures; make the film with glint assemble");
     fps = run->request.fps > 0 ? run->request.fps : fps;
     if (run->request.selection.shard_count > 1)
         return refuse(message, path,
@@ -166,7 +166,7 @@ static bool match_first(const glintL_film *film, size_t i, const glint_picture *
 {
     int width = glint_picture_width(first), height = glint_picture_height(first), bits = glint_picture_bits(first);
     if (glint_picture_width(picture) != width || glint_picture_height(picture) != height) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: %dx%d pixels, as %.200s has, expected, got %dx%d",
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: %dx%d pixels expected, as in %.200s, got %dx%d",
                  film->files[i], width, height, film->files[0], glint_picture_width(picture),
                  glint_picture_height(picture));
         return false;
@@ -174,7 +174,7 @@ static bool match_first(const glintL_film *film, size_t i, const glint_picture *
     if (glint_picture_bits(picture) == bits && glint_picture_transfer(picture) == glint_picture_transfer(first) &&
         glint_picture_channels(picture) == glint_picture_channels(first))
         return true;
-    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: bits, transfer and channels as %.200s has expected, got others",
+    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: the same bits, transfer and channels as in %.200s expected",
              film->files[i], film->files[0]);
     return false;
 }
@@ -289,7 +289,7 @@ static void remove_frames(const glintL_run *run, glintL_film *film)
     film->count = 0;
     snprintf(folder, sizeof folder, "%s.frames", film->path);
     if (rmdir(folder) != 0 && errno != ENOENT)
-        glintL_run_note(run, "%s: it holds other files, and stays", folder);
+        glintL_run_note(run, "%s: it was not removed, because it has other files in it", folder);
 }
 
 bool glintL_films_finish(glintL_run *run)
@@ -319,6 +319,6 @@ void glintL_films_keep(const glintL_run *run)
 {
     for (const glintL_film *film = run->films; film; film = film->next)
         if (film->count > 0)
-            glintL_run_note(run, "%zu frames of %s are kept in %s.frames: the same command goes on from there",
+            glintL_run_note(run, "%zu finished frames of %s are in %s.frames; the same command continues from them",
                             film->count, film->path, film->path);
 }

@@ -183,7 +183,7 @@ static int feed(const encoder *e, char *message)
             snprintf(message, GLINTL_MESSAGE_SIZE, "%s", error.message);
             code = glintL_run_exit_code(status);
         } else if (glint_picture_width(picture) != e->width || glint_picture_height(picture) != e->height) {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: it changed its size meanwhile", e->film->files[i]);
+            snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: its size changed while the film was made", e->film->files[i]);
             code = GLINTL_EXIT_FAILED;
         } else {
             good = send_frame(e, picture, row);

@@ -11,7 +11,7 @@ typedef struct glintL_order_axis {
     int64_t stride; ///< by how much the frame number grows from one value to the next
     int64_t middle; ///< number of the value, from 0, that it has while other axes are looked at
     bool is_forward; ///< its values come in ascending order only
-    bool may_fail; ///< a value whose frame cannot be planned is passed over
+    bool may_fail; ///< a value whose frame cannot be planned is ignored
     double work; ///< mean of glint_plan_work_after over its steps
     char stages[192]; ///< the stages that a step runs: "light, occlude, shade"
     char name[2 * GLINT_NAME_SIZE]; ///< "lamp.position"; "": it has none

@@ -97,7 +97,7 @@ typedef struct file { // for messages
 
 static bool differ(char *message, const file *a, const char *has, const file *b, const char *has_instead)
 {
-    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s is of another making: %.150s, where %.200s has %.150s", b->path,
+    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s was rendered with %.150s, but %.200s with %.150s", b->path,
              has_instead, a->path, has);
     return false;
 }

@@ -227,7 +227,7 @@ static void clear_passes(glintL_render *render)
     memset(render->derivative, 0, sizeof render->derivative);
 }
 
-// "normals" is no pass; did you mean ...
+// "normals" is not a pass; did you mean ...
 static void complain_pass(const char *name, size_t length, char message[GLINTL_MESSAGE_SIZE])
 {
     char copy[64], allowed[256];
@@ -247,9 +247,9 @@ static void complain_pass(const char *name, size_t length, char message[GLINTL_M
         near = glintL_nearer(copy, near, glint_pass_name((glint_pass)pass));
     describe(&(detail) { .sort = PASSES }, allowed);
     if (near)
-        snprintf(message, GLINTL_MESSAGE_SIZE, "'%s' is no pass; did you mean '%s'?", copy, near);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "'%s' is not a pass; did you mean '%s'?", copy, near);
     else
-        snprintf(message, GLINTL_MESSAGE_SIZE, "'%s' is no pass; %s expected", copy, allowed);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "'%s' is not a pass; %s expected", copy, allowed);
 }
 
 // "ambient,depth"; "" and "none": no files beside the beauty.

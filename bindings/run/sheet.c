@@ -31,11 +31,11 @@ bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_S
         snprintf(message, GLINTL_MESSAGE_SIZE, "difference: a picture 1 .. %zu expected, got %lld", sheet->count,
                  (long long)sheet->difference);
     else if (sheet->gain > 0 && !sheet->difference)
-        snprintf(message, GLINTL_MESSAGE_SIZE, "gain: it means nothing without a difference");
+        snprintf(message, GLINTL_MESSAGE_SIZE, "gain: a difference expected with it");
     else if (sheet->columns && ends_in(sheet->path, ".html"))
         snprintf(message, GLINTL_MESSAGE_SIZE, "columns: a page has those of its first axis instead");
     else if ((sheet->size > 0 || sheet->transparent || sheet->colorbar) && ends_in(sheet->path, ".html"))
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%s: it means nothing to a page",
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s: it has no effect on a page",
                  sheet->colorbar ? "colorbar" : sheet->transparent ? "transparent" : "size");
     else
         return true;

@@ -19,7 +19,7 @@ static bool check_size(const glintL_sheet *sheet, const glintL_axes *axes, size_
     int other_width = glint_picture_width(axes->pictures[i]), other_height = glint_picture_height(axes->pictures[i]);
     if (width == other_width && height == other_height)
         return true;
-    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: %dx%d pixels, as %.200s has, expected, got %dx%d", sheet->files[i],
+    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: %dx%d pixels expected, as in %.200s, got %dx%d", sheet->files[i],
              width, height, sheet->files[0], other_width, other_height);
     return false;
 }

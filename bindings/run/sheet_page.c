@@ -123,7 +123,7 @@ int glintL_sheet_page(const glintL_sheet *sheet, const glintL_axes *axes, char *
     content what = { sheet, axes, labels };
     for (size_t i = 0; i < sheet->count; i++)
         if (glint_picture_bits(axes->pictures[i]) > 16) {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "%.300s: a .png expected on a page", sheet->files[i]);
+            snprintf(message, GLINTL_MESSAGE_SIZE, "%.300s: a page shows only .png files", sheet->files[i]);
             return GLINTL_EXIT_USAGE;
         }
     glint_status status = GLINT_ERR_NOMEM;

@@ -177,8 +177,8 @@ static void warn_of_caps(glintL_run *run, const glint_plan *plan)
     for (size_t i = 0; i < count; i++)
         if (strcmp(effects[i].effect, "rays in place of caps") == 0)
             glintL_run_warn(run,
-                            "%s.shadow: caps are for scenes of opaque spheres and planes alone, and its shadows have "
-                            "rays here; set shadow = \"rays\"",
+                            "%s.shadow: only scenes of opaque spheres and planes have shadow caps; this scene's shadows "
+                            "are found by rays; set shadow = \"rays\"",
                             effects[i].caller);
 }
 

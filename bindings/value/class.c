@@ -159,9 +159,9 @@ static const glintL_field *writable_field(lua_State *L, const glintL_class *clas
     if (field)
         return field;
     if (find_function(variant->getters, name))
-        glintL_error(L, "%s.%s: this field is only read", variant->name, name);
+        glintL_error(L, "%s.%s: this field is read-only", variant->name, name);
     if (strcmp(name, "close") == 0 || find_function(class->methods, name) || find_function(variant->methods, name))
-        glintL_error(L, "%s.%s: a method is not assigned to", variant->name, name);
+        glintL_error(L, "%s.%s: a method cannot be assigned", variant->name, name);
     unknown_field(L, class, variant, name);
     return NULL;
 }

@@ -309,7 +309,7 @@ static void push_distance(lua_State *L, const glintL_distance *in)
 
 static int refuse_part(lua_State *L)
 {
-    return glintL_error(L, "%s: assign a whole table; its fields are only read", lua_tostring(L, lua_upvalueindex(1)));
+    return glintL_error(L, "%s: assign a whole table; its fields are read-only", lua_tostring(L, lua_upvalueindex(1)));
 }
 
 static int each_part(lua_State *L)

@@ -102,7 +102,7 @@ glint_status glint_pool_create(int threads, glint_pool **out, glint_error *error
     if (start_workers(pool, threads) < threads) {
         glint_pool_destroy(pool);
         return glint_fail(error, GLINT_ERR_NOMEM,
-                          "threads: %d threads could not be started: memory is short, or there are as many as there may be",
+                          "threads: %d threads could not be started: out of memory, or at the system's limit of threads",
                           threads);
     }
     *out = pool;

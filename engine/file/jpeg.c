@@ -33,7 +33,7 @@ static void fail(j_common_ptr info)
     longjmp(f->back, 1);
 }
 
-/// Warnings are passed over, except that the file ends early.
+/// Warnings are ignored, except that the file ends early.
 static void take_message(j_common_ptr info, int level)
 {
     if (level < 0 && info->err->msg_code == JWRN_JPEG_EOF)

@@ -278,7 +278,7 @@ static glint_status fail_not_kept(const glint_image *image, glint_pass pass, gli
     if (pass >= GLINT_PASS_DERIVATIVE)
         return glint_fail(error, GLINT_ERR_INVALID, "pass: this image has no derivative number %d",
                           (int)pass - GLINT_PASS_DERIVATIVE);
-    return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", glint_pass_name(pass));
+    return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' is not stored in this image", glint_pass_name(pass));
 }
 
 /// Draws the overlays into the rows. Where they are the stamps of rows of tiles promise nothing.

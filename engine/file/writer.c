@@ -249,7 +249,7 @@ glint_status glint_writer_create(int queue_depth, int threads, glint_writer **ou
     pthread_cond_init(&writer->moved, NULL);
     status = glint_bands_create(threads ? threads : glint_pool_processors(), &writer->bands, error);
     if (!status && !start_threads(writer))
-        status = glint_fail(error, GLINT_ERR_NOMEM, "no thread for the writer: memory is short, or there are as many as there may be");
+        status = glint_fail(error, GLINT_ERR_NOMEM, "no thread for the writer: out of memory, or at the system's limit of threads");
     if (status) {
         free_writer(writer);
         return status;

@@ -336,7 +336,7 @@ glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x,
         return glint_fail(error, GLINT_ERR_INVALID, "pass: this image has no %s number %d", is_plane(pass) ? "derivative" : "light pass",
                           (int)pass - (int)(is_plane(pass) ? GLINT_PASS_DERIVATIVE : GLINT_PASS_LIGHT));
     if (!plane[0])
-        return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", pass_table[pass].name);
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' is not stored in this image", pass_table[pass].name);
     glint_status status = glint_check_whole("x", x, 0, image->width - 1, error);
     if (!status)
         status = glint_check_whole("y", y, 0, image->height - 1, error);

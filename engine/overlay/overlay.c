@@ -113,7 +113,7 @@ static glint_status check_unplaced(const glint_overlay_desc *desc, glint_error *
                    { "background", desc->has_background } };
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
         if (fields[i].is_set)
-            return glint_fail(error, GLINT_ERR_INVALID, "%s: of axes without a box; with one they lie at its edges", fields[i].name);
+            return glint_fail(error, GLINT_ERR_INVALID, "%s: only axes without a box have it; with a box they lie at its edges", fields[i].name);
     return GLINT_OK;
 }
 
@@ -224,7 +224,7 @@ glint_status glint_overlay_set(glint_overlay *overlay, const glint_overlay_desc 
     GLINT_REFUSE_NULL(overlay, error);
     GLINT_REFUSE_NULL(desc, error);
     if (desc->kind != overlay->desc.kind)
-        return glint_fail(error, GLINT_ERR_INVALID, "kind: that of the overlay expected");
+        return glint_fail(error, GLINT_ERR_INVALID, "kind: an overlay cannot become one of another kind");
     glint_status status = check(desc, error);
     if (!status)
         overlay->desc = *desc;

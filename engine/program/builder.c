@@ -241,7 +241,7 @@ glint_status glint_builder_add(glint_builder *builder, glint_op op, uint32_t tex
     bool numbers = true;
     for (uint32_t k = 0; k < info->operands; k++) {
         if (operands[k] >= builder->count)
-            return glint_fail(error, GLINT_ERR_INVALID, "%s: operand %u is no value of this builder", info->name,
+            return glint_fail(error, GLINT_ERR_INVALID, "%s: operand %u is not a value of this builder", info->name,
                               (unsigned)k + 1);
         node.operand[k] = operands[k];
         numbers = numbers && builder->nodes[operands[k]].op == GLINT_SSA_NUMBER;

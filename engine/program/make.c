@@ -364,7 +364,7 @@ static glint_status check_outputs(const glint_builder *builder, const glint_valu
                           count);
     for (size_t k = 0; k < count; k++)
         if (outputs[k] >= builder->count)
-            return glint_fail(error, GLINT_ERR_INVALID, "outputs: number %zu is no value of this builder", k + 1);
+            return glint_fail(error, GLINT_ERR_INVALID, "outputs: number %zu is not a value of this builder", k + 1);
     return GLINT_OK;
 }
 

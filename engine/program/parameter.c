@@ -78,7 +78,7 @@ glint_status glint_builder_close(const glint_builder *builder, const glint_value
     glint_status status = glint_builder_copy(builder, false, &closed, &map, error);
     for (size_t k = 0; k < count && !status; k++) {
         if (outputs[k] >= builder->count)
-            status = glint_fail(error, GLINT_ERR_INVALID, "outputs: number %zu is no value of this builder", k + 1);
+            status = glint_fail(error, GLINT_ERR_INVALID, "outputs: number %zu is not a value of this builder", k + 1);
         else
             values[k] = map[outputs[k]];
     }

@@ -143,7 +143,7 @@ static glint_status check_area(const glint_light_desc *desc, glint_error *error)
         status =
             glint_fail(error, GLINT_ERR_INVALID, "intensity: 1 expected beside a radiance, got %.15g", desc->intensity);
     if (!status && desc->shadow == GLINT_SHADOW_CAPS && desc->kind != GLINT_LIGHT_SPHERE)
-        status = glint_fail(error, GLINT_ERR_INVALID, "shadow: rays or hard expected, caps of a sphere light alone");
+        status = glint_fail(error, GLINT_ERR_INVALID, "shadow: rays or hard expected; only sphere lights have caps");
     const double *a = desc->attenuation;
     if (!status && desc->shadow == GLINT_SHADOW_CAPS && desc->has_radiance && (a[0] != 1 || a[1] != 0 || a[2] != 0))
         status =

@@ -127,7 +127,7 @@ glint_status glint_mesh_picture_faces(glint_mesh_reader *r, const char *name)
     if (status == GLINT_ERR_NOMEM)
         return glint_fail_nomem(r->error);
     if (status) {
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE, 0, "its picture is passed over: %.120s", inner.message);
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE, 0, "its picture is ignored: %.120s", inner.message);
         return GLINT_OK;
     }
     status = make_painted(texture, name, &material, r->error);

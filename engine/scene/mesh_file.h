@@ -36,7 +36,7 @@ typedef struct glint_mesh_text {
     size_t begin_bytes;
     long start; ///< where the text begins: behind a byte order mark
     bool lone_returns; ///< lines end in CR without LF
-    size_t skipped; ///< empty lines behind the line at hand that are passed over
+    size_t skipped; ///< empty lines behind the line at hand that are ignored
     locale_t c_locale; ///< decimal points whatever the script's locale
     char *line;
     size_t room, longest; ///< bytes of a line
@@ -138,7 +138,7 @@ void glint_mesh_note_that(glint_mesh_reader *reader, glint_mesh_note_kind kind, 
 /// Gives corners without a normal the normal of their face.
 glint_status glint_mesh_drop_normals(glint_mesh_reader *reader);
 
-/// Says that something is passed over; the file's name stands before the message.
+/// Says that something is ignored; the file's name stands before the message.
 void glint_mesh_warn(const glint_mesh_desc *desc, const char *path, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -133,7 +133,7 @@ static glint_status find_picture(glint_mesh_library *library, const glint_mesh_r
         if (status == GLINT_ERR_NOMEM)
             return glint_fail_nomem(reader->error);
         if (status)
-            glint_mesh_warn(reader->desc, reader->text.path, "material '%s' has %s in place of its %s: %.200s",
+            glint_mesh_warn(reader->desc, reader->text.path, "material '%s' has %s instead of its %s: %.200s",
                             e->desc.name, map_instead[kind], glint_mesh_map_words[kind], inner.message);
     }
     *out = found->texture;
@@ -206,7 +206,7 @@ static glint_status paint(glint_mesh_library *library, const glint_mesh_reader *
         return GLINT_OK;
     if (e->lacks_uv)
         glint_mesh_warn(reader->desc, reader->text.path,
-                        "material '%s' has %s in place of its %s: faces of it have no coordinates (vt)", e->desc.name,
+                        "material '%s' has %s instead of its %s: faces of it have no coordinates (vt)", e->desc.name,
                         map_instead[kind], glint_mesh_map_words[kind]);
     else
         status = find_picture(library, reader, e, kind, &texture);
@@ -216,7 +216,7 @@ static glint_status paint(glint_mesh_library *library, const glint_mesh_reader *
     if (!status && !grey) {
         glint_mesh_warn(
             reader->desc, reader->text.path,
-            "material '%s' has no relief in place of its map_Bump: heights in grey expected, and the picture "
+            "material '%s' has no relief instead of its map_Bump: heights in grey expected, and the picture "
             "has colours, as pictures of normals do",
             e->desc.name);
         return status;

@@ -263,7 +263,7 @@ static glint_status read_field(const glint_mesh_text *text, const char *at, glin
     return status;
 }
 
-/// Reads the statements of a file. One that is not as it should be is passed over.
+/// Reads the statements of a file. One that is not as it should be is ignored.
 static glint_status read_lines(glint_mesh_library *library, glint_mesh_text *text, leavings *left)
 {
     bool more = true;
@@ -294,14 +294,14 @@ static void tell_left(const glint_mesh_reader *reader, const char *path, leaving
 {
     const size_t length = strlen(left->words);
     if (left->bad > 1)
-        glint_mesh_warn(reader->desc, reader->text.path, "%.300s; the line is passed over, and %zu more",
+        glint_mesh_warn(reader->desc, reader->text.path, "%.300s; the line is ignored, and %zu more",
                         left->first_bad.message, left->bad - 1);
     else if (left->bad)
-        glint_mesh_warn(reader->desc, reader->text.path, "%.300s; the line is passed over", left->first_bad.message);
+        glint_mesh_warn(reader->desc, reader->text.path, "%.300s; the line is ignored", left->first_bad.message);
     if (!length)
         return;
     left->words[length - 1] = 0;
-    glint_mesh_warn(reader->desc, reader->text.path, "%.200s:%s %s passed over: no field of a material", path,
+    glint_mesh_warn(reader->desc, reader->text.path, "%.200s:%s %s ignored: not a field of a material", path,
                     left->words, strchr(left->words, ',') ? "are" : "is");
 }
 

@@ -46,7 +46,7 @@ static glint_status read_numbers(reader *r, const char **at, int count, double v
 static void refuse_colors(reader *r)
 {
     glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, r->text.number,
-                         "the numbers after the coordinates are passed over: colours 0 .. 1 or 0 .. 255 expected");
+                         "the numbers after the coordinates are ignored: colours 0 .. 1 or 0 .. 255 expected");
 }
 
 /// Numbers after a vertex: three are its colour, as many programs write it, also with a fourth, alpha. One is its weight.
@@ -237,8 +237,8 @@ static void pass_over(reader *r, const char *at)
     const bool is_curve = is_among(at, free_form);
     const int length = (int)strcspn(at, " \t");
     glint_mesh_note_that(r, is_curve ? GLINT_MESH_NOTE_FREE_FORM : GLINT_MESH_NOTE_UNKNOWN, r->text.number,
-                         is_curve ? "'%.*s' is passed over: free-form curves and surfaces are not read"
-                                  : "'%.*s' is passed over: no statement of .obj files",
+                         is_curve ? "'%.*s' is ignored: free-form curves and surfaces are not read"
+                                  : "'%.*s' is ignored: not a statement of .obj files",
                          length < 24 ? length : 24, at);
 }
 
@@ -276,7 +276,7 @@ static glint_status check_far(reader *r, index_kind kind, size_t count)
         return GLINT_OK;
     if (count == 0 && kind != GLINT_MESH_OF_VERTEX) {
         glint_mesh_note_that(r, kind == GLINT_MESH_OF_UV ? GLINT_MESH_NOTE_NO_UV : GLINT_MESH_NOTE_NO_NORMALS,
-                             r->far[kind].line, "%s %zu is passed over: the file has none", KINDS[kind],
+                             r->far[kind].line, "%s %zu is ignored: the file has none", KINDS[kind],
                              r->far[kind].index + 1);
         return GLINT_OK;
     }
@@ -316,7 +316,7 @@ static glint_status color(reader *r)
         return GLINT_OK;
     if (r->library && glint_mesh_library_found(r->library)) {
         glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0,
-                             "the colours of its vertices are passed over: its faces have materials");
+                             "the colours of its vertices are ignored: its faces have materials");
         return GLINT_OK;
     }
     glint_mesh_library_free(r->library);

@@ -260,7 +260,7 @@ static glint_status add_color_of_type(body *b, const double rgb[3])
         v[c] = rgb[c] / most;
         if (!(v[c] >= 0 && v[c] <= (is_float ? 255 : 1)))
             glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0,
-                                 "%s %llu: its colours are passed over: red, green and blue 0 .. %.0f expected",
+                                 "%s %llu: its colours are ignored: red, green and blue 0 .. %.0f expected",
                                  b->element->name, (unsigned long long)b->row, most);
     }
     return glint_mesh_append(&r->numbers_of_colors, v, r->error);
@@ -347,18 +347,18 @@ static glint_status make_materials(glint_mesh_reader *r, const glint_ply_head *h
     glint_status status = GLINT_OK;
     if (h->texture[0] && r->uv.count && !has_own) {
         if (h->colored)
-            glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0, "its colours are passed over: it has a picture");
+            glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0, "its colours are ignored: it has a picture");
         return glint_mesh_picture_faces(r, h->texture);
     }
     if (h->texture[0] && !has_own)
         glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE, 0,
-                             "its picture %.60s is passed over: there are no coordinates (s, t)", h->texture);
+                             "its picture %.60s is ignored: there are no coordinates (s, t)", h->texture);
     if (!h->colored || r->notes[GLINT_MESH_NOTE_COLOR].count)
         return GLINT_OK;
     if (h->color_type != GLINT_PLY_UINT8)
         status = glint_mesh_take_colors(r, r->numbers_of_colors.count);
     if (!status && r->colors_of_faces && r->colors.count != r->sizes.count) {
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0, "its colours are passed over: strips of triangles have none");
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0, "its colours are ignored: strips of triangles have none");
         return GLINT_OK;
     }
     return status ? status : glint_mesh_color_faces(r);

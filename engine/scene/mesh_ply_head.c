@@ -135,7 +135,7 @@ static void take_texture(glint_mesh_reader *r, glint_ply_head *h)
     if (!h->texture[0])
         snprintf(h->texture, sizeof h->texture, "%s", name);
     else
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE, 0, "its picture %.60s is passed over: a mesh has one", name);
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE, 0, "its picture %.60s is ignored: a mesh has one", name);
 }
 
 static glint_status read_words(glint_mesh_reader *r, glint_ply_head *h)
@@ -202,7 +202,7 @@ static void find_colors(const glint_mesh_reader *r, glint_ply_head *h)
     if (r->desc->material || r->desc->material_count)
         h->colored = NULL;
     else if (any && !h->colored)
-        glint_mesh_warn(r->desc, r->text.path, "its colours are passed over: red, green and blue of one type expected");
+        glint_mesh_warn(r->desc, r->text.path, "its colours are ignored: red, green and blue of one type expected");
 }
 
 /// Whether the elements make a mesh, and have no more rows than the file has room for.

@@ -74,11 +74,11 @@ static glint_status read_statement(glint_mesh_reader *r, const char *at, state *
         return GLINT_OK;
     }
     if (s->ended && !glint_mesh_is_word(at, WORDS[0])) {
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, r->text.number, "this line, behind the solid, is passed over");
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, r->text.number, "this line, behind the solid, is ignored");
         return GLINT_OK;
     }
     if (place == 0 && (strchr("#;/", *at) || glint_mesh_is_word(at, "color"))) {
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, r->text.number, "this line, between facets, is passed over");
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, r->text.number, "this line, between facets, is ignored");
         return GLINT_OK;
     }
     snprintf(expected, sizeof expected, place ? "%s" : "%s or endsolid", WORDS[place]);
@@ -166,7 +166,7 @@ static glint_status refuse_size(glint_mesh_reader *r, const char *head, size_t g
 }
 
 /// A file whose size fits its number of triangles is binary, whatever its head says: "solid" begins some of both kinds. So
-/// is a longer one that is no text; the bytes behind its triangles are passed over.
+/// is a longer one that is no text; the bytes behind its triangles are ignored.
 glint_status glint_mesh_read_stl(glint_mesh_reader *r)
 {
     char bytes[1024 + 8] = { 0 }; // the zeros end every comparison
@@ -185,11 +185,11 @@ glint_status glint_mesh_read_stl(glint_mesh_reader *r)
         status = text ? read_text(r) : read_binary(r, count);
     if (!status && !text && t->size > needed)
         glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, 0,
-                             "what follows the last triangle is passed over: bytes %llu .. %llu",
+                             "what follows the last triangle is ignored: bytes %llu .. %llu",
                              (unsigned long long)needed, (unsigned long long)t->size - 1);
     if (!status && !text && strstr(bytes, "COLOR="))
         glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0,
-                             "its colours are passed over: those of .stl files are not read");
+                             "its colours are ignored: those of .stl files are not read");
     if (!status && r->sizes.count == 0)
         status = glint_fail(r->error, GLINT_ERR_FORMAT, "%s: triangles expected, got none", t->path);
     return status;

@@ -149,7 +149,7 @@ static void measure_sheet(layout *l)
         least[0] = l->left + (int64_t)glint_typeface_width(&l->title, desc->title, SIZE_MAX) + l->gap;
     if (desc->difference) {
         snprintf(l->note, sizeof l->note,
-                 "below each: |picture - cell %zu| x %g\nmax: the largest, in codes of 255\n%%: pixels that differ",
+                 "below each: |picture - cell %zu| x %g\nmax: the largest difference, of 255\n%%: pixels that differ",
                  desc->difference, desc->gain);
         least[1] = l->left + widest_part(l, l->note) + l->gap;
     }
@@ -294,7 +294,7 @@ static glint_status check_size(const layout *l, const glint_picture *picture, co
     int width = glint_picture_width(picture), height = glint_picture_height(picture);
     if (width == l->width && height == l->height)
         return GLINT_OK;
-    return glint_fail(error, GLINT_ERR_INVALID, "%.200s: %dx%d pixels, as %.200s has, expected, got %dx%d", path,
+    return glint_fail(error, GLINT_ERR_INVALID, "%.200s: %dx%d pixels expected, as in %.200s, got %dx%d", path,
                       l->width, l->height, l->desc->cells[0].path, width, height);
 }
 

@@ -391,11 +391,11 @@ options() {
     exits 2 "an option by another program's name" ten.lua --widht 300
     says "names what it is called here" "--widht: no such option; did you mean '--size'"
     exits 2 "a pass that is none" ten.lua --passes diffuse,normals
-    says "names it and the nearest" "^glint: error: --passes: 'normals' is no pass; did you mean 'normal'\\?$"
+    says "names it and the nearest" "^glint: error: --passes: 'normals' is not a pass; did you mean 'normal'\\?$"
     exits 2 "a misspelt word" ten.lua --colormap magmo
     says "names the nearest" "^glint: error: --colormap: .* expected, got 'magmo'; did you mean 'magma'\\?$"
     exits 2 "a pass like none" ten.lua --passes diffuse,xyzzy
-    says "names it and all" "'xyzzy' is no pass; list of beauty, .*, albedo, d:NAME, light:NAME, all expected$"
+    says "names it and all" "'xyzzy' is not a pass; list of beauty, .*, albedo, d:NAME, light:NAME, all expected$"
     exits 0 "--version --verbose" --version --verbose
     prints "libraries" '^libraries: Lua 5\.4.*libpng [0-9].*xxhash [0-9]'
     prints "kernels" '^kernels: ref generic.*; in use: [a-z0-9]+, [0-9]+ threads$'

@@ -96,7 +96,7 @@ exits 2 "a pattern in quotes that is a shell's" sheet 'grid/000*.png' -o wrong.p
 says "is told so" 'no such file; give it without quotes'
 before=$(sha256sum <grid/0002.png)
 exits 2 "a frame's name for the sheet" sheet grid/0001.png grid/0002.png -o grid/../grid/0002.png
-says "is refused" '-o: a file that is none of the pictures expected'
+says "is refused" '-o: .* is one of the pictures; give another file'
 [ "$before" = "$(sha256sum <grid/0002.png)" ] && pass || fail "a frame was overwritten"
 for columns in 1 2 4 5; do
     exits 2 "$columns columns of 3 x 2 pictures" sheet grid/000*.png -o wrong.png --columns $columns
@@ -120,7 +120,7 @@ check "RGBA" eval '[ "$(od -An -tu1 -j25 -N1 clear.png)" -eq 6 ] && [ "$(od -An 
 exits 2 "text of no size" sheet grid/000*.png -o wrong.png --label-size 0
 says "is refused" 'label-size: points 1 .. 10000 expected'
 exits 2 "a page without paper" sheet grid/000*.png -o wrong.html --transparent
-says "has none to leave out" 'transparent: it means nothing to a page'
+says "has none to leave out" 'transparent: it has no effect on a page'
 exits 0 "a colour bar of all pictures" sheet grid/000*.png -o bar.png --colorbar 'viridis,0,2.5,T / K'
 exits 3 "at the right of the others" compare bar.png again.png
 exits 2 "of no map" sheet grid/000*.png -o wrong.png --colorbar jet,0,1
@@ -134,7 +134,7 @@ says "is refused" 'colorbar: MAP,LOW,HIGH or'
 exits 2 "of one number" sheet grid/000*.png -o wrong.png --colorbar magma,1,1
 says "is refused" 'colorbar.high: another number than low'
 exits 2 "on a page" sheet grid/000*.png -o wrong.html --colorbar magma,0,1
-says "is refused" 'colorbar: it means nothing to a page'
+says "is refused" 'colorbar: it has no effect on a page'
 exits 2 "of a cell that is not there" sheet grid/000*.png -o wrong.png --difference 7
 says "is refused by number" 'difference: .*1 \.\. 6'
 exits 2 "no output" sheet grid/0001.png
@@ -146,7 +146,7 @@ exits 2 "of another size" sheet grid/0001.png larger_0001.png -o wrong.png
 says "is named with both sizes" 'larger_0001.png: 40x30 .*got 48x24'
 exits 0 "a picture of another script" turn.lua -f 1 --size 40x30 -o other.png -q
 exits 2 "in one sheet" sheet grid/0001.png other_0001.png -o wrong.png
-says "is named with both" 'other_0001.png .*turn.lua.*grid/0001.png has script grid.lua'
+says "is named with both" 'other_0001.png .*turn.lua.*grid/0001.png with script grid.lua'
 exits 0 "--force takes it" sheet grid/0001.png other_0001.png -o forced.png --force
 head -c 300 grid/0002.png >cut.png
 exits 1 "a cut picture" sheet grid/0001.png cut.png -o wrong.png
@@ -162,9 +162,9 @@ SHEET='{ label = function() error "no label today" end }' exits 2 "an error in i
 says "is the script's" 'no label today'
 for wrong in '{ lable = true }:did you mean .label' '{ columns = 0 }:columns: whole number' '{ gain = -1 }:gain: number' \
     '{ output = "x.jpg" }:output: .*\.html' '{ difference = 1.5 }:difference' \
-    '{ difference = 7 }:difference: a picture 1 .. 6 expected, got 7' '{ gain = 2 }:gain: it means nothing without' \
+    '{ difference = 7 }:difference: a picture 1 .. 6 expected, got 7' '{ gain = 2 }:gain: a difference expected' \
     '{ output = "x.html", columns = 2 }:columns: a page has those of its first axis' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' '{ size = 0 }:size: points' \
-    '{ dpi = -1 }:dpi: number 0' '{ transparent = 1 }:transparent: boolean' '{ transparent = true, output = "x.html" }:transparent: it means' '{ colorbar = 5 }:colorbar: glint.colorbar expected' '5:sheet: table'; do
+    '{ dpi = -1 }:dpi: number 0' '{ transparent = 1 }:transparent: boolean' '{ transparent = true, output = "x.html" }:transparent: it has no effect' '{ colorbar = 5 }:colorbar: glint.colorbar expected' '5:sheet: table'; do
     SHEET=${wrong%%:*} exits 2 "sheet = ${wrong%%:*}" grid.lua
     says "sheet = ${wrong%%:*}" "${wrong#*:}"
 done
@@ -220,7 +220,7 @@ exits 0 "the first frame is the picture" compare film.png f/01.png
 exits 0 "assembled from frames" assemble 'f/%02d.png' -o assembled.png --fps 12
 check "it is the same film" cmp film.png assembled.png
 exits 2 "a frame's name for the film" assemble f/01.png f/02.png -o f/02.png
-says "is refused, too" '-o: a file that is none of the pictures expected'
+says "is refused, too" '-o: .* is one of the pictures; give another file'
 exits 0 "of one frame" assemble f/01.png -o one.png
 [ "$(chunks one.png)" = "IHDR sRGB acTL fcTL IDAT IEND " ] && pass || fail "chunks of one frame: $(chunks one.png)"
 exits 0 "of 16 bits, linear" turn.lua -f 1-2 --bits 16 --transfer linear -o deep.png --apng
@@ -268,7 +268,7 @@ absent "and removes them" film.mp4.frames
 echo old >kept.mp4
 FFMPEG_FAILS=1 with "$path_with" 1 "a failing ffmpeg" turn.lua -o kept.mp4
 says "is quoted" "kept.mp4: ffmpeg failed with exit code 8: Unknown encoder 'libx264'"
-says "and the frames are kept" '6 frames of kept.mp4 are kept in kept.mp4.frames'
+says "and the frames are kept" '6 finished frames of kept.mp4 are in kept.mp4.frames'
 check "the old film too" grep -qx old kept.mp4
 FFMPEG_FAILS=1 with "$path_with" 1 "and under assemble" assemble 'f/%02d.png' -o kept.mp4
 absent "no draft stays" nothing
@@ -291,7 +291,7 @@ FFMPEG_HANGS=1 interrupt "a signal while ffmpeg works" started assemble 'f/%02d.
 absent "leaves no film" stopped.mp4
 interrupt "a signal while frames render" stopped.mp4.frames/0001.png slow.lua -o stopped.mp4
 absent "leaves no film either" stopped.mp4
-says "but the frames" 'frames of stopped.mp4 are kept in stopped.mp4.frames'
+says "but the frames" 'finished frames of stopped.mp4 are in stopped.mp4.frames'
 
 rm f/03.png f/05.png
 exits 2 "a gap" assemble 'f/%02d.png' -o gap.png
@@ -300,10 +300,10 @@ exits 0 "frames without it" assemble 'f/%02d.png' -o part.png -f 1-2
 exits 2 "frames with it" assemble 'f/%02d.png' -o gap.png -f 1-6:2
 exits 0 "a stale frame" turn.lua -f 3,5 -D radius=5 -o 'f/%02d.png' -q
 exits 2 "is found" assemble 'f/%02d.png' -o stale.png
-says "and named" 'f/03.png is of another making: radius=5, where f/01.png has radius=4'
+says "and named" 'f/03.png was rendered with radius=5, but f/01.png with radius=4'
 exits 0 "one of other options" turn.lua -f 3,5 --samples 4 -o 'f/%02d.png' -q
 exits 2 "is found too" assemble 'f/%02d.png' -o stale.png
-says "and named too" 'f/03.png is of another making: samples=4'
+says "and named too" 'f/03.png was rendered with samples=4'
 exits 0 "--force takes them" assemble 'f/%02d.png' -o stale.png --force
 exits 0 "one of another size" turn.lua -f 3,5 --size 20x10 -o 'f/%02d.png' -q
 exits 2 "is not taken" assemble 'f/%02d.png' -o size.png --force
@@ -312,7 +312,7 @@ exits 0 "a frame of an earlier text" turn.lua -f 1-6 -o 'e/%d.png' -q
 sed -i 's/0.8, 0.2/0.8, 0.3/' scene.lua
 exits 0 "and of the edited one" turn.lua -f 4-6 -o 'e/%d.png' -q
 exits 2 "mixed" assemble 'e/%d.png' -o mixed.png
-says "are named" 'e/4.png is of another making: script text [0-9a-f]+, where e/1.png has script text'
+says "are named" 'e/4.png was rendered with script text [0-9a-f]+, but e/1.png with script text'
 exits 0 "after a run of all" turn.lua -o 'e/%d.png' -q
 exits 0 "they go together" assemble 'e/%d.png' -o mixed.png
 sed -i 's/0.8, 0.3/0.8, 0.2/' scene.lua
@@ -416,14 +416,14 @@ check "with a script and what editors read" test -s first/first.lua -a -s first/
 check "which names the types" eval 'test -s "$(grep -o "/[^\"]*" first/.luarc.json)/glint.lua"'
 exits 0 "it renders" first/first.lua -f 1 --size 64x36 -q -o none
 exits 2 "a folder's script stays" new first
-says "and it says so" 'first/first.lua: it is there already'
+says "and it says so" 'first/first.lua: it exists already'
 exits 0 "a new script" new start.lua
 exits 0 "renders" start.lua -f 1 --size 64x36 -q -o start.png
 exits 0 "and shows its parameters" start.lua --help
 prints "with what they mean" 'radius=8 .*orbit'
 before=$(sha256sum <start.lua)
 exits 2 "is not written over" new start.lua
-says "and it says so" 'start.lua: it is there already'
+says "and it says so" 'start.lua: it exists already'
 [ "$before" = "$(sha256sum <start.lua)" ] && pass || fail "start.lua changed"
 exits 2 "no name" new
 exits 2 "a name that ends in a slash" new x/

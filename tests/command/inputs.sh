@@ -81,7 +81,7 @@ for bad in device.png pipe folder huge.png; do
     script "a mesh with materials in $bad" "mesh.obj: its materials are not all there: $bad:(1:)? " 'require("glint").mesh { file = "mesh.obj" }' \
         'error "read"'
     printf 'newmtl a\nmap_Kd %s\n' "$bad" >good.mtl
-    script "a mesh with the picture $bad" "painted.obj: material 'a' has its Kd in place of its map_Kd: $bad: " \
+    script "a mesh with the picture $bad" "painted.obj: material 'a' has its Kd instead of its map_Kd: $bad: " \
         'require("glint").mesh { file = "painted.obj" }' 'error "read"'
 done
 export LUA_PATH="$root/scripts/lib/?.lua;;"

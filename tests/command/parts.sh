@@ -86,7 +86,7 @@ exits 2 "a whole picture" join parts/1.png whole/a.png -o hole.png
 says "is no part" 'whole/a.png: a .png that --region has rendered expected'
 "$glint" "$scene" --size $size -q --region 0,0,9,9 -o stranger.png
 exits 2 "a part of another picture" join parts/1.png stranger.png -o hole.png
-says "is named" 'stranger.png is no part of the frame that parts/1.png is of'
+says "is named" 'stranger.png and parts/1.png are parts of different frames'
 exits 2 "no parts" join -o hole.png
 exits 2 "no output" join parts/1.png
 says "output expected" 'join: -o NAME.png expected'

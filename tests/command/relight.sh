@@ -165,7 +165,7 @@ wrong "a cut file" "whole OpenEXR file" cut.exr -o wrong.png
 wrong "a page of two files" "a page is of one file" a.exr alpha.exr -o wrong.html
 wrong "a page of 16 bits" "codes of 8 bits" a.exr --bits 16 -o wrong.html
 wrong "another name" "ending in .png" a.exr -o wrong.jpg
-wrong "its own file" "none of the pictures" a.exr -o a.exr
+wrong "its own file" "is one of the pictures" a.exr -o a.exr
 check "which is whole" "$GLINT" relight a.exr -q -o after.png
 exits 2 "an option of other commands" relight a.exr -o wrong.png --samples 4
 

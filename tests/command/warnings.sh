@@ -265,7 +265,7 @@ test $? -eq 2 && grep -q 'scene.lua:3: material.diffuse above 1.*(--warnings=err
 result $? "the other warnings, too"
 scene 'function frame(t) if t > 0.5 then glint.material { diffuse = 2 } end end'
 "$glint" scene.lua -o film.apng --warnings=error --quiet 2>err
-test $? -eq 2 && grep -q 'frames of film.apng are kept in film.apng.frames' err && [ -e film.apng.frames/0001.png ]
+test $? -eq 2 && grep -q 'finished frames of film.apng are in film.apng.frames' err && [ -e film.apng.frames/0001.png ]
 result $? "the frames of a film that it ends are kept, and it says where"
 cat >sweep.lua <<'END'
 local glint = require "glint"
@@ -288,7 +288,7 @@ scene:render { width = 8, height = 8, output = "caps.png" }
 scene:render { width = 8, height = 8, output = "again.png", seed = 1 }
 END
 "$glint" caps.lua --quiet 2>err
-test "$(grep -c "sphere_light 'bulb'.shadow: caps are for scenes of opaque spheres and planes alone" err)" -eq 1
+test "$(grep -c "sphere_light 'bulb'.shadow: only scenes of opaque spheres and planes have shadow caps" err)" -eq 1
 result $? "caps that are rays, once"
 
 # ---- Meshes from files ----
@@ -306,7 +306,7 @@ scene 'objects = { glint.mesh { file = "m.obj" } }'
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\n'
 silent "materials that are there"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\nanything else\n'
-warns "a statement that no material has" "m.obj: m.mtl: anything is passed over: no field of a material$"
+warns "a statement that no material has" "m.obj: m.mtl: anything is ignored: not a field of a material$"
 mesh 'mtllib m.mtl\nusemtl b\n' 'newmtl a\nbump b.png\nnewmtl b\nmap_bump -bm 0.1 b.png\nmap_Bump -bm none b.png\n'
 warns "reliefs without a height" "m.obj: material 'a' and 1 more: no relief: map_Bump has no -bm, which says how high it is, in world units$"
 for height in x nan 1e400 0; do
@@ -314,21 +314,21 @@ for height in x nan 1e400 0; do
     warns "$height for a height" "m.obj: material 'a': no relief: -bm of map_Bump: a height in world units other than 0 expected, got '$height'$"
 done
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nmap_Bump b.png -bm 0.1\n'
-warns "a height after the picture" "m.obj: material 'a' has no relief in place of its map_Bump: faces of it have no coordinates (vt)$"
+warns "a height after the picture" "m.obj: material 'a' has no relief instead of its map_Bump: faces of it have no coordinates (vt)$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nmap_Kd -texture b.png\n'
-warns "an option that no map has" "m.obj: m.mtl:2: an option of a map or the name of a picture expected, got '-texture b.png'; the line is passed over$"
+warns "an option that no map has" "m.obj: m.mtl:2: an option of a map or the name of a picture expected, got '-texture b.png'; the line is ignored$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\nTf 0.5 0.5 0.5\nKe 1 1 1\n'
-warns "statements that mean nothing here" "m.obj: m.mtl: Tf, Ke are passed over: no field of a material$"
+warns "statements that mean nothing here" "m.obj: m.mtl: Tf, Ke are ignored: not a field of a material$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nbump -bm 0.1 b.png\n'
-warns "a relief without coordinates" "m.obj: material 'a' has no relief in place of its map_Bump: faces of it have no coordinates (vt)$"
+warns "a relief without coordinates" "m.obj: material 'a' has no relief instead of its map_Bump: faces of it have no coordinates (vt)$"
 printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nmtllib m.mtl\nusemtl a\nf 1/1 2/2 3/3\n' >m.obj
-warns "a relief that is not there" "m.obj: material 'a' has no relief in place of its map_Bump: .*b.png: No such file or directory$"
+warns "a relief that is not there" "m.obj: material 'a' has no relief instead of its map_Bump: .*b.png: No such file or directory$"
 cat >normals.lua <<'END'
 local glint = require "glint"
 glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, background = { 0.5, 0.5, 1 } }:render { width = 8, height = 8, output = "b.png" }
 END
 "$glint" normals.lua --quiet 2>/dev/null
-warns "a picture of normals" "m.obj: material 'a' has no relief in place of its map_Bump: heights in grey expected, and the picture has colours"
+warns "a picture of normals" "m.obj: material 'a' has no relief instead of its map_Bump: heights in grey expected, and the picture has colours"
 mesh 'usemtl a\n' ''
 warns "no file of materials" "m.obj: material 'a': the mesh names no file of materials (mtllib)$"
 mesh 'mtllib m.mtl\nusemtl b\n' 'newmtl c\n'
@@ -336,15 +336,15 @@ warns "materials that the file has not" "m.obj: material 'a' and 1 more: not in 
 mesh 'mtllib gone.mtl\nusemtl b\n' ''
 warns "a file of materials that is not there" "m.obj: its materials are not all there: gone.mtl: No such file or directory$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0\nKd 1 0 x\n'
-warns "a colour that is none" "m.obj: m.mtl:3: a number expected, got 'x'; the line is passed over$"
+warns "a colour that is none" "m.obj: m.mtl:3: a number expected, got 'x'; the line is ignored$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nmap_Kd wood.png\n'
-warns "a picture without coordinates" "m.obj: material 'a' has its Kd in place of its map_Kd: faces of it have no coordinates (vt)$"
+warns "a picture without coordinates" "m.obj: material 'a' has its Kd instead of its map_Kd: faces of it have no coordinates (vt)$"
 scene 'objects = { glint.mesh { file = "m.obj", material = glint.material {} } }'
 silent "a material of the script: the file's are not looked at"
 printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n' >m.ply
 printf 'element face 1\nproperty list uchar int vertex_indices\nend_header\n-1 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2\n' >>m.ply
 scene 'objects = { glint.mesh { file = "m.ply" }, glint.mesh { file = "m.ply" } }'
-warns "colours of vertices, once" "m.ply: its colours are passed over: red, green and blue of one type expected$"
+warns "colours of vertices, once" "m.ply: its colours are ignored: red, green and blue of one type expected$"
 printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n' >m.ply
 printf 'property uchar %s\n' red green blue >>m.ply
 printf 'property list uchar int vertex_indices\nend_header\n-1 0 0\n1 0 0\n0 1 0\n9 9 9 3 0 1 2\n' >>m.ply

@@ -142,7 +142,7 @@ save 0.7
 check "an endless script gives way" await '"event":"picture"' $((before + 1))
 
 rm scene.lua
-check "a deletion is told" await '"message":"scene.lua is not there; it is rendered when it comes back"' 1
+check "a deletion is told" await '"message":"scene.lua is missing; it is rendered when it comes back"' 1
 before=$(seen picture)
 save 0.5
 check "it comes back" await '"event":"picture"' $((before + 1))
@@ -361,5 +361,5 @@ check "a folder" fails "folder: Is a directory" folder
 check "a script that is not there" fails "nowhere.lua: No such file" nowhere.lua
 check "a wrong port" fails "whole number 0 .. 65535 expected, got '70000'" scene.lua --http 70000
 check "a wrong terminal" fails "kitty, sixel, blocks or text expected, got 'vt100'" scene.lua --terminal vt100
-check "no frames to choose" fails "it means nothing to this command" scene.lua --frames 1-3
+check "no frames to choose" fails "this command does not have this option" scene.lua --frames 1-3
 exit $bad

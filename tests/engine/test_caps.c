@@ -364,7 +364,7 @@ static void bad_descriptions_are_refused(void **unused)
     (void)unused;
     d.shadow = GLINT_SHADOW_CAPS;
     assert_int_equal(glint_light_create(&d, &light, &error), GLINT_ERR_INVALID);
-    assert_string_equal(error.message, "shadow: rays or hard expected, caps of a sphere light alone");
+    assert_string_equal(error.message, "shadow: rays or hard expected; only sphere lights have caps");
     d = glint_light_desc_default(GLINT_LIGHT_SPHERE);
     d.shadow = GLINT_SHADOW_CAPS;
     d.has_radiance = true;

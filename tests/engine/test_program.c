@@ -210,7 +210,7 @@ static void test_errors(void **state)
     const glint_value x = read_input(b, GLINT_INPUT_P_X), wrong[] = { x, 77 }, many[] = { x, x, x, x, x, x };
     glint_value out = 12345;
     expect_failure(glint_builder_op(b, GLINT_OP_ADD, wrong, &out, &error),
-                   "add: operand 2 is no value of this builder");
+                   "add: operand 2 is not a value of this builder");
     expect_failure(glint_builder_op(b, (glint_op)-1, wrong, &out, &error), "op: ");
     expect_failure(glint_builder_op(b, GLINT_OP_TEXEL, wrong, &out, &error), "op: ");
     expect_failure(glint_builder_input(b, GLINT_INPUT_LIGHT_R, &out, &error), "a pattern has no light.r");

@@ -52,16 +52,16 @@ function tests.vectors()
   check(is(-v, -1, -2.5, 3) and is(v * 2, 2, 5, -6) and is(2 * v, 2, 5, -6) and is(v * v, 1, 6.25, 9), "products")
   check(is(v / 2, 0.5, 1.25, -1.5) and is(v / { 1, 2.5, 3 }, 1, 1, -1), "quotients")
   check(getmetatable(v) == false, "the metatable is out of reach")
-  raises("vector.x: a vector does not change; assign a whole one to the object's field: object.field = {x, y, z}",
+  raises("vector.x: a vector cannot be changed; assign a whole one to the object's field: object.field = {x, y, z}",
     function() v.x = 1 end)
-  raises("vector.1: a vector does not change; assign a whole one to the object's field: object.field = {x, y, z}",
+  raises("vector.1: a vector cannot be changed; assign a whole one to the object's field: object.field = {x, y, z}",
     function() v[1] = 1 end)
   raises("vector.w: no such field", function() return v.w end)
   raises("vector.unpak: no such field; did you mean 'unpack'?", function() return v.unpak end)
   raises("vector: name of a field expected, got true", function() return v[true] end)
   raises('a + b: number, symbol or vector expected, got string "1"', function() return v + "1" end)
   check(v + 1 == glint.vector(v.x + 1, v.y + 1, v.z + 1) and v == glint.vector(v:unpack()) and v ~= glint.vector(0, 0, 0))
-  raises("vector.x: a vector does not change; assign a whole one to the object's field: object.field = {x, y, z}",
+  raises("vector.x: a vector cannot be changed; assign a whole one to the object's field: object.field = {x, y, z}",
     function() glint.vector(1, 2, 3).x = 4 end)
   raises("a * b: number, symbol or vector expected, got nil: is a variable or a field not set?", function() return v * nil end)
   raises("vector expected, got no value; a method takes a colon: object:unpack(...)", function() v.unpack() end)
@@ -172,8 +172,8 @@ function tests.material()
   raises("material.mirrors: no such field; did you mean 'mirror'?", function() m.mirrors = 1 end)
   raises("material.x: no such field", function() m.x = 1 end)
   raises("material: name of a field expected, got 1", function() m[1] = 1 end)
-  raises("material.evaluate: a method is not assigned to", function() m.evaluate = print end)
-  raises("material.close: a method is not assigned to", function() m.close = print end)
+  raises("material.evaluate: a method cannot be assigned", function() m.evaluate = print end)
+  raises("material.close: a method cannot be assigned", function() m.close = print end)
   raises("material.color: no such field; did you mean 'diffuse'?", function() return m.color end)
   raises("material.kd: no such field; did you mean 'diffuse'?", function() glint.material { kd = 1 } end)
   raises("material.xyzzy: no such field", function() return m.xyzzy end)

@@ -466,7 +466,7 @@ refuses("a folder that cannot be", film .. " --report /proc/glint", "/proc/glint
 refuses("a budget of nothing", film .. " --budget 0", "%-%-budget: seconds")
 refuses("a budget in words", film .. " --budget soon", "got 'soon'")
 check(run(film .. " --quick --json --knobs model,reuse --frame 1 --quiet") == 0 and read "err" == "", "--quiet: %s", read "err")
-refuses("an option of another command", film .. " --force", "means nothing to this command")
+refuses("an option of another command", film .. " --force", "this command does not have this option")
 
 -- ---- Cut short ----
 

@@ -159,7 +159,7 @@ check(said:find "decided in double" and said:find "the same, byte for byte", "ex
 said, code = scene("x = 1")
 check(code == 2 and said:find "scene.lua rendered nothing; calls of gr.render expected", "no picture: %s", said)
 said, code = run(("'%s' scene.lua --gr-pixel 0"):format(glint))
-check(code == 2 and said:find "%-%-gr%-pixel: it means something with %-%-dialect gr alone", "%s", said)
+check(code == 2 and said:find "%-%-gr%-pixel: %-%-dialect gr expected with it", "%s", said)
 for _, wrong in ipairs { "--dialect grr", "--gr-order up", "--gr-pixel 0.25", "--gr-specular none", "--gr-background red",
   "--gr-background 1,2", "--gr-background 1,x,0", "--gr-background=-1,0,0", "--gr-background '#12345'" } do
   said, code = scene(SMALL, wrong)

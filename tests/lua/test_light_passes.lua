@@ -171,7 +171,7 @@ function tests.names_and_groups()
   check(some:pixel(4, 4, "light:b") == 0, "of a lamp without strength nothing")
   local rest = still({ ambient = 1, lamp { name = "a", ambient = 1 } }, { passes = "light:ambient,light:a" })
   check(rest:pixel(4, 4, "light:ambient") == 0.5 and rest:pixel(4, 4, "light:a") > 0.5, "a lamp's own ambient light is the lamp's")
-  raises("light:x' was not kept", function() rest:pixel(0, 0, "light:x") end)
+  raises("light:x' is not stored", function() rest:pixel(0, 0, "light:x") end)
 end
 
 function tests.errors()

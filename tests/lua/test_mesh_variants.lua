@@ -91,7 +91,7 @@ function tests.faces_that_are_none()
     ["f 1/1/ 2/1/ 3/1/"] = "texture coordinate 1" } do
     path = write("none.obj", TRIANGLE, text, "\n")
     check(glint.mesh { file = path }.count == 1, "%s", text)
-    warns((":4: %s is passed over: the file has none"):format(want), path)
+    warns((":4: %s is ignored: the file has none"):format(want), path)
   end
   check(load("late.obj", "f 1 2 3\n", TRIANGLE).count == 1, "faces before vertices")
   refuses(":4: the number of a vertex, 1 .. 3, expected, got '4'", "far.obj", TRIANGLE .. "f 1 2 4\nf 1 2 3\n")
@@ -113,8 +113,8 @@ end
 function tests.statements_of_other_uses()
   local path = write("s.obj", "cstype bspline\ndeg 3\n" .. TRIANGLE .. "curv 0 1 1 2 3\nend\nvp 0 1\nl 1 2\np 1\nsolid x\nweird\nf 1 2 3\n")
   check(glint.mesh { file = path }.count == 1, "the mesh is there")
-  warns(":1: 'cstype' is passed over: free-form curves and surfaces are not read, and 3 more\n" ..
-    ":11: 'solid' is passed over: no statement of .obj files, and 1 more", path)
+  warns(":1: 'cstype' is ignored: free-form curves and surfaces are not read, and 3 more\n" ..
+    ":11: 'solid' is ignored: not a statement of .obj files, and 1 more", path)
   refuses(": faces expected, got 0 vertices and none: is it a Wavefront .obj?", "text.obj", "Dear reader,\nthis is no mesh.\n")
 end
 
@@ -156,7 +156,7 @@ function tests.colours_of_vertices()
   check(is(color "v 0 0 0 1.002 0 0\nv 1 0 0 1 0 0\nv 0 1 0 0.99999 0 0\nf 1 2 3\n", 1, 0, 0), "a little above 1")
   check(is(color(TRIANGLE .. "#MRGB ff00ff00ff00ff00\n#MRGB ff00ff00\nf 1 2 3\n"), 0, 1, 0), "#MRGB of ZBrush")
   check(is(color "v 0 0 0 0 0 -1\nv 1 0 0 0 0 1\nv 0 1 0 0 1 0\nf 1 2 3\n", 0.8, 0.8, 0.8), "normals are no colours")
-  warns(":1: the numbers after the coordinates are passed over: colours 0 .. 1 or 0 .. 255 expected", folder .. "/v.obj")
+  warns(":1: the numbers after the coordinates are ignored: colours 0 .. 1 or 0 .. 255 expected", folder .. "/v.obj")
   check(is(color "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n", 1, 0, 0), "0 .. 1")
   check(is(color "v 0 0 0 0 255 0\nv 1 0 0 0 255 0\nv 0 1 0 0 255 0\nf 1 2 3\n", 0, 1, 0), "0 .. 255")
   check(is(color "v 0 0 0 0 0 1 1\nv 1 0 0 0 0 1 1\nv 0 1 0 0 0 1 1\nf 1 2 3\n", 0, 0, 1), "with alpha")
@@ -167,7 +167,7 @@ function tests.colours_of_vertices()
   write("v.mtl", "newmtl a\nKd 0 1 0\n")
   local text = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nusemtl a\nf 1 2 3\n"
   check(is(color("mtllib v.mtl\n" .. text), 0, 1, 0), "materials come first")
-  warns("the colours of its vertices are passed over: its faces have materials", folder .. "/v.obj")
+  warns("the colours of its vertices are ignored: its faces have materials", folder .. "/v.obj")
   check(is(color(text), 1, 0, 0), "a material that no file has does not")
   check(is(glint.mesh { file = folder .. "/v.obj", material = glint.material { diffuse = 0.5 } }.material.diffuse, 0.5, 0.5, 0.5),
     "a material of the script comes first")
@@ -189,9 +189,9 @@ function tests.materials()
   local m = material "newmtl b\nNs -1\nnewmtl a\nKd 0.25 0.5 0.75\nKd 1 red 0\nNs 12\nKs spectral x.rfl\nd 2\nmap_Kd -clamp on\nNs 9\n"
   check(is(m.diffuse, 0.25, 0.5, 0.75) and m.shininess == 9 and is(m.specular, 0, 0, 0), "a bad line is one line")
   local mtl = folder .. "/t.mtl: "
-  warns(folder .. "/t.mtl:2: a number >= 0 expected, got '-1'; the line is passed over, and 4 more", path)
+  warns(folder .. "/t.mtl:2: a number >= 0 expected, got '-1'; the line is ignored, and 4 more", path)
   material "newmtl a\nKd 1 1 1 # white\nKe 0 0 0\nKe 2 0 0\nKa 1 1 1\nnorm n.png\nnorm m.png\nmap_Pr r.png\nPs 0\nNi 1.45\nTf 1 1 1\nwhatever\n"
-  warns(mtl .. "Ke, norm, map_Pr, whatever are passed over: no field of a material", path)
+  warns(mtl .. "Ke, norm, map_Pr, whatever are ignored: not a field of a material", path)
   m = material "newmtl a\nKd 1 0.5 0\nPr 0.25\nPm 1\nKs 0.5 0.5 0.5\nillum 3\n"
   check(m.model == "cook_torrance" and m.roughness == 0.25 and is(m.f0, 1, 0.5, 0) and is(m.diffuse, 0, 0, 0) and is(m.mirror, 0, 0, 0), "a metal")
   m = material "newmtl a\nKd 1 0.5 0\nPr 0.75\n"
@@ -205,9 +205,9 @@ function tests.materials()
     check(m.ior == ((illum == 6 or illum == 7) and 1.4 or 1) and is(m.transmission, 0.5, 0.5, 0.5), "illum %d: what is bent", illum)
   end
   material "newmtl a\nKd 1 1 1\nTf 0.5 1 1\nillum 11\nmap_d -mm 0 0.5 none.png\nmap_d -mm 0 1 -imfchan l none.png\n"
-  warns(folder .. "/t.mtl:4: a number 0 .. 10 expected, got '11'; the line is passed over\n" ..
-    mtl .. "Tf, -mm, -imfchan are passed over: no field of a material\n" ..
-    ("material 'a' has its d in place of its map_d: %s/none.png: No such file or directory"):format(folder), path)
+  warns(folder .. "/t.mtl:4: a number 0 .. 10 expected, got '11'; the line is ignored\n" ..
+    mtl .. "Tf, -mm, -imfchan are ignored: not a field of a material\n" ..
+    ("material 'a' has its d instead of its map_d: %s/none.png: No such file or directory"):format(folder), path)
   write("t.mtl", ("\xff\xfenewmtl a\n"):gsub("[%g\n]", "%0\0"))
   load("t.obj", "mtllib t.mtl # of Notepad\n", TRIANGLE, "usemtl a\nf 1 2 3\n")
   warns("its materials are not all there: " .. folder .. "/t.mtl: is UTF-16, not UTF-8", path)
@@ -231,20 +231,20 @@ function tests.stl()
     for _, text in ipairs { binary, table.concat(one) } do
       local path = write("long.stl", text, ("\0"):rep(extra))
       check(glint.mesh { file = path }.count == 1, "%d bytes more", extra)
-      warns(("what follows the last triangle is passed over: bytes 134 .. %d"):format(133 + extra), path)
+      warns(("what follows the last triangle is ignored: bytes 134 .. %d"):format(133 + extra), path)
     end
   end
   one[1] = ("solid facet by CAD"):rep(9):sub(1, 80)
   check(load("facet.stl", table.concat(one), "\0\0").count == 1, "a head that has the words of a text")
   one[1] = "COLOR=\255\0\0\255" .. ("\0"):rep(70)
   check(load("color.stl", table.concat(one)).count == 1, "colours")
-  warns("its colours are passed over: those of .stl files are not read", folder .. "/color.stl")
+  warns("its colours are ignored: those of .stl files are not read", folder .. "/color.stl")
   check(load("color.stl", (STL:gsub("solid a\n", "%0# made by hand\ncolor 1 0 0\n", 1))).count == 1, "lines between facets")
-  warns(":2: this line, between facets, is passed over, and 1 more", folder .. "/color.stl")
+  warns(":2: this line, between facets, is ignored, and 1 more", folder .. "/color.stl")
   refuses(":1: solid, as the first word of a text, expected, got 'facet normal 0 0 1 outer loop vertex 0 0'", "no.stl", (STL:gsub("solid a\n", "", 1)))
   local path = write("end.stl", STL, "\26\nmade by hand\n", STL)
   check(glint.mesh { file = path }.count == 2, "words between solids")
-  warns(":10: this line, behind the solid, is passed over, and 1 more", path)
+  warns(":10: this line, behind the solid, is ignored, and 1 more", path)
   refuses(": \"solid\" or 84 bytes and 50 for each of its 1 triangles expected, got 133 bytes", "short.stl", binary:sub(1, -2))
   check(load("stl.txt", STL).count == 1 and load("ply.txt", PLY).count == 1, "by the first bytes, where the name says nothing")
 end
@@ -260,7 +260,7 @@ function tests.colours_of_ply()
     check(color(kind, codes, codes) == (kind == "char" and "#7f0033" or "#ff0033"), "%s: %s", kind, color(kind, codes, codes))
   end
   check(color("float", "1 0 0", "-1 0 0") == "", "normals are no colours")
-  warns("vertex 2: its colours are passed over: red, green and blue 0 .. 1 expected", folder .. "/c.ply")
+  warns("vertex 2: its colours are ignored: red, green and blue 0 .. 1 expected", folder .. "/c.ply")
   local mesh = load("c.ply", HEAD, "element vertex 3\n", VERTEX, FACE, "property float red\nproperty float green\nproperty float blue\n",
     "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0 1 0\n")
   check(mesh.materials[1].name == "#00ff00", "of faces")
@@ -315,10 +315,10 @@ function tests.pictures_of_ply()
   end
   local path = write("p.ply", (PLY:gsub("element vertex", "comment TextureFile none.png\n%0", 1)))
   check(glint.mesh { file = path }.count == 1, "no coordinates")
-  warns("its picture none.png is passed over: there are no coordinates (s, t)", path)
+  warns("its picture none.png is ignored: there are no coordinates (s, t)", path)
   path = write("p.ply", (by_corner:gsub("green.png", "none.png")))
   check(is(glint.mesh { file = path }.materials[1].diffuse, 0.8, 0.8, 0.8), "no picture")
-  warns("its picture is passed over: " .. folder .. "/sub/none.png: No such file or directory", path)
+  warns("its picture is ignored: " .. folder .. "/sub/none.png: No such file or directory", path)
 end
 
 function tests.formats_that_are_not_read()

@@ -41,7 +41,7 @@ function tests.fields()
   check(l.at == "bottom right", "a corner")
   l.at = { 0.5, 0.25 }
   check(l.at[1] == 0.5 and l.at[2] == 0.25 and #l.at == 2, "shares")
-  raises("at: assign a whole table; its fields are only read", function() l.at[1] = 0 end)
+  raises("at: assign a whole table; its fields are read-only", function() l.at[1] = 0 end)
   l.position = { 3, -4 }
   check(l.position[2] == -4 and l.at == nil, "a position in its place")
   l.at = "top"
@@ -62,7 +62,7 @@ function tests.fields()
   a.box = { { 0, 0, 0 }, { 4, 0, 6 } }
   a.values = { { 1, 0, 0 }, { -1, 0, 2 } }
   check(a.box[2].z == 6 and a.values[1][1] == 1 and #a.box == 2, "a box, flat in one direction, and numbers that fall")
-  raises("box: assign a whole table; its fields are only read", function() a.box[1] = 0 end)
+  raises("box: assign a whole table; its fields are read-only", function() a.box[1] = 0 end)
   raises("values: a box expected", function() a.box = nil end)
   a.values = nil
   a.box = nil
@@ -108,13 +108,13 @@ function tests.errors()
   raises("axes.values: ends at a finite distance expected, got -1e+308 to 1e+308 along y", glint.axes,
     { box = unit, values = { { 0, -1e308, 0 }, { 1, 1e308, 1 } } })
   raises("axes.values: two numbers for the ends of z expected, got 5 twice", glint.axes, { box = unit, values = { { 0, 0, 5 }, { 1, 1, 5 } } })
-  raises("axes.position: of axes without a box; with one they lie at its edges", glint.axes, { box = unit, position = { 1, 1 } })
-  raises("axes.length: of axes without a box", glint.axes, { box = unit, length = 10 })
+  raises("axes.position: only axes without a box have it; with a box they lie at its edges", glint.axes, { box = unit, position = { 1, 1 } })
+  raises("axes.length: only axes without a box have it", glint.axes, { box = unit, length = 10 })
   raises("axes: at or box expected, got both", glint.axes, { box = unit, at = "top" })
   raises("axes.bxo: no such field; did you mean 'box'?", glint.axes, { bxo = unit })
   raises("label.box: no such field", glint.label, { text = "a", box = unit })
   local boxed = glint.axes { box = unit }
-  raises("axes.at: of axes without a box; with one they lie at its edges", function() boxed.at = "top" end)
+  raises("axes.at: only axes without a box have it; with a box they lie at its edges", function() boxed.at = "top" end)
   local l = glint.label { text = "a" }
   raises("label.size: finite number expected, got inf", function() l.size = math.huge end)
   check(l.size == nil, "it is as it was")

@@ -2,7 +2,7 @@
 /// surface is, by what the cast knows of the primitive that a ray starts on.
 ///
 /// The distance of what is seen at last is found once more from where the ray began: what stands behind holes is where it
-/// would be without them, to the last bit. A first hole in what is flat is passed over from the eye, too, so that a surface
+/// would be without them, to the last bit. A first hole in what is flat is ignored from the eye, too, so that a surface
 /// in the same plane shows in it; surfaces in the plane of a later hole are passed with it.
 #include "engine/effects/cut_out/cut_out.h"
 #include "engine/base/alloc.h"

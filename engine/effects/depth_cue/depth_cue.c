@@ -105,7 +105,7 @@ static bool called(const glint_plan *plan) { return plan->depth_cue.on || plan->
 
 const glint_stage glint_stage_depth_cue = {
     .name = "depth_cue",
-    .doc = "light faded by the way from the eye",
+    .doc = "light faded by the distance from the eye",
     .called = called,
     .own = own_key,
     .reads = GLINT_READS_OWN(DEPTH_CUE),

@@ -20,7 +20,7 @@ static inline float R(farthest_in)(const R(beam) * beam, uint32_t cell)
     vf far = f_set(-HUGE_VALF);
     for (uint32_t j = beam->begin[cell]; j < end; j += VF) {
         const unsigned in_cell = end - j < VF ? (1u << (end - j)) - 1 : (1u << VF) - 1;
-        far = f_select(fm_from_bits(in_cell), f_max(f_load_any(beam->w + j), far), far); // NaN is passed over
+        far = f_select(fm_from_bits(in_cell), f_max(f_load_any(beam->w + j), far), far); // NaN is ignored
     }
     return f_max_all(far);
 }

@@ -203,7 +203,7 @@ static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_places) *
             beam->own[to] = args->prim[from] | (args->back[g] >> from % GLINT_GROUP & 1 ? BEAM_BACK : 0);
             beam->at[to] = (uint16_t)from;
             beam->cell[to] = (uint16_t)cell;
-            *far = larger(places->w[from], *far); // a w of NaN is passed over
+            *far = larger(places->w[from], *far); // a w of NaN is ignored
         }
 }
 

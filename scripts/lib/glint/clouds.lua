@@ -1,6 +1,6 @@
 -- Clouds of points with a head: .ply without faces (text or binary), .pcd (ascii, binary or binary_compressed).
 -- glint.points calls this. Columns have the names of the file; red, green and blue are the colour of a point. Points
--- that are not finite, as in the gaps of a scan, are passed over.
+-- that are not finite, as in the gaps of a scan, are ignored.
 local frames = require "glint.frames"
 
 local clouds = {}

@@ -6,7 +6,7 @@
 -- last three are a colour, or a normal where all are of length 1; seven are x, y, z, intensity and a colour;
 -- options.columns = { "label", "x", ... } says otherwise. The separator is the first of tab, semicolon and comma in
 -- that line, else blanks. A field may stand "in quotes", with "" for a quote. Lines that are empty or begin with # are
--- passed over.
+-- ignored.
 local clouds, frames, lines = require "glint.clouds", require "glint.frames", require "glint.lines"
 
 local points = {}

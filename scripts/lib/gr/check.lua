@@ -39,7 +39,7 @@ function check.tell(key, text, ...)
   glint._warn(placed(text, ...))
 end
 
---- Tells once of arguments beyond those that a call reads; what says nothing (0, false, "") is passed over in silence.
+--- Tells once of arguments beyond those that a call reads; what says nothing (0, false, "") is ignored in silence.
 function check.left_out(call, ...)
   local texts, says = {}, false
   for i = 1, select("#", ...) do
