@@ -7,8 +7,9 @@
 /// Vectors   `double v[3]` is x, y, z or red, green, blue. The world is right-handed.
 /// Errors    every function that can fail returns a glint_status and fills `error` (which may be NULL). Outputs and
 ///           objects are then as they were. The message starts with the argument's name: "shininess: number >= 0
-///           expected, got -1". NULL for a pointer that is not optional is GLINT_ERR_INVALID, too: "shape: pointer expected, got NULL".
-///           Functions that return something else, such as glint_image_width, need a valid object.
+///           expected, got -1". NULL for a pointer that is not optional is GLINT_ERR_INVALID, too: "shape: pointer
+///           expected, got NULL". Functions without a status return 0, NULL or false for it, or do nothing; a transform
+///           is then the identity.
 /// Ownership `_create` returns a reference the caller owns and gives back with `_release`; `_retain` takes another.
 ///           `_release(NULL)` does nothing. Pointers in a description struct are borrowed for the call only.
 /// Threads   described objects (material, light, camera, shape, overlay, scene) belong to one thread at a time. A plan is

@@ -173,7 +173,10 @@ void glint_reference_destroy(glint_reference *reference)
     free(reference);
 }
 
-const glint_image *glint_reference_image(const glint_reference *reference) { return reference->image; }
+const glint_image *glint_reference_image(const glint_reference *reference)
+{
+    return reference ? reference->image : NULL;
+}
 
 // ---- Measuring ----------------------------------------------------------------------------------------------------
 

@@ -279,7 +279,12 @@ glint_status glint_draft_create(const char *path, glint_draft **out, glint_error
     return GLINT_OK;
 }
 
-const char *glint_draft_name(const glint_draft *draft) { return draft->temporary ? draft->temporary : draft->path; }
+const char *glint_draft_name(const glint_draft *draft)
+{
+    if (!draft)
+        return NULL;
+    return draft->temporary ? draft->temporary : draft->path;
+}
 
 glint_status glint_draft_append(glint_draft *draft, const void *bytes, size_t size, glint_error *error)
 {

@@ -85,6 +85,8 @@ static bool is_left(int folder, const char *name, long process, bool is_ours, co
 
 void glint_drafts_collect(const char *path)
 {
+    if (!path)
+        return;
     char host[GLINT_HOST_SIZE];
     DIR *folder = opendir(path);
     glint_host_name(host);

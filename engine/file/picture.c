@@ -62,6 +62,8 @@ static bool add_text(void *user, const uint8_t *bytes, size_t size)
 
 const char *glint_picture_text(const glint_picture *picture, const char *keyword)
 {
+    if (!picture || !keyword)
+        return NULL;
     for (const entry *text = picture->texts; text; text = text->next)
         if (strcmp(text->keyword, keyword) == 0)
             return text->value;
@@ -169,15 +171,15 @@ void glint_picture_destroy(glint_picture *picture)
     free(picture);
 }
 
-int glint_picture_width(const glint_picture *picture) { return picture->head.width; }
+int glint_picture_width(const glint_picture *picture) { return picture ? picture->head.width : 0; }
 
-int glint_picture_height(const glint_picture *picture) { return picture->head.height; }
+int glint_picture_height(const glint_picture *picture) { return picture ? picture->head.height : 0; }
 
-int glint_picture_bits(const glint_picture *picture) { return picture->head.bits; }
+int glint_picture_bits(const glint_picture *picture) { return picture ? picture->head.bits : 0; }
 
-int glint_picture_channels(const glint_picture *picture) { return picture->head.channels; }
+int glint_picture_channels(const glint_picture *picture) { return picture ? picture->head.channels : 0; }
 
-glint_transfer glint_picture_transfer(const glint_picture *picture) { return picture->head.transfer; }
+glint_transfer glint_picture_transfer(const glint_picture *picture) { return picture ? picture->head.transfer : 0; }
 
 const void *glint_picture_codes(const glint_picture *picture) { return picture->codes; }
 
@@ -199,6 +201,8 @@ static unsigned code_at(const glint_picture *picture, size_t i)
 
 void glint_picture_row(const glint_picture *picture, int y, int backdrop, uint8_t *rgb)
 {
+    if (!picture || !rgb)
+        return;
     if (picture->values) {
         row_of_values(picture, y, rgb);
         return;
@@ -217,6 +221,8 @@ void glint_picture_row(const glint_picture *picture, int y, int backdrop, uint8_
 
 void glint_picture_light(const glint_picture *picture, int y, float *rgb)
 {
+    if (!picture || !rgb)
+        return;
     const size_t width = (size_t)picture->head.width, channels = (size_t)picture->head.channels;
     const size_t first = (size_t)y * width * channels;
     const double most = picture->head.bits == 16 ? 65535 : 255;

@@ -479,6 +479,8 @@ glint_status glint_image_to_bytes(const glint_image *image, const glint_write_de
 
 bool glint_file_has_key(const char *path, const char *key)
 {
+    if (!path || !key)
+        return false;
     struct glint_bytes bytes = { 0 };
     glint_drafts_collect_beside(path); // a run that finds all of its pictures opens no draft
     if (glint_file_read_picture(path, &bytes, NULL)) // as of a pipe, which keeps nothing

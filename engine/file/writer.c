@@ -337,6 +337,8 @@ glint_status glint_writer_submit(glint_writer *writer, glint_image *image, const
 
 bool glint_writer_collect(glint_writer *writer, bool wait, glint_write_result *result)
 {
+    if (!writer || !result)
+        return false;
     pthread_mutex_lock(&writer->lock);
     while (wait && writer->first && writer->first->state != JOB_DONE)
         pthread_cond_wait(&writer->moved, &writer->lock);
@@ -355,6 +357,8 @@ bool glint_writer_collect(glint_writer *writer, bool wait, glint_write_result *r
 
 void glint_writer_cancel(glint_writer *writer)
 {
+    if (!writer)
+        return;
     pthread_mutex_lock(&writer->lock);
     for (job *j = writer->first; j; j = j->next) {
         if (j->state != JOB_QUEUED)

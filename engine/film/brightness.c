@@ -7,7 +7,7 @@
 
 #define STEPS 100 ///< of a stop
 
-double glint_image_exposure(const glint_image *image) { return image->exposure; }
+double glint_image_exposure(const glint_image *image) { return image ? image->exposure : 0; }
 
 static void add_plane(const float *light, size_t count, float gain, glint_brightness *sum)
 {

@@ -253,6 +253,8 @@ static bool is_black_code(const glint_image *image, size_t i)
 
 bool glint_image_is_black(const glint_image *image)
 {
+    if (!image)
+        return false;
     const size_t pixels = (size_t)image->width * (size_t)image->height;
     float *const *light = image->plane[GLINT_PASS_BEAUTY];
     bool black = image->codes || light[0];
@@ -306,20 +308,26 @@ void glint_image_release(glint_image *image)
 
 const char *glint_image_derivative(const glint_image *image, size_t index)
 {
+    if (!image)
+        return NULL;
     return index < GLINT_DERIVATIVES_MAX && *image->derivative[index] ? image->derivative[index] : NULL;
 }
 
 const char *glint_image_light_pass(const glint_image *image, size_t index)
 {
+    if (!image)
+        return NULL;
     return index < image->light_count ? image->light_name[index] : NULL;
 }
 
-int glint_image_width(const glint_image *image) { return image->width; }
+int glint_image_width(const glint_image *image) { return image ? image->width : 0; }
 
-int glint_image_height(const glint_image *image) { return image->height; }
+int glint_image_height(const glint_image *image) { return image ? image->height : 0; }
 
 bool glint_image_has_pass(const glint_image *image, glint_pass pass)
 {
+    if (!image)
+        return false;
     return glint_image_planes(image, pass)[0] != NULL;
 }
 

@@ -135,6 +135,8 @@ static float first_of_code(const glint_tone_desc *desc, int k)
 
 void glint_tone_steps(const glint_tone_desc *tone, float least[255])
 {
+    if (!tone || !least)
+        return;
     glint_tone_desc desc = *tone;
     desc.bits = 8;
     for (int k = 1; k <= 255; k++)

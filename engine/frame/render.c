@@ -81,14 +81,21 @@ void glint_renderer_destroy(glint_renderer *renderer)
     free(renderer);
 }
 
-const char *glint_renderer_isa(const glint_renderer *renderer) { return renderer->stages->name; }
+const char *glint_renderer_isa(const glint_renderer *renderer) { return renderer ? renderer->stages->name : NULL; }
 
-int glint_renderer_threads(const glint_renderer *renderer) { return glint_pool_threads(renderer->pool); }
+int glint_renderer_threads(const glint_renderer *renderer) { return renderer ? glint_pool_threads(renderer->pool) : 0; }
 
-void glint_renderer_cancel(glint_renderer *renderer) { atomic_store(&renderer->cancelled, true); }
+void glint_renderer_cancel(glint_renderer *renderer)
+{
+    if (!renderer)
+        return;
+    atomic_store(&renderer->cancelled, true);
+}
 
 double glint_renderer_progress(const glint_renderer *renderer)
 {
+    if (!renderer)
+        return 0;
     const size_t count = atomic_load(&renderer->tile_count);
     return count ? (double)atomic_load(&renderer->tiles_done) / (double)count : 0;
 }

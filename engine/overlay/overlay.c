@@ -231,7 +231,7 @@ glint_status glint_overlay_set(glint_overlay *overlay, const glint_overlay_desc 
     return status;
 }
 
-const glint_overlay_desc *glint_overlay_get(const glint_overlay *overlay) { return &overlay->desc; }
+const glint_overlay_desc *glint_overlay_get(const glint_overlay *overlay) { return overlay ? &overlay->desc : NULL; }
 
 glint_overlay *glint_overlay_retain(glint_overlay *overlay)
 {

@@ -43,6 +43,8 @@ static void find_pixels(const glint_camera_desc *desc, double width, double heig
 
 void glint_camera_window(const glint_camera_desc *desc, double width, double height, double window[4])
 {
+    if (!desc || !window)
+        return;
     double half[2], span[2];
     find_pixels(desc, width, height, half, span);
     window[0] = -span[0] * half[0];

@@ -339,12 +339,16 @@ const glint_render_desc *glint_plan_render_desc(const glint_plan *plan) { return
 
 size_t glint_plan_effects(const glint_plan *plan, const glint_effect **list)
 {
+    if (!plan || !list)
+        return 0;
     *list = plan->effects;
     return plan->effect_count;
 }
 
 size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list)
 {
+    if (!plan || !list)
+        return 0;
     *list = plan->stage_list;
     return plan->stage_count;
 }
@@ -383,6 +387,8 @@ static void add_rays(glint_ray_counts *to, glint_ray_counts more)
 
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
 {
+    if (!plan)
+        return (glint_ray_counts) { 0 };
     const glint_extent extent = glint_plan_extent(&plan->desc);
     const uint64_t each = (uint64_t)plan->desc.samples + (plan->base ? 1 : 0);
     const uint64_t samples = (uint64_t)extent.width * (uint64_t)extent.height * each;
@@ -445,11 +451,15 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
 
 void glint_whole_key(const glint_plan *plan, const glint_write_desc *desc, char hex[33])
 {
+    if (!plan || !desc || !hex)
+        return;
     glint_key_hex(whole_key(plan, desc), hex);
 }
 
 void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char hex[33])
 {
+    if (!plan || !desc || !hex)
+        return;
     glint_key key = whole_key(plan, desc);
     if (plan->desc.region[2] > 0)
         key = glint_key_add(key, plan->desc.region, sizeof plan->desc.region);

@@ -25,6 +25,8 @@ static double shade_work(const glint_plan *plan, const glint_plan *before)
 
 double glint_plan_work_after(const glint_plan *plan, const glint_plan *before, uint32_t *stages)
 {
+    if (!plan || !before || !stages)
+        return 0;
     double work = 0;
     *stages = 0;
     for (uint32_t id = 0, i = 0; id < GLINT_STAGE_COUNT; id++) {

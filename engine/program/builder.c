@@ -138,6 +138,8 @@ glint_status glint_builder_input(glint_builder *builder, glint_input input, glin
 
 bool glint_builder_is_number(const glint_builder *builder, glint_value value, double *number)
 {
+    if (!builder)
+        return false;
     if (value >= builder->count || builder->nodes[value].op != GLINT_SSA_NUMBER)
         return false;
     if (number)
@@ -147,6 +149,8 @@ bool glint_builder_is_number(const glint_builder *builder, glint_value value, do
 
 size_t glint_builder_length(const glint_builder *builder)
 {
+    if (!builder)
+        return 0;
     size_t length = 0;
     for (uint32_t i = 0; i < builder->count; i++)
         length += glint_ssa_is_op(&builder->nodes[i]) && builder->nodes[i].part == 0;
@@ -187,6 +191,8 @@ void glint_fold(glint_op op, const glint_texture *texture, const double *operand
 
 void glint_op_apply(glint_op op, const double *operands, double *results)
 {
+    if (!operands || !results)
+        return;
     double all[GLINT_RESULTS_MAX];
     glint_fold(op, NULL, operands, all);
     memcpy(results, all, glint_op_info_of(op)->results * sizeof *all);

@@ -51,6 +51,8 @@ static void put_place(text *t, const glint_program_code *code, uint32_t row)
 
 char *glint_program_listing(const glint_program *program)
 {
+    if (!program)
+        return NULL;
     const glint_program_code *code = &program->code;
     text t = { 0 };
     for (uint32_t at = 0; at < code->length; at++) {

@@ -15,6 +15,8 @@ glint_status glint_builder_parameter(glint_builder *builder, double number, cons
     uint32_t i = 0;
     if (count > GLINT_PARAMETERS_MAX)
         return glint_fail(error, GLINT_ERR_INVALID, "count: at most %d slopes expected, got %zu", GLINT_PARAMETERS_MAX, count);
+    if (count)
+        GLINT_REFUSE_NULL(slopes, error);
     memcpy(all, slopes, count * sizeof *slopes);
     while (i < builder->parameter_count && memcmp(builder->parameters[i], all, sizeof all) != 0)
         i++;
@@ -119,5 +121,7 @@ glint_status glint_builder_finish_open(const glint_builder *builder, const glint
 
 const glint_program *glint_program_tangent(const glint_program *program, size_t parameter)
 {
+    if (!program)
+        return NULL;
     return program->tangents && parameter < GLINT_PARAMETERS_MAX ? program->tangents[parameter] : NULL;
 }

@@ -28,27 +28,33 @@ void glint_program_release(glint_program *program)
     free(program);
 }
 
-glint_program_kind glint_program_kind_of(const glint_program *program) { return program->kind; }
+glint_program_kind glint_program_kind_of(const glint_program *program) { return program ? program->kind : 0; }
 
-size_t glint_program_output_count(const glint_program *program) { return program->code.output_count; }
+size_t glint_program_output_count(const glint_program *program) { return program ? program->code.output_count : 0; }
 
-size_t glint_program_length(const glint_program *program) { return program->code.length; }
+size_t glint_program_length(const glint_program *program) { return program ? program->code.length : 0; }
 
-size_t glint_program_rows(const glint_program *program) { return program->code.row_count; }
+size_t glint_program_rows(const glint_program *program) { return program ? program->code.row_count : 0; }
 
 bool glint_program_reads(const glint_program *program, glint_input input)
 {
+    if (!program)
+        return false;
     return (unsigned)input < GLINT_INPUT_COUNT && (program->inputs >> input & 1);
 }
 
 void glint_program_structure(const glint_program *program, uint64_t key[2])
 {
+    if (!program || !key)
+        return;
     key[0] = program->structure.high;
     key[1] = program->structure.low;
 }
 
 bool glint_program_constant(const glint_program *program, double *outputs)
 {
+    if (!program || !outputs)
+        return false;
     const glint_program_code *code = &program->code;
     for (uint32_t k = 0; k < code->output_count; k++)
         if (code->outputs[k] < GLINT_ROW_NUMBER)

@@ -41,9 +41,9 @@ void glint_texture_release(glint_texture *texture)
     free(texture);
 }
 
-int glint_texture_width(const glint_texture *texture) { return (int)texture->levels[0].width; }
+int glint_texture_width(const glint_texture *texture) { return texture ? (int)texture->levels[0].width : 0; }
 
-int glint_texture_height(const glint_texture *texture) { return (int)texture->levels[0].height; }
+int glint_texture_height(const glint_texture *texture) { return texture ? (int)texture->levels[0].height : 0; }
 
 const glint_texture_table *glint_texture_table_of(const glint_texture *texture) { return &texture->table; }
 

@@ -129,7 +129,7 @@ glint_status glint_camera_set(glint_camera *camera, const glint_camera_desc *des
     return status;
 }
 
-const glint_camera_desc *glint_camera_get(const glint_camera *camera) { return &camera->desc; }
+const glint_camera_desc *glint_camera_get(const glint_camera *camera) { return camera ? &camera->desc : NULL; }
 
 glint_camera *glint_camera_retain(glint_camera *camera)
 {

@@ -149,6 +149,9 @@ glint_status glint_group_remove(glint_shape *group, glint_shape *child, glint_er
     return GLINT_OK;
 }
 
-size_t glint_group_count(const glint_shape *group) { return group->children.count; }
+size_t glint_group_count(const glint_shape *group) { return group ? group->children.count : 0; }
 
-glint_shape *glint_group_child(const glint_shape *group, size_t index) { return group->children.items[index]; }
+glint_shape *glint_group_child(const glint_shape *group, size_t index)
+{
+    return group ? group->children.items[index] : NULL;
+}

@@ -223,7 +223,7 @@ glint_status glint_light_set(glint_light *light, const glint_light_desc *desc, g
     return status ? status : take(light, desc, error);
 }
 
-const glint_light_desc *glint_light_get(const glint_light *light) { return &light->desc; }
+const glint_light_desc *glint_light_get(const glint_light *light) { return light ? &light->desc : NULL; }
 
 glint_light *glint_light_retain(glint_light *light)
 {

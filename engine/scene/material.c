@@ -200,7 +200,10 @@ glint_status glint_material_set(glint_material *material, const glint_material_d
     return GLINT_OK;
 }
 
-const glint_material_desc *glint_material_get(const glint_material *material) { return &material->desc; }
+const glint_material_desc *glint_material_get(const glint_material *material)
+{
+    return material ? &material->desc : NULL;
+}
 
 glint_material *glint_material_retain(glint_material *material)
 {
@@ -219,6 +222,8 @@ void glint_material_release(glint_material *material)
 
 void glint_material_desc_resolve(glint_material_desc *desc)
 {
+    if (!desc)
+        return;
     const double r = desc->ior < 1e300 ? (desc->ior - 1) / (desc->ior + 1) : 1;
     for (int c = 0; c < 3; c++) {
         if (!desc->has_ambient)

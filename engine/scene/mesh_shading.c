@@ -137,6 +137,8 @@ static double least_cosine(const glint_mesh *mesh, size_t i)
 
 double glint_mesh_bend(const glint_shape *shape)
 {
+    if (!shape)
+        return 0;
     glint_mesh *mesh = shape->mesh;
     double least = 1;
     if (!mesh || !mesh->normals || shape->desc.shading != GLINT_SHADING_PHONG)

@@ -120,6 +120,8 @@ glint_status glint_sphere_mesh_create(const double center[3], double radius, dou
 
 bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, double *segments)
 {
+    if (!shape || !center || !radius || !segments)
+        return false;
     if (!shape->mesh || shape->mesh->segments == 0)
         return false;
     vec_copy(center, shape->mesh->center);

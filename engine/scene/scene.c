@@ -107,7 +107,7 @@ glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *given, 
     return GLINT_OK;
 }
 
-const glint_scene_desc *glint_scene_get(const glint_scene *scene) { return &scene->desc; }
+const glint_scene_desc *glint_scene_get(const glint_scene *scene) { return scene ? &scene->desc : NULL; }
 
 glint_scene *glint_scene_retain(glint_scene *scene)
 {
@@ -211,14 +211,23 @@ glint_status glint_scene_remove_overlay(glint_scene *scene, glint_overlay *overl
     return status;
 }
 
-size_t glint_scene_shape_count(const glint_scene *scene) { return scene->shapes.count; }
+size_t glint_scene_shape_count(const glint_scene *scene) { return scene ? scene->shapes.count : 0; }
 
-size_t glint_scene_light_count(const glint_scene *scene) { return scene->lights.count; }
+size_t glint_scene_light_count(const glint_scene *scene) { return scene ? scene->lights.count : 0; }
 
-size_t glint_scene_overlay_count(const glint_scene *scene) { return scene->overlays.count; }
+size_t glint_scene_overlay_count(const glint_scene *scene) { return scene ? scene->overlays.count : 0; }
 
-glint_shape *glint_scene_shape_at(const glint_scene *scene, size_t index) { return glint_scene_shape(scene, index); }
+glint_shape *glint_scene_shape_at(const glint_scene *scene, size_t index)
+{
+    return scene ? glint_scene_shape(scene, index) : NULL;
+}
 
-glint_light *glint_scene_light_at(const glint_scene *scene, size_t index) { return glint_scene_light(scene, index); }
+glint_light *glint_scene_light_at(const glint_scene *scene, size_t index)
+{
+    return scene ? glint_scene_light(scene, index) : NULL;
+}
 
-glint_overlay *glint_scene_overlay_at(const glint_scene *scene, size_t index) { return scene->overlays.items[index]; }
+glint_overlay *glint_scene_overlay_at(const glint_scene *scene, size_t index)
+{
+    return scene ? scene->overlays.items[index] : NULL;
+}

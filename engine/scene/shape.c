@@ -205,7 +205,7 @@ glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, g
     return GLINT_OK;
 }
 
-const glint_shape_desc *glint_shape_get(const glint_shape *shape) { return &shape->desc; }
+const glint_shape_desc *glint_shape_get(const glint_shape *shape) { return shape ? &shape->desc : NULL; }
 
 glint_shape *glint_shape_retain(glint_shape *shape)
 {
@@ -243,6 +243,8 @@ void glint_shape_stretch(glint_shape *shape, const double center[3], double radi
 
 bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[3])
 {
+    if (!shape || !lower || !upper)
+        return false;
     if (shape->desc.kind != GLINT_SHAPE_SPHERES && shape->desc.kind != GLINT_SHAPE_MESH)
         return false;
     memcpy(lower, shape->lower, sizeof shape->lower);
@@ -250,7 +252,7 @@ bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[
     return true;
 }
 
-size_t glint_spheres_count(const glint_shape *shape) { return shape->count; }
+size_t glint_spheres_count(const glint_shape *shape) { return shape ? shape->count : 0; }
 
 static void read_sphere(const glint_spheres_desc *desc, size_t i, double out[4])
 {
@@ -357,6 +359,8 @@ void glint_describe_shape(const glint_shape_desc *desc, size_t number, char *out
 
 size_t glint_shape_materials(const glint_shape *shape, glint_material *const **list)
 {
+    if (!shape || !list)
+        return 0;
     *list = shape->materials;
     return shape->material_count;
 }

@@ -10,6 +10,8 @@ glint_transform glint_transform_identity(void)
 
 glint_transform glint_transform_product(const glint_transform *outer, const glint_transform *inner)
 {
+    if (!outer || !inner)
+        return glint_transform_identity();
     glint_transform out;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 4; j++)
@@ -20,6 +22,8 @@ glint_transform glint_transform_product(const glint_transform *outer, const glin
 
 glint_transform glint_transform_translate(const double by[3])
 {
+    if (!by)
+        return glint_transform_identity();
     glint_transform out = glint_transform_identity();
     for (int i = 0; i < 3; i++)
         out.m[i][3] = by[i];
@@ -28,6 +32,8 @@ glint_transform glint_transform_translate(const double by[3])
 
 glint_transform glint_transform_scale(const double by[3])
 {
+    if (!by)
+        return glint_transform_identity();
     glint_transform out = glint_transform_identity();
     for (int i = 0; i < 3; i++)
         out.m[i][i] = by[i];
@@ -51,6 +57,8 @@ static void turn(double degrees, double *sine, double *cosine)
 
 glint_transform glint_transform_rotate(const double axis[3], double degrees)
 {
+    if (!axis)
+        return glint_transform_identity();
     double a[3], s, c;
     glint_transform out = glint_transform_identity();
     vec_normalize(a, axis);

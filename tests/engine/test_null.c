@@ -117,6 +117,10 @@ static void test_null_of_objects(void **state)
     REFUSES("center", glint_sphere_mesh_create(NULL, 1, 8, &mesh, &shape, &error));
     REFUSES("desc", glint_overlay_create(NULL, &(glint_overlay *) { NULL }, &error));
     REFUSES("desc", glint_texture_create(NULL, &(glint_texture *) { NULL }, &error));
+    glint_builder *builder = NULL;
+    assert_int_equal(glint_builder_create(GLINT_PROGRAM_PATTERN, &builder, NULL), GLINT_OK);
+    REFUSES("slopes", glint_builder_parameter(builder, 1, NULL, 1, &(glint_value) { 0 }, &error));
+    glint_builder_destroy(builder);
     destroy(&p);
 }
 
@@ -145,12 +149,191 @@ static void test_null_of_frames(void **state)
     destroy(&p);
 }
 
+/// Calls every function of engine/glint.h that takes a pointer with NULL for all of its pointers: a status is
+/// GLINT_ERR_INVALID, any other result is 0, NULL or false.
+static void test_null_of_every_function(void **state)
+{
+#define INVALID(call) assert_int_equal(call, GLINT_ERR_INVALID)
+#define NOTHING(call) assert_false(call)
+    (void)state;
+    glint_op_apply(0, NULL, NULL);
+    INVALID(glint_builder_create(0, NULL, NULL));
+    glint_builder_destroy(NULL);
+    INVALID(glint_builder_number(NULL, 0, NULL, NULL));
+    INVALID(glint_builder_parameter(NULL, 0, NULL, 0, NULL, NULL));
+    INVALID(glint_builder_input(NULL, 0, NULL, NULL));
+    INVALID(glint_builder_op(NULL, 0, NULL, NULL, NULL));
+    INVALID(glint_builder_texel(NULL, NULL, 0, 0, 0, NULL, NULL));
+    NOTHING(glint_builder_is_number(NULL, 0, NULL));
+    NOTHING(glint_builder_length(NULL));
+    INVALID(glint_builder_finish(NULL, NULL, 0, NULL, NULL));
+    NOTHING(glint_program_retain(NULL));
+    glint_program_release(NULL);
+    INVALID(glint_program_evaluate(NULL, NULL, NULL, NULL));
+    NOTHING(glint_program_kind_of(NULL));
+    NOTHING(glint_program_output_count(NULL));
+    NOTHING(glint_program_length(NULL));
+    NOTHING(glint_program_rows(NULL));
+    NOTHING(glint_program_reads(NULL, 0));
+    glint_program_structure(NULL, NULL);
+    NOTHING(glint_program_constant(NULL, NULL));
+    NOTHING(glint_program_tangent(NULL, 0));
+    NOTHING(glint_program_listing(NULL));
+    INVALID(glint_texture_create(NULL, NULL, NULL));
+    INVALID(glint_texture_rewrap(NULL, 0, NULL, NULL));
+    NOTHING(glint_texture_retain(NULL));
+    glint_texture_release(NULL);
+    NOTHING(glint_texture_width(NULL));
+    NOTHING(glint_texture_height(NULL));
+    NOTHING(glint_object_fields(0, NULL));
+    glint_material_desc_resolve(NULL);
+    INVALID(glint_material_create(NULL, NULL, NULL));
+    INVALID(glint_material_set(NULL, NULL, NULL));
+    NOTHING(glint_material_get(NULL));
+    NOTHING(glint_material_retain(NULL));
+    glint_material_release(NULL);
+    INVALID(glint_material_evaluate(NULL, NULL, NULL, NULL, NULL, NULL));
+    INVALID(glint_light_create(NULL, NULL, NULL));
+    INVALID(glint_light_set(NULL, NULL, NULL));
+    NOTHING(glint_light_get(NULL));
+    NOTHING(glint_light_retain(NULL));
+    glint_light_release(NULL);
+    INVALID(glint_camera_create(NULL, NULL, NULL));
+    INVALID(glint_camera_set(NULL, NULL, NULL));
+    NOTHING(glint_camera_get(NULL));
+    glint_camera_window(NULL, 0, 0, NULL);
+    NOTHING(glint_camera_retain(NULL));
+    glint_camera_release(NULL);
+    (void)glint_transform_product(NULL, NULL);
+    (void)glint_transform_translate(NULL);
+    (void)glint_transform_scale(NULL);
+    (void)glint_transform_rotate(NULL, 0);
+    INVALID(glint_shape_create(NULL, NULL, NULL));
+    INVALID(glint_shape_set(NULL, NULL, NULL));
+    NOTHING(glint_shape_get(NULL));
+    NOTHING(glint_shape_retain(NULL));
+    glint_shape_release(NULL);
+    NOTHING(glint_shape_materials(NULL, NULL));
+    NOTHING(glint_shape_bounds(NULL, NULL, NULL));
+    INVALID(glint_group_add(NULL, NULL, NULL));
+    INVALID(glint_group_remove(NULL, NULL, NULL));
+    NOTHING(glint_group_count(NULL));
+    NOTHING(glint_group_child(NULL, 0));
+    INVALID(glint_spheres_create(NULL, NULL, NULL));
+    NOTHING(glint_spheres_count(NULL));
+    INVALID(glint_mesh_create(NULL, NULL, NULL));
+    INVALID(glint_mesh_load(NULL, NULL, NULL, NULL));
+    INVALID(glint_sphere_mesh_create(NULL, 0, 0, NULL, NULL, NULL));
+    NOTHING(glint_mesh_bend(NULL));
+    NOTHING(glint_sphere_mesh_get(NULL, NULL, NULL, NULL));
+    INVALID(glint_overlay_create(NULL, NULL, NULL));
+    INVALID(glint_overlay_set(NULL, NULL, NULL));
+    NOTHING(glint_overlay_get(NULL));
+    NOTHING(glint_overlay_retain(NULL));
+    glint_overlay_release(NULL);
+    INVALID(glint_scene_create(NULL, NULL));
+    INVALID(glint_scene_set(NULL, NULL, NULL));
+    NOTHING(glint_scene_get(NULL));
+    NOTHING(glint_scene_retain(NULL));
+    glint_scene_release(NULL);
+    INVALID(glint_scene_add_shape(NULL, NULL, NULL));
+    INVALID(glint_scene_add_light(NULL, NULL, NULL));
+    INVALID(glint_scene_remove_shape(NULL, NULL, NULL));
+    INVALID(glint_scene_remove_light(NULL, NULL, NULL));
+    INVALID(glint_scene_add_overlay(NULL, NULL, NULL));
+    INVALID(glint_scene_remove_overlay(NULL, NULL, NULL));
+    NOTHING(glint_scene_shape_count(NULL));
+    NOTHING(glint_scene_light_count(NULL));
+    NOTHING(glint_scene_overlay_count(NULL));
+    NOTHING(glint_scene_shape_at(NULL, 0));
+    NOTHING(glint_scene_light_at(NULL, 0));
+    NOTHING(glint_scene_overlay_at(NULL, 0));
+    glint_scene_light_pass(NULL, 0, NULL);
+    INVALID(glint_scene_cast(NULL, NULL, NULL, NULL, NULL, NULL));
+    assert_int_equal(glint_pass_from_name(NULL), GLINT_PASS_COUNT);
+    glint_tone_steps(NULL, NULL);
+    INVALID(glint_plan_create(NULL, NULL, NULL, NULL));
+    (void)glint_shutter_desc(NULL);
+    INVALID(glint_plan_create_exposed(NULL, NULL, NULL, 0, NULL, NULL));
+    glint_plan_destroy(NULL);
+    INVALID(glint_plan_check_overlays(NULL, 0, NULL, NULL, NULL));
+    NOTHING(glint_plan_render_desc(NULL));
+    NOTHING(glint_plan_light_pass(NULL, 0));
+    NOTHING(glint_plan_effects(NULL, NULL));
+    NOTHING(glint_plan_stages(NULL, NULL));
+    (void)glint_plan_expected_rays(NULL);
+    NOTHING(glint_plan_work_after(NULL, NULL, NULL));
+    NOTHING(glint_plan_program(NULL, 0, NULL));
+    INVALID(glint_renderer_create(NULL, NULL, NULL));
+    glint_renderer_destroy(NULL);
+    NOTHING(glint_renderer_isa(NULL));
+    NOTHING(glint_renderer_threads(NULL));
+    glint_renderer_cancel(NULL);
+    NOTHING(glint_renderer_progress(NULL));
+    INVALID(glint_render(NULL, NULL, NULL, NULL, NULL));
+    NOTHING(glint_image_retain(NULL));
+    glint_image_release(NULL);
+    NOTHING(glint_image_width(NULL));
+    NOTHING(glint_image_height(NULL));
+    NOTHING(glint_image_has_pass(NULL, 0));
+    NOTHING(glint_image_derivative(NULL, 0));
+    NOTHING(glint_image_light_pass(NULL, 0));
+    NOTHING(glint_image_is_black(NULL));
+    NOTHING(glint_image_exposure(NULL));
+    INVALID(glint_image_brightness(NULL, 0, NULL, NULL));
+    INVALID(glint_image_range(NULL, 0, NULL, NULL));
+    INVALID(glint_image_pixel(NULL, 0, 0, 0, NULL, NULL));
+    INVALID(glint_image_write(NULL, NULL, NULL));
+    INVALID(glint_image_to_bytes(NULL, NULL, NULL, NULL, NULL));
+    INVALID(glint_image_rgba(NULL, NULL, NULL, NULL));
+    glint_frame_key(NULL, NULL, NULL);
+    glint_whole_key(NULL, NULL, NULL);
+    NOTHING(glint_file_has_key(NULL, NULL));
+    INVALID(glint_writer_create(0, 0, NULL, NULL));
+    glint_writer_destroy(NULL);
+    INVALID(glint_writer_submit(NULL, NULL, NULL, NULL, NULL));
+    NOTHING(glint_writer_collect(NULL, 0, NULL));
+    glint_writer_cancel(NULL);
+    INVALID(glint_compare_files(NULL, NULL, NULL, NULL, NULL));
+    INVALID(glint_reference_create(NULL, 0, NULL, NULL, NULL));
+    glint_reference_destroy(NULL);
+    NOTHING(glint_reference_image(NULL));
+    INVALID(glint_reference_measure(NULL, NULL, 0, NULL, NULL));
+    INVALID(glint_reference_difference(NULL, NULL, 0, NULL, NULL));
+    INVALID(glint_lights_read(NULL, NULL, NULL));
+    INVALID(glint_image_relight(NULL, NULL, NULL, NULL));
+    INVALID(glint_draft_create(NULL, NULL, NULL));
+    NOTHING(glint_draft_name(NULL));
+    INVALID(glint_draft_append(NULL, NULL, 0, NULL));
+    INVALID(glint_draft_finish(NULL, NULL));
+    glint_draft_destroy(NULL);
+    glint_drafts_collect(NULL);
+    INVALID(glint_picture_read(NULL, 0, NULL, NULL));
+    INVALID(glint_picture_from_bytes(NULL, 0, NULL, NULL));
+    glint_picture_destroy(NULL);
+    NOTHING(glint_picture_width(NULL));
+    NOTHING(glint_picture_height(NULL));
+    NOTHING(glint_picture_bits(NULL));
+    NOTHING(glint_picture_channels(NULL));
+    NOTHING(glint_picture_transfer(NULL));
+    NOTHING(glint_picture_text(NULL, NULL));
+    glint_picture_row(NULL, 0, 0, NULL);
+    glint_picture_light(NULL, 0, NULL);
+    INVALID(glint_picture_join(NULL, 0, 0, 0, NULL, NULL));
+    INVALID(glint_sheet_write(NULL, NULL, NULL));
+    INVALID(glint_apng_create(NULL, NULL, NULL, NULL));
+    INVALID(glint_apng_add(NULL, NULL, NULL));
+    INVALID(glint_apng_finish(NULL, NULL));
+    glint_apng_destroy(NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_null_of_scenes),
         cmocka_unit_test(test_null_of_objects),
         cmocka_unit_test(test_null_of_frames),
+        cmocka_unit_test(test_null_of_every_function),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,6 +11,8 @@ typedef struct glint_light_groups groups;
 
 void glint_scene_light_pass(const glint_scene *scene, size_t index, char name[GLINT_NAME_SIZE])
 {
+    if (!scene || !name)
+        return;
     const glint_light_desc *desc = &glint_scene_light(scene, index)->desc;
     char plain[GLINT_NAME_SIZE];
     if (desc->group[0] || desc->name[0]) {
@@ -252,6 +254,8 @@ bool glint_light_groups_equal(const glint_plan *a, const glint_plan *b)
 
 const char *glint_plan_light_pass(const glint_plan *plan, size_t index)
 {
+    if (!plan)
+        return NULL;
     const groups *g = plan->light_groups;
     return g && index < g->pass_count ? g->name[index] : NULL;
 }

@@ -398,6 +398,8 @@ bool glint_patterns_see(const glint_plan_patterns *patterns)
 
 bool glint_plan_program(const glint_plan *plan, size_t index, glint_program_use *out)
 {
+    if (!plan || !out)
+        return false;
     const glint_plan_patterns *patterns = plan->patterns;
     for (uint32_t i = 0; patterns && i < patterns->material_count; i++)
         for (int field = 0; field < GLINT_FIELD_COUNT; field++) {

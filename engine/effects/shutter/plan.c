@@ -15,6 +15,8 @@
 
 glint_render_desc glint_shutter_desc(const glint_render_desc *frame)
 {
+    if (!frame)
+        return (glint_render_desc) { 0 };
     glint_render_desc desc = *frame;
     desc.codes = false;
     desc.derivatives = NULL;
