@@ -252,7 +252,7 @@ function tests.errors_tell_the_place_and_the_cure()
     return list[glint.floor(p.x)] * 2
   end)
   raises("or a table indexed by a value of the point?", function(p) return ({ 1 })[glint.floor(p.x)] end)
-  raises("got s, what is known of the point", function(x, y) return x + y end)
+  raises("got s, the values of the point", function(x, y) return x + y end)
   raises("a loop without an end? To Lua a comparison", function(p)
     local x = p.x
     while glint.less(x, 4) do x = x + 1 end
