@@ -222,7 +222,7 @@ glint_status glint_builder_op(glint_builder *builder, glint_op op, const glint_v
 /// The program keeps a reference to the texture.
 glint_status glint_builder_texel(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
                                  glint_value footprint, glint_value out[4], glint_error *error);
-/// Whether a value is a number, and which. False for what is no value of the builder. `number` may be NULL.
+/// Whether a value is a number, and which. False if it is not a value of the builder. `number` may be NULL.
 bool glint_builder_is_number(const glint_builder *builder, glint_value value, double *number);
 /// How many instructions the builder has so far, those that no output needs included.
 size_t glint_builder_length(const glint_builder *builder);
@@ -230,7 +230,7 @@ size_t glint_builder_length(const glint_builder *builder);
 ///
 /// count  pattern: 1 or 3; shader: 3, the diffuse part, or 6, diffuse and specular.
 ///
-/// GLINT_ERR_NOMEM; GLINT_ERR_INVALID for another count, for what is no value of the builder, and when the program is longer
+/// GLINT_ERR_NOMEM; GLINT_ERR_INVALID for another count, for something that is not a value of the builder, and when the program is longer
 /// than GLINT_PROGRAM_LENGTH_MAX or needs more rows than GLINT_PROGRAM_ROWS_MAX.
 glint_status glint_builder_finish(glint_builder *builder, const glint_value *outputs, size_t count, glint_program **out,
                                   glint_error *error);
@@ -1009,9 +1009,9 @@ typedef enum glint_precision { GLINT_DOUBLE, GLINT_FLOAT } glint_precision;
 /// How it is found what the eye sees. The pictures are the same in every bit, but where a ray runs in the very plane of a
 /// triangle, whose edges then are nothing but rounding: a pixel in some thousand pictures taken from such planes.
 typedef enum glint_visibility {
-    GLINT_VISIBILITY_AUTO, ///< what is likely to be faster
+    GLINT_VISIBILITY_AUTO, ///< the one that is likely to be faster
     GLINT_VISIBILITY_CAST, ///< a ray through each sample
-    GLINT_VISIBILITY_SCAN ///< triangles are projected; what is none is cast
+    GLINT_VISIBILITY_SCAN ///< triangles are projected; other shapes are cast
 } glint_visibility;
 
 /// The values of a picture's pixels, as linear float32. Light is the mean over the samples.
@@ -1303,7 +1303,7 @@ typedef struct glint_frame_stats {
     /// Share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
     double stage_reused[GLINT_STAGE_MAX];
     glint_ray_counts rays; ///< as cast; reused stages cast none
-    glint_work work; ///< 0 unless the renderer counts it; what is reused took none
+    glint_work work; ///< 0 unless the renderer counts it; reused results cost none
     uint64_t refined; ///< pixels that got all samples, where `adaptive` chooses; else 0
     uint64_t pixels; ///< rendered, for a region all pixels of the tiles that it touches; `clipped` and `nonfinite` count these
     uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
@@ -1441,14 +1441,14 @@ typedef struct glint_write_result {
 /// threads      that encode an image together, 1 .. 1024; 0: one per processor; 1: the writer's own. Files do not
 ///              depend on it.
 glint_status glint_writer_create(int queue_depth, int threads, glint_writer **out, glint_error *error);
-/// Finishes what is queued, then frees. Results not collected are lost.
+/// Finishes the queue, then frees. Results not collected are lost.
 void glint_writer_destroy(glint_writer *writer);
 /// Retains the image and copies `desc` with its strings. `user` comes back with the result.
 glint_status glint_writer_submit(glint_writer *writer, glint_image *image, const glint_write_desc *desc, void *user,
                                  glint_error *error);
 /// Takes the next result, in the order submitted; waits for it when `wait`. False: none (left).
 bool glint_writer_collect(glint_writer *writer, bool wait, glint_write_result *result);
-/// Drops what is queued and not begun (their results read GLINT_ERR_CANCELLED); files that are begun are finished.
+/// Drops queued files that are not begun (their results read GLINT_ERR_CANCELLED); files that are begun are finished.
 void glint_writer_cancel(glint_writer *writer);
 
 /// How far two pictures are apart, over all pixels and channels.
@@ -1548,7 +1548,7 @@ void glint_drafts_abandon(void);
 /// A finished .png or .pfm, read again. Immutable.
 typedef struct glint_picture glint_picture;
 
-/// Reads `path`; what is not a whole file is GLINT_ERR_FORMAT. Without `pixels` only the size and the texts: then the
+/// Reads `path`; an incomplete file is GLINT_ERR_FORMAT. Without `pixels` only the size and the texts: then the
 /// deflated data are not looked at, the CRCs are. Messages name the file.
 glint_status glint_picture_read(const char *path, bool pixels, glint_picture **out, glint_error *error);
 /// The same of the bytes of a .png, with its pixels; they may be freed after the call.

@@ -126,7 +126,7 @@ bool cli_option_may_lack(const cli_option *option); ///< its text may be left ou
 /// Adds a --set. False: out of memory.
 bool cli_add_set(glintL_request *request, const char *name, const char *text);
 
-/// Reads the command line; what it keeps points into argv. False: `message` says what is wrong.
+/// Reads the command line; the options point into argv. False: `message` says what is wrong.
 bool cli_read_options(int argc, char **argv, cli_options *options, char message[GLINTL_MESSAGE_SIZE]);
 void cli_free_options(cli_options *options);
 /// The command of that name; NULL: none, and *near is the nearest name, or NULL.
@@ -151,14 +151,14 @@ typedef struct cli_file_list {
 
 /// The files that the command's words name: themselves, or, of one word with a place for a number, the selected files
 /// that fit it. False: frames are missing, there are none, or options->output is one of them; the message names them. To
-/// be freed in any case.
+/// be freed also on failure.
 bool cli_list_files(const cli_options *options, const glintL_selection *selection, cli_file_list *out,
                     char message[GLINTL_MESSAGE_SIZE]);
 void cli_free_list(cli_file_list *list);
 
 // ---- sweep_points.c ----
 
-/// "name=a:b:n", "name=a:b:*n" or "name=v1,v2"; the name stays in `text`. To be freed in any case.
+/// "name=a:b:n", "name=a:b:*n" or "name=v1,v2"; the name stays in `text`. To be freed also on failure.
 bool cli_read_sweep(char *text, cli_sweep *sweep, char message[GLINTL_MESSAGE_SIZE]);
 int64_t cli_sweep_points(const cli_options *options); ///< the product of the counts; 0: there is no --sweep
 /// Gives the swept parameters their values at a point, 1 ..: the first --sweep changes fastest.

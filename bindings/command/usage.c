@@ -19,7 +19,7 @@ static void print_words(FILE *out, int *at, const char *words)
     }
 }
 
-// A line of --help: what is written, then what it does, beside it or where it is long below it.
+// A line of --help: the option, then what it does: on the same line, or below a long option.
 static void print_line(FILE *out, const char *head, const char *help, bool lists_passes)
 {
     int at = fprintf(out, "  %s", head);

@@ -43,7 +43,7 @@ typedef struct cost_copy {
 
 /// The objects that a knob may edit, each once, with their descriptions as the script left them.
 typedef struct cost_scene {
-    glint_scene *scene; ///< what is planned: the original or a copy
+    glint_scene *scene; ///< the planned scene: the original or a copy
     glint_scene *original; ///< borrowed
     cost_copy copies[COST_VALUES_MAX];
     int copy_count;
@@ -69,7 +69,7 @@ glint_status cost_scene_set_light(cost_scene *scene, size_t i, const glint_light
 /// Sets what the scene itself is described by.
 glint_status cost_scene_set(cost_scene *scene, const glint_scene_desc *desc, glint_error *error);
 /// Without indirect light every surface matt white, and of the lights only number `light` (all of them when it is not one's) at strength 1:
-/// what is lit then is what that light reaches. Shadows stay as they are set.
+/// so that exactly the points that this light reaches are lit. Shadows stay as they are set.
 glint_status cost_scene_show_light(cost_scene *scene, size_t light, glint_error *error);
 
 // ---- cost/shapes.c ----

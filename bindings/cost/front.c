@@ -245,7 +245,7 @@ static void advise_step(cost_study *study, const cost_row *row)
              row->is_resolved ? "" : " or less (the reference does not resolve it)");
 }
 
-// Where nothing is nearer to the truth: what is saved by the cheapest step that loses least.
+// Where no setting is more accurate: what the cheapest step with the smallest loss saves.
 static const cost_row *find_cheaper(const cost_study *study)
 {
     const cost_row *best = NULL;

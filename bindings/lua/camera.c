@@ -5,7 +5,7 @@
 
 #include "bindings/value/glintL.h"
 
-#define SQUARE 1e-3 // how far a matrix may be from a rotation: what is written with four digits
+#define SQUARE 1e-3 // how far a matrix may be from a rotation: enough for numbers of four digits
 
 // A camera looks at a point or along a direction: the one it does not use reads nil.
 typedef struct desc_type {

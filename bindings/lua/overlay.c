@@ -153,7 +153,7 @@ static void push_names(lua_State *L, const void *desc)
     glintL_freeze(L, "labels");
 }
 
-// {{x, y, z}, {x, y, z}}: what is at the lowest and at the highest corner of a box.
+// {{x, y, z}, {x, y, z}}: the values at the lowest and at the highest corner of a box.
 static void read_corners(lua_State *L, int index, const char *path, double (*out)[3])
 {
     if (!lua_istable(L, index) || lua_rawlen(L, index) != 2)

@@ -5,7 +5,7 @@
 
 #include "bindings/run/run.h"
 
-// Pushes what is allowed of a parameter, for messages. `spec` is absolute.
+// Pushes the allowed values of a parameter, for messages. `spec` is absolute.
 static const char *push_allowed(lua_State *L, int spec)
 {
     luaL_Buffer out;

@@ -133,8 +133,9 @@ static bool is_missing(lua_State *L)
     return lua_gettop(L) == 1 && lua_type(L, 1) == LUA_TNUMBER && isnan(lua_tonumber(L, 1));
 }
 
-// The function; its upvalues are the texture, the ends of its range, whether it is logarithmic, and the colour of missing values. The middles of the first and the last texel are
-// these ends, and beyond them is what is there.
+// The function; its upvalues are the texture, the ends of its range, whether it is logarithmic, and the colour of missing
+// values. The middles of the first and the last texel are
+// these ends, and beyond them the colour of the nearer end.
 static int color_of(lua_State *L)
 {
     glint_texture *const *texture = lua_touserdata(L, lua_upvalueindex(1));

@@ -106,7 +106,7 @@ void glintL_push_color(lua_State *L, const glintL_term v[4]);
 /// Pushes `p`, and `s`, whose fields are made when they are read.
 void glintL_push_point(lua_State *L);
 void glintL_push_surroundings(lua_State *L);
-/// Reads {p = ..., uv = ...} at `index`; what is not given has defaults.
+/// Reads {p = ..., uv = ...} at `index`; missing fields have defaults.
 void glintL_read_inputs(lua_State *L, int index, bool is_shader, double inputs[GLINT_INPUT_COUNT]);
 
 // ---- trace.c ----

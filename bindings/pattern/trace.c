@@ -73,7 +73,7 @@ static const char *push_own_function(lua_State *L, const char *text)
     return lua_pushliteral(L, "a symbol has no number yet; write glint's own function, glint.sin(x) for math.sin(x)");
 }
 
-// Extends Lua's own messages about symbols by what to write instead.
+// Adds what to write instead to Lua's own messages about symbols.
 static int explain(lua_State *L)
 {
     const glintL_trace *trace = glintL_current_trace(L);

@@ -258,7 +258,7 @@ static int make_text(lua_State *L)
     return is_made ? 0 : luaL_error(L, "%s", message);
 }
 
-// Runs the script and makes the page, or only its figure. The text is to be dropped in any case.
+// Runs the script and makes the page, or only its figure. The caller drops the text, also on failure.
 static bool make(publication *p, making *job)
 {
     if (!read_engine(p) || !render(p))

@@ -21,7 +21,7 @@ typedef struct glintL_made_text {
 
 /// Runs the modules in order, each called with one table that has json(value) and base64(bytes) and takes their functions;
 /// then calls function `function` of that table with the values pushed by `push` (it may raise), and stores the string it
-/// returns. False: `message` says why. To be dropped in any case.
+/// returns. False: `message` says why. To be dropped also on failure.
 bool glintL_make_text(const glintL_carried *modules, size_t count, const char *function,
                       void (*push)(lua_State *L, const void *context), const void *context, glintL_made_text *out,
                       char message[GLINTL_MESSAGE_SIZE]);

@@ -1,4 +1,4 @@
-/// The job side of the binding: what is requested of a run, and the walk of its frames. Private to bindings/.
+/// The job side of the binding: the options of a run, and the walk of its frames. Private to bindings/.
 ///
 ///   selection.c       which frames: --frames, --shard
 ///   render_options.c  the fields of scene:render{}, animations and sweeps that describe a frame
@@ -311,9 +311,9 @@ struct glintL_run {
     bool measures; ///< every frame is rendered for run->brightness, whatever is there, and none is reported or written
 
     bool has_light; ///< a picture was seen that is not black
-    bool has_aperture, has_focus; ///< a frame's camera has a lens; says what is in focus, or the lens's form
+    bool has_aperture, has_focus; ///< a frame's camera has a lens; has a focus or blades
     bool told_of_view; ///< a warning said where something is that does not show
-    char black[GLINTL_MESSAGE_SIZE]; ///< what is said of the first black one; "": none
+    char black[GLINTL_MESSAGE_SIZE]; ///< the message about the first black one; "": none
     char **said; ///< warnings given, each once; owned
     size_t said_count;
 
@@ -351,7 +351,7 @@ bool glintL_run_open(glintL_run *run, glint_error *error); ///< the renderer and
 void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_render *render);
 /// Adds a record to be reported in its turn. False: out of memory, and the run has failed.
 glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work);
-/// Reports what is complete; waits for all of it when `wait`. False: the run has failed.
+/// Reports completed frames; waits for all when `wait`. False: the run has failed.
 bool glintL_run_collect(glintL_run *run, bool wait);
 /// Message handler: a string out of any error object.
 int glintL_message_handler(lua_State *L);
@@ -368,7 +368,7 @@ void glintL_warn_of_shutter(glintL_run *run);
 /// A ball around the scene's shapes, but planes; false: there are none.
 bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radius);
 /// own_camera.c: a scene without a camera gets one that has its shapes in view, and a warning says so. The scene's userdata is at
-/// `index`; what is no scene, or has nothing to look at, stays as it is.
+/// `index`; other values, and scenes with nothing to look at, are left unchanged.
 void glintL_give_camera(lua_State *L, glintL_run *run, int index);
 void glintL_give_cameras(lua_State *L, int list, glintL_run *run); ///< the same of all jobs of the list at `list`, absolute
 /// Says what a later run goes on from: no mistake, so that it stays no failure under --warnings=error.

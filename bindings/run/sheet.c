@@ -97,7 +97,7 @@ static const char *find_value(const glintL_sheet *sheet, const glintL_axes *axes
     return length == 5 && memcmp(name, "frame", 5) == 0 ? frame_of(axes, cell) : NULL;
 }
 
-// Fills in the template. False: the message names what is not known.
+// Fills in the template. False: the message names the unknown word.
 static bool fill_label(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, char out[LABEL_SIZE],
                        char *message)
 {

@@ -231,7 +231,7 @@ static void take_derivatives(const glint_render_desc *from, glint_derivative of[
             of[to->derivative_count++] = from->derivatives[i];
 }
 
-// Plans frame n at each time that the shutter looks. False: the run has failed; what is planned is in the list.
+// Plans frame n at each time that the shutter looks. False: the run has failed; the plans made so far are in the list.
 static bool plan_times(glintL_walk *walk, glintL_work *work, int64_t n, const glint_camera_desc *camera,
                        glint_plan **plans)
 {
@@ -287,7 +287,7 @@ static bool expose(glintL_walk *walk, glintL_work *work, int64_t n)
            fail_at(walk, work->index, &error);
 }
 
-// Sets the scene to frame n and plans what is seen in an instant. NULL: the run has failed.
+// Sets the scene to frame n and plans it without a shutter. NULL: the run has failed.
 static glintL_work *plan_instant(glintL_walk *walk, int64_t n, int64_t number)
 {
     glint_error error;

@@ -52,7 +52,7 @@ void glintL_check_status(lua_State *L, const char *path, const glint_error *erro
         glintL_error(L, "%s%s%s", path, status == GLINT_ERR_INVALID ? "." : ": ", error->message);
 }
 
-// Pushes a string in quotes, cut to SPELT_MAX bytes, with '?' for what could disturb a terminal.
+// Pushes a string in quotes, cut to SPELT_MAX bytes, with '?' for bytes that could disturb a terminal.
 static void push_quoted(lua_State *L, int index)
 {
     size_t length, shown;

@@ -350,7 +350,7 @@ int luaopen_glint(lua_State *L);
 void glintL_read_colors(lua_State *L, int index, const char *path, uint8_t rgb[256][3]);
 /// picture.c: glint.read_image.
 void glintL_open_picture(lua_State *L);
-/// Writes the four bytes of a float32, the least first; returns what is after them.
+/// Writes the four bytes of a float32, the least first; returns the place after them.
 char *glintL_put_float(char *to, float value);
 
 /// The constructor glint.spheres, of spheres.c.
@@ -382,7 +382,7 @@ typedef struct glintL_render {
     char light_passes[4096]; ///< likewise: names of the passes light:NAME, divided by commas; see glintL_render_point
 } glintL_render;
 
-// ---- state.c: what is being run. One per lua_State, in the registry; plain Lua has one with no options ----
+// ---- state.c: the current run. One per lua_State, in the registry; plain Lua has one with no options ----
 
 /// The request of the command line (or :run{}). The run owns the strings.
 typedef struct glintL_run glintL_run;

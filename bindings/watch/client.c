@@ -1,4 +1,4 @@
-// One connection to the watch page's server: what is still to be sent to it, and how it ends.
+// One connection to the watch page's server: its unsent bytes, and how it ends.
 #include "bindings/watch/client.h"
 
 #include <errno.h>

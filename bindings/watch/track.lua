@@ -11,7 +11,7 @@ local function noted(read)
   end
 end
 
--- The same for what raises by itself: the error belongs to the line of the script.
+-- The same for functions that raise errors themselves: the error belongs to the line of the script.
 local function placed(read)
   read = noted(read)
   return function(...)

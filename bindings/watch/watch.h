@@ -129,7 +129,7 @@ typedef struct watch_request {
 bool watch_requests_take(watch_requests *requests, const glintL_run *run, watch_request *out);
 bool watch_requests_waiting(watch_requests *requests);
 int64_t watch_requests_frame(watch_requests *requests, int64_t last); ///< the wanted frame, at most `last`
-/// Around a render: what is requested meanwhile cancels it, unless it is a preview that will end soon.
+/// Around a render: a request that comes in cancels it, unless it is a preview that will end soon.
 void watch_requests_begin_render(watch_requests *requests, glint_renderer *renderer, bool is_preview);
 bool watch_requests_end_render(watch_requests *requests); ///< true: it was cancelled, and its renderer is spent
 /// The sets of the command line with the overrides: owned by the caller, with texts of their own. False: out of memory.

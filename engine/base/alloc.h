@@ -9,7 +9,7 @@ void *glint_alloc(size_t count, size_t size);
 /// The same but not zeroed, and of large pages where the system has them: for megabytes that are written at once.
 void *glint_alloc_large(size_t count, size_t size);
 
-/// Memory for what is thrown away soon, not zeroed, aligned for anything of 16 bytes; the system has it back at once where it is much, so
+/// Memory for short-lived data, not zeroed, aligned for anything of 16 bytes; the system has it back at once where it is much, so
 /// that what is made next does not come on top of it. Changes its size, from 0: there is none yet. NULL: out of memory, and the old block stays.
 void *glint_scratch_resize(void *memory, size_t from, size_t to);
 /// Gives the system back what lies between two of its bytes, which nothing reads from now on. bytes: as resized to last.

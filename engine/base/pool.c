@@ -20,7 +20,7 @@ struct worker {
 
 struct glint_pool {
     pthread_mutex_t turn; ///< held by the caller whose items run; it is worker 0
-    pthread_mutex_t mutex; ///< over all below; what is run stays as it is while workers are busy
+    pthread_mutex_t mutex; ///< protects all fields below; the job does not change while workers are busy
     pthread_cond_t work, done;
     unsigned long round; ///< counts the calls of glint_pool_run
     int busy; ///< threads that work on this round's items: who comes when none is left is not waited for

@@ -11,7 +11,7 @@
 #define JPEG_LIMIT ((size_t)1 << 28) ///< bytes
 #define PICTURE_LIMIT ((size_t)1 << (sizeof(size_t) > 4 ? 34 : 31))
 #define HEAD_BYTES ((size_t)65536) // what says how large the picture is fits into it
-#define SLACK_BYTES ((size_t)64 << 20) // of a picture, for what is no pixel
+#define SLACK_BYTES ((size_t)64 << 20) // of a picture, for everything except pixels
 #define STORED_TIMES 16 // a byte of pixels takes 13 where each has a chunk of its own
 
 /// Reads until there are `most` bytes, or the end. 0 or an errno.

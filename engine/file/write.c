@@ -311,7 +311,7 @@ typedef struct code_rows {
     uint64_t *stamps; ///< owned
 } code_rows;
 
-/// To be closed in any case.
+/// To be closed also on failure.
 static glint_status open_rows(const glint_image *image, const glint_write_desc *desc, code_rows *rows,
                               glint_error *error)
 {

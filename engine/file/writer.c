@@ -39,7 +39,7 @@ struct glint_writer {
     job *first, **end; ///< submitted and not collected
     int waiting[JOB_DONE]; ///< jobs that are queued, and that are encoded
     int queue_depth; ///< the most of either
-    glint_bytes spare[SPARES]; ///< of files that are written: fresh memory costs more than what is put into it
+    glint_bytes spare[SPARES]; ///< of files that are written: fresh memory costs more than filling it
     int spare_count;
     bool closing; ///< no more are submitted
     bool encoded_all; ///< and none of them is left to the encoder
@@ -196,7 +196,7 @@ static bool start_thread(glint_writer *writer, pthread_t *thread, void *(*run)(v
     return started;
 }
 
-/// Lets the encoder end what is queued.
+/// Waits until the encoder has finished the queue.
 static void close_encoder(glint_writer *writer)
 {
     pthread_mutex_lock(&writer->lock);

@@ -1,4 +1,4 @@
-/// Pictures with other strengths and colours of their lights. Internal; see glint.h for what is public.
+/// Pictures with other strengths and colours of their lights. Internal; see glint.h for the public part.
 #ifndef GLINT_FILM_RELIGHT_H
 #define GLINT_FILM_RELIGHT_H
 

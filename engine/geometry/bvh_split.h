@@ -33,7 +33,7 @@ typedef struct glint_records {
 } glint_records;
 
 /// Takes boxes[0 .. count), count > 0, as the records; `root` becomes the set of all. False: out of memory;
-/// glint_records_free frees what there is, the boxes in any case.
+/// glint_records_free frees everything that was made, also on failure.
 bool glint_records_init(glint_records *records, glint_box *boxes, uint32_t count, glint_pool *pool,
                         glint_record_set *root);
 void glint_records_free(glint_records *records);

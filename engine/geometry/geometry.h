@@ -97,9 +97,9 @@ uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id);
 
 /// geometry/fill.c: makes the primitives of the scene's shapes, in order of definition, with their materials and parts.
 glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error);
-/// geometry/sizes.c: refuses what is too small or too large for the squares that the kernels take of it. Fills `thinnest`.
+/// geometry/sizes.c: refuses shapes that are too small or too large for the squares that the kernels compute. Fills `thinnest`.
 glint_status glint_geometry_check_sizes(glint_geometry *geometry, glint_error *error);
-/// Refuses what is too small for rays from a place to meet it. who: the place, for the message.
+/// Refuses shapes that are too small for rays from a place to hit them. who: the place, for the message.
 glint_status glint_geometry_check_reach(const glint_geometry *geometry, const char *who, const double from[3],
                                         glint_error *error);
 /// All that a primitive's place is made of. Returns how many numbers.

@@ -6,7 +6,7 @@
 #include "engine/geometry/geometry.h"
 
 void glint_sphere_init(glint_prim *prim, const double center[3], double radius);
-/// room: for what a plane has beside a place, as long as the primitive.
+/// room: for the plane's fields besides the place, as long as the primitive.
 void glint_plane_init(glint_prim *prim, double room[4], const double point[3], const double normal[3],
                       const glint_placing *place);
 /// Makes a sphere, box, disk, cylinder, cone or torus; faces: memory for its faces. Returns their number.

@@ -1,6 +1,6 @@
 /// Axes at a box or a cell: of each direction one edge, with a mark, a number and so on where the camera has them, and its name.
 ///
-/// An overlay has no depth, so an edge is chosen that bounds what is seen of the box: one between a face turned to the eye and
+/// An overlay has no depth, so an edge is chosen on the outline of the box: one between a face turned to the eye and
 /// one turned away. Nothing within the box is seen beyond it, so the axis hides nothing, and its numbers stand outside.
 #include "engine/overlay/layout.h"
 #include "engine/overlay/marks.h"
@@ -15,7 +15,7 @@
 #define ROOM 0.35 ///< between a mark and its number, and between numbers and the name, likewise
 #define SHORTEST 1.5 ///< axis with numbers, likewise
 #define WANTED 5 ///< steps between round numbers, at least where there is room
-#define NEAREST 1e-6 ///< depth of what is drawn, in those of the box's farther corners
+#define NEAREST 1e-6 ///< least depth that is drawn, relative to the box's farther corners
 #define TEXTS_MAX (3 * (GLINT_OVERLAY_TICKS_MAX + 1))
 
 typedef struct rect {
@@ -24,7 +24,7 @@ typedef struct rect {
 
 typedef struct edge {
     double ends[2][3]; ///< in the world, of the box
-    double shares[2]; ///< of the way between them: what is before the eye
+    double shares[2]; ///< of the edge between them: the part in front of the eye
     double at[2][2]; ///< that part's ends in the picture, pixels
     double out[2]; ///< unit: across it in the picture, away from the box
 } edge;
@@ -175,7 +175,7 @@ static edge edge_of(const box_axes *axes, int direction, int at_u, int at_v)
     return e;
 }
 
-/// The edge of a direction that is its axis; false: none bounds what is seen of the box.
+/// The edge of a direction that is its axis; false: none is on the outline of the box.
 static bool find_edge(const box_axes *axes, int direction, edge *out)
 {
     bool found = false;

@@ -9,7 +9,7 @@
 #define LEAST_SIZE 10.0 ///< pixels of letters whose size is not said
 #define SIZE_SHARE 36.0 ///< of the picture's height that they otherwise are
 #define PIECE 64 ///< pixels of a line that are drawn at once
-#define PADDING 0.35 ///< between what is drawn and the border of what lies behind, in sizes
+#define PADDING 0.35 ///< between the text and the border of its background, in font sizes
 
 int glint_layout_measure(const glint_layout *layout, const char *text, int *lines)
 {

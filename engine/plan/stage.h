@@ -1,6 +1,6 @@
 /// The declaration of a stage: when a frame needs it, what it reads, and its functions. Internal.
 ///
-/// The list of a plan's stages, `glint explain`, the keys, what is cached, and the times and counts of a frame follow from the table of
+/// The list of a plan's stages, `glint explain`, the keys, the cached results, and the times and counts of a frame follow from the table of
 /// these declarations, which effects/list.h lists. An effect's declaration is in its folder.
 #ifndef GLINT_STAGE_H
 #define GLINT_STAGE_H

@@ -1,4 +1,4 @@
-/// The values of a builder, in the order in which they came: operands before what is made of them. Internal.
+/// The values of a builder, in the order in which they came: operands before the values computed from them. Internal.
 #ifndef GLINT_PROGRAM_BUILDER_H
 #define GLINT_PROGRAM_BUILDER_H
 

@@ -28,7 +28,7 @@ typedef struct glint_flow {
 bool glint_flow_create(glint_flow *flow, size_t node_count, size_t edge_count);
 void glint_flow_destroy(glint_flow *flow);
 void glint_flow_add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t room);
-/// Returns the largest flow, or one above `limit` where that is larger; and marks what is near the sink: from there on to it nothing
+/// Returns the largest flow, or one above `limit` where that is larger; and marks the nodes near the sink: from there on to it nothing
 /// is full. Between that and the rest is the minimal cut that is nearest to the sink.
 uint32_t glint_flow_fill(glint_flow *flow, uint32_t limit);
 bool glint_flow_near_sink(const glint_flow *flow, uint32_t node);

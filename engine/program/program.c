@@ -1,4 +1,4 @@
-/// glint_program: what is known of one, and whether its code may be run.
+/// glint_program: its properties, and whether its code may be run.
 #include "engine/program/program.h"
 
 #include "engine/base/status.h"

@@ -40,7 +40,7 @@ typedef struct glint_gradient_place {
 #define GLINT_FORWARD_MAX 2 ///< derivatives; of more a gradient is quicker, which is run once for all
 _Static_assert(GLINT_GRADIENT_MAX <= GLINT_CODE_OUTPUTS_MAX, "a program may give all slopes");
 
-/// How fast the light that a shader gives, diffuse and specular, changes with its inputs; what is 0 everywhere is not listed.
+/// How fast the light that a shader gives, diffuse and specular, changes with its inputs; slopes that are 0 everywhere are not listed.
 typedef struct glint_gradient {
     uint32_t count;
     glint_gradient_place of[GLINT_GRADIENT_MAX];

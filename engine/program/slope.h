@@ -11,7 +11,7 @@ typedef struct glint_slope_maker {
     uint32_t count; ///< values of the program itself; values of its derivatives follow
     glint_value *given; ///< what each value was given so far; GLINT_SLOPE_NOTHING
     bool *varies; ///< depends on an input that counts
-    glint_status status; ///< of the first failure; what is made after it means nothing
+    glint_status status; ///< of the first failure; values made after it are meaningless
     glint_error *error;
 } glint_slope_maker;
 

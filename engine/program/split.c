@@ -20,7 +20,7 @@ typedef struct values {
     uint32_t count;
     uint32_t *operand; ///< of each instruction GLINT_OPERANDS_MAX
     uint32_t *first; ///< the first result of each
-    bool *dynamic; ///< instructions that depend on what is changed
+    bool *dynamic; ///< instructions that depend on the changed numbers
     bool *second; ///< that are run there
     uint32_t *maker; ///< of each value: its instruction; of an input none
     uint32_t *last; ///< the last instruction that reads it in the part that is written
@@ -198,7 +198,7 @@ static bool find_sides(values *v)
 
 // ---- The code of a part -------------------------------------------------------------------------------------------
 
-/// Notes where each value is read last, from the end on; of a part that runs what is `wanted`. outputs: they are read after all.
+/// Notes where each value is read last, from the end on, in a part that runs the `wanted` instructions. outputs: they are read after all.
 static void find_last(values *v, bool *wanted, const uint32_t *outputs, uint32_t count)
 {
     for (uint32_t i = 0; i < v->count; i++)
@@ -246,7 +246,7 @@ static void place_results(values *v, uint32_t i, glint_instruction *to, bool *ta
             taken[to->out[k]] = false;
 }
 
-/// The part that runs what is `wanted`, whose inputs are placed. It may need too many rows. Returns false without memory.
+/// The part that runs the `wanted` instructions, whose inputs are placed. It may need too many rows. Returns false without memory.
 static bool write_part(values *v, bool *wanted, const uint32_t *outputs, uint32_t count, glint_program_code *part)
 {
     bool taken[GLINT_PROGRAM_ROWS_MAX] = { false };

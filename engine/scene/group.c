@@ -1,4 +1,4 @@
-/// Groups, shapes that share a transform, and combined solids. Each may be in several others, and so may what is in it.
+/// Groups, shapes that share a transform, and combined solids. Each may be in several others, and so may its members.
 #include "engine/base/hash.h"
 #include "engine/base/status.h"
 #include "engine/scene/objects.h"

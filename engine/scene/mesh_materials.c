@@ -184,7 +184,7 @@ static void finish_fields(glint_mesh_library *library, glint_mesh_entry *e)
     }
 }
 
-/// Whether the relief of a material has a height. Those without are counted.
+/// Whether the relief of a material has a height. Materials without one are counted.
 static bool has_height(glint_mesh_library *library, const glint_mesh_entry *e)
 {
     if (e->height == 0 && library->flat++ == 0)

@@ -26,7 +26,7 @@ glint_status glint_mesh_library_read(glint_mesh_library *library, const glint_me
 void glint_mesh_library_use(glint_mesh_library *library, const char *name);
 /// The material of a face: a number among those that faces have, in the order of their first faces.
 glint_status glint_mesh_library_face(glint_mesh_library *library, uint32_t *number, glint_error *error);
-/// Makes the materials of a file that is read; what is missing is a warning.
+/// Makes the materials of a file that is read; missing pictures are warnings.
 glint_status glint_mesh_library_make(glint_mesh_library *library, const glint_mesh_reader *reader);
 /// Whether a face has a material that a file describes; after glint_mesh_library_make.
 bool glint_mesh_library_found(const glint_mesh_library *library);

@@ -26,7 +26,7 @@ static glint_status complain(const reader *r, const char *expected, const char *
 
 // ---- What a line says ----
 
-/// Three numbers, of coordinates two, of which the second may be missing. Those that are not finite go in as they are.
+/// Three numbers, of coordinates two, of which the second may be missing. Numbers that are not finite are stored unchanged.
 static glint_status read_numbers(reader *r, const char **at, int count, double v[3])
 {
     for (int i = 0; i < count; i++) {

@@ -205,7 +205,7 @@ static void place_cell(const layout *l, size_t i, int *x, int *y)
     *y = l->top + row * l->band;
 }
 
-/// |a - b| times the gain, of two pictures on the canvas, at the place below `a`; and what is to be said of it.
+/// |a - b| times the gain, of two pictures on the canvas, at the place below `a`; and the text about it.
 static void draw_difference(layout *l, glint_canvas *canvas, size_t a, size_t b)
 {
     int ax, ay, bx, by, most = 0;

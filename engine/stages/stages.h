@@ -63,7 +63,7 @@ typedef struct glint_stages {
 
 extern const glint_stages glint_stages_ref, glint_stages_generic, glint_stages_avx2, glint_stages_avx512;
 
-/// Those that are in this build, NULL-terminated, best last.
+/// The instruction sets of this build, NULL-terminated, best last.
 extern const glint_stages *const glint_stages_built[];
 bool glint_stages_usable(const glint_stages *stages);
 /// By name, "sse2" for generic; NULL takes the environment's GLINT_ISA, else the best usable. Returns NULL with *unknown telling whether

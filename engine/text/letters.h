@@ -11,7 +11,7 @@
 
 typedef struct glint_letters glint_letters; ///< an open font; of one thread at a time
 
-/// *out NULL: the bitmap font. GLINT_ERR_INVALID: GLINT_FONT names what is no font.
+/// *out NULL: the bitmap font. GLINT_ERR_INVALID: GLINT_FONT names a file that is not a font.
 glint_status glint_letters_open(glint_letters **out, glint_error *error);
 void glint_letters_close(glint_letters *letters); ///< NULL: nothing
 /// Whether there was no memory for something: text that was measured or drawn is not as it should be.

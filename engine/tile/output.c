@@ -176,7 +176,7 @@ static double opacity_of(const glint_tile *tile, const glint_plan *plan, uint32_
     return plan->clears ? 1 - glint_tile_bouncing(tile, plan, i, &room)->clear : 1;
 }
 
-/// Stores diffuse reflectances. Those of translucent materials are divided by the opacity again; at an opacity of 0 they are 0.
+/// Stores diffuse reflectances. Reflectances of translucent materials are divided by the opacity again; at an opacity of 0 they are 0.
 static void store_albedo(const glint_tile *tile, const glint_tile_frame *frame)
 {
     float albedo[3][GLINT_TILE_SAMPLES];

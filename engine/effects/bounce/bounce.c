@@ -28,7 +28,7 @@
 struct glint_bounce {
     glint_batch batch;
     glint_rays room[LEVELS];
-    glint_rays *levels[LEVELS]; ///< each in some room, or the batch's own: what is taken changes places with it
+    glint_rays *levels[LEVELS]; ///< rays of each level; taking some swaps the buffers
     uint32_t counts[LEVELS];
     glint_sent sent[GLINT_WAYS]; ///< the rays that a batch sends to its own level, and to the levels above
     double budget[GLINT_TILE_SAMPLES]; ///< light that each sample may still lose

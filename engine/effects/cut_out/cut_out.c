@@ -46,7 +46,7 @@ static bool is_cut(const glint_plan_pattern *own, uint32_t fields)
     return own->cut;
 }
 
-/// Those of one material, for some groups that show it.
+/// Finds the holes of one material, in some groups that show it.
 static void find_material_holes(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
                                 const glint_pattern_lanes *entries, uint32_t count, uint16_t *holes)
 {
@@ -251,7 +251,7 @@ static void see_next(struct glint_cut_out *cut, glint_tile *tile, const glint_ti
         }
 }
 
-/// Takes the distances that a cast has found where they are nearer to what is known than those that were taken before.
+/// Takes the distances that a cast has found where they are nearer to the known distance than the ones taken before.
 static void take_nearer(const struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame, bool any,
                         double off[GLINT_TILE_SAMPLES])
 {
@@ -269,7 +269,7 @@ static void take_nearer(const struct glint_cut_out *cut, glint_tile *tile, const
 
 /// Finds the distance of primitive `prim`, which the lanes in `active` see through holes, from where their rays began: as the
 /// first side of it that they meet there, or as the other one. A sphere's point follows from any distance, that of other shapes
-/// from one of the two; that of a torus, which may be met twice more, from what is near any.
+/// from one of the two; that of a torus, which may be hit twice more, starts from any near hit.
 static void see_from_origin(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame, uint32_t prim,
                             double off[GLINT_TILE_SAMPLES])
 {

@@ -28,7 +28,7 @@ typedef struct glint_tint_light {
     double radius; ///< around the place, of an area light's samples
 } glint_tint_light;
 
-/// Those of a group's lanes whose rays to a light may meet one of `count` balls that `chosen` lists. point: sixteen of each
+/// Returns the lanes of a group whose rays to a light may meet one of `count` balls that `chosen` lists. point: sixteen of each
 /// coordinate.
 uint16_t glint_tints_lanes(const glint_tints *tints, const uint16_t *chosen, uint32_t count,
                            const double point[3][GLINT_GROUP], uint16_t lanes, const glint_tint_light *light);

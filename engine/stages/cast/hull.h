@@ -33,7 +33,7 @@ typedef struct R(hull_rays) {
     vr turned[3]; ///< the direction, its largest component last
     rm y, z; ///< which that is; neither: x
     _Alignas(64) real origin[3][VR];
-    _Alignas(64) real from[VR]; ///< what is no further has been dealt with
+    _Alignas(64) real from[VR]; ///< crossings up to here are done
     ray_view view[VR];
     R(crossings) of[VR];
 } R(hull_rays);

@@ -162,7 +162,7 @@ INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, b
     return hits;
 }
 
-/// Keeps what is nearer than all before. near: beyond it no ray starts in the triangle's plane.
+/// Stores hits that are nearer than all before. near: beyond it no ray starts in the triangle's plane.
 INNER void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n, real near, uint64_t *moved)
 {
     const glint_cast_args *args = tile->args;

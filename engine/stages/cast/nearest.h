@@ -214,7 +214,7 @@ static inline void R(load_lone_rays)(const R(ray_group) * rays, R(lone_rays) * o
 
 /// The possible first hits of a group's rays so far, in the index's units.
 typedef struct R(first_balls) {
-    _Alignas(64) float far[GLINT_GROUP]; ///< what is met is not beyond
+    _Alignas(64) float far[GLINT_GROUP]; ///< hits are not beyond it
     float way[2][GLINT_GROUP],
         next[GLINT_GROUP]; ///< ways to the first two spheres that each may enter, and to the third
     uint32_t prim[2][GLINT_GROUP]; ///< these; GLINT_MISS: none

@@ -30,7 +30,7 @@ typedef struct R(turned_rays) {
 /// The nodes that a ray is still to look into, and where it enters them.
 typedef struct R(node_stack) {
     int height;
-    uint32_t node[WALK_STACK + GLINT_NODE_WIDTH + GLINT_LEFT_NODES]; ///< with room for what is behind the packed
+    uint32_t node[WALK_STACK + GLINT_NODE_WIDTH + GLINT_LEFT_NODES]; ///< with room for the entries behind the packed
     float depth[WALK_STACK + GLINT_NODE_WIDTH + GLINT_LEFT_NODES];
 } R(node_stack);
 
@@ -215,7 +215,7 @@ static inline void R(add_solid)(R(rounds) * rounds, uint32_t id, int lane)
     rounds->rays[n] |= 1u << lane;
 }
 
-/// The primitives of a node in the slots of `mask`, which are no triangles: spheres are noted, see pair_first.
+/// Tests the primitives other than triangles in the slots of `mask`; spheres are noted, see pair_first.
 static inline void R(meet_others)(const glint_geometry_table *geometry, const glint_node *node, unsigned mask, int lane,
                                   R(rounds) * rounds)
 {
@@ -267,7 +267,7 @@ static inline void R(push_nodes)(const glint_node *node, const float depth[GLINT
 {
     int n = stack->height;
 #ifdef GLINT_PACKS
-    // without a branch, also where there is none: what is above the top is not read
+    // without a branch, also where there is none: the entries above the top are not read
     const vf own = f_select(fm_from_bits(mask), f_load(depth), f_set(HUGE_VALF));
     const float nearest = f_min_all(own);
     const unsigned first = mask & fm_bits(f_eq(own, f_set(nearest))), top = first & -first;

@@ -148,7 +148,7 @@ INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_n
     }
 }
 
-/// Casts what is in the slot.
+/// Casts the rays of the slot.
 INNER void R(cast_slot)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
                         int slot)
 {

@@ -70,7 +70,7 @@ static void R(start_at_eye)(const glint_solid *solid, const glint_prim *prim, co
         height[i] = R(first_lane)(R(face_height)(&solid->faces[i], place));
 }
 
-/// Cuts the span by what is between a pair of faces; `axis`: of the unit shape. flats: span->flat is wanted; faces, a constant:
+/// Cuts the span down to the part between a pair of faces; `axis`: of the unit shape. flats: span->flat is wanted; faces, a constant:
 /// so is span->face.
 INNER void R(cut_by_slab)(R(span) * span, const glint_solid *solid, const R(solid_start) * start, const vr d[3], int slab,
                           int axis, const bool flats, const bool faces)
@@ -99,7 +99,7 @@ INNER void R(cut_by_slab)(R(span) * span, const glint_solid *solid, const R(soli
     span->t[1] = r_min(leave, span->t[1]);
 }
 
-/// Whether no ray can meet what is left ahead of it.
+/// Whether no ray can hit the rest of the span.
 INNER bool R(is_spent)(R(span) * span)
 {
     span->hit = rm_and(span->hit, rm_and(r_le(span->t[0], span->t[1]), r_lt(r_set(0), span->t[1])));
@@ -160,7 +160,7 @@ INNER void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball,
 {
     const R(quadratic) round = R(quadratic_of)(f, e, ball, places);
     const vr far = round.q / round.a, other = round.c / round.q, zero = r_set(0);
-    // in order though they were rounded: what is seen from afar may be thinner than that
+    // in order though they were rounded: a solid seen from afar may be thinner than that
     span->t[0] = r_select(round.along, r_set(-HUGE_VAL), r_min(far, other));
     span->t[1] = r_select(round.along, r_set(HUGE_VAL), r_max(far, other));
     span->hit = rm_or(rm_and(round.along, r_le(round.c, zero)), rm_andnot(r_le(zero, round.disc), round.along));

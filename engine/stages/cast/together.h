@@ -17,7 +17,7 @@
 
 /// Bounds of the tests of boxes_of_lone_ray for all rays of a group. Along an axis with both signs of direction, there is no bound.
 typedef struct R(common_way) {
-    float enter[3], leave[3]; ///< what is subtracted of the sides by which rays enter and leave
+    float enter[3], leave[3]; ///< subtracted from the sides by which rays enter and leave
     float gentle[3], steep[3]; ///< inverse directions with the least and the largest magnitude; the largest may be infinite
     int first[3], last[3]; ///< where these sides are in a node, in floats
 } R(common_way);

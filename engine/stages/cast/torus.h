@@ -1,4 +1,4 @@
-// torus: what cast, surface and occlude need of an image of the unit torus, which is no convex solid: a ray meets it up to four
+// torus: what cast, surface and occlude need of an image of the unit torus, which is not convex: a ray hits it up to four
 // times, and may meet again what it leaves. What is found along a line, and why so: ref/torus.h. Contract: stages.h.
 #ifndef GLINT_CAST_TORUS_H
 #define GLINT_CAST_TORUS_H

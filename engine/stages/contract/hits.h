@@ -65,7 +65,7 @@ typedef struct glint_cast_args {
         *tests; ///< added to: pairs of a ray and a primitive that are decided, by the formulas below; how many these
         ///< are is up to index and filter. may be NULL
 } glint_cast_args;
-#define GLINT_LEAST_WAY 0x1p-126 ///< t of what is met where the ray begins
+#define GLINT_LEAST_WAY 0x1p-126 ///< t of a hit where the ray begins
 #define GLINT_TURN_NEAR 0x1p-20 ///< of a torus's quartic: a step to a turn this small leaves less than rounding, being cubic
 #define GLINT_TURN_STEPS 24 ///< to a turn, at most; more than 10 are taken only where three come together
 #define GLINT_ROOT_STEPS 64 ///< to a root, at most; halving alone takes 52
@@ -87,7 +87,7 @@ typedef struct glint_cast_args {
 // faces:  what was described in one plane has one face's numbers, but for the sign of the normal: along two axes of one map (a
 //         transform and the groups around it) all of it, else what has bit-equal places and normals. It is met at bit-equal t,
 //         so that of boxes, caps, disks, planes and meshes the first defined wins in every ray. What starts on a face is at
-//         height 0 and meets it at t = 0, which is no hit: exactly where the face is along two axes of the world, else as far
+//         height 0 and meets it at t = 0, which is not a hit: exactly where the face is along two axes of the world, else as far
 //         as rounding lets us know. So it is with a curved side but a sphere's, and with the plane of a triangle.
 // A ray meets the primitive that it leaves by a rule of its own: not, but for spheres and solids other than disks where the
 // lane is inward (and starts on them or within): these surely, at GLINT_LEAST_WAY or beyond. A torus is also met again by what

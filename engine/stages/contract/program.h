@@ -8,7 +8,7 @@
 
 #define GLINT_PROGRAM_GROUPS 16 ///< groups at a time
 #define GLINT_PROGRAM_LANES 256 ///< a row: one double a lane, 2 KB
-#define GLINT_CODE_OUTPUTS_MAX 96 ///< of gradients; what is stored has at most GLINT_PROGRAM_OUTPUTS_MAX
+#define GLINT_CODE_OUTPUTS_MAX 96 ///< of gradients; stored programs have at most GLINT_PROGRAM_OUTPUTS_MAX
 #define GLINT_CODE_INPUTS (2 * GLINT_INPUT_COUNT) ///< each, and from GLINT_INPUT_COUNT on the slope of each
 #define GLINT_NUMBER_LANES 16 ///< how often a number stands in memory: a group
 

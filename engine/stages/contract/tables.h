@@ -36,7 +36,7 @@ typedef enum glint_prim_kind {
 typedef struct glint_prim {
     _Alignas(64) uint16_t kind;
     uint8_t two_sided; ///< 0: seen from behind it gets ambient light only
-    uint8_t turned; ///< 1: a part that is taken away: what is outside of it is the inside of the whole
+    uint8_t turned; ///< 1: a part that is taken away: the outside of it is the inside of the whole
     uint32_t id; ///< its number in order of definition, from 0
     uint32_t material; ///< index in the material table
     float filter_center[3]; ///< of a sphere around it: (center - reference) * scale, in the index's frame

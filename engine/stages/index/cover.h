@@ -10,7 +10,7 @@
 #include "engine/stages/simd/real.h"
 
 #define COVER_ACROSS (GLINT_TILE_WIDTH / 4) ///< bit COVER_ACROSS y + x of a set of groups is group (x, y)
-#define COVER_MARGIN 1e-4 ///< of what is certain; far above the rounding of float and real
+#define COVER_MARGIN 1e-4 ///< of certain decisions; far above the rounding of float and real
 
 _Static_assert(COVER_ACROSS == 8, "groups_between repeats a row's bits a byte each");
 

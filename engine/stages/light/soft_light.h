@@ -1,4 +1,4 @@
-// soft_light: light, occlude and the sums of shade for the samples of an area light, a group at a time: what is hidden from
+// soft_light: light, occlude and the sums of shade for the samples of an area light, a group at a time: points hidden from
 // all of the light is left out, and sums stay in registers. The arithmetic is theirs. Contract: stages.h.
 #ifndef GLINT_LIGHT_SOFT_LIGHT_H
 #define GLINT_LIGHT_SOFT_LIGHT_H

@@ -36,7 +36,7 @@ typedef struct R(shadow_tile) {
     light_place light; ///< of an area light, all of it
     _Alignas(64) real position[3][GLINT_GROUP]; ///< of the light, or of its sample at hand, for each lane
     _Alignas(64) float local_light[3][GLINT_GROUP]; ///< the same in the index's frame
-    bool far; ///< that may overflow, or what is made of it
+    bool far; ///< that, or numbers computed from it, may overflow
     R(occluder) occluders[GLINT_OCCLUDERS];
     int count, unbounded; ///< of these, first, those without an end; more than GLINT_OCCLUDERS: too many for a list
     float lower[3], upper[3]; ///< a box around the lit points, in the index's frame

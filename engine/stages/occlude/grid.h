@@ -228,7 +228,7 @@ static uint32_t grid_next(const glint_light_grid *grid, const grid_points *point
     return GLINT_MISS;
 }
 
-/// Makes a pair of each point that is not decided and its next entry. Those without one are open.
+/// Makes a pair of each point that is not decided and its next entry. Points without a next entry are open.
 static void grid_pair(const glint_occlude_args *args, grid_points *points, grid_pairs *pairs)
 {
     pairs->count = 0;
@@ -378,7 +378,7 @@ static void grid_test_run(const shadow_tile_f64 *tile, const grid_places *places
 
 // ---- All ----
 
-/// Takes out of args->open what is blocked by primitives that are in no cell.
+/// Removes the points from args->open that primitives outside of all cells block.
 static void grid_others(const shadow_tile_f64 *tile, shadow_group_f64 *group)
 {
     const glint_occlude_args *args = tile->args;

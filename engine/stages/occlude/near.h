@@ -1,6 +1,6 @@
 // near: which occluders of a tile's list may be between the points of a group and the light, a vector of occluders at a time. All segments
 // of the group are within its reach of that of one of its points: they begin so near, and end in one place or run side by side. Float,
-// and conservative: what is left out blocks nothing. Contract: stages.h, occlude.
+// and conservative: primitives left out block nothing. Contract: stages.h, occlude.
 #ifndef GLINT_OCCLUDE_NEAR_H
 #define GLINT_OCCLUDE_NEAR_H
 

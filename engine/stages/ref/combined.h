@@ -132,7 +132,7 @@ static NAME(change) NAME(change_at)(const NAME(passing) * ray, REAL t)
     return stack[0];
 }
 
-/// Takes what changes at t, if that is nearer than what is known.
+/// Takes the change at t, if it is nearer than the known one.
 static void NAME(consider)(const NAME(passing) * ray, REAL t, REAL *best, uint32_t *met)
 {
     if (!(t > 0 && t < *best))

@@ -239,7 +239,7 @@ static void NAME(surface_group)(const glint_surface_args *args, uint32_t group)
     args->dark[group] = (uint16_t)dark;
 }
 
-/// Around every hit's point; what is not a number stays outside.
+/// Around every hit's point; NaN stays outside.
 static void NAME(surface_box)(const glint_surface_args *args)
 {
     glint_point_box box = { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, GLINT_MISS };

@@ -20,7 +20,7 @@ static inline void put_sums(const glint_shade_light *light, bool specular, size_
     }
 }
 
-/// Those of the only light, of a material without highlights.
+/// Factors of the only light, for a material without highlights.
 INNER void put_only_factors(const glint_shade_light *light, const glint_shade_material *material, uint32_t g,
                             light_factors *factors)
 {
@@ -37,7 +37,7 @@ static inline bool has_only_factors(const glint_shade_args *args, bool specular)
     return !specular && args->light_count == 1 && !args->lights->summed;
 }
 
-/// Those of the lights that reach a group, after what is there. `exponent`: see put_factors.
+/// Factors of the lights that reach a group, appended to the list. `exponent`: see put_factors.
 INNER void add_factors(const glint_shade_args *args, const glint_shade_material *material, const float *exponent,
                        bool specular, uint32_t g, light_factors *factors)
 {

@@ -17,7 +17,7 @@ typedef struct mixed_numbers {
     float number[MIXED_COUNT];
 } mixed_numbers;
 
-/// Those of materials that groups showed before.
+/// Factors of materials that groups showed before.
 typedef struct mixed_table {
     bool usable; ///< there is one light at most, and no sum of samples
     mixed_numbers materials[MIXED_MATERIALS];

@@ -18,7 +18,7 @@ typedef struct light_factors {
 } light_factors;
 
 /// w (n.l) and w S of one light or sample, for a group. `exponent`: of each lane of the group; NULL, a constant: the
-/// material's. `add`: to what is there, of the light it is joined to. Returns whether w S may be more than 0 anywhere.
+/// material's. `add`: adds to the stored values of the light it is joined to. Returns whether w S may be more than 0 anywhere.
 INNER bool put_factors(const glint_shade_light *light, const glint_shade_material *material, const float *exponent,
                        bool specular, size_t at, bool add, float diffuse[GLINT_GROUP], float highlight[GLINT_GROUP])
 {

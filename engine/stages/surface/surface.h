@@ -279,7 +279,7 @@ INNER void R(begin_walk)(const glint_surface_args *args, R(surface_walk) * walk)
     walk->several = walk->turned = false;
 }
 
-/// Not inlined, so that what is seen stays in memory, from where arithmetic takes it in all lanes at once.
+/// Not inlined, so that the result stays in memory, from where all lanes are read at once.
 static __attribute__((noinline)) void R(look_at_other)(const glint_surface_args *args, R(surface_walk) * walk,
                                                        uint32_t id)
 {
