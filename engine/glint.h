@@ -211,7 +211,7 @@ glint_status glint_builder_input(glint_builder *builder, glint_input input, glin
 /// out       written: as many values as the operation has results.
 ///
 /// An operation on numbers gives a number, computed by the reference kernels. A value that exists already is not made again.
-/// GLINT_ERR_INVALID for an operand that is no value of the builder, or an operation that a caller cannot have.
+/// GLINT_ERR_INVALID for an operand that is not a value of the builder, or for an internal operation.
 glint_status glint_builder_op(glint_builder *builder, glint_op op, const glint_value *operands, glint_value *out,
                               glint_error *error);
 /// The colour of a texture, as red, green, blue and alpha.
@@ -289,7 +289,7 @@ typedef struct glint_texture_desc {
 
 /// No path; repeat, bilinear, sRGB.
 glint_texture_desc glint_texture_desc_default(void);
-/// Reads a picture. GLINT_ERR_IO, GLINT_ERR_FORMAT when it cannot be read or is no whole PNG; GLINT_ERR_NOMEM.
+/// Reads a picture. GLINT_ERR_IO, GLINT_ERR_FORMAT when it cannot be read or is not a whole PNG; GLINT_ERR_NOMEM.
 glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture **out, glint_error *error);
 /// The same picture, which is shared, with another wrap. GLINT_ERR_NOMEM.
 glint_status glint_texture_rewrap(const glint_texture *texture, glint_wrap wrap, glint_texture **out,
@@ -933,7 +933,7 @@ typedef struct glint_scene_desc {
     /// f = min(max((d - near) / (far - near), 0), 1) of the colour and 1 - f of the light. The colour's share is in the term
     /// of the background; the background itself, and what mirrors show, do not fade
     bool has_depth_cue;
-    bool has_depth_cue_color; ///< false: `background`, which then is no pattern
+    bool has_depth_cue_color; ///< false: `background`, which then must not be a pattern
     double depth_cue_color[3]; ///< finite, >= 0
     double depth_cue_near, depth_cue_far; ///< finite, 0 <= near < far; default 0, 1
     bool has_indirect; ///< false: `ambient` stands for all light that surfaces get from each other and the background
@@ -1597,7 +1597,7 @@ typedef struct glint_sheet_desc {
     int columns; ///< >= 1
     const char *title, *across, *down; ///< of the sheet, of its columns, of its rows; NULL: none
     size_t difference; ///< the cell, from 1, that each row is compared with in a row below it; 0: no such rows
-    double gain; ///< what differences are multiplied by; > 0
+    double gain; ///< factor of the differences; > 0
     double size; ///< of labels, points of dpi / 72 pixels, 0 .. 10000; 0: 13 pixels, below pictures of 900 across and more 26
     double dpi; ///< pixels an inch where it is printed, 0 .. 1e6; 0: not said, and a point is a pixel
     bool transparent; ///< the paper is; pictures are as on white

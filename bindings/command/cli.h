@@ -98,7 +98,7 @@ typedef struct cli_options {
 #define CLI_SUGGEST_FILES "/" ///< completions: names of files,
 #define CLI_SUGGEST_PASSES "," ///< the names of the passes
 
-/// One option: all that is said of it but the paragraph of the manual page stands in its row.
+/// One option: its row has all of its texts, except the paragraph of the manual page.
 typedef struct cli_option cli_option;
 struct cli_option {
     const char *name;

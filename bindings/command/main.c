@@ -35,7 +35,7 @@ static int run_command(cli_options *options, cli_output *output, glintL_run *run
     }
 }
 
-// A script that calls os.exit ends the process from inside: what it has rendered is written all the same.
+// A script that calls os.exit ends the process from inside: finished pictures are still written.
 static cli_output *open_output;
 
 static void finish_early(void)

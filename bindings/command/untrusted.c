@@ -15,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define FILES_LIMIT 4 // what is written in all, in times of what one file may have
+#define FILES_LIMIT 4 // limit of all written bytes, in multiples of the limit of one file
 #define BLOCK 4096 // what a few bytes take on a disk
 #define TICK_MS 50.0 // between two looks at what was written, where much is left
 #define SHORTEST_TICK_MS 1.0

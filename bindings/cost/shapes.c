@@ -7,7 +7,7 @@
 
 typedef void visitor(glint_shape *shape, void *data);
 
-// Every shape that is no group, as often as it shows. Parts of combined solids keep what they are: not every shading is theirs.
+// Every shape that is not a group, once for each time it shows. Parts of combined solids keep what they are: not every shading is theirs.
 static void visit(glint_shape *shape, visitor *see, void *data)
 {
     const bool group = glint_shape_get(shape)->kind == GLINT_SHAPE_GROUP;

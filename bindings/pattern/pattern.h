@@ -78,7 +78,7 @@ glintL_term glintL_apply2(lua_State *L, glint_op op, glintL_term a, glintL_term 
 glintL_term glintL_apply3(lua_State *L, glint_op op, glintL_term a, glintL_term b, glintL_term c);
 glintL_term glintL_dot_terms(lua_State *L, const glintL_term a[3], const glintL_term b[3]);
 
-/// False: the value is no number, symbol, vector, triple, list of three of them, or (when allow_color) name of a colour.
+/// False: the value is not a number, symbol, vector, triple, list of three of them, or (when allow_color) name of a colour.
 bool glintL_to_operand(lua_State *L, int index, bool allow_color, glintL_operand *out);
 /// Raises "<path>: number, symbol or vector expected, got ..."
 void glintL_read_operand(lua_State *L, int index, const char *path, glintL_operand *out);

@@ -23,7 +23,7 @@ static int fail(char *message, int code, const char *path, const char *text)
 
 // ---- --light ----
 
-// False: it is no strength, no colour, or the second of its kind.
+// False: it is neither a strength nor a colour, or the second of its kind.
 static bool take_value(relight_light *light, const char *value, char *message)
 {
     char *end;

@@ -179,7 +179,7 @@ static bool match_first(const glintL_film *film, size_t i, const glint_picture *
     return false;
 }
 
-// Only an APNG has room for what a picture does not cover.
+// Only an APNG can store transparency.
 static bool check_channels(const glintL_film *film, const glint_picture *first, char *message)
 {
     const int channels = glint_picture_channels(first);

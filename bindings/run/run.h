@@ -66,7 +66,7 @@ int64_t glintL_selection_count(const glintL_selection *selection, int64_t first,
 /// Which of the selected frames of 1 .. total are this shard's, counted from 1: *from .. *to, empty when to < from.
 void glintL_selection_part(const glintL_selection *selection, int64_t first, int64_t last, int64_t *from, int64_t *to);
 /// Warns of selected frames outside first .. last, the frames of the script. False: the selection has none of these frames,
-/// and the run has failed. An empty shard is no failure.
+/// and the run has failed. An empty shard is not a failure.
 bool glintL_selection_settle(struct glintL_run *run, int64_t first, int64_t last);
 
 // ---- render_options.c ----

@@ -1,4 +1,4 @@
-// Warnings that teach: what they say is said once, names the cause and the cure, and is certain.
+// Warnings that teach: each appears once, names the cause and the cure, and is never a guess.
 //
 //   a shininess without a specular colour, a parameter that is not read       here
 //   a light inside a closed sphere, an object outside the view, a smooth

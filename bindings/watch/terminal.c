@@ -13,7 +13,7 @@
 
 // ---- What the terminal says ----
 
-// Queries whether it knows the kitty protocol, then what it is: every terminal answers the second.
+// Asks whether the terminal knows the kitty protocol, then for its type: every terminal answers the second.
 static size_t query(int terminal, char *answer, size_t room)
 {
     static const char question[] = "\033_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\033\\\033[c";

@@ -317,7 +317,7 @@ double glint_log(double x)
 
 // ---- Power --------------------------------------------------------------------------------------------------------
 
-/// 0: y is no integer, 1: odd, 2: even.
+/// 0: y is not an integer, 1: odd, 2: even.
 static int integer_kind(double y)
 {
     double size = fabs(y);

@@ -36,7 +36,7 @@ glint_status glint_fill_placing(const glint_filler *f, const glint_shape *shape,
 /// fill_combined.c: a combined solid and its parts. around: as above.
 glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glint_placing *place, const glint_transform *around);
 
-/// How many of the parts of a combined solid a shape is that is no group.
+/// How many parts of a combined solid a shape other than a group counts as.
 static inline uint32_t glint_member_parts(const glint_shape *shape)
 {
     return shape->mesh ? GLINT_HULL_PARTS : shape->desc.kind == GLINT_SHAPE_TORUS ? 2 : 1;

@@ -39,11 +39,11 @@ struct glint_geometry {
     bool arranged; ///< in the order of the index
     double (*corners)[3][3]; ///< of triangles, and the boxes of combined solids; in the order of the primitives
     uint32_t corner_count; ///< of these
-    double (*planes)[4]; ///< what planes have beside a place
+    double (*planes)[4]; ///< the numbers of planes, besides a place
     uint32_t *prim_part; ///< which part each is of, by id
     glint_part *parts; ///< in order of definition; parts of combined solids after all else
     glint_transform *maps; ///< of those that have one
-    uint32_t part_count, whole_count; ///< whole_count: of those that are no part of a combined solid
+    uint32_t part_count, whole_count; ///< whole_count: of those that are not part of a combined solid
     glint_corner_normals *normals; ///< of triangles that are shaded smoothly
     glint_shading_points *shading_points; ///< of triangles with light computed per face or vertex
     uint32_t *shading_point_prims; ///< id of the first triangle of each site

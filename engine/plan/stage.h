@@ -73,7 +73,7 @@ typedef struct glint_stage {
     uint64_t reads; ///< GLINT_READS and GLINT_READS_OWN: its inputs, besides the results of the stages before it
     glint_key (*own)(const struct glint_plan *plan,
                      glint_key key); ///< continues a key with what only this stage reads; NULL: nothing
-    bool aside; ///< the stages after it do not read its result, or read what it is made from
+    bool aside; ///< the stages after it do not read its result, or read its inputs instead
     bool per_light; ///< it runs once for each light
     bool walks; ///< it traverses the index
     bool sums; ///< it adds light to the sums of a sample

@@ -4,7 +4,7 @@
 
 #include "engine/program/program.h"
 
-#define GLINT_SSA_NUMBER GLINT_OP_COUNT ///< kinds of node that are no operation
+#define GLINT_SSA_NUMBER GLINT_OP_COUNT ///< kinds of node that are not operations
 #define GLINT_SSA_INPUT (GLINT_OP_COUNT + 1)
 #define GLINT_SSA_PARAMETER (GLINT_OP_COUNT + 2)
 #define GLINT_VALUES_MAX 65536u ///< of a builder, those that no output needs included
@@ -44,7 +44,7 @@ glint_status glint_builder_texture(glint_builder *builder, const glint_texture *
 glint_status glint_builder_load(glint_builder *builder, const glint_program *program, const glint_value *instead,
                                 glint_value outputs[GLINT_PROGRAM_OUTPUTS_MAX], glint_error *error);
 
-/// A value that is no operation's: `kind` of node, with its first operand and its number.
+/// A value that is not the result of an operation: `kind` of node, with its first operand and its number.
 glint_status glint_builder_keep(glint_builder *builder, uint16_t kind, uint32_t operand, double number, glint_value *out,
                                 glint_error *error);
 
@@ -58,7 +58,7 @@ glint_status glint_program_make(const glint_builder *builder, const glint_value 
 // program/parameter.c: builders that have parameters.
 
 /// All values of a builder in a new one, which the caller destroys on error, too: `map` says which they are there, and is freed. open:
-/// parameters stay what they are; else they are numbers.
+/// parameters stay parameters; otherwise they become numbers.
 glint_status glint_builder_copy(const glint_builder *from, bool open, glint_builder **out, glint_value **map,
                                 glint_error *error);
 /// A program in which parameters are numbers.

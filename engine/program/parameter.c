@@ -30,7 +30,7 @@ glint_status glint_builder_parameter(glint_builder *builder, double number, cons
     return glint_builder_keep(builder, GLINT_SSA_PARAMETER, i, number, out, error);
 }
 
-/// The value of one node of another builder, in this one. open: parameters stay what they are.
+/// The value of one node of another builder, in this one. open: parameters stay parameters.
 static glint_status copy_node(const glint_builder *from, uint32_t i, bool open, glint_builder *to, glint_value *map,
                               glint_error *error)
 {

@@ -126,7 +126,7 @@ static bool means_the_same(const glint_object_field *field, const double *value)
     return field->offset != offsetof(DESC, opacity) || value[0] == 0 || value[0] == 1;
 }
 
-/// Puts the numbers of a pattern that is the same everywhere into its field. One height everywhere is no bump.
+/// Puts the numbers of a pattern that is the same everywhere into its field. A constant height is not a bump.
 static void fold_program(const glint_object_field *field, glint_material_desc *desc)
 {
     double value[GLINT_PROGRAM_OUTPUTS_MAX];

@@ -15,7 +15,7 @@ typedef struct glint_polygon {
 /// Cross product of two sides of the triangle at places i, j, k, brought near 1 by a power of two: 0 means no area.
 void glint_polygon_cross(const glint_polygon *polygon, uint32_t i, uint32_t j, uint32_t k, double out[3]);
 
-/// Memory that the cutting of polygons takes; zeros at first, glint_ears_free frees what it has.
+/// Memory for cutting polygons; starts as zeros, freed by glint_ears_free.
 typedef struct glint_ears {
     struct corner *corners; ///< of the polygon at hand
     struct node *nodes; ///< of the tree over the corners

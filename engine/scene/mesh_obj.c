@@ -223,7 +223,7 @@ static bool is_among(const char *line, const char *const *words)
     return *words != NULL;
 }
 
-/// A statement that is no part of a mesh.
+/// A statement that has nothing to do with meshes.
 static void pass_over(reader *r, const char *at)
 {
     static const char *const silent[] = { "vp",         "g",         "o",      "s",      "l",        "p",

@@ -248,7 +248,7 @@ static glint_status read_properties(body *b, double v[GLINT_PLY_NUMBERS])
     return GLINT_OK;
 }
 
-/// Adds a colour that is no 8-bit codes: as numbers, whose range is known when all are read. Whole numbers of 16 bits are shares of
+/// Adds a colour that is not made of 8-bit codes: as numbers, whose range is known when all are read. Whole numbers of 16 bits are shares of
 /// 65535, others of 255.
 static glint_status add_color_of_type(body *b, const double rgb[3])
 {

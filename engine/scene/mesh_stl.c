@@ -166,7 +166,7 @@ static glint_status refuse_size(glint_mesh_reader *r, const char *head, size_t g
 }
 
 /// A file whose size fits its number of triangles is binary, whatever its head says: "solid" begins some of both kinds. So
-/// is a longer one that is no text; the bytes behind its triangles are ignored.
+/// is a longer file that is not text; the bytes behind its triangles are ignored.
 glint_status glint_mesh_read_stl(glint_mesh_reader *r)
 {
     char bytes[1024 + 8] = { 0 }; // the zeros end every comparison

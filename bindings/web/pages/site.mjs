@@ -54,7 +54,7 @@ ${body}
 
 const index = [] // { page, title, heading, anchor, text }: a section each, for the search
 
-// Returns the address in the site of a link in a source file. Files that are no page go to source/.
+// Returns the address in the site of a link in a source file. Files that are not pages go to source/.
 function target(from, link) {
   if (/^[a-z]+:|^#/.test(link)) return link
   const [path, anchor] = link.split("#")

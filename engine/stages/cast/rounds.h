@@ -39,7 +39,7 @@ typedef struct R(rounds) {
     _Alignas(64) uint32_t lane[GLINT_ROUND_PAIRS], prim[GLINT_ROUND_PAIRS]; ///< the pairs
     _Alignas(64) real corner[3][3][GLINT_ROUND_PAIRS]; ///< of each one's triangle, turned as its ray is
     int count;
-    uint32_t solid[GLINT_ROUND_SOLIDS]; ///< solids, or what else is neither triangle nor sphere
+    uint32_t solid[GLINT_ROUND_SOLIDS]; ///< primitives that are neither triangles nor spheres
     uint32_t rays[GLINT_ROUND_SOLIDS]; ///< which came upon each, a bit a lane
     int solids;
     R(first_balls) first;

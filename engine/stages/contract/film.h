@@ -165,7 +165,7 @@ enum { GLINT_DIFFER_ALONG, GLINT_DIFFER_ACROSS, GLINT_DIFFER_FALLING, GLINT_DIFF
 
 typedef struct glint_estimate_args {
     uint32_t count; ///< a multiple of GLINT_GROUP
-    float gain; ///< what light is multiplied by
+    float gain; ///< factor of the light
     const float *light;
     float *code; ///< out
 } glint_estimate_args;
@@ -218,7 +218,7 @@ typedef struct glint_tone_args {
     uint32_t group_count, groups_across; ///< as in glint_camera_args; group_count is a multiple of groups_across
     const uint16_t *active; ///< a bit a lane: pixels whose codes are wanted, of those inside the image
     const float *beauty[3];
-    float gain; ///< > 0: what light is multiplied by
+    float gain; ///< > 0: factor of the light
     float white, top; ///< light above `white` is clipped; above `top` (at most `white`) all codes are that of `top`
     const uint32_t *table;
     const glint_tone_fit *fit; ///< NULL: use only the table. The pixel values are the same with either

@@ -68,7 +68,7 @@ typedef struct glint_light_args {
     const glint_spot *spot; ///< NULL: light in all directions
     uint32_t sample_count; ///< of an area light, or how many lights there are
     const glint_light_sample
-        *light_sample[GLINT_LIGHT_CHUNK]; ///< the samples; light_sample[0] is NULL when it is no area light
+        *light_sample[GLINT_LIGHT_CHUNK]; ///< the samples; light_sample[0] is NULL when it is not an area light
     bool attenuated; ///< false: attenuation is not written; true for spots and radiant lamps
     double coefficients[3]; ///< c0, c1, c2
     bool highlights; ///< false: log2_specular is not written

@@ -76,7 +76,7 @@ static inline void beside_line(int a, int b, float x, float y, float ex, float e
 }
 
 /// A plane of the axes a, b through (x, y) along (ex, ey), if it has the points and the light on one side. `wide`: the
-/// light is no point.
+/// light is not a point.
 static inline void add_shaft_plane(light_shaft *shaft, int a, int b, float x, float y, float ex, float ey,
                                    const float lower[3], const float upper[3], const light_place *light, bool wide)
 {

@@ -128,7 +128,7 @@ static inline R(soft_lanes) R(sort_by_ball)(const R(whole_light) * light, const 
         }
         const vf length2 = DOT(way, way), ee = DOT(e, e), along = DOT(e, way), inverse = f_set(1) / length2;
         const vf share = along * inverse, one = f_set(1);
-        // from nearby, and where squares overflow or vanish, nothing is said
+        // from nearby, and where squares overflow or vanish, nothing is decided
         const fm fit =
             fm_and(f_lt(f_max(f_set(4) * (radius * radius), f_set(0x1p-80f)), length2), f_lt(length2, f_set(0x1p80f)));
         for (int k = 0; k < 3; k++)

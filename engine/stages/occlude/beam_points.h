@@ -52,7 +52,7 @@ typedef struct R(beam) {
     // the points, a cell's in a row, the cells row by row
     _Alignas(64) float place[2][GLINT_TILE_SAMPLES + GLINT_GROUP];
     _Alignas(64) float w[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< of blocked ones: -inf
-    uint32_t own[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< what it is on; with BEAM_BACK: seen from behind
+    uint32_t own[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< the primitive it is on; with BEAM_BACK: seen from behind
     uint16_t at[GLINT_TILE_SAMPLES + GLINT_GROUP], cell[GLINT_TILE_SAMPLES + GLINT_GROUP];
     uint16_t begin[BEAM_DOWN * SCREEN_ACROSS + 1]; ///< where each cell's begin
     _Alignas(64) float far[BEAM_DOWN][SCREEN_ACROSS]; ///< largest w of each cell's open points

@@ -11,7 +11,7 @@
 
 #define NEAR_MIDDLE 0x0660u ///< the lanes in the middle of a group
 #define NEAR_LEAST 2 ///< occluders; fewer are as quickly tested
-#define NEAR_MOST 0x1p80f ///< squared reach from which on nothing is said
+#define NEAR_MOST 0x1p80f ///< squared reach beyond which nothing is decided
 
 /// A list's occluders by the balls around them, in the index's frame; a lane each.
 typedef struct R(near_list) {

@@ -118,7 +118,7 @@ static bool is_whole(const glint_program_args *args)
     return wanted == 0xffff && !apart;
 }
 
-/// Notes the lanes that are no reflectances.
+/// Notes the lanes whose values are not reflectances.
 static void note_odd(const output *out)
 {
     for (uint32_t g = 0; g < out->args->group_count; g++)
