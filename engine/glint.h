@@ -604,6 +604,12 @@ const glint_camera_desc *glint_camera_get(const glint_camera *camera);
 /// Computes the window of a picture of that many pixels at distance 1 along the view: from window[0] to window[1] to the right, and from
 /// window[2] to window[3] up, world units. It is the same at every distance for an orthographic camera.
 void glint_camera_window(const glint_camera_desc *desc, double width, double height, double window[4]);
+/// Computes where a picture of that many pixels shows a point of the world, whether something hides it or not.
+///   pixel   to the right and down from the upper left corner of the picture; the centre of its first pixel is 0.5, 0.5
+///   depth   as in the pass `depth`: the distance from the eye; from an orthographic camera, along its view
+/// False, and nothing is stored: the point is not in front of the camera.
+bool glint_camera_project(const glint_camera_desc *desc, double width, double height, const double point[3], double pixel[2],
+                          double *depth);
 /// Takes another reference; returns its argument.
 glint_camera *glint_camera_retain(glint_camera *camera);
 /// Gives a reference back; the last one frees the camera. NULL: nothing.

@@ -37,8 +37,10 @@ static bool read_range(const char *text, range *out)
 static double shorten(double value, double scale)
 {
     char text[400];
+    if (value == floor(value)) // also where the scale is 0
+        return value;
     const int decimals = 14 - (int)floor(log10(scale));
-    if (decimals < 1 || decimals > 330 || value == floor(value))
+    if (decimals < 1 || decimals > 330)
         return value;
     snprintf(text, sizeof text, "%.*f", decimals, value);
     return strtod(text, NULL);

@@ -200,8 +200,37 @@ static void assigned(lua_State *L, const glintL_field *field, void *desc)
         glintL_error(L, "camera.%s: {x, y, z} expected, got nil", field->name);
 }
 
+static double read_side(lua_State *L, int index, const char *path)
+{
+    const double side = glintL_read_number(L, index, path);
+    if (!(side >= 1 && side <= GLINT_SIDE_MAX))
+        glintL_refuse(L, index, path, "number of pixels, 1 .. 65535,");
+    return side;
+}
+
+// camera:project(point, width, height): x, y and depth, or nil.
+static int project(lua_State *L)
+{
+    double point[3], pixel[2], depth;
+    glintL_check_object(L, 1, GLINTL_CAMERA);
+    glintL_read_vector(L, 2, "project.point", point);
+    const double width = read_side(L, 3, "project.width"), height = read_side(L, 4, "project.height");
+    const glint_camera_desc *desc = glint_camera_get(glintL_check_object(L, 1, GLINTL_CAMERA));
+    if (!glint_camera_project(desc, width, height, point, pixel, &depth)) {
+        lua_pushnil(L);
+        return 1;
+    }
+    lua_pushnumber(L, pixel[0]);
+    lua_pushnumber(L, pixel[1]);
+    lua_pushnumber(L, depth);
+    return 3;
+}
+
+static const luaL_Reg METHODS[] = { { "project", project }, { NULL, NULL } };
+
 static const glintL_class CLASS = {
     .type = GLINTL_CAMERA,
+    .methods = METHODS,
     .variant = variant,
     .get = get,
     .set = set,

@@ -223,6 +223,15 @@ function glint.sphere_light(fields) end
 ---@class glint.camera: glint.camera_fields
 local camera = {}
 
+--- Where a picture of width x height pixels shows a point, whether something hides it or not: pixels to the right and down from
+--- the upper left corner, where the centre of the first pixel is 0.5, 0.5, and the depth as in the pass `depth`. nil: the point
+--- is not in front of the camera.
+---@param point glint.vec3  world units
+---@param width number  pixels
+---@param height number  pixels
+---@return number? x, number? y, number? depth
+function camera:project(point, width, height) end
+
 --- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
 function camera:close() end
 

@@ -46,14 +46,7 @@ static double depth_of(const box_axes *axes, const double p[3])
 /// Where the camera has a point; false: nowhere.
 static bool project(const box_axes *axes, const double p[3], double out[2])
 {
-    const glint_overlays *o = axes->layout->overlays;
-    const double(*view)[3] = o->camera.view, depth = depth_of(axes, p), shift = 0.5 - o->camera.pixel_offset;
-    double d[3], s[2];
-    vec_sub(d, p, o->camera.eye);
-    for (int i = 0; i < 2; i++)
-        s[i] = vec_dot(d, view[i]) / vec_dot(view[i], view[i]) / (o->camera.orthographic ? 1 : depth);
-    out[0] = (o->camera.span[0] + s[0]) / 2 + shift;
-    out[1] = (o->camera.span[1] - s[1]) / 2 + shift;
+    const double depth = glint_overlays_project(&axes->layout->overlays->camera, p, out);
     return depth >= axes->nearest && isfinite(out[0]) && isfinite(out[1]);
 }
 

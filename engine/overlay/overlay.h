@@ -36,6 +36,9 @@ typedef struct glint_overlays {
     glint_overlay_desc of[]; ///< in the order in which they are drawn
 } glint_overlays;
 
+/// Where the camera shows a point, pixels from the upper left corner. Returns its distance along the view.
+double glint_overlays_project(const glint_overlays_camera *camera, const double p[3], double out[2]);
+
 /// A copy of the scene's overlays; NULL where there are none, or nothing to be seen of them.
 glint_status glint_overlays_take(const glint_scene *scene, int width, int height, const glint_overlays_camera *camera,
                                  glint_overlays **out, glint_error *error);

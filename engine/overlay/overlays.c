@@ -6,6 +6,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+double glint_overlays_project(const glint_overlays_camera *camera, const double p[3], double out[2])
+{
+    double d[3], s[2];
+    vec_sub(d, p, camera->eye);
+    const double depth = vec_dot(d, camera->view[2]), shift = 0.5 - camera->pixel_offset;
+    for (int i = 0; i < 2; i++)
+        s[i] = vec_dot(d, camera->view[i]) / vec_dot(camera->view[i], camera->view[i]) / (camera->orthographic ? 1 : depth);
+    out[0] = (camera->span[0] + s[0]) / 2 + shift;
+    out[1] = (camera->span[1] - s[1]) / 2 + shift;
+    return depth;
+}
+
 /// A label without text shows nothing.
 static bool shows(const glint_overlay_desc *desc) { return desc->kind != GLINT_OVERLAY_LABEL || desc->text[0]; }
 

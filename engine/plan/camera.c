@@ -3,6 +3,8 @@
 #include "engine/base/vec.h"
 #include "engine/plan/plan.h"
 
+#include <string.h>
+
 /// Computes the axes of the view. If `up` is parallel to the view, the world axis least aligned with it replaces it.
 static void view_axes(const glint_camera_desc *desc, double forward[3], double right[3], double up[3])
 {
@@ -64,6 +66,38 @@ void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *des
     find_pixels(desc, render->width, render->height, half, out->span);
     vec_scale(out->right, right, half[0]);
     vec_scale(out->up, up, half[1]);
+}
+
+glint_overlays_camera glint_plan_camera_of_overlays(const glint_plan_camera *camera)
+{
+    glint_overlays_camera out = { .orthographic = camera->orthographic, .pixel_offset = camera->pixel_offset };
+    memcpy(out.span, camera->span, sizeof out.span);
+    vec_copy(out.eye, camera->eye);
+    vec_copy(out.view[0], camera->right);
+    vec_copy(out.view[1], camera->up);
+    vec_copy(out.view[2], camera->forward);
+    return out;
+}
+
+bool glint_camera_project(const glint_camera_desc *desc, double width, double height, const double point[3], double pixel[2],
+                          double *depth)
+{
+    if (!desc || !point || !pixel || !depth)
+        return false;
+    glint_render_desc render = glint_render_desc_default();
+    render.width = width;
+    render.height = height;
+    glint_plan_camera camera;
+    glint_plan_camera_init(&camera, desc, &render);
+    const glint_overlays_camera seen = glint_plan_camera_of_overlays(&camera);
+    double at[2], d[3];
+    const double along = glint_overlays_project(&seen, point, at);
+    if (!(along > 0) || !isfinite(at[0]) || !isfinite(at[1]))
+        return false;
+    vec_sub(d, point, desc->eye);
+    *depth = camera.orthographic ? along : sqrt(vec_dot(d, d));
+    memcpy(pixel, at, sizeof at);
+    return true;
 }
 
 void glint_plan_sample_offset(const glint_plan *plan, uint32_t k, double out[2])

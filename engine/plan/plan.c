@@ -183,13 +183,7 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, const glint
 
 static glint_status take_overlays(glint_plan *plan, const glint_scene *scene, glint_error *error)
 {
-    const glint_plan_camera *c = &plan->camera;
-    glint_overlays_camera camera = { .orthographic = c->orthographic, .pixel_offset = c->pixel_offset };
-    memcpy(camera.span, c->span, sizeof camera.span);
-    vec_copy(camera.eye, c->eye);
-    vec_copy(camera.view[0], c->right);
-    vec_copy(camera.view[1], c->up);
-    vec_copy(camera.view[2], c->forward);
+    const glint_overlays_camera camera = glint_plan_camera_of_overlays(&plan->camera);
     return glint_overlays_take(scene, (int)plan->desc.width, (int)plan->desc.height, &camera, &plan->overlays, error);
 }
 

@@ -256,6 +256,8 @@ void glint_plan_centre_offset(const glint_plan *plan, double out[2]);
 bool glint_plan_casts_centres(const glint_plan *plan);
 
 void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render);
+/// The same for overlays.
+glint_overlays_camera glint_plan_camera_of_overlays(const glint_plan_camera *camera);
 /// Fills the lens, after the camera.
 glint_status glint_plan_find_lens(glint_plan *plan, const glint_camera_desc *desc, glint_error *error);
 /// Writes the lens of sample k for kernels.

@@ -322,6 +322,8 @@ io.stderr:write(math.type(P.a), " ", math.type(P.b), " ", P.s, "\n") return requ
     says "--sweep has short steps" '^0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 $'
     run steps.lua --sweep n=-1e308:1e308:5 -o none --size 1x1 -q
     says "--sweep over all numbers" '^-1e\+308 -5e\+307 0 5e\+307 1e\+308 $'
+    run steps.lua --sweep n=0:0:3 -o none --size 1x1 -q
+    says "--sweep over one number" '^0 0 0 $'
     check "--sweep has exact ends" eval 'run steps.lua --sweep n=0.30000000000000004:0.7000000000000001:3 -o e%d.png --size 1x1 -q &&
         grep -aq "n=0.30000000000000004" e1.png && grep -aq "n=0.7000000000000001" e3.png'
     rm -f e[123].png

@@ -202,6 +202,7 @@ static void test_null_of_every_function(void **state)
     INVALID(glint_camera_set(NULL, NULL, NULL));
     NOTHING(glint_camera_get(NULL));
     glint_camera_window(NULL, 0, 0, NULL);
+    assert_false(glint_camera_project(NULL, 0, 0, NULL, NULL, NULL));
     NOTHING(glint_camera_retain(NULL));
     glint_camera_release(NULL);
     (void)glint_transform_product(NULL, NULL);

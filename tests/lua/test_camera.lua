@@ -51,6 +51,60 @@ function tests.balls_are_where_their_points_are()
   end
 end
 
+-- camera:project against the projection by hand, at two sizes.
+function tests.points_are_projected()
+  for scale = 1, 8, 7 do
+    for _, p in ipairs(POINTS) do
+      local x, y, distance = seen(p)
+      local u, v, depth = camera { w = 64, h = 48 }:project(p, 64 * scale, 48 * scale)
+      check(math.abs(u - scale * x) < 1e-10 and math.abs(v - scale * y) < 1e-10 and math.abs(depth - distance) < 1e-12,
+        "(%g, %g, %g) at %g, %g, %g, got %s, %s, %s", p[1], p[2], p[3], scale * x, scale * y, distance, u, v, depth)
+    end
+  end
+end
+
+-- The centre of a pixel, sent out to what it shows and projected again, is that centre, at the depth of the pass.
+function tests.hits_are_projected_to_their_pixels()
+  for _, fields in ipairs { {}, { projection = "orthographic", height = 5 }, { pixel_offset = 0.25 }, { aperture = 0.2, focus = 5 } } do
+    fields.eye, fields.at = { 1, 2, 6 }, { 0, 0.5, 0 }
+    local view = glint.camera(fields)
+    local scene = glint.scene { camera = view, glint.sphere { center = { 0, 0, 0 }, radius = 1.5 } }
+    local image = scene:render { width = 32, height = 24, passes = "depth", samples = fields.aperture and 4 or 1 }
+    local forward = (view.at - view.eye):unit()
+    for y = 2, 23, 3 do
+      for x = 2, 31, 3 do
+        local t = image:pixel(x, y, "depth")
+        if t < math.huge then
+          local right = forward:cross(view.up):unit()
+          local up = right:cross(forward)
+          local half = fields.projection and 2.5 or math.tan(math.rad(view.fov / 2))
+          local offset = fields.pixel_offset or 0.5
+          local a, b = (x + offset - 16) / 12 * half, (12 - y - offset) / 12 * half
+          local point = fields.projection and view.eye + a * right + b * up + t * forward
+            or view.eye + t * (forward + a * right + b * up):unit()
+          local u, v, depth = view:project(point, 32, 24)
+          check(math.abs(u - x - 0.5) < 1e-4 and math.abs(v - y - 0.5) < 1e-4 and math.abs(depth - t) < 1e-5,
+            "%d, %d at %s: got %s, %s at %s", x, y, t, u, v, depth)
+        end
+      end
+    end
+  end
+end
+
+function tests.points_that_are_not_projected()
+  local view = camera()
+  check(glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }:project({ 0, 0, 6 }, 64, 48) == nil, "behind the eye")
+  check(glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }:project({ 0, 0, 5 }, 64, 48) == nil, "in the eye")
+  local function raises(want, ...)
+    local good, message = pcall(view.project, ...)
+    check(not good and tostring(message):find(want, 1, true), "%s expected, got %s", want, message)
+  end
+  raises("project.point: {x, y, z} expected, got no value", view)
+  raises("project.point[2]: finite number expected", view, { 0, 0 / 0, 1 }, 4, 4)
+  raises("project.width: number of pixels, 1 .. 65535, expected, got 0", view, { 0, 0, 0 }, 0, 4)
+  raises("project.height: number expected, got no value", view, { 0, 0, 0 }, 4)
+end
+
 -- The pixel's ray, found again from the hit on a plane, goes through the pixel's centre.
 function tests.rays_go_through_their_pixels()
   local scene = glint.scene { camera = camera(), glint.plane { point = { 0, 0, -1 }, normal = { 0, 0, 1 } } }
