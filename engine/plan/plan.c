@@ -329,7 +329,7 @@ void glint_plan_destroy(glint_plan *plan)
     free(plan);
 }
 
-const glint_render_desc *glint_plan_render_desc(const glint_plan *plan) { return &plan->desc; }
+const glint_render_desc *glint_plan_render_desc(const glint_plan *plan) { return plan ? &plan->desc : NULL; }
 
 size_t glint_plan_effects(const glint_plan *plan, const glint_effect **list)
 {
