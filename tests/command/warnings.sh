@@ -364,9 +364,11 @@ run "$root/scripts/sphereflake.lua" --size 8x8 --set size=1 --set nff=balls.nff 
 for script in "$root"/scripts/*.lua; do
     name=$(basename "$script") dialect='' size=64x36
     [[ $name != gr_* ]] || dialect=--dialect=gr
+    one=${PRELOAD:+-f 1}                   # all frames take a sanitizer minutes
+    [ "$name" != fit.lua ] || one=         # needs all of its frames
     [ "$name" != lobes.lua ] || size=64x25 # a wide picture, whose ends a narrower one cuts off
     [ "$name" != labels.lua ] || size=320x180 # letters of 10 pixels fit
-    run "$script" --size $size --samples 1 --warnings=error $dialect ${PRELOAD:+-f 1} # all frames take a sanitizer minutes
+    run "$script" --size $size --samples 1 --warnings=error $dialect $one
     result $? "$name"
 done
 # ---- Black pictures ----
