@@ -320,7 +320,8 @@ check: ## every test; T=name runs those whose name has it
 check-run: tests
 	@T="$(T)" $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
 
-# Tests worth running under a sanitizer: C, Lua and the command line. Tests that run none of our programs are left out.
+# Tests worth running under a sanitizer: C, Lua and the command line. Left out are tests of other programs and of installed files, and
+# the ones that only run scripts which other tests run, too.
 SANITIZED := $(filter-out $(addprefix tests/,$(addprefix command/,povray.sh gallery.sh install.sh readme.sh) machines/systems.sh),$(SCRIPTED))
 # Tests of threads: tiles, index, bands of rows, the writer, the cache between frames, the server of watch. With two of
 # the instruction sets: what threads share is the same in all.

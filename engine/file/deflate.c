@@ -74,7 +74,7 @@ static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool las
 #define MAP_THERE (MAP_PRIVATE | MAP_ANONYMOUS) // an address is a wish, which systems grant where nothing is
 #endif
 #define BUCKET_BITS 13
-#define PLACE_SHIFT 16 // shift between an address and a hash
+#define PLACE_SHIFT 16 // from a place to its address
 #define FIRST_PLACE UINT32_C(0x20000000) // shifted; from here on, 2^29 places lie where programs have nothing
 #define PLACE_BITS 29
 #define PLACES_TRIED 64 // each thread of each writer has one for each of its buckets

@@ -1,5 +1,5 @@
 -- engine/glint.h says of every type, function, field and constant what it is: in a comment on it, above it, or above the
--- group of lines that it stands in.
+-- group of lines that it stands in. A test calls each function that takes a pointer with NULL.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 
@@ -42,4 +42,18 @@ for _, d in ipairs(declarations "engine/glint.h") do
   end
 end
 check(count > 300, "%d declarations", count)
+
+-- Each function that takes a pointer is called with NULL.
+local function text_of(path)
+  local file <close> = assert(io.open(path))
+  return file:read "a"
+end
+local calls, functions = text_of "tests/engine/test_null.c", 0
+for name, arguments in text_of("engine/glint.h"):gsub("//[^\n]*", ""):gmatch "\n%w[%w_ *]-(glint_[%w_]+)(%b());" do
+  if arguments:find "[*%[]" then
+    functions = functions + 1
+    check(calls:find(name .. "(", 1, true), "tests/engine/test_null.c does not call %s", name)
+  end
+end
+check(functions > 150, "%d functions that take a pointer", functions)
 tally.finish()
