@@ -1,23 +1,22 @@
 /// glint: a ray-tracing render engine. This header is the whole public C API.
 ///
 /// The order of use: describe (materials, lights, shapes, a camera, a scene), plan (glint_plan_create takes a
-/// snapshot of the scene and lists the stages a frame needs), render (glint_render runs the plan), write.
+/// snapshot of the scene and lists the stages that a frame needs), render (glint_render runs the plan), write.
 ///
 /// Units     lengths are in world units, angles in radians (`_rad`), colours linear RGB with 1.0 = display white.
 /// Vectors   `double v[3]` is x, y, z or red, green, blue. The world is right-handed.
-/// Errors    every function that can fail returns a glint_status and fills `error` (which may be NULL). Outputs and
-///           objects are then as they were. The message starts with the argument's name: "shininess: number >= 0
-///           expected, got -1". NULL for a pointer that is not optional is GLINT_ERR_INVALID, too: "shape: pointer
-///           expected, got NULL". Functions without a status return 0, NULL or false for it, or do nothing; a transform
-///           is then the identity.
-/// Ownership `_create` returns a reference the caller owns and gives back with `_release`; `_retain` takes another.
+/// Errors    every function that can fail returns a glint_status and fills `error`, which may be NULL. On failure, outputs
+///           and objects are unchanged. The message starts with the argument's name: "shininess: number >= 0 expected, got
+///           -1". NULL for a pointer that is not optional is GLINT_ERR_INVALID, too: "shape: pointer expected, got NULL".
+///           Functions that return no status return 0, NULL, false or the identity transform instead, or do nothing.
+/// Ownership `_create` returns a reference that the caller owns and must release with `_release`; `_retain` adds one.
 ///           `_release(NULL)` does nothing. Pointers in a description struct are borrowed for the call only.
-/// Threads   described objects (material, light, camera, shape, overlay, scene) belong to one thread at a time. A plan is
-///           immutable; images are, once rendered. A renderer renders one frame at a time.
+/// Threads   described objects (material, light, camera, shape, overlay, scene) belong to one thread at a time. Plans and
+///           finished images are immutable. A renderer renders one frame at a time.
 #ifndef GLINT_H
 #define GLINT_H
 
-// clang-format off: comments stand beside what they explain, and it would part the two
+// clang-format off: it would separate comments from the lines that they explain
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -36,10 +35,10 @@ extern "C" {
 typedef enum glint_status {
     GLINT_OK = 0, ///< done
     GLINT_ERR_INVALID, ///< an argument is out of its range
-    GLINT_ERR_NOMEM, ///< out of memory: nothing was changed
-    GLINT_ERR_IO, ///< the outside world: a file that will not open, a short write
-    GLINT_ERR_NO_SPACE, ///< disk or quota full: worth trying later
-    GLINT_ERR_FORMAT, ///< a file that is not what it should be
+    GLINT_ERR_NOMEM, ///< out of memory; nothing was changed
+    GLINT_ERR_IO, ///< a failure of the system: a file that cannot be opened, a short write
+    GLINT_ERR_NO_SPACE, ///< disk or quota full; a later attempt may succeed
+    GLINT_ERR_FORMAT, ///< a file with invalid contents
     GLINT_ERR_CANCELLED, ///< glint_renderer_cancel was called
     GLINT_ERR_UNSUPPORTED ///< this machine or build cannot do it
 } glint_status;
@@ -47,56 +46,57 @@ typedef enum glint_status {
 /// Why a call failed. Written only on failure.
 typedef struct glint_error {
     glint_status status; ///< never GLINT_OK
-    char message[512]; ///< UTF-8, one line, begins with the argument
+    char message[512]; ///< UTF-8, one line, begins with the argument's name
 } glint_error;
 
 // ---- Programs: patterns and shaders -------------------------------------------------------------------------------
 
-/// A straight list of operations on doubles, run for many points at once: a pattern says what a material is at a point,
-/// a shader what one light leaves there. A builder makes it, value by value. It has no branches and no loops: its time
-/// is its length. The same numbers give the same bits on every machine.
+/// A straight-line list of operations on doubles, run for many points at once. A pattern computes a material's value
+/// at a point; a shader computes the light that a point reflects from one light source. A builder makes the program,
+/// value by value. A program has no branches and no loops, so its time is proportional to its length. The same
+/// numbers give the same bits on every machine.
 
 typedef struct glint_program glint_program; ///< immutable
-typedef struct glint_builder glint_builder; ///< a program being made; of one thread at a time
+typedef struct glint_builder glint_builder; ///< a program under construction; used by one thread at a time
 typedef struct glint_texture glint_texture; ///< immutable
-typedef uint32_t glint_value; ///< a value of a builder: one double for each point
+typedef uint32_t glint_value; ///< a value in a builder: one double per point
 
 #define GLINT_PROGRAM_LENGTH_MAX 4096 ///< instructions of a program
 #define GLINT_PROGRAM_ROWS_MAX 256 ///< intermediate values that a program may need at the same time
-#define GLINT_PROGRAM_OUTPUTS_MAX 8 ///< numbers that it gives for each point
-#define GLINT_PARAMETERS_MAX 32 ///< that numbers of a program may change with
+#define GLINT_PROGRAM_OUTPUTS_MAX 8 ///< outputs of a program, per point
+#define GLINT_PARAMETERS_MAX 32 ///< parameters that numbers of a program may depend on
 
-/// A pattern gives a number or a colour at a point, a shader what one light leaves there.
+/// A pattern gives a number or a colour at a point, a shader the light reflected from one light source.
 typedef enum glint_program_kind { GLINT_PROGRAM_PATTERN, GLINT_PROGRAM_SHADER } glint_program_kind;
 
 /// The inputs of a program at a point. Directions are unit vectors.
 typedef enum glint_input {
-    GLINT_INPUT_P_X, ///< the point in its shape's own space, before the shape's transform and its groups'
+    GLINT_INPUT_P_X, ///< the point in the shape's own space, before the transforms of the shape and its groups
     GLINT_INPUT_P_Y, ///< likewise
     GLINT_INPUT_P_Z, ///< likewise
     GLINT_INPUT_WORLD_X, ///< the point in world space
     GLINT_INPUT_WORLD_Y, ///< likewise
     GLINT_INPUT_WORLD_Z, ///< likewise
-    GLINT_INPUT_N_X, ///< the geometric normal, on the viewer's side
+    GLINT_INPUT_N_X, ///< the geometric normal, facing the viewer
     GLINT_INPUT_N_Y, ///< likewise
     GLINT_INPUT_N_Z, ///< likewise
     GLINT_INPUT_V_X, ///< towards the eye
     GLINT_INPUT_V_Y, ///< likewise
     GLINT_INPUT_V_Z, ///< likewise
-    /// The shape's own coordinates on its surface. Plane and disk: lengths along two tangents; box: 0 .. 1 on each
-    /// face; sphere, cylinder and cone: 0 .. 1 around and along; torus: 0 .. 1 around its axis and around its tube; mesh: interpolated between the corners by
-    /// barycentric coordinates
+    /// The shape's own surface coordinates. Plane and disk: lengths along two tangents. Box: 0 .. 1 on each face.
+    /// Sphere, cylinder and cone: 0 .. 1 around and along. Torus: 0 .. 1 around its axis and around its tube. Mesh:
+    /// interpolated between the corners by barycentric coordinates
     GLINT_INPUT_UV_U,
     GLINT_INPUT_UV_V, ///< likewise
-    GLINT_INPUT_FOOTPRINT, ///< width of a pixel at the point, world units
-    GLINT_INPUT_UV_FOOTPRINT, ///< the same in units of u and v
-    GLINT_INPUT_L_X, ///< towards the light; this and all that follow in shaders alone
+    GLINT_INPUT_FOOTPRINT, ///< width of a pixel at the point, in world units
+    GLINT_INPUT_UV_FOOTPRINT, ///< width of a pixel at the point, in units of u and v
+    GLINT_INPUT_L_X, ///< towards the light; this and all later inputs are for shaders only
     GLINT_INPUT_L_Y, ///< likewise
     GLINT_INPUT_L_Z, ///< likewise
     GLINT_INPUT_LIGHT_R, ///< colour times intensity times attenuation
     GLINT_INPUT_LIGHT_G, ///< likewise
     GLINT_INPUT_LIGHT_B, ///< likewise
-    GLINT_INPUT_DISTANCE, ///< to the light, world units; infinite where it is directional
+    GLINT_INPUT_DISTANCE, ///< distance to the light, in world units; infinite for a directional light
     GLINT_INPUT_KD_R, ///< the material's diffuse reflectance at the point
     GLINT_INPUT_KD_G, ///< likewise
     GLINT_INPUT_KD_B, ///< likewise
@@ -107,9 +107,9 @@ typedef enum glint_input {
     GLINT_INPUT_COUNT ///< how many there are
 } glint_input;
 
-/// Operations. `true` is 1 and `false` 0; as a condition, every number but 0 is true. min and max are a < b ? a : b and
-/// a > b ? a : b. Those under "exact" are IEEE 754's, rounded once; where nothing else is said, the others are made of
-/// them in the order written here.
+/// Operations. `true` is 1 and `false` is 0; as a condition, every number except 0 is true. min and max are a < b ? a
+/// : b and a > b ? a : b. Operations under "exact" are IEEE 754 operations, rounded once. The others are composed of
+/// these in the order written here, unless stated otherwise.
 typedef enum glint_op {
     // exact
     GLINT_OP_ADD, ///< a + b
@@ -125,13 +125,13 @@ typedef enum glint_op {
     GLINT_OP_CEIL,
     GLINT_OP_ROUND, ///< to the nearest whole number, halves away from 0
     GLINT_OP_FRACT, ///< a - floor(a)
-    GLINT_OP_MOD, ///< a % b of Lua on floats: exact, with the sign of b
-    GLINT_OP_SIGN, ///< 1, -1; 0 for 0 and NaN
+    GLINT_OP_MOD, ///< a % b as in Lua on floats: exact, with the sign of b
+    GLINT_OP_SIGN, ///< 1, 0 or -1; 0 for NaN
     // two roundings
     GLINT_OP_MULADD, ///< a b + c
     GLINT_OP_SUBMUL, ///< a - b c
     GLINT_OP_MULSUB, ///< a b - c
-    GLINT_OP_MIX, ///< a + t (b - a), of a, b, t
+    GLINT_OP_MIX, ///< a + t (b - a); operands a, b, t
     // choice
     GLINT_OP_LESS, ///< a < b
     GLINT_OP_LESSEQ, ///< a <= b
@@ -139,40 +139,42 @@ typedef enum glint_op {
     GLINT_OP_AND,
     GLINT_OP_OR,
     GLINT_OP_NOT,
-    GLINT_OP_SELECT, ///< c ? a : b, of c, a, b
-    GLINT_OP_STEP, ///< x < e ? 0 : 1, of e, x
-    GLINT_OP_SMOOTHSTEP, ///< t t (3 - 2 t), t = min(max((x - a) / (b - a), 0), 1), of a, b, x
-    GLINT_OP_CLAMP, ///< min(max(x, a), b), of x, a, b
-    // elementary, our own; special values as in C99, annex F
-    GLINT_OP_SIN, ///< of radians; off by 4e-16 at most, whatever the angle
+    GLINT_OP_SELECT, ///< c ? a : b; operands c, a, b
+    GLINT_OP_STEP, ///< x < e ? 0 : 1; operands e, x
+    GLINT_OP_SMOOTHSTEP, ///< t t (3 - 2 t), t = min(max((x - a) / (b - a), 0), 1); operands a, b, x
+    GLINT_OP_CLAMP, ///< min(max(x, a), b); operands x, a, b
+    // elementary functions, implemented here; special values as in C99, annex F
+    GLINT_OP_SIN, ///< of radians; error at most 4e-16, for any angle
     GLINT_OP_COS, ///< likewise
-    GLINT_OP_EXP2, ///< 2^a; off by 2.5e-16 of itself
-    GLINT_OP_LOG2, ///< off by 4e-16 of itself, or 4e-16 where it is below 1
-    GLINT_OP_POW, ///< a^b; off by 1e-12 of itself
-    GLINT_OP_ATAN2, ///< of y, x; -pi .. pi; off by 6e-16
-    GLINT_OP_ACOS, ///< 0 .. pi; NaN beyond -1 .. 1; off by 6e-16
-    GLINT_OP_HIGHLIGHT, ///< x^s of a cosine x and an exponent s by the built-in models' kernel, in float: seven digits, 0
-        ///< below 2^-40; x above 1 is taken as 1, s below 0 as 0
+    GLINT_OP_EXP2, ///< 2^a; relative error 2.5e-16
+    GLINT_OP_LOG2, ///< relative error 4e-16; absolute error 4e-16 where the result is below 1
+    GLINT_OP_POW, ///< a^b; relative error 1e-12
+    GLINT_OP_ATAN2, ///< operands y, x; -pi .. pi; error 6e-16
+    GLINT_OP_ACOS, ///< 0 .. pi; NaN outside -1 .. 1; error 6e-16
+    GLINT_OP_HIGHLIGHT, ///< x^s for a cosine x and an exponent s, by the built-in models' kernel in float: seven
+        ///< digits, 0 below 2^-40. x is clamped to at most 1, s to at least 0
     // patterns
-    GLINT_OP_NOISE, ///< of x, y, z: gradient noise, smooth, -1 .. 1, 0 at whole numbers (K. Perlin, "Improving Noise",
-                    ///< SIGGRAPH 2002: his gradients and fade; the hash is our own); repeats after 2^32
-    GLINT_OP_NOISE3, ///< three of them, unlike: 3 results
-    GLINT_OP_CELL, ///< of x, y, z: distances to the nearest and the next of points of which each unit cube has one
-                   ///< (S. Worley, "A Cellular Texture Basis Function", SIGGRAPH 1996): 2 results
-    GLINT_OP_HASH, ///< of x, y, z: a number of [0, 1) that has nothing to do with that of other x, y, z
-    GLINT_OP_PARITY, ///< of x, y, z: (floor(x) + floor(y) + floor(z)) % 2, for numbers of any size: a checkerboard
-    // what the builder and differentiation make, and textures: not for glint_builder_op
+    GLINT_OP_NOISE, ///< operands x, y, z: smooth gradient noise, -1 .. 1, 0 at whole numbers. Gradients and fade of
+        ///< K. Perlin, "Improving Noise", SIGGRAPH 2002; the hash is our own. Repeats after 2^32
+    GLINT_OP_NOISE3, ///< three independent noises: 3 results
+    GLINT_OP_CELL, ///< operands x, y, z: distances to the nearest and the second-nearest feature point. Each unit
+        ///< cube has one such point (S. Worley, "A Cellular Texture Basis Function", SIGGRAPH 1996): 2 results
+    GLINT_OP_HASH, ///< operands x, y, z: a number in [0, 1), independent of the numbers at other x, y, z
+    GLINT_OP_PARITY, ///< operands x, y, z: (floor(x) + floor(y) + floor(z)) % 2, for numbers of any size: a
+        ///< checkerboard
+    // made by the builder and by differentiation, and textures: not for glint_builder_op
     GLINT_OP_MULMUL, ///< (a b) c
     GLINT_OP_DOT, ///< (a b + c d) + e f
-    GLINT_OP_NOISE_SLOPE, ///< of x, y, z, k: derivatives of NOISE (k = 0) or of result k of NOISE3 (1 .. 3): 3 results
-    GLINT_OP_CELL_SLOPE, ///< derivatives of CELL's first and second result: 6 results
+    GLINT_OP_NOISE_SLOPE, ///< operands x, y, z, k: derivatives of NOISE (k = 0) or of result k of NOISE3 (1 .. 3): 3
+        ///< results
+    GLINT_OP_CELL_SLOPE, ///< derivatives of CELL's first and second results: 6 results
     GLINT_OP_TEXEL, ///< glint_builder_texel: 4 results
-    GLINT_OP_TEXEL_SLOPE, ///< derivatives of TEXEL's results by u, and by v: 8 results
+    GLINT_OP_TEXEL_SLOPE, ///< derivatives of TEXEL's results with respect to u, and to v: 8 results
     GLINT_OP_COUNT
 } glint_op;
 
-#define GLINT_OPERANDS_MAX 6 ///< values that an operation reads
-#define GLINT_RESULTS_MAX 8 ///< results of an operation
+#define GLINT_OPERANDS_MAX 6 ///< operands of an operation, at most
+#define GLINT_RESULTS_MAX 8 ///< results of an operation, at most
 
 /// The description of an operation.
 typedef struct glint_op_info {
@@ -183,120 +185,129 @@ typedef struct glint_op_info {
 
 /// Returns the description of an operation; static. NULL: there is no such operation.
 const glint_op_info *glint_op_info_of(glint_op op);
-/// One operation on plain numbers, with the bits that a program has. Any thread.
-/// op        not a texture's.
-/// operands  as many as the operation has.
+/// Applies one operation to plain numbers. The results have the same bits as in a program. Any thread.
+/// op        any operation except TEXEL and TEXEL_SLOPE.
+/// operands  as many as the operation reads.
 /// results   written: as many as the operation has.
 void glint_op_apply(glint_op op, const double *operands, double *results);
-/// "p.x", "light.r"; static. NULL: there is no such input.
+/// Returns the name of an input, such as "p.x" or "light.r"; static. NULL: there is no such input.
 const char *glint_input_name(glint_input input);
 
-/// Begins a program; the caller destroys the builder. GLINT_ERR_INVALID: no such kind; GLINT_ERR_NOMEM; GLINT_ERR_UNSUPPORTED
-/// in a build without programs.
+/// Begins a program; the caller destroys the builder. GLINT_ERR_INVALID: no such kind; GLINT_ERR_NOMEM;
+/// GLINT_ERR_UNSUPPORTED in a build without programs.
 ///
-/// Its values are the caller's to pass on, and last as long as it. It holds fewer than 65536, numbers and inputs included: the calls
-/// that make one fail with GLINT_ERR_INVALID beyond that, with GLINT_ERR_NOMEM for lack of memory, and have changed nothing then.
+/// The builder's values are valid until it is destroyed. It holds fewer than 65536 values, numbers and inputs
+/// included. The functions that make a value fail with GLINT_ERR_INVALID beyond that limit, and with GLINT_ERR_NOMEM
+/// when memory is short. The builder is then unchanged.
 glint_status glint_builder_create(glint_program_kind kind, glint_builder **out, glint_error *error);
-/// NULL does nothing. Programs that were finished stay.
+/// Destroys the builder; finished programs stay valid. NULL does nothing.
 void glint_builder_destroy(glint_builder *builder);
-/// A number: any double. The same bits are the same value.
+/// Makes a number: any double. Numbers with the same bits are the same value.
 glint_status glint_builder_number(glint_builder *builder, double number, glint_value *out, glint_error *error);
-/// A number that changes with parameters: slopes[k] is how fast with parameter k, `count` of them. Programs have the number itself, and
-/// glint_program_tangent. GLINT_ERR_INVALID for more than GLINT_PARAMETERS_MAX.
+/// Makes a number that depends on parameters: slopes[k] is its derivative with respect to parameter k, 0 <= k <
+/// `count`. Programs use the number itself; glint_program_tangent uses the slopes. GLINT_ERR_INVALID for more than
+/// GLINT_PARAMETERS_MAX slopes.
 glint_status glint_builder_parameter(glint_builder *builder, double number, const double *slopes, size_t count,
                                      glint_value *out, glint_error *error);
-/// GLINT_ERR_INVALID for an input of shaders in a pattern.
+/// Makes an input. GLINT_ERR_INVALID for a shader input in a pattern.
 glint_status glint_builder_input(glint_builder *builder, glint_input input, glint_value *out, glint_error *error);
-/// operands  as many values of this builder as the operation has.
+/// Makes the results of an operation.
+///
+/// operands  as many values of this builder as the operation reads.
 /// out       written: as many values as the operation has results.
 ///
-/// An operation on numbers gives a number, computed by the reference kernels. A value that exists already is not made again.
+/// An operation on numbers gives a number, computed by the reference kernels. A value that exists already is reused.
 /// GLINT_ERR_INVALID for an operand that is not a value of the builder, or for an internal operation.
 glint_status glint_builder_op(glint_builder *builder, glint_op op, const glint_value *operands, glint_value *out,
                               glint_error *error);
-/// The colour of a texture, as red, green, blue and alpha.
+/// Makes the colour of a texture, as red, green, blue and alpha.
 ///
 /// u, v       (0, 0) is the lower left corner of the picture, (1, 1) the upper right.
-/// footprint  width over which the picture is averaged, in units of u and v; 0 or less: the picture as it is.
+/// footprint  width over which the picture is averaged, in units of u and v; 0 or less: no averaging.
 ///
-/// The program keeps a reference to the texture.
+/// The program retains the texture.
 glint_status glint_builder_texel(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
                                  glint_value footprint, glint_value out[4], glint_error *error);
-/// Whether a value is a number, and which. False if it is not a value of the builder. `number` may be NULL.
+/// Returns whether a value is a number, and writes the number unless `number` is NULL. False if it is not a value of
+/// the builder.
 bool glint_builder_is_number(const glint_builder *builder, glint_value value, double *number);
-/// How many instructions the builder has so far, those that no output needs included.
+/// Returns the number of instructions so far, including those that no output needs.
 size_t glint_builder_length(const glint_builder *builder);
-/// Makes a program that gives these values; the builder may go on. The caller has a reference to the program, and releases it.
+/// Makes a program with these values as outputs. The builder can still be used. The caller releases the program.
 ///
-/// count  pattern: 1 or 3; shader: 3, the diffuse part, or 6, diffuse and specular.
+/// count  pattern: 1 or 3; shader: 3 (diffuse term) or 6 (diffuse and specular terms).
 ///
-/// GLINT_ERR_NOMEM; GLINT_ERR_INVALID for another count, for something that is not a value of the builder, and when the program is longer
-/// than GLINT_PROGRAM_LENGTH_MAX or needs more rows than GLINT_PROGRAM_ROWS_MAX.
+/// GLINT_ERR_NOMEM; GLINT_ERR_INVALID for another count, for an output that is not a value of the builder, and when
+/// the program is longer than GLINT_PROGRAM_LENGTH_MAX or needs more rows than GLINT_PROGRAM_ROWS_MAX.
 glint_status glint_builder_finish(glint_builder *builder, const glint_value *outputs, size_t count, glint_program **out,
                                   glint_error *error);
 
 /// Takes another reference; returns its argument. Any thread.
 glint_program *glint_program_retain(glint_program *program);
-/// Gives a reference back; the last one frees the program and releases its textures. NULL: nothing. Any thread.
+/// Releases a reference; the last one frees the program and releases its textures. NULL: nothing. Any thread.
 void glint_program_release(glint_program *program);
-/// By the kernel a frame uses, with the bits of a frame before its rounding to float.
+/// Evaluates the program at one point with the kernel that a frame uses. The results are a frame's values before they
+/// are rounded to float.
 ///
 /// inputs   those that the program does not read may be anything.
 /// outputs  written: as many as the program has.
 ///
-/// GLINT_ERR_UNSUPPORTED, GLINT_ERR_INVALID: GLINT_ISA names what this machine lacks or what does not exist.
+/// The variable GLINT_ISA may cause an error: GLINT_ERR_UNSUPPORTED for an instruction set that this machine lacks,
+/// GLINT_ERR_INVALID for an unknown one.
 glint_status glint_program_evaluate(const glint_program *program, const double inputs[GLINT_INPUT_COUNT],
                                     double *outputs, glint_error *error);
 glint_program_kind glint_program_kind_of(const glint_program *program);
 size_t glint_program_output_count(const glint_program *program);
-size_t glint_program_length(const glint_program *program); ///< instructions; 0 where all outputs are inputs or numbers
-size_t glint_program_rows(const glint_program *program); ///< intermediate values at the same time
+size_t glint_program_length(const glint_program *program); ///< instructions; 0 if all outputs are inputs or numbers
+size_t glint_program_rows(const glint_program *program); ///< intermediate values that are live at the same time
 bool glint_program_reads(const glint_program *program, glint_input input);
-/// Returns a hash of the operations, their operands and the textures, but not of the numbers: programs that differ only in
+/// Returns a hash of the operations, their operands and the textures, excluding numbers: programs that differ only in
 /// numbers have the same hash.
 void glint_program_structure(const glint_program *program, uint64_t key[2]);
-/// True, with `outputs` filled, when all outputs are numbers: the same everywhere.
+/// Returns true and fills `outputs` if all outputs are numbers, the same at every point.
 bool glint_program_constant(const glint_program *program, double *outputs);
-/// A program of how fast the outputs change with a parameter, for glint_slope: exact, but that floor and its like, comparisons and a
-/// texel's footprint have slope 0. Owned by the program. NULL: none of its numbers changes with it.
+/// Returns a program that computes the derivatives of the outputs with respect to a parameter, for glint_slope. They
+/// are exact, except that floor and similar steps, comparisons and a texel's footprint count as constant. Owned by
+/// `program`. NULL: none of its numbers depends on the parameter.
 const glint_program *glint_program_tangent(const glint_program *program, size_t parameter);
-/// The instructions as text, a line each, "r3 = muladd p.x 0.5 r1", and the outputs last; the numbers read back as the
-/// same bits. The caller frees it. NULL: out of memory.
+/// Returns the instructions as text, one per line, "r3 = muladd p.x 0.5 r1", followed by the outputs. Numbers read
+/// back as the same bits. The caller frees the text. NULL: out of memory.
 char *glint_program_listing(const glint_program *program);
 
-/// The value of a texture outside u, v in 0 .. 1.
+/// How a texture continues where u or v is outside 0 .. 1.
 typedef enum glint_wrap {
-    GLINT_WRAP_REPEAT, ///< itself
-    GLINT_WRAP_CLAMP, ///< its border
-    GLINT_WRAP_AROUND ///< itself in u, its border in v: a picture around a ball, or of all directions
+    GLINT_WRAP_REPEAT, ///< the picture repeats
+    GLINT_WRAP_CLAMP, ///< the border texels continue
+    GLINT_WRAP_AROUND ///< repeats in u, continues the border in v: for a picture around a ball, or of all directions
 } glint_wrap;
-/// How a colour between texels is found.
+/// How the colour between texels is computed.
 typedef enum glint_filter {
-    GLINT_FILTER_BILINEAR, ///< between four texels; of the picture halved as often as the footprint calls for
-    GLINT_FILTER_NEAREST ///< the texel in which u, v lies; of the picture as it is
+    GLINT_FILTER_BILINEAR, ///< interpolates four texels of a mipmap level, which is the picture halved as often as
+        ///< the footprint requires
+    GLINT_FILTER_NEAREST ///< takes the texel at u, v of the full-size picture
 } glint_filter;
 
 /// The fields of a texture.
 typedef struct glint_texture_desc {
     const char *path; ///< a .png, or .jpg where the build has libjpeg; NULL: `rgb`
-    const uint8_t *rgb; ///< red, green and blue of each pixel, codes of 8 bits, top row first; borrowed for the call
+    const uint8_t *rgb; ///< red, green and blue of each pixel, 8 bits each, top row first; borrowed for the call
     int width, height; ///< of `rgb`, pixels, >= 1
     glint_wrap wrap; ///< default repeat
     glint_filter filter; ///< default bilinear
-    bool linear; ///< true: codes are numbers as they are; false, the default: they are sRGB and are decoded, unless the
-        ///< file says (gAMA 1.0) that it is linear
+    bool linear; ///< true: pixel values are linear. false, the default: they are sRGB and are decoded, unless the
+        ///< file declares itself linear (gAMA 1.0)
 } glint_texture_desc;
 
-/// No path; repeat, bilinear, sRGB.
+/// Returns the defaults: no path, repeat, bilinear, sRGB.
 glint_texture_desc glint_texture_desc_default(void);
-/// Reads a picture. GLINT_ERR_IO, GLINT_ERR_FORMAT when it cannot be read or is not a whole PNG; GLINT_ERR_NOMEM.
+/// Reads a picture. GLINT_ERR_IO, GLINT_ERR_FORMAT if it cannot be read or is not a complete PNG; GLINT_ERR_NOMEM.
 glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture **out, glint_error *error);
-/// The same picture, which is shared, with another wrap. GLINT_ERR_NOMEM.
+/// Makes a texture that shares the same picture but has another wrap. GLINT_ERR_NOMEM.
 glint_status glint_texture_rewrap(const glint_texture *texture, glint_wrap wrap, glint_texture **out,
                                   glint_error *error);
 /// Takes another reference; returns its argument. Any thread.
 glint_texture *glint_texture_retain(glint_texture *texture);
-/// Gives a reference back; the last one frees the texture. NULL: nothing. Any thread.
+/// Releases a reference; the last one frees the texture. NULL: nothing. Any thread.
 void glint_texture_release(glint_texture *texture);
 /// Size in pixels.
 int glint_texture_width(const glint_texture *texture);
@@ -304,58 +315,61 @@ int glint_texture_height(const glint_texture *texture);
 
 // ---- Fields -------------------------------------------------------------------------------------------------------
 
-/// How a description stores a field.
+/// The type of a field in a description.
 typedef enum glint_field_type {
     GLINT_TYPE_NUMBER, ///< double, finite
     GLINT_TYPE_WHOLE, ///< double, a whole number
-    GLINT_TYPE_ANGLE, ///< double, radians; scripts and messages have degrees
+    GLINT_TYPE_ANGLE, ///< double, radians; scripts and messages use degrees
     GLINT_TYPE_FLAG, ///< bool
     GLINT_TYPE_VECTOR, ///< double[3], finite
     GLINT_TYPE_DIRECTION, ///< double[3], finite, not zero
     GLINT_TYPE_COLOR, ///< double[3], linear RGB, finite, >= 0
-    GLINT_TYPE_CHOICE, ///< an enumeration; `names` are those of its values
+    GLINT_TYPE_CHOICE, ///< an enumeration; `names` lists its values
     GLINT_TYPE_TEXT, ///< char[GLINT_NAME_SIZE]
-    GLINT_TYPE_OBJECT, ///< a pointer to an object; `names[0]` says which kind
-    GLINT_TYPE_POINTS, ///< const double (*)[3] and, next to it, a size_t: how many
-    GLINT_TYPE_DISTANCE, ///< a double, > 0; next to it a bool and a double[3]: where the bool is true, this point. 0 and false: neither
+    GLINT_TYPE_OBJECT, ///< a pointer to an object; `names[0]` is the kind of object
+    GLINT_TYPE_POINTS, ///< const double (*)[3], followed by a size_t: the number of points
+    GLINT_TYPE_DISTANCE, ///< a double, > 0, followed by a bool and a double[3]: if the bool is true, the point
+        ///< replaces the distance. 0 and false: neither is set
     GLINT_TYPE_TRANSFORM, ///< glint_transform
-    GLINT_TYPE_PROGRAM, ///< a program and nothing else
-    GLINT_TYPE_TABLE, ///< several fields of the same description, `parts`, that are given together
-    GLINT_TYPE_CUSTOM, ///< the caller's own; no engine table has it
+    GLINT_TYPE_PROGRAM, ///< a program only
+    GLINT_TYPE_TABLE, ///< several fields of the same description, listed in `parts`, that are given together
+    GLINT_TYPE_CUSTOM, ///< defined by the caller; no engine table uses it
     GLINT_TYPE_OTHER ///< likewise
 } glint_field_type;
 
-#define GLINT_TAKES_PATTERN 1u ///< bits of glint_object_field.takes: a program for each point
+#define GLINT_TAKES_PATTERN 1u ///< bits of glint_object_field.takes: a program evaluated at each point
 #define GLINT_TAKES_TEXTURE 2u ///< a picture
-#define GLINT_TAKES_SHADER 4u ///< a program for each light
-#define GLINT_TAKES_VARIABLE 8u ///< a number with a slope; frames have its derivative
+#define GLINT_TAKES_SHADER 4u ///< a program evaluated for each light
+#define GLINT_TAKES_VARIABLE 8u ///< a number with a slope; frames compute derivatives with respect to it
 
-/// One field of an object: the row that its default, its check and its documentation come from.
+/// One field of an object: the row that defines its default, its check and its documentation.
 typedef struct glint_object_field {
     const char *name; ///< in scripts and messages
-    const char *member; ///< in the description; NULL: it has none of its own
+    const char *member; ///< in the description; NULL: the field has no member of its own
     glint_field_type type; ///< of the value in the description
     size_t offset; ///< in the description
-    size_t set_offset; ///< of a bool that says whether the field is set; 0: there is none, the field always counts
-    size_t program_offset; ///< of the glint_program * that stands for it where it is not NULL; 0: there is none
-    unsigned takes; ///< what may stand for a value: bits GLINT_TAKES_...
+    size_t set_offset; ///< of a bool that says whether the field is set; 0: the field always counts as set
+    size_t program_offset; ///< of the glint_program * that replaces the value unless it is NULL; 0: there is none
+    unsigned takes; ///< what may replace a number: bits GLINT_TAKES_...
     bool required; ///< an object cannot be made without it
-    const char *const *names; ///< GLINT_TYPE_CHOICE: of the values, from 0, NULL at the end; GLINT_TYPE_OBJECT
-    const struct glint_object_field *parts; ///< GLINT_TYPE_TABLE; a row without a name ends them
-    double low, high; ///< smallest and largest number allowed, of each component; an angle's in radians
-    const char *expected; ///< what messages say is allowed: "number >= 0"
-    double initial[3]; ///< the default, or the number of the default choice; what was not said is 0
-    const char *follows; ///< the field whose value it has until it is set; NULL: none
+    const char *const *names; ///< GLINT_TYPE_CHOICE: names of the values, from 0, ending with NULL;
+        ///< GLINT_TYPE_OBJECT: the kind
+    const struct glint_object_field *parts; ///< GLINT_TYPE_TABLE: ends with a row without a name
+    double low, high; ///< smallest and largest number allowed, for each component; angles in radians
+    const char *expected; ///< the allowed values, in words, for messages: "number >= 0"
+    double initial[3]; ///< the default, or the number of the default choice; components not given are 0
+    const char *follows; ///< the field that supplies the value until this one is set; NULL: none
     const char *unit; ///< "world units"; NULL: none
-    const char *doc; ///< what it means, in one line
-    const void *custom; ///< GLINT_TYPE_CUSTOM: the caller's own
+    const char *doc; ///< meaning, in one line
+    const void *custom; ///< GLINT_TYPE_CUSTOM: for the caller's use
 } glint_object_field;
 
 /// Kinds of objects that have a table of fields.
 typedef enum glint_object_kind {
     GLINT_OBJECT_NONE, ///< no object, no fields
     GLINT_OBJECT_MATERIAL, ///< fields of glint_material_desc
-    GLINT_OBJECT_POINT_LIGHT, ///< of glint_light_desc, those that the kind reads; GLINT_OBJECT_POINT_LIGHT + a glint_light_kind
+    GLINT_OBJECT_POINT_LIGHT, ///< the fields of glint_light_desc that this kind reads; the kind is
+        ///< GLINT_OBJECT_POINT_LIGHT + a glint_light_kind
     GLINT_OBJECT_DIRECTIONAL_LIGHT, ///< likewise
     GLINT_OBJECT_SPOT_LIGHT, ///< likewise
     GLINT_OBJECT_DISK_LIGHT, ///< likewise
@@ -365,16 +379,17 @@ typedef enum glint_object_kind {
     GLINT_OBJECT_KINDS ///< how many there are
 } glint_object_kind;
 
-/// The fields of a kind of object, in the order of the documentation; a row without a name follows the last.
-/// count: how many; NULL: not asked for. NULL: there is no such kind.
+/// Returns the fields of a kind of object, in the order of the documentation, followed by a row without a name.
+/// Writes their number to `count` unless it is NULL. NULL: there is no such kind.
 const glint_object_field *glint_object_fields(glint_object_kind kind, size_t *count);
 
 // ---- Materials ----------------------------------------------------------------------------------------------------
 
-/// How a surface reflects, emits and passes light. Shared by reference between shapes; see Ownership.
+/// How a surface reflects, emits and transmits light. Shared by reference between shapes; see Ownership.
 typedef struct glint_material glint_material;
 
-/// The specular term S of one light; n, l, v unit: the normal turned to the viewer, towards the light, towards the eye.
+/// The specular term S of one light. Unit vectors: n, the normal facing the viewer; l, towards the light; v, towards
+/// the eye.
 typedef enum glint_model {
     GLINT_MODEL_PHONG, ///< S = max(0, r.v)^shininess, r = 2(n.l)n - l
     GLINT_MODEL_BLINN_PHONG, ///< S = max(0, n.h)^shininess, h = (l + v)/|l + v|
@@ -382,237 +397,257 @@ typedef enum glint_model {
     GLINT_MODEL_COOK_TORRANCE ///< S = pi D F G / (4 n.v): microfacets; F is Schlick's, from f0 or ior
 } glint_model;
 
-/// How the slopes of microfacets are spread; alpha = roughness^2 is the width, G is Smith's, height-correlated (E. Heitz,
-/// "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 3(2), 2014; Beckmann's by the fit of
-/// B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007).
+/// The distribution of microfacet slopes, with width alpha = roughness^2. G is Smith's, height-correlated (E. Heitz,
+/// "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 3(2), 2014; for Beckmann by the fit
+/// of B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007).
 typedef enum glint_distribution { GLINT_DISTRIBUTION_GGX, GLINT_DISTRIBUTION_BECKMANN } glint_distribution;
 
 /// The meaning of an opacity between 0 and 1. In every mode a surface of opacity 0 is invisible, and one of opacity 1 opaque.
 typedef enum glint_opacity_mode {
     GLINT_OPACITY_AUTO, ///< a number blends, a pattern cuts
-    GLINT_OPACITY_CUT, ///< below 0.5, or NaN, the surface is not there for any ray of a frame; elsewhere it is opaque. Objects
-        ///< behind a hole look as they do without the surface
-    /// The light that the surface gives, including mirrored, refracted and indirect light, is multiplied by the opacity o. Rays of the
-    /// eye, of mirrors, of glass and of indirect light also go straight on with 1 - o of their weight, and rays from lights keep 1 - o
-    /// of their strength. Each surface counts: a ray through a closed ball crosses two surfaces and keeps (1 - o)^2.
+    GLINT_OPACITY_CUT, ///< where the opacity is below 0.5 or NaN, the surface is absent for all rays of a frame;
+        ///< elsewhere it is opaque. Objects behind a hole look as they do without the surface
+    /// The light that the surface gives, including mirrored, refracted and indirect light, is multiplied by the
+    /// opacity o. Eye, mirror, glass and indirect rays also continue straight on with weight 1 - o, and shadow rays
+    /// pass with weight 1 - o. Each surface counts: a ray through a closed ball crosses two surfaces and keeps (1 -
+    /// o)^2.
     GLINT_OPACITY_BLEND
 } glint_opacity_mode;
 
-/// Programs that replace a material's numbers; NULL: the number. A material retains them. A pattern's result
-/// that is NaN or below 0 is taken as 0, above 2^100 as that, and counted: see glint_frame_stats. A program whose outputs are
-/// numbers is these numbers: they are what glint_material_get gives. An opacity between 0 and 1 stays a pattern.
+/// Programs that replace a material's numbers; NULL: the number is used. A material retains its programs. A pattern
+/// result that is NaN or below 0 becomes 0, and one above 2^100 becomes 2^100; both are counted in glint_frame_stats.
+/// A program whose outputs are numbers is replaced by them, and glint_material_get returns them, except that an
+/// opacity between 0 and 1 stays a pattern.
 typedef struct glint_material_programs {
-    glint_program *diffuse, *ambient, *specular, *mirror, *transmission; ///< patterns of a colour, or of one number for
-        ///< a grey; without one of its own, and until it is set, `ambient` follows that of `diffuse`
-    glint_program *shininess, *roughness; ///< patterns of one number; above 1, `roughness` is 1
-    glint_program *bump; ///< pattern of one number, the height over the surface in world units: light, mirrors and glass see
-        ///< the normal unit(n - (g - (g.n) n)), g the height's gradient by `p` and `world`. Only where n.l > 0 with the
-        ///< surface's own n, too, is there light
+    glint_program *diffuse, *ambient, *specular, *mirror, *transmission; ///< patterns of a colour, or of one number
+        ///< for a grey; `ambient` follows the pattern of `diffuse` until `ambient` is set or has a pattern of its own
+    glint_program *shininess, *roughness; ///< patterns of one number; `roughness` above 1 counts as 1
+    /// Pattern of one number, the height above the surface in world units. Lighting, reflection and refraction use
+    /// the normal unit(n - (g - (g.n) n)), where g is the gradient of the height with respect to `p` and `world`. A
+    /// point is lit only if n.l > 0 for the unperturbed n as well
+    glint_program *bump;
     glint_program *opacity; ///< pattern of one number; see glint_opacity_mode
-    glint_program *shader; ///< replaces `model`: the diffuse term of each light, and the specular one if it has six outputs
+    glint_program *shader; ///< replaces `model`: computes the diffuse term of each light, and also the specular term
+        ///< if it has six outputs
 } glint_material_programs;
 
-/// The fields of a material. Reflectances are shares of light in linear RGB.
+/// The fields of a material. Reflectances are fractions of light, in linear RGB.
 typedef struct glint_material_desc {
     glint_model model; ///< default phong
     bool has_ambient; ///< false: `ambient` follows `diffuse`
-    double ambient[3]; ///< reflectances: finite, >= 0; above 1 a surface gives more light than it gets
+    double ambient[3]; ///< reflectance: finite, >= 0; above 1 the surface gives off more light than it receives
     double diffuse[3]; ///< default 0.8
-    bool has_specular; ///< cook_torrance alone reads it; false: its specular is 1
+    bool has_specular; ///< read by cook_torrance only; false: `specular` is 1
     double specular[3]; ///< default 0
     double shininess; ///< exponent, finite, >= 0; default 32. 0 gives S = 1 wherever r.v > 0
     bool has_mirror; ///< false: `mirror` is 1 with `fresnel` and 0 without
-    double mirror[3]; ///< share of the light from where a mirrored ray leads; >= 0, default 0
-    double transmission[3]; ///< share of the light from where a refracted ray leads; >= 0, default 0. Shadows of the
-        ///< object have its colour, once for each surface that the light crosses. Where a ray is totally reflected it
-        ///< has crossed none: all of its light goes on, max(mirror, 1) of it with `mirror`
-    double ior; ///< refractive index inside, > 0; default 1.5. Outside is 1, or the index of the object around
-    bool fresnel; ///< `mirror` is multiplied by a dielectric's reflectance R, `transmission` by 1 - R; default false
-    double absorption[3]; ///< per world unit inside, >= 0; default 0: exp(-absorption distance) of the light is left
-    /// phong: S = (s + 2)/2 (r.v)^s (n.l) (E. Lafortune and Y. Willems 1994); blinn_phong:
-    /// S = (s + 2)(s + 4)/(8 (2^(-s/2) + s)) (n.h)^s (n.l) (F. Giesen, "Phong and Blinn-Phong normalization factors",
-    /// 2009): reciprocal, and no more light leaves than comes. Other models do not read it
+    double mirror[3]; ///< fraction of the light along the mirrored ray that is added; >= 0, default 0
+    /// Fraction of the light along the refracted ray that is added; >= 0, default 0. It also tints the object's
+    /// shadow, once for each surface that the light crosses. A totally reflected ray crosses no surface and keeps
+    /// max(mirror, 1) of its light
+    double transmission[3];
+    double ior; ///< refractive index inside, > 0; default 1.5. Outside it is 1, or the index of the enclosing object
+    bool fresnel; ///< multiplies `mirror` by a dielectric's Fresnel reflectance R, `transmission` by 1 - R; default
+        ///< false
+    double absorption[3]; ///< absorption coefficient inside, per world unit, >= 0; default 0: light is multiplied by
+        ///< exp(-absorption distance)
+    /// Energy-conserving normalisation. phong: S = (s + 2)/2 (r.v)^s (n.l) (E. Lafortune and Y. Willems 1994);
+    /// blinn_phong: S = (s + 2)(s + 4)/(8 (2^(-s/2) + s)) (n.h)^s (n.l) (F. Giesen, "Phong and Blinn-Phong
+    /// normalization factors", 2009). Both are reciprocal. Other models ignore it
     bool normalized;
-    bool matched; ///< blinn_phong: the exponent is 4 s, whose highlight is nearest Phong's. Other models do not read it
+    bool matched; ///< blinn_phong: the exponent is 4 s, which gives the highlight closest to Phong's. Other models
+        ///< ignore it
     // cook_torrance:
-    double roughness; ///< 0 .. 1, default 0.3; below 1e-9 as 1e-9: a highlight narrower than any pixel
+    double roughness; ///< 0 .. 1, default 0.3; below 1e-9 it counts as 1e-9: a highlight narrower than any pixel
     glint_distribution distribution; ///< default GGX
     bool has_f0; ///< false: f0 = ((ior - 1) / (ior + 1))^2
-    double f0[3]; ///< what is reflected head-on, 0 .. 1; coloured for metals
-    double opacity; ///< 0 .. 1, default 1; see glint_opacity_mode. glint_scene_cast hits the surface whatever its opacity
+    double f0[3]; ///< reflectance at normal incidence, 0 .. 1; coloured for metals
+    double opacity; ///< 0 .. 1, default 1; see glint_opacity_mode. glint_scene_cast hits the surface at any opacity
     glint_opacity_mode opacity_mode; ///< default auto
     glint_material_programs program;
     char name[GLINT_NAME_SIZE];
 } glint_material_desc;
 
-/// Every field at its default.
+/// Returns a description with every field at its default.
 glint_material_desc glint_material_desc_default(void);
-/// Writes `ambient`, `specular`, `f0` and `mirror` where they follow other fields, and marks them as set.
+/// Writes `ambient`, `specular`, `f0` and `mirror` if they follow other fields, and marks them as set.
 void glint_material_desc_resolve(glint_material_desc *desc);
-/// Makes a material of a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
+/// Makes a material from a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
 glint_status glint_material_create(const glint_material_desc *desc, glint_material **out, glint_error *error);
-/// Replaces the whole description by a copy of `desc`; plans made before keep the old one. On error nothing changes.
+/// Replaces the whole description by a copy of `desc`; existing plans keep the old one. On error nothing changes.
 glint_status glint_material_set(glint_material *material, const glint_material_desc *desc, glint_error *error);
-/// The description; borrowed, valid until the material is set or released.
+/// Returns the description; borrowed, valid until the material is set or released.
 const glint_material_desc *glint_material_get(const glint_material *material);
 /// Takes another reference; returns its argument.
 glint_material *glint_material_retain(glint_material *material);
-/// Gives a reference back; the last one frees the material. NULL: nothing.
+/// Releases a reference; the last one frees the material. NULL: nothing.
 void glint_material_release(glint_material *material);
 
-/// The two terms of one light of strength 1, by the kernels a frame uses.
+/// The two terms of one light of strength 1, from the kernels that a frame uses.
 typedef struct glint_reflection {
     double diffuse[3]; ///< kd (n.l), 0 where n.l <= 0
     double specular[3]; ///< ks S, 0 where n.l <= 0
 } glint_reflection;
 
-/// Evaluates a material at a point, by its numbers: where it has programs, what stands beside them. The three vectors point
-/// away from it and need not be unit; finite, not zero.
+/// Evaluates a material at a point from its numeric fields; programs are ignored. The three vectors point away from
+/// the surface and need not be unit; finite, not zero.
 glint_status glint_material_evaluate(const glint_material *material, const double normal[3], const double to_light[3],
                                      const double to_eye[3], glint_reflection *out, glint_error *error);
 
 // ---- Lights -------------------------------------------------------------------------------------------------------
 
-/// A source of light. Shared by reference between scenes.
+/// A light source. Shared by reference between scenes.
 typedef struct glint_light glint_light;
 
-/// Where the light comes from. Area lights (disk, polygon, sphere) throw soft shadows.
+/// The shape of a light. Area lights (disk, polygon, sphere) cast soft shadows.
 typedef enum glint_light_kind {
-    GLINT_LIGHT_POINT, ///< shines the same to all sides from `position`
-    GLINT_LIGHT_DIRECTIONAL, ///< parallel light that travels along `direction`
-    GLINT_LIGHT_SPOT, ///< a point light within a cone
-    GLINT_LIGHT_DISK, ///< area lights: `samples` points of their surface, other ones for each pixel of a 4 x 4 block
-    GLINT_LIGHT_POLYGON, ///< convex, flat; shines to one side unless `two_sided`
+    GLINT_LIGHT_POINT, ///< shines equally in all directions from `position`
+    GLINT_LIGHT_DIRECTIONAL, ///< parallel light along `direction`
+    GLINT_LIGHT_SPOT, ///< a point light restricted to a cone
+    GLINT_LIGHT_DISK, ///< the first of the area lights, which take `samples` points on their surface, different ones
+        ///< for each pixel of a 4 x 4 block
+    GLINT_LIGHT_POLYGON, ///< convex, flat; shines on one side unless `two_sided`
     GLINT_LIGHT_SPHERE ///< the surface of a ball
 } glint_light_kind;
 
-#define GLINT_CORNERS_MAX 4096 ///< of a polygon light
+#define GLINT_CORNERS_MAX 4096 ///< corners of a polygon light
 
-/// How a light's shadows are found.
+/// How a light's shadows are computed.
 typedef enum glint_shadow {
-    GLINT_SHADOW_RAYS, ///< by a ray to each sample of the light
-    GLINT_SHADOW_HARD, ///< area lights: by one ray to the middle of the light, for all of its samples
-    GLINT_SHADOW_CAPS ///< sphere lights: by how much of the light's disk in the sky those of spheres cover, in closed form
+    GLINT_SHADOW_RAYS, ///< one ray to each sample of the light
+    GLINT_SHADOW_HARD, ///< area lights: one ray to the centre of the light, for all of its samples
+    GLINT_SHADOW_CAPS ///< sphere lights: the share of the light's apparent disk that spheres cover, in closed form
 } glint_shadow;
 
-/// The fields of a light; each kind reads those that name it, and those that name none.
+/// The fields of a light. Each kind reads the fields whose comment names it, and those whose comment names no kind.
 typedef struct glint_light_desc {
-    glint_light_kind kind; ///< not changed by glint_light_set
+    glint_light_kind kind; ///< glint_light_set cannot change it
     double color[3]; ///< default 1; finite, >= 0
     double intensity; ///< default 1; finite, >= 0; multiplies each of the three terms
     bool has_diffuse, has_specular; ///< false: the term's colour is `color`
     double ambient[3]; ///< default 0; neither attenuated nor shadowed
-    double diffuse[3], specular[3]; ///< colours of the light for these two terms; finite, >= 0; default `color`
+    double diffuse[3], specular[3]; ///< light colours for these two terms; finite, >= 0; default `color`
     double attenuation[3]; ///< c0, c1, c2 of A = 1/(c0 + c1 d + c2 d^2); >= 0, not all 0; default {1, 0, 0}
     bool shadows; ///< default true
-    /// Area lights; default GLINT_SHADOW_RAYS. Caps: without noise; the light's terms are computed for a point at its centre
-    /// (of `radiance` L, of irradiance pi L r^2/d^2 (n.l), which is exact above the horizon), times the share of the light that
-    /// is visible. With one sphere as occluder, the share is exact. With several, it is the product of their shares, where the truth is
-    /// between 1 - the sum of the covered shares and the least of the visible shares. Planes, and spheres that cut the light, take
-    /// their share of its diameter. Scenes with other or transparent shapes use rays: see
-    /// the effects of the plan
+    /// Area lights; default GLINT_SHADOW_RAYS. Caps are free of noise: the light's terms are computed for a point
+    /// light at the centre and multiplied by the visible share of the light. With `radiance` L the irradiance is pi L
+    /// r^2/d^2 (n.l), which is exact above the horizon. The share is exact with one sphere as occluder. With several
+    /// it is the product of their shares, while the true share lies between 1 - the sum of the covered shares and the
+    /// smallest visible share. Planes, and spheres that intersect the light, cover a share of its diameter. Scenes
+    /// with other or transparent shapes use rays: see the effects of the plan
     glint_shadow shadow;
-    /// Rays of the eye, of mirrors and of glass see the light's surface, from the sides that shine; default false. It shows
-    /// pi L color with `radiance` L, as the background does: pixels are pi times radiance. With `intensity` I: color I A(D),
-    /// where D is its radius (for a polygon, the radius of a disk with its area). It casts no shadow, and is not an object: in the passes it
-    /// is background with a depth and a normal. Lights without a surface may be called visible too, and are not
+    /// Eye, mirror and glass rays see the light's surface, on the sides that shine; default false. With `radiance` L
+    /// it shows pi L color: pixel values are pi times radiance, as for the background. With `intensity` I it shows
+    /// color I A(D), where D is the light's radius (for a polygon, the radius of a disk of the same area). A visible
+    /// light casts no shadow and is not an object: in the passes it is background with a depth and a normal. Lights
+    /// without a surface ignore this field
     bool visible;
     double position[3]; ///< point and spot light; disk and sphere light: the centre
     double direction[3]; ///< directional and spot light: the direction of travel; not zero, need not be unit
-    double inner_rad, outer_rad; ///< spot: half angles, 0 <= inner <= outer <= pi: full light within, none without,
+    double inner_rad, outer_rad; ///< spot: half angles, 0 <= inner <= outer <= pi: full light inside, none outside,
         ///< smoothstep of the cosine between; default 20 and 30 degrees
-    double exponent; ///< spot: the light falls off as cos^exponent from the axis; >= 0, default 0
-    double normal[3]; ///< disk: the side that shines; not zero, need not be unit; default {0, -1, 0}
-    double radius; ///< disk and sphere: >= 0, 0 is a point; by `radiance` 0 or 1e-150 .. 1e150; default 1
-    /// Polygon: its corners, convex and in one plane, 3 .. GLINT_CORNERS_MAX; copied. It shines to the side from which they
-    /// run counter-clockwise
+    double exponent; ///< spot: falloff cos^exponent of the angle to the axis; >= 0, default 0
+    double normal[3]; ///< disk: points to the side that shines; not zero, need not be unit; default {0, -1, 0}
+    double radius; ///< disk and sphere: >= 0, 0 is a point; with `radiance` 0 or 1e-150 .. 1e150; default 1
+    /// Polygon: its corners, convex and in one plane, 3 .. GLINT_CORNERS_MAX; copied. It shines on the side from
+    /// which they run counter-clockwise
     const double (*vertices)[3];
     size_t vertex_count;
-    bool two_sided; ///< polygon: shines to both sides; default false
-    double samples; ///< area lights: shadow rays a sample of a pixel; whole number, 1 .. 65536; default 16
-    bool has_radiance; ///< area lights: `radiance` says how strong it is; `intensity` must then be 1
-    char group[GLINT_NAME_SIZE]; ///< the light pass that the light belongs to, with all lights of this group; "": that of its name
-    double radiance; ///< >= 0: light adds kd times the integral of radiance cos cos' / distance^2 over the surface.
-        ///< With `intensity` it adds the mean light of point lights over the surface
+    bool two_sided; ///< polygon: shines on both sides; default false
+    double samples; ///< area lights: shadow rays for each sample of a pixel; whole number, 1 .. 65536; default 16
+    bool has_radiance; ///< area lights: `radiance` gives the strength; `intensity` must then be 1
+    char group[GLINT_NAME_SIZE]; ///< name of the light pass that collects this group's lights; "": the light's own
+        ///< name
+    /// >= 0: the light adds kd times the integral of radiance cos cos' / distance^2 over its surface. With
+    /// `intensity` it adds the mean over its surface of point lights
+    double radiance;
     char name[GLINT_NAME_SIZE];
 } glint_light_desc;
 
-/// Every field of a light of this kind at its default.
+/// Returns a description with every field at the default for this kind.
 glint_light_desc glint_light_desc_default(glint_light_kind kind);
-/// Makes a light of a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
+/// Makes a light from a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
 glint_status glint_light_create(const glint_light_desc *desc, glint_light **out, glint_error *error);
 /// Replaces the description by a copy; on error nothing changes. `desc->kind` must be the light's kind.
 glint_status glint_light_set(glint_light *light, const glint_light_desc *desc, glint_error *error);
-/// `vertices` is the light's own copy, until it is set or released.
+/// Returns the description; borrowed, with its `vertices`, until the light is set or released.
 const glint_light_desc *glint_light_get(const glint_light *light);
 /// Takes another reference; returns its argument.
 glint_light *glint_light_retain(glint_light *light);
-/// Gives a reference back; the last one frees the light. NULL: nothing.
+/// Releases a reference; the last one frees the light. NULL: nothing.
 void glint_light_release(glint_light *light);
 
 // ---- Camera -------------------------------------------------------------------------------------------------------
 
-/// The eye of a scene. Shared by reference between scenes.
+/// The camera of a scene. Shared by reference between scenes.
 typedef struct glint_camera glint_camera;
 
-/// Rays from one point, or parallel ones.
+/// Rays through one point (perspective) or parallel rays (orthographic).
 typedef enum glint_projection { GLINT_PERSPECTIVE, GLINT_ORTHOGRAPHIC } glint_projection;
 
 /// The fields of a camera; lengths in world units.
 typedef struct glint_camera_desc {
     glint_projection projection; ///< default GLINT_PERSPECTIVE
     double eye[3]; ///< world units, finite; default {0, 0, 10}
-    bool has_direction; ///< true: look along `direction`; false: look at the point `at`
-    double at[3], direction[3]; ///< finite; `at` is not the eye, `direction` not zero; default the origin, {0, 0, -1}
-    double up[3]; ///< default {0,1,0}; not zero. Parallel to the view: the world axis least aligned with it is taken
+    bool has_direction; ///< true: looks along `direction`; false: looks at the point `at`
+    double at[3], direction[3]; ///< finite; `at` differs from `eye`, `direction` is not zero; defaults: the origin,
+        ///< {0, 0, -1}
+    double up[3]; ///< default {0,1,0}; not zero. If parallel to the view, the world axis least aligned with the view
+        ///< replaces it
     double fov_y_rad; ///< vertical field of view of a perspective camera, in (0, pi); default 40 degrees
-    /// Focal lengths of a perspective camera in pixels, across and down, > 0, instead of `fov_y_rad`; 0, the default: not given. fy 0: fx
+    /// Focal lengths of a perspective camera in pixels, horizontal and vertical, > 0, instead of `fov_y_rad`. 0, the
+    /// default: not given; `fy` 0: same as `fx`
     double fx, fy;
-    /// The principal point, where the view's direction is seen: pixels from the left edge and from the upper edge of the picture, whose
-    /// first pixel has its centre at 0.5; finite. Default its middle
+    /// The principal point, where the optical axis meets the picture: pixels from its left and upper edges; the
+    /// centre of the first pixel is 0.5. Finite; default: the centre of the picture
     bool has_cx, has_cy;
     double cx, cy;
-    double w, h; ///< size of the picture that fx to cy are for; in another they are scaled with its sides. 0, the default: every picture
+    double w, h; ///< the picture size that fx, fy, cx and cy refer to; other sizes scale them. 0, the default: they
+        ///< hold for every size
     double height; ///< vertical extent of an orthographic camera, world units, > 0; default 10
-    double pixel_offset; ///< where in a pixel a single sample lies, 0 .. 1; default 0.5, its centre
-    /// How long the shutter is open, as a share of the time from one frame to the next, 0 .. 1; default 0, an instant. Used by
-    /// callers that plan frames of several times, see glint_plan_create_exposed
+    double pixel_offset; ///< position of a single sample in a pixel, 0 .. 1; default 0.5, its centre
+    /// Time that the shutter is open, as a fraction of the time between frames, 0 .. 1; default 0, an instant. Used
+    /// by callers that plan a frame for several times, see glint_plan_create_exposed
     double shutter;
-    double shutter_times; ///< the number of these times while the shutter is open, 1 .. GLINT_SHUTTER_TIMES_MAX; default 8
-    /// Radius of the lens, world units, >= 0; default 0: a pinhole, which shows everything sharp. Each sample goes through a
-    /// point of the lens, in the plane through the eye across the view, to where the pinhole's ray meets the plane of focus:
-    /// a point at depth d is blurred over a disk that is 2 aperture |1 - d / focus| wide there. An orthographic camera has a
-    /// lens for each ray. Many samples make the blur smooth.
+    double shutter_times; ///< number of times at which the scene is planned while the shutter is open, 1 ..
+        ///< GLINT_SHUTTER_TIMES_MAX; default 8
+    /// Radius of the lens, world units, >= 0; default 0: a pinhole, which shows everything sharp. Each sample starts
+    /// at a point of the lens, in the plane through the eye perpendicular to the view, and passes through the point
+    /// where the pinhole's ray crosses the plane of focus. A point at depth d is blurred over a disk of diameter 2
+    /// aperture |1 - d / focus| at that depth. An orthographic camera has a lens for each ray. Many samples make the
+    /// blur smooth.
     double aperture;
-    double focus; ///< distance of the plane of focus along the view, > 0; default 0: by `focus_point`, else through `at`
-    bool has_focus_point; ///< the plane of focus goes through `focus_point`; `focus` is 0
+    double focus; ///< distance of the plane of focus along the view, > 0; default 0: given by `focus_point`, or else
+        ///< by `at`
+    bool has_focus_point; ///< true: the plane of focus goes through `focus_point`, and `focus` is 0
     double focus_point[3]; ///< finite, in front of the eye
-    double blades; ///< 0: a round lens, the default; else 3 .. 64, whole: a regular polygon in its circle, a corner up
-    double blade_rotation_rad; ///< turns the polygon, counter-clockwise as the eye sees it; default 0
+    double blades; ///< 0: a round lens, the default; 3 .. 64, whole: a regular polygon inscribed in that circle, a
+        ///< corner up
+    double blade_rotation_rad; ///< turns the polygon, counter-clockwise as seen by the eye; default 0
     char name[GLINT_NAME_SIZE]; ///< for messages; "": none
 } glint_camera_desc;
 #define GLINT_SHUTTER_TIMES_MAX 1024
 
-/// A perspective camera at (0, 0, 10) that looks at the origin, every field at its default.
+/// Returns a perspective camera at (0, 0, 10) that looks at the origin, with every field at its default.
 glint_camera_desc glint_camera_desc_default(void);
-/// Makes a camera of a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
+/// Makes a camera from a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
 glint_status glint_camera_create(const glint_camera_desc *desc, glint_camera **out, glint_error *error);
 /// Replaces the whole description by a copy of `desc`; on error nothing changes.
 glint_status glint_camera_set(glint_camera *camera, const glint_camera_desc *desc, glint_error *error);
-/// The description; borrowed, valid until the camera is set or released.
+/// Returns the description; borrowed, valid until the camera is set or released.
 const glint_camera_desc *glint_camera_get(const glint_camera *camera);
-/// Computes the window of a picture of that many pixels at distance 1 along the view: from window[0] to window[1] to the right, and from
-/// window[2] to window[3] up, world units. It is the same at every distance for an orthographic camera.
+/// Computes the view window of a picture of width x height pixels at distance 1: window[0] .. window[1] to the right
+/// and window[2] .. window[3] up, world units. For an orthographic camera the window is the same at every distance.
 void glint_camera_window(const glint_camera_desc *desc, double width, double height, double window[4]);
-/// Computes where a picture of that many pixels shows a point of the world, whether something hides it or not.
-///   pixel   to the right and down from the upper left corner of the picture; the centre of its first pixel is 0.5, 0.5
-///   depth   as in the pass `depth`: the distance from the eye; from an orthographic camera, along its view
-/// False, and nothing is stored: the point is not in front of the camera.
+/// Projects a world point into a picture of width x height pixels; occluders are ignored.
+///   pixel   to the right and down from the picture's upper left corner; the centre of the first pixel is 0.5, 0.5
+///   depth   as in the pass `depth`: the distance from the eye; for an orthographic camera, the distance along the view
+/// Returns false and stores nothing if the point is not in front of the camera.
 bool glint_camera_project(const glint_camera_desc *desc, double width, double height, const double point[3], double pixel[2],
                           double *depth);
 /// Takes another reference; returns its argument.
 glint_camera *glint_camera_retain(glint_camera *camera);
-/// Gives a reference back; the last one frees the camera. NULL: nothing.
+/// Releases a reference; the last one frees the camera. NULL: nothing.
 void glint_camera_release(glint_camera *camera);
 
 // ---- Shapes -------------------------------------------------------------------------------------------------------
