@@ -5,14 +5,15 @@
 ///
 /// Units     lengths are in world units, angles in radians (`_rad`), colours linear RGB with 1.0 = display white.
 /// Vectors   `double v[3]` is x, y, z or red, green, blue. The world is right-handed.
-/// Errors    every function that can fail returns a glint_status and fills `error`, which may be NULL. On failure, outputs
-///           and objects are unchanged. The message starts with the argument's name: "shininess: number >= 0 expected, got
-///           -1". NULL for a pointer that is not optional is GLINT_ERR_INVALID, too: "shape: pointer expected, got NULL".
-///           Functions that return no status return 0, NULL, false or the identity transform instead, or do nothing.
+/// Errors    every function that can fail returns a glint_status and fills `error`, which may be NULL. On failure,
+///           outputs and objects are unchanged. The message starts with the argument's name: "shininess: number >= 0
+///           expected, got -1". NULL for a pointer that is not optional is GLINT_ERR_INVALID, too: "shape: pointer
+///           expected, got NULL". Functions that return no status return 0, NULL, false or the identity transform
+///           instead, or do nothing.
 /// Ownership `_create` returns a reference that the caller owns and must release with `_release`; `_retain` adds one.
 ///           `_release(NULL)` does nothing. Pointers in a description struct are borrowed for the call only.
-/// Threads   described objects (material, light, camera, shape, overlay, scene) belong to one thread at a time. Plans and
-///           finished images are immutable. A renderer renders one frame at a time.
+/// Threads   described objects (material, light, camera, shape, overlay, scene) belong to one thread at a time. Plans
+///           and finished images are immutable. A renderer renders one frame at a time.
 #ifndef GLINT_H
 #define GLINT_H
 
@@ -619,7 +620,7 @@ typedef struct glint_camera_desc {
     double aperture;
     double focus; ///< distance of the plane of focus along the view, > 0; default 0: given by `focus_point`, or else
         ///< by `at`
-    bool has_focus_point; ///< true: the plane of focus goes through `focus_point`, and `focus` is 0
+    bool has_focus_point; ///< true: the plane of focus goes through `focus_point`; `focus` must be 0
     double focus_point[3]; ///< finite, in front of the eye
     double blades; ///< 0: a round lens, the default; 3 .. 64, whole: a regular polygon inscribed in that circle, a
         ///< corner up
@@ -652,231 +653,256 @@ void glint_camera_release(glint_camera *camera);
 
 // ---- Shapes -------------------------------------------------------------------------------------------------------
 
-/// A surface, or a group of them. Shared by reference between groups and scenes.
+/// A surface or a group of surfaces. Shared by reference between groups and scenes.
 typedef struct glint_shape glint_shape;
 
-/// The kind of a shape, which determines the fields of its description that are used.
+/// The kind of a shape. It determines which fields of the description are used.
 typedef enum glint_shape_kind {
     GLINT_SHAPE_SPHERE, ///< `center`, `radius`
-    GLINT_SHAPE_PLANE, ///< `point`, `normal`; without end
+    GLINT_SHAPE_PLANE, ///< `point`, `normal`; infinite
     GLINT_SHAPE_SPHERES, ///< made by glint_spheres_create
-    GLINT_SHAPE_MESH, ///< made by the functions of meshes
+    GLINT_SHAPE_MESH, ///< made by the mesh functions
     GLINT_SHAPE_BOX, ///< `min`, `max`
     GLINT_SHAPE_DISK, ///< `center`, `normal`, `radius`
     GLINT_SHAPE_CYLINDER, ///< `base`, `top`, `radius`
     GLINT_SHAPE_CONE, ///< `base`, `top`, the apex, `radius` at the base
     GLINT_SHAPE_TORUS, ///< `center`, `axis`, `major`, `minor`
-    GLINT_SHAPE_GROUP, ///< of shapes; see glint_group_add
-    GLINT_SHAPE_UNION, ///< one solid of several, its parts: what is in any of them; see glint_group_add
-    GLINT_SHAPE_INTERSECTION, ///< what is in all of them
-    GLINT_SHAPE_DIFFERENCE ///< what is in the first and in none of the others
+    GLINT_SHAPE_GROUP, ///< a group of shapes; see glint_group_add
+    GLINT_SHAPE_UNION, ///< a solid composed of parts: the points inside any of them; see glint_group_add
+    GLINT_SHAPE_INTERSECTION, ///< the points inside all parts
+    GLINT_SHAPE_DIFFERENCE ///< the points inside the first part and outside all others
 } glint_shape_kind;
 
 /// An affine map: out_i = m[i][0] x + m[i][1] y + m[i][2] z + m[i][3].
 typedef struct glint_transform {
-    double m[3][4]; ///< the last column moves, world units
+    double m[3][4]; ///< the last column is the translation, world units
 } glint_transform;
 
-/// The map that leaves everything in place.
+/// Returns the identity.
 glint_transform glint_transform_identity(void);
-/// First `inner`, then `outer`.
+/// Returns the map that applies first `inner`, then `outer`.
 glint_transform glint_transform_product(const glint_transform *outer, const glint_transform *inner);
-/// Moves by `by`, world units.
+/// Returns a translation by `by`, world units.
 glint_transform glint_transform_translate(const double by[3]);
-/// Multiplies x, y and z by the three factors; negative ones mirror. 0 makes a map that shapes refuse.
+/// Returns the map that multiplies x, y and z by the three factors; negative ones mirror. Shapes refuse a factor of
+/// 0.
 glint_transform glint_transform_scale(const double by[3]);
-/// Counter-clockwise as seen with the axis pointing at the eye. The axis is not zero and need not be unit; quarter turns
-/// are exact.
+/// Returns a rotation, counter-clockwise when the axis points at the eye. The axis is not zero and need not be unit;
+/// quarter turns are exact.
 glint_transform glint_transform_rotate(const double axis[3], double degrees);
 
-/// The points where the light on a mesh is computed, and their normals. With the last two, the light on a face is the same from
-/// every direction: a mirror shows the highlights that the eye sees from its own place.
+/// The points and normals at which the lighting of a mesh is computed. With flat and gouraud, the light on a face is
+/// the same for all viewers: a mirror shows the highlights as the eye sees them directly.
 typedef enum glint_shading {
-    GLINT_SHADING_FACETED, ///< for each sample, with the normal of its face
-    /// For each sample, with a normal interpolated between the corners in the mesh's own space: a
-    /// transform moves normals like faces. Hits and shadows are decided only by the faces:
-    /// a face that looks away from a light is dark to its edge, however its normals lean; see glint_mesh_bend
+    GLINT_SHADING_FACETED, ///< at each sample, with the normal of its face
+    /// At each sample, with the normal interpolated between the corners in the mesh's own space, so that a transform
+    /// moves normals as it moves faces. Only the faces decide hits and shadows: a face that looks away from a light
+    /// is dark up to its edge, whatever its normals; see glint_mesh_bend
     GLINT_SHADING_PHONG,
-    GLINT_SHADING_FLAT, ///< once a face, at its centroid, with its normal
-    GLINT_SHADING_GOURAUD ///< once a vertex; between them by barycentric coordinates, over triangles
+    GLINT_SHADING_FLAT, ///< once per face, at its centroid, with its normal
+    GLINT_SHADING_GOURAUD ///< once per vertex, interpolated by barycentric coordinates over triangles
 } glint_shading;
 
-/// The fields of a shape; each kind reads those that name it, and those that name none. Lengths in world units.
+/// The fields of a shape. Each kind reads the fields whose comment names it, and those whose comment names no kind.
+/// Lengths in world units.
 typedef struct glint_shape_desc {
-    glint_shape_kind kind; ///< of glint_shape_create: not spheres and mesh
-    glint_material *material; ///< retained by the shape; NULL: a material with default fields. A group has none. NULL, of a
-        ///< part of a combined solid: that of the solid; of that: of its first part that has one
-    glint_transform transform; ///< of the shape as described here; default identity; must be possible to undo
-    bool two_sided; ///< default true: the normal turns to the viewer; false: the back gets ambient light only
-    double center[3], radius; ///< sphere, disk (and cylinder, cone: radius; torus: center): finite, radius > 0; see glint_scene_cast
+    glint_shape_kind kind; ///< glint_shape_create makes all kinds except spheres and meshes
+    /// Retained by the shape. NULL: a material with default fields; for a part of a combined solid, the solid's
+    /// material; for the solid, the material of its first part that has one. A group has none
+    glint_material *material;
+    glint_transform transform; ///< from the shape's own space to its group or the world; default identity; must be
+        ///< invertible
+    bool two_sided; ///< default true: the normal is turned to the viewer; false: back faces get ambient light only
+    double center[3], radius; ///< sphere, disk (also radius of cylinder and cone, center of torus): finite, radius >
+        ///< 0; see glint_scene_cast
     double point[3], normal[3]; ///< plane (and disk: normal): finite, normal not zero, need not be unit
     double min[3], max[3]; ///< box: finite, min < max; default -1, 1
-    double base[3], top[3]; ///< cylinder, cone: the middles of its ends; the cone's top is its apex; not the same place
-    bool capped; ///< cylinder: closed at both ends, cone: at its base; default true. False: its side alone, seen from
-        ///< within too; it has no inside, so that what it transmits is bent as by a solid that never ends
+    double base[3], top[3]; ///< cylinder, cone: the centres of its ends, which differ; the cone's top is its apex
+    bool capped; ///< cylinder: closed at both ends; cone: closed at its base; default true. False: the side only,
+        ///< visible from inside too. It then has no inside: rays refract as at a solid without end
     double axis[3]; ///< torus: not zero, need not be unit; default {0, 1, 0}
-    double major, minor; ///< torus: radii of the circle in the middle of its tube and of the tube, 0 < minor < major: the tube
-        ///< does not meet itself; default 1, 0.25
+    double major, minor; ///< torus: radius of the circle along the middle of the tube, and radius of the tube; 0 <
+        ///< minor < major, so that the tube does not intersect itself; default 1, 0.25
     glint_shading shading; ///< mesh
     char name[GLINT_NAME_SIZE];
 } glint_shape_desc;
 
-/// Every field of a shape of this kind at its default.
+/// Returns a description with every field at the default for this kind.
 glint_shape_desc glint_shape_desc_default(glint_shape_kind kind);
-/// Makes a shape of a copy of `desc`, and retains its material. GLINT_ERR_INVALID names the field; GLINT_ERR_NOMEM.
+/// Makes a shape from a copy of `desc` and retains its material. GLINT_ERR_INVALID names the field; GLINT_ERR_NOMEM.
 glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out, glint_error *error);
-/// Replaces the description by a copy, of the same kind; on error nothing changes.
+/// Replaces the description by a copy of the same kind; on error nothing changes.
 glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error);
-/// The description; of a GLINT_SHAPE_SPHERES shape only kind, transform, two_sided, name and material (its first) mean
-/// anything, of a mesh these and `shading`, of a group kind, transform and name, of a combined solid these, two_sided and
-/// material. Setting `material` replaces the first.
+/// Returns the description; borrowed. Only these fields are defined: for GLINT_SHAPE_SPHERES kind, transform,
+/// two_sided, name and material (the first); for a mesh these and `shading`; for a group kind, transform and name;
+/// for a combined solid these, two_sided and material. Setting `material` replaces the first material.
 const glint_shape_desc *glint_shape_get(const glint_shape *shape);
 /// Takes another reference; returns its argument.
 glint_shape *glint_shape_retain(glint_shape *shape);
-/// Gives a reference back; the last one frees the shape and releases what it retains. NULL: nothing.
+/// Releases a reference; the last one frees the shape and releases what it retains. NULL: nothing.
 void glint_shape_release(glint_shape *shape);
 
-/// The materials of a shape, one for most; returns how many. The list belongs to the shape.
+/// Returns the number of materials of a shape, 1 for most shapes, and writes their list, owned by the shape.
 size_t glint_shape_materials(const glint_shape *shape, glint_material *const **list);
 
-/// A box around all spheres or vertices of a GLINT_SHAPE_SPHERES or GLINT_SHAPE_MESH shape, before its transform. False,
-/// with the box untouched: the shape is of another kind, and its description says where it is.
+/// Computes a box around all spheres or vertices of a GLINT_SHAPE_SPHERES or GLINT_SHAPE_MESH shape, before its
+/// transform. Returns false and leaves the box unchanged for other kinds, whose description gives their position.
 bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[3]);
 
-#define GLINT_GROUP_DEPTH 64 ///< groups and combined solids one within the other
+#define GLINT_GROUP_DEPTH 64 ///< nesting depth of groups and combined solids
 
-// Combined solids. Parts are spheres, boxes, capped cylinders and cones, tori, planes (half-spaces: the side away from the normal is inside), closed
-// meshes, other combined solids, and groups, which stand for the union of what is in them; at most 64 in all, a torus counts twice, a mesh four
-// times. A mesh is closed where along every edge as many triangles run one way as the other, corners at one place being one; its shading is
-// faceted or phong. A place is inside of it where every way from there goes out through its faces more often than in; where its volume is
-// below 0 its faces are taken the other way round. The whole is one object; a part shows
-// nowhere but where it bounds the whole, with its own material, in its own space. Light that goes in through any part is in one medium: `ior` and
-// `absorption` are those of the whole's material. `two_sided` of parts means nothing. Faces that coincide leave nothing between them: a box
-// less one that ends at the same face is open there; where several parts bound the whole at one place, the first defined shows.
+// Combined solids. Parts are spheres, boxes, capped cylinders and cones, tori, planes (half-spaces, inside is the
+// side opposite to the normal), closed meshes, other combined solids, and groups, which stand for the union of their
+// shapes. A solid has at most 64 parts; a torus counts as two, a mesh as four.
+//
+// A mesh is closed if each edge is used by as many triangles in one direction as in the other; corners at the same
+// position count as one. Its shading is faceted or phong. A point is inside if a path from it leaves the mesh more
+// often than it enters. A mesh of negative volume is turned inside out first.
+//
+// The whole is one object. A part is visible only where it bounds the whole, and has its own material there, in its
+// own space. Light that enters through any part is in one medium, with `ior` and `absorption` of the whole's
+// material. `two_sided` of parts is ignored. Coincident faces enclose nothing: a box minus a box that ends at the
+// same face is open there. Where several parts bound the whole at the same place, the first defined is visible.
 
-/// The group or combined solid retains the shape, which may be in other groups and scenes as well: it shows in each, under the transforms of
-/// all that it is in, and what is changed in it changes everywhere. Refused: a group within itself, the same shape twice; what has
-/// no inside in a combined solid: the message names an edge at which a mesh is open.
+/// Adds a shape to a group or combined solid, which retains it. The shape may also be in other groups and scenes: it
+/// appears in each, under all transforms around it, and a change to it shows everywhere. Refused: a group inside
+/// itself, the same shape twice, and in a combined solid a shape without an inside. The message then names an open
+/// edge of a mesh.
 glint_status glint_group_add(glint_shape *group, glint_shape *child, glint_error *error);
-/// Takes the shape out of the group or combined solid and releases it. GLINT_ERR_INVALID when it is not there.
+/// Removes the shape from the group or combined solid and releases it. GLINT_ERR_INVALID if it is not in there.
 glint_status glint_group_remove(glint_shape *group, glint_shape *child, glint_error *error);
-/// How many shapes the group or combined solid holds itself, those within its groups not counted.
+/// Returns the number of shapes directly in the group or combined solid, not counting those in nested groups.
 size_t glint_group_count(const glint_shape *group);
 glint_shape *glint_group_child(const glint_shape *group, size_t index); ///< borrowed
 
-/// Many spheres in one shape, from one array.
+/// Many spheres in one shape, given as one array.
 typedef struct glint_spheres_desc {
     const void *data; ///< count times x, y, z, radius; any alignment; copied
     size_t count; ///< 1 .. 2^30
     bool is_float; ///< true: `data` is binary32, false: binary64; native byte order
     glint_material *const *materials; ///< retained; NULL entries are not allowed
     size_t material_count; ///< 0: one material with default fields
-    const uint32_t *material_index; ///< count numbers < material_count, copied; NULL: all are 0
-    bool two_sided; ///< default true: the normal turns to the viewer
+    const uint32_t *material_index; ///< material of each sphere: `count` numbers < material_count, copied; NULL: all
+        ///< are 0
+    bool two_sided; ///< default true: the normal is turned to the viewer
     char name[GLINT_NAME_SIZE]; ///< for messages; "": none
 } glint_spheres_desc;
 
-/// A message names the sphere at fault, counted from 1: "data: sphere 12: radius > 0 expected, got -1".
+/// Makes spheres. A message names the first invalid sphere, counted from 1: "data: sphere 12: radius > 0 expected,
+/// got -1".
 glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **out, glint_error *error);
-size_t glint_spheres_count(const glint_shape *shape); ///< of a mesh its triangles; 1 for other shapes
+size_t glint_spheres_count(const glint_shape *shape); ///< number of spheres; of triangles for a mesh; 1 for other
+    ///< shapes
 
-/// Polygons that share vertices. A face of more than three corners is cut into triangles: a fan from its first corner,
-/// or, where that would leave the polygon, ear by ear. Corners that run counter-clockwise are seen from the front.
+/// Polygons with shared vertices. A face of more than three corners is cut into triangles: as a fan from its first
+/// corner, or by ear clipping if the fan would leave the polygon. The front is the side from which corners run
+/// counter-clockwise.
 typedef struct glint_mesh_desc {
-    const double *vertices; ///< x, y, z each; finite; copied, like everything here
+    const double *vertices; ///< x, y, z each; finite; copied, like all arrays here
     size_t vertex_count; ///< 3 .. 2^31 - 2
     const uint32_t *corners; ///< numbers of vertices, from 0, face after face
     const uint32_t *face_sizes; ///< corners of each face, 3 or more
-    size_t face_count; ///< 1 .. 2^31 - 2; so is the number of triangles
+    size_t face_count; ///< 1 .. 2^31 - 2; the same limit holds for the number of triangles
     const double *normals; ///< x, y, z each; finite, not zero, need not be unit; NULL: none
     size_t normal_count; ///< 0 without `normals`
-    /// A number of a normal, from 0, for each entry of `corners`; GLINT_NO_NORMAL: none there. NULL: normals belong to
-    /// vertices, one each
+    /// Index of a normal, from 0, for each entry of `corners`; GLINT_NO_NORMAL: none there. NULL: each vertex has one
+    /// normal, in order
     const uint32_t *normal_corners;
-    const double *uv; ///< coordinates on a picture, u and v each; finite; NULL: none
+    const double *uv; ///< texture coordinates, u and v each; finite; NULL: none
     size_t uv_count; ///< 0 without `uv`
-    /// A number of such a pair, from 0, for each entry of `corners`; GLINT_NO_UV: none there, and no program reads the
-    /// coordinates of this mesh. NULL: they belong to vertices, a pair each
+    /// Index of a u, v pair, from 0, for each entry of `corners`; GLINT_NO_UV: none there, and no program may read
+    /// the coordinates of this mesh. NULL: each vertex has one pair, in order
     const uint32_t *uv_corners;
-    bool has_shading; ///< false: phong where there are normals, faceted where there are none
-    /// Phong and gouraud without normals: those of the faces around a vertex are averaged by area
+    bool has_shading; ///< false: phong if there are normals, otherwise faceted
+    /// Phong and gouraud without normals: the normals of the faces around a vertex are averaged, weighted by area
     glint_shading shading;
-    glint_material *material; ///< retained; NULL: one with default fields, or `materials`, or those of the file
-    glint_material *const *materials; ///< where faces have their own: retained, in place of `material`; no NULL entries
+    glint_material *material; ///< retained; NULL: `materials`, those of the file, or one with default fields
+    glint_material *const *materials; ///< materials of individual faces: retained, instead of `material`; no NULL
+        ///< entries
     size_t material_count; ///< 0: all faces have `material`
-    const uint32_t *material_index; ///< face_count numbers < material_count, copied; NULL: all are 0
+    const uint32_t *material_index; ///< material of each face: face_count numbers < material_count, copied; NULL: all
+        ///< are 0
     glint_transform transform; ///< default identity
     bool two_sided;
     char name[GLINT_NAME_SIZE];
-    void (*reads)(void *context, const char *path); ///< glint_mesh_load: a file is about to be opened; NULL: nothing
-    /// glint_mesh_load: something that the file has or names is ignored; the message names the file; NULL: nothing
+    void (*reads)(void *context, const char *path); ///< glint_mesh_load: called before a file is opened; NULL: not
+        ///< called
+    /// glint_mesh_load: called when something in the file is ignored; the message names the file; NULL: not called
     void (*warns)(void *context, const char *message);
-    void *context; ///< of both
+    void *context; ///< passed to both functions
 } glint_mesh_desc;
 
 #define GLINT_NO_NORMAL 0xffffffffu
 #define GLINT_NO_UV 0xffffffffu
 
-/// No faces, two-sided, where it is described.
+/// Returns the defaults: no faces, two-sided, identity transform.
 glint_mesh_desc glint_mesh_desc_default(void);
-/// A message names the face and the vertex at fault, counted from 1: "faces[3]: vertex 1 .. 8 expected, got 9",
-/// "faces[3]: a face with an area expected: its vertices 1, 2, 3 are on one line". A triangle of no area within a larger
-/// face is left out.
+/// Makes a mesh. A message names the first invalid face and vertex, counted from 1: "faces[3]: vertex 1 .. 8
+/// expected, got 9", "faces[3]: a face with an area expected: its vertices 1, 2, 3 are on one line". A triangle
+/// without area inside a larger face is left out.
 glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
-/// Reads a mesh; `desc` gives the fields that are not in the file. GLINT_ERR_IO when it cannot be read, GLINT_ERR_FORMAT
-/// when it is not as it should be: "FILE:LINE: ...", or the number of the vertex or face. By the ending of the name:
+/// Reads a mesh; `desc` gives the fields that are not in the file. GLINT_ERR_IO if it cannot be read,
+/// GLINT_ERR_FORMAT if its contents are invalid: the message has "FILE:LINE: ...", or the number of the vertex or
+/// face. The ending of the name selects the format:
 ///
-/// .stl  text or binary; corners at one place are one vertex. Normals are those of the faces, whatever the file says.
-/// .ply  text or binary, of either byte order: vertices (x y z, nx ny nz, u v or s t), faces (texcoord) and tristrips. Where `desc` has no
-///       material: a comment TextureFile names the picture of the diffuse colour; else red, green and blue (8-bit or 16-bit codes, or
-///       floats 0 .. 1 or 0 .. 255; sRGB) give each face a material of its colour,
-///       named by it ("#ff8000"): its own, or the mean of its corners' light, rounded to 8 bits.
-/// else  Wavefront .obj: v (x y z, and r g b as in .ply), vt, vn and f (any polygon; numbers from the end where negative), and, where `desc`
-///       has no material, usemtl and mtllib: Kd, Ks, Ns, d (or Tr), Pr and Pm (microfacets), illum 3 .. 7 (mirror of Ks; 5, 7 fresnel; 6, 7 Ni),
-///       map_Kd, map_Ks, map_d (holes where red is below one half), map_Bump (grey, -bm is its height). d < 1 is not refracted otherwise, and
-///       leaves d of Kd and Ks. Groups, lines and points are ignored.
-/// Faces without an area, of fewer than 3 corners or of vertices that are not finite are left out, polygons that cross themselves are cut as
-/// fans, normals of length 0 are none, wrong lines of .mtl files and unknown statements are ignored: one call of `warns` a kind.
+/// .stl  text or binary; corners at the same position are one vertex. Normals in the file are ignored; faces have
+///       their own.
+/// .ply  text or binary, either byte order: vertices (x y z, nx ny nz, u v or s t), faces (texcoord) and tristrips.
+///       If `desc` has no material, a comment TextureFile names the picture of the diffuse colour. Otherwise red,
+///       green and blue (8-bit or 16-bit values, or floats 0 .. 1 or 0 .. 255; sRGB) give each face a material named
+///       after its colour ("#ff8000"): the face's own colour, or the mean of its corners in linear light, rounded to
+///       8 bits.
+/// else  Wavefront .obj: v (x y z, and r g b as in .ply), vt, vn and f (any polygon; negative numbers count from the
+///       end). If `desc` has no material, also usemtl and mtllib: Kd, Ks, Ns, d (or Tr), Pr and Pm (microfacets),
+///       illum 3 .. 7 (mirror of Ks; 5, 7 fresnel; 6, 7 refraction by Ni), map_Kd, map_Ks, map_d (holes where red is
+///       below one half), map_Bump (grey; -bm is its height). For other illum, d < 1 transmits without refraction,
+///       and Kd and Ks are multiplied by d. Groups, lines and points are ignored.
+///
+/// Faces without area, with fewer than 3 corners or with vertices that are not finite are left out. Polygons that
+/// intersect themselves are cut as fans. Normals of length 0, invalid lines of .mtl files and unknown statements are
+/// ignored. `warns` is called once for each kind of problem.
 glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
-/// A sphere of `segments` (whole number, 3 .. 16384) around the equator and half as many, rounded up, from pole to pole,
-/// with the sphere's own normals at the vertices. `desc` gives shading (default phong), material, sides and name.
+/// Makes a sphere of `segments` (whole number, 3 .. 16384) around the equator and half as many, rounded up, from pole
+/// to pole. The vertices have the sphere's exact normals. `desc` gives shading (default phong), material, sides and
+/// name.
 glint_status glint_sphere_mesh_create(const double center[3], double radius, double segments,
                                       const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
 
-/// How far smooth shading bends a mesh: the largest angle between a face and the normals of its corners, degrees, 0 .. 90, in the
-/// mesh's own space; 0 for other shapes and shading. Faces that a light grazes by less throw a shadow on themselves
-/// where their shading is lit: more segments, or lights with `shadows` false, are the cure. The first call looks at all
-/// triangles; not to be called for one mesh by two threads at once.
+/// Returns the largest angle between a face of a mesh and its corner normals, in degrees, 0 .. 90, in the mesh's own
+/// space; 0 for other shapes and shading. Where light grazes a face at a smaller angle, the face shadows itself
+/// although its shading is lit. To avoid this, use more segments, or lights with `shadows` false. The first call
+/// reads all triangles; do not call it for one mesh from two threads at once.
 double glint_mesh_bend(const glint_shape *shape);
 
-/// The arguments of glint_sphere_mesh_create; false, and nothing written, when the shape was not made by it.
+/// Returns the arguments of glint_sphere_mesh_create; false, and nothing written, if another function made the shape.
 bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, double *segments);
 
 // ---- Overlays -----------------------------------------------------------------------------------------------------
 
-/// A label, a colour bar or axes: drawn over a finished picture, on its codes. Shared by reference between scenes.
+/// A label, a colour bar or axes, drawn onto a finished picture's 8-bit or 16-bit values. Shared by reference between
+/// scenes.
 ///
-/// Overlays are in .png files of beauty alone: other passes, planes and linear files are without. They lie over each other in
-/// the order in which they were added. No stage reads them: another text makes no ray run again. Lengths in points are
-/// dpi / 72 pixels where the file says its dpi, else a pixel.
+/// Only .png files of beauty show overlays; other passes, stored planes and linear files do not. Later overlays cover
+/// earlier ones. No stage reads overlays, so changing one traces no rays. A point is dpi / 72 pixels if the file has
+/// a dpi, and otherwise one pixel.
 ///
-/// Letters are those of a font, by FreeType: the file that the environment's GLINT_FONT names, or DejaVu Sans where systems have it.
-/// Their pixels depend on that font and on FreeType's version, and so does the frame's key; those of pictures without text never
-/// do. Without FreeType or a font, or where GLINT_FONT is "bitmap", they are of a bitmap font of 8 by 13 pixels and its multiples,
-/// the same everywhere.
+/// FreeType draws the letters, from the font file that the variable GLINT_FONT names, or from DejaVu Sans where
+/// installed. Their pixels, and so the frame's key, depend on that font and on FreeType's version; pictures without
+/// text do not. Without FreeType or a font, or if GLINT_FONT is "bitmap", letters come from a bitmap font of 8 by 13
+/// pixels and its multiples, identical on every machine.
 typedef struct glint_overlay glint_overlay;
 
-/// What an overlay is; it says which fields of its description mean anything.
+/// The kind of an overlay. It determines which fields of the description are used.
 typedef enum glint_overlay_kind {
     GLINT_OVERLAY_LABEL, ///< `text`
-    GLINT_OVERLAY_COLORBAR, ///< the colours of a map with numbers beside them; `text` is its title
-    GLINT_OVERLAY_AXES ///< directions x, y and z of the world as the camera has them, each with its name; or, with a `box`, three
-                       ///< edges of it where the camera has them, with numbers along them
+    GLINT_OVERLAY_COLORBAR, ///< the colours of a map with numbers next to them; `text` is its title
+    GLINT_OVERLAY_AXES ///< the world's x, y and z directions as the camera sees them, each with its name. With a
+        ///< `box`: three of its edges as the camera sees them, with numbers along them
 } glint_overlay_kind;
 
-/// A table of 256 colours, from the lowest number to the highest.
+/// A table of 256 colours, from the lowest value to the highest.
 typedef enum glint_colormap {
-    GLINT_COLORMAP_VIRIDIS, ///< these two N. Smith and S. van der Walt, 2015
+    GLINT_COLORMAP_VIRIDIS, ///< this one and the next: N. Smith and S. van der Walt, 2015
     GLINT_COLORMAP_MAGMA, ///< likewise
     GLINT_COLORMAP_CIVIDIS, ///< J. R. Nunez, C. R. Anderton and R. S. Renslow, 2018
     GLINT_COLORMAP_TURBO, ///< A. Mikhailov, 2019
@@ -884,477 +910,507 @@ typedef enum glint_colormap {
     GLINT_COLORMAP_COUNT ///< how many there are
 } glint_colormap;
 
-/// "viridis", ...; NULL when out of range.
+/// Returns "viridis", ...; NULL if out of range.
 const char *glint_colormap_name(glint_colormap map);
-/// The 256 colours of a map as sRGB codes 0xRRGGBB; static. NULL when out of range.
+/// Returns the 256 colours of a map as 8-bit sRGB 0xRRGGBB; static. NULL if out of range.
 const uint32_t *glint_colormap_table(glint_colormap map);
 
-/// Which way a colour bar runs: from bottom to top, or from left to right.
+/// The direction of a colour bar: from bottom to top, or from left to right.
 typedef enum glint_orientation { GLINT_VERTICAL, GLINT_HORIZONTAL } glint_orientation;
 
 #define GLINT_OVERLAY_TEXT_SIZE 384 ///< bytes of an overlay's text, with the ending NUL
-#define GLINT_OVERLAY_TICKS_MAX 16 ///< numbers beside a colour bar
+#define GLINT_OVERLAY_TICKS_MAX 16 ///< numbers next to a colour bar
 #define GLINT_AXIS_NAME_SIZE 16 ///< bytes of an axis's name, with the ending NUL
 
-/// The fields of an overlay; each kind reads those that name it, and those that name none.
+/// The fields of an overlay. Each kind reads the fields whose comment names it, and those whose comment names no
+/// kind.
 typedef struct glint_overlay_desc {
-    glint_overlay_kind kind; ///< not changed by glint_overlay_set
-    /// Label, colour bar: UTF-8, lines divided by newlines; "": none. Lines of a label without a position that are wider than
-    /// the picture are broken at blanks
+    glint_overlay_kind kind; ///< glint_overlay_set cannot change it
+    /// Label, colour bar: UTF-8, lines separated by newlines; "": none. Without a position, a label's lines that are
+    /// wider than the picture are broken at blanks
     char text[GLINT_OVERLAY_TEXT_SIZE];
-    /// Where it is: shares of the room that it leaves within the margin, 0 left or top, 1 right or bottom. Default label
-    /// {0, 0}, colour bar {1, 0.5}, axes {0, 1}
+    /// Position as a fraction of the free space inside the margin: 0 is left or top, 1 right or bottom. Default:
+    /// label {0, 0}, colour bar {1, 0.5}, axes {0, 1}
     double at[2];
-    bool has_position; ///< true: in place of `at`, `position`
-    double position[2]; ///< its upper left corner, in pixels from that of the picture; finite, may lie outside
-    bool has_size; ///< false: a 36th of the picture's height in pixels, and no less than 10
-    double size; ///< of its letters, points, 1 .. 10000
+    bool has_position; ///< true: `position` is used instead of `at`
+    double position[2]; ///< upper left corner, in pixels from the picture's upper left corner; finite, may lie
+        ///< outside
+    bool has_size; ///< false: a 36th of the picture's height in pixels, at least 10
+    double size; ///< size of the letters, points, 1 .. 10000
     bool has_margin; ///< false: half of `size`
-    double margin; ///< to the picture's border, points, 0 .. 10000
-    double color[3]; ///< of letters and lines, linear RGB, finite, >= 0; above 1 as 1; default 1. Not toned
-    bool has_background; ///< false: nothing behind it
-    double background[3]; ///< a rectangle behind it; linear RGB as `color`
+    double margin; ///< distance to the picture's border, points, 0 .. 10000
+    double color[3]; ///< colour of letters and lines, linear RGB, finite, >= 0; above 1 counts as 1; default 1. Not
+        ///< tone-mapped
+    bool has_background; ///< false: no rectangle is drawn behind it
+    double background[3]; ///< colour of a rectangle behind it; linear RGB as `color`
     double opacity; ///< of the background, 0 .. 1; default 1
     bool has_length; ///< false: colour bar 10 times `size`, axes 2.5 times
-    double length; ///< colour bar, axes: of the bar, of an axis that lies in the picture; points, 1 .. 10000
+    double length; ///< colour bar: length of the bar; axes: length of an axis parallel to the picture; points, 1 ..
+        ///< 10000
     glint_colormap map; ///< colour bar
-    bool has_colors; ///< true: colour bar of `colors` in place of `map`
-    uint32_t colors[256]; ///< from low to high, sRGB codes 0xRRGGBB
-    double low, high; ///< colour bar: the numbers at its ends; finite, not the same; default 0, 1
-    bool is_log; ///< colour bar: equal factors are equally long; low and high are above 0
+    bool has_colors; ///< true: the colour bar shows `colors` instead of `map`
+    uint32_t colors[256]; ///< from low to high, 8-bit sRGB 0xRRGGBB
+    double low, high; ///< colour bar: the values at its ends; finite, different; default 0, 1
+    bool is_log; ///< colour bar: logarithmic scale; low and high are above 0
     glint_orientation orientation; ///< colour bar; default vertical
-    double ticks[GLINT_OVERLAY_TICKS_MAX]; ///< colour bar: numbers written beside it, from low to high
-    size_t tick_count; ///< 0: round numbers, about five
-    char names[3][GLINT_AXIS_NAME_SIZE]; ///< axes: of x, y and z
-    /// Axes: true: at edges of `box`, those that bound what the camera sees of it, in place of `at`; the upright one at the left,
-    /// the others below. A direction that the eye looks along has no such edge, and no axis; seen from within the box none has.
-    /// Then has_position, has_margin, has_length and has_background must be false
+    double ticks[GLINT_OVERLAY_TICKS_MAX]; ///< colour bar: the values labelled, from low to high
+    size_t tick_count; ///< 0: about five round values
+    char names[3][GLINT_AXIS_NAME_SIZE]; ///< axes: names of x, y and z
+    /// Axes. true: along edges of `box` that bound the visible part of it, instead of `at`; the upright axis is at
+    /// the left, the others below. A direction that the eye looks along has no such edge and no axis; from inside the
+    /// box there are none. Then has_position, has_margin, has_length and has_background must be false
     bool has_box;
-    double box[2][3]; ///< its lowest and highest corner in the world; finite; a side may be 0, which has no axis, not all three
-    /// With has_box: the box is a cell from box[0], whose sides `sides` lie anyhow; box[1] is not read
+    double box[2][3]; ///< lowest and highest corner in the world; finite; one or two sides may be 0 and then have no
+        ///< axis
+    /// With has_box: the box is an oblique cell at box[0] with the edge vectors `sides`; box[1] is not read
     bool has_sides;
-    double sides[3][3]; ///< finite; one may be 0, which has no axis, the others span a plane
-    bool has_values; ///< false: the numbers are places in the world, of a cell lengths along its sides
-    double values[2][3]; ///< what the two corners stand for; finite, not the same where the box has a side; may fall
+    double sides[3][3]; ///< finite; one may be 0 and then has no axis, the others span a plane
+    bool has_values; ///< false: axes show world coordinates, or for a cell lengths along its sides
+    double values[2][3]; ///< values at the two corners; finite, different along each side that is not 0; may decrease
     char name[GLINT_NAME_SIZE]; ///< for messages; "": none
 } glint_overlay_desc;
 
-/// Every field of an overlay of this kind at its default.
+/// Returns a description with every field at the default for this kind.
 glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind);
-/// Makes an overlay of a copy of `desc`. Texts are drawn from left to right: letters that run from right to left are an error.
-/// GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
+/// Makes an overlay from a copy of `desc`. Texts run from left to right: letters of right-to-left scripts are an
+/// error. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
 glint_status glint_overlay_create(const glint_overlay_desc *desc, glint_overlay **out, glint_error *error);
-/// Replaces the description by a copy, of the same kind; on error nothing changes.
+/// Replaces the description by a copy of the same kind; on error nothing changes.
 glint_status glint_overlay_set(glint_overlay *overlay, const glint_overlay_desc *desc, glint_error *error);
-/// The description; borrowed, valid until the overlay is set or released.
+/// Returns the description; borrowed, valid until the overlay is set or released.
 const glint_overlay_desc *glint_overlay_get(const glint_overlay *overlay);
 /// Takes another reference; returns its argument.
 glint_overlay *glint_overlay_retain(glint_overlay *overlay);
-/// Gives a reference back; the last one frees the overlay. NULL: nothing.
+/// Releases a reference; the last one frees the overlay. NULL: nothing.
 void glint_overlay_release(glint_overlay *overlay);
 
 // ---- Scene --------------------------------------------------------------------------------------------------------
 
-/// Shapes and lights under one camera.
+/// Shapes, lights and overlays, with one camera.
 typedef struct glint_scene glint_scene;
 
-/// What a scene is beside its shapes and lights. Light in linear RGB, lengths in world units.
+/// The fields of a scene, except its lists of objects. Light in linear RGB, lengths in world units.
 typedef struct glint_scene_desc {
     glint_camera *camera; ///< retained; may be NULL until a frame is planned
     double ambient[3]; ///< finite, >= 0; default 0
     double background[3]; ///< finite, >= 0; default 0
-    /// Retained: a pattern of the direction that a ray leaves in, in place of `background`, seen by the eye, in mirrors,
-    /// through glass and by indirect light; NULL: none. It reads as p and world the unit direction d, as n and v -d, as
-    /// footprint the angle of a pixel in radians (0 with parallel rays), and as uv where d is in a picture of all
-    /// directions: u = 1/2 + atan2(x, -z) / 2 pi, so that the middle column is -z, the first and last are +z, and +x is
-    /// three quarters from the left; v = acos(-y) / pi, from straight down to straight up. A pattern of numbers alone is
-    /// a `background` of these; of others NaN and less than 0 are 0
+    /// Retained: a pattern that gives the background for the direction d of a ray, instead of `background`, as seen
+    /// by the eye, in mirrors, through glass and by indirect light; NULL: none. d is unit. The pattern reads d as p
+    /// and world, -d as n and v, the angle of a pixel in radians as footprint (0 with parallel rays), and the
+    /// position of d in a panorama as uv: u = 1/2 + atan2(x, -z) / 2 pi, so that the middle column is -z, the first
+    /// and last are +z, and +x is three quarters from the left; v = acos(-y) / pi, from straight down to straight up.
+    /// A pattern of numbers only replaces `background` by these numbers. Other results that are NaN or below 0 become
+    /// 0
     glint_program *background_program;
-    /// Light fades with the distance d of the first surface from the eye (that of the pass depth) towards a colour:
-    /// f = min(max((d - near) / (far - near), 0), 1) of the colour and 1 - f of the light. The colour's share is in the term
-    /// of the background; the background itself, and what mirrors show, do not fade
+    /// Light fades towards a colour with the distance d from the eye to the first surface, as in the pass depth: the
+    /// pixel gets f = min(max((d - near) / (far - near), 0), 1) of the colour and 1 - f of the light. The colour's
+    /// part goes to the background pass. The background itself and light from mirrors do not fade
     bool has_depth_cue;
-    bool has_depth_cue_color; ///< false: `background`, which then must not be a pattern
+    bool has_depth_cue_color; ///< false: `background` is the colour; it must not be a pattern
     double depth_cue_color[3]; ///< finite, >= 0
     double depth_cue_near, depth_cue_far; ///< finite, 0 <= near < far; default 0, 1
-    bool has_indirect; ///< false: `ambient` stands for all light that surfaces get from each other and the background
-    /// Paths of light that are followed from each point seen, over cosine-weighted directions: the diffuse term gets kd times
-    /// the mean of what they find. Whole number, 1 .. 65536.
+    bool has_indirect; ///< false: `ambient` replaces all light that surfaces receive from each other and from the
+        ///< background
+    /// Indirect light paths from each visible point, in cosine-weighted directions. Their mean light times kd is the
+    /// indirect light. Whole number, 1 .. 65536.
     double indirect_samples;
-    /// Matt surfaces on such a path that light is followed beyond; whole number, 0 .. 2^31. At the one after the last
-    /// `ambient` stands for the rest: with 0 it does so at once. What a material's `ambient` has beyond its `diffuse` is
-    /// light of its own, and stays everywhere.
+    /// Diffuse surfaces at which a path continues; whole number, 0 .. 2^31. At the next diffuse surface `ambient`
+    /// replaces the rest; with 0 that is the first one. The part of a material's `ambient` above its `diffuse` is
+    /// emitted light and is always added.
     double indirect_bounces;
-    /// Ambient light, as far as `ambient` of a material is no more than its `diffuse`, is multiplied by the share of the sky
-    /// over the point, weighed by the cosine, that is open. It is then in the pass `indirect`; the rest of it, light of the
-    /// material's own, stays in `ambient`. Not together with `has_indirect`, which finds where that light comes from
+    /// Ambient light is multiplied by the cosine-weighted unoccluded share of the sky above the point. This applies
+    /// to `ambient` of a material up to its `diffuse`; the product goes to the pass `indirect`. The part above
+    /// `diffuse` is emitted light and stays in the pass `ambient`. Not together with `has_indirect`, which computes
+    /// the light that arrives
     bool has_ambient_occlusion;
-    double ambient_occlusion_samples; ///< rays from each point seen; whole number, 1 .. 65536
-    /// World units, > 0, may be infinite: surfaces farther away close nothing. What transmits closes as much as it takes of
-    /// the light, and leads rays on refracted; from there the distance counts anew
+    double ambient_occlusion_samples; ///< rays from each visible point; whole number, 1 .. 65536
+    /// World units, > 0, may be infinite: more distant surfaces do not occlude. A transmitting surface occludes only
+    /// the light that it takes; the ray continues refracted, and the distance starts again there
     double ambient_occlusion_distance;
 } glint_scene_desc;
 
 /// Makes an empty scene without a camera. GLINT_ERR_NOMEM.
 glint_status glint_scene_create(glint_scene **out, glint_error *error);
-/// Replaces the description by a copy, and retains its camera; on error nothing changes.
+/// Replaces the description by a copy and retains its camera; on error nothing changes.
 glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *desc, glint_error *error);
-/// The description; borrowed, valid until the scene is set or released.
+/// Returns the description; borrowed, valid until the scene is set or released.
 const glint_scene_desc *glint_scene_get(const glint_scene *scene);
 /// Takes another reference; returns its argument.
 glint_scene *glint_scene_retain(glint_scene *scene);
-/// Gives a reference back; the last one frees the scene and releases what it retains. NULL: nothing.
+/// Releases a reference; the last one frees the scene and releases what it retains. NULL: nothing.
 void glint_scene_release(glint_scene *scene);
-/// Objects are numbered in the order they were added. The scene retains them; adding one twice is an error, and so
-/// is removing one that is not there. One object may be in several scenes.
+/// Adds or removes an object. Objects are numbered in the order they were added, and the scene retains them. Adding
+/// an object twice is an error, and so is removing one that is not in the scene. An object may be in several scenes.
 glint_status glint_scene_add_shape(glint_scene *scene, glint_shape *shape, glint_error *error);
 glint_status glint_scene_add_light(glint_scene *scene, glint_light *light, glint_error *error);
 glint_status glint_scene_remove_shape(glint_scene *scene, glint_shape *shape, glint_error *error);
 glint_status glint_scene_remove_light(glint_scene *scene, glint_light *light, glint_error *error);
 glint_status glint_scene_add_overlay(glint_scene *scene, glint_overlay *overlay, glint_error *error);
 glint_status glint_scene_remove_overlay(glint_scene *scene, glint_overlay *overlay, glint_error *error);
-/// How many shapes, lights and overlays were added; a group counts as one.
+/// Returns how many shapes, lights or overlays were added; a group counts as one.
 size_t glint_scene_shape_count(const glint_scene *scene);
 size_t glint_scene_light_count(const glint_scene *scene);
 size_t glint_scene_overlay_count(const glint_scene *scene);
 
-/// One of them, `index` < the count, in the order they were added; borrowed from the scene.
+/// Returns an object, `index` < the count, in the order they were added; borrowed from the scene.
 glint_shape *glint_scene_shape_at(const glint_scene *scene, size_t index);
 glint_light *glint_scene_light_at(const glint_scene *scene, size_t index);
 glint_overlay *glint_scene_overlay_at(const glint_scene *scene, size_t index);
-/// Writes the name of the light pass that light number `index`, < the count, belongs to: see glint_render_desc.
+/// Writes the name of the light pass that light number `index` < the count belongs to: see glint_render_desc.
 void glint_scene_light_pass(const glint_scene *scene, size_t index, char name[GLINT_NAME_SIZE]);
 
-/// What a ray meets first; lengths in units of its direction or of the world.
+/// The first hit of a ray.
 typedef struct glint_hit {
-    double t; ///< point = origin + t direction; t > 0
-    double point[3]; ///< world units, double
-    double normal[3]; ///< unit, geometric, outward (a plane's own normal; a triangle's faces where its corners run
-        ///< counter-clockwise)
+    double t; ///< point = origin + t direction, in units of the direction's length; t > 0
+    double point[3]; ///< world units
+    double normal[3]; ///< unit, geometric, outward. A plane has its own normal; a triangle's normal points to the
+        ///< side from which its corners run counter-clockwise
     glint_shape *shape; ///< borrowed from the scene
-    size_t element; ///< which sphere of a GLINT_SHAPE_SPHERES shape, which triangle of a mesh, which part of a combined solid
-        ///< (those of parts that have parts are counted one by one), from 0
+    size_t element; ///< number, from 0, of the sphere in a GLINT_SHAPE_SPHERES shape, of the triangle in a mesh, or
+        ///< of the part in a combined solid, where nested parts are counted individually
 } glint_hit;
 
-/// Finds the nearest hit of one ray with t > 0, by the kernels a frame uses. `direction` need not be unit; not zero. Spheres and
-/// round solids below 1e-150 in the world, or of their distance from `origin`, are refused; so are they in a frame, by the eye.
-/// *hit tells whether there is one; *out is written only then.
+/// Computes the nearest hit of one ray with t > 0, by the kernels that a frame uses. `direction` is not zero and need
+/// not be unit. Spheres and round solids smaller than 1e-150, in world units or as a fraction of their distance from
+/// `origin`, are refused; a frame refuses them by their distance from the eye. *hit says whether there is a hit; *out
+/// is written only then.
 glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], const double direction[3], bool *hit,
                               glint_hit *out, glint_error *error);
 
 // ---- A frame --------------------------------------------------------------------------------------------------------
 
-/// The arithmetic that decides hits, their order and shadows: binary64, or binary32 to show the cost of that.
+/// The arithmetic that decides hits, their order and shadows: binary64, or binary32 to show the errors that it
+/// causes.
 typedef enum glint_precision { GLINT_DOUBLE, GLINT_FLOAT } glint_precision;
 
-/// How it is found what the eye sees. The pictures are the same in every bit, but where a ray runs in the very plane of a
-/// triangle, whose edges then are nothing but rounding: a pixel in some thousand pictures taken from such planes.
+/// How visible surfaces are found. The pictures are identical bit by bit, except where rays lie in the plane of a
+/// triangle, so that rounding decides its edges: about one pixel in some thousand pictures taken from such planes.
 typedef enum glint_visibility {
-    GLINT_VISIBILITY_AUTO, ///< the one that is likely to be faster
+    GLINT_VISIBILITY_AUTO, ///< the method that is likely to be faster
     GLINT_VISIBILITY_CAST, ///< a ray through each sample
-    GLINT_VISIBILITY_SCAN ///< triangles are projected; other shapes are cast
+    GLINT_VISIBILITY_SCAN ///< triangles are projected; rays are cast at other shapes
 } glint_visibility;
 
-/// The values of a picture's pixels, as linear float32. Light is the mean over the samples.
+/// The values stored for a pixel, as linear float32. Light is the mean over the samples.
 typedef enum glint_pass {
     GLINT_PASS_BEAUTY, ///< (((((background + ambient) + diffuse) + specular) + indirect) + mirror) + transmission, in float32
-    GLINT_PASS_BACKGROUND, ///< light of pixels that hit nothing, and the depth cue
+    GLINT_PASS_BACKGROUND, ///< light of samples that hit nothing, and the colour of the depth cue
     GLINT_PASS_AMBIENT, ///< ambient terms
     GLINT_PASS_DIFFUSE, ///< diffuse terms of all lights
     GLINT_PASS_SPECULAR, ///< specular terms of all lights
     GLINT_PASS_INDIRECT, ///< diffuse light from other surfaces
-    GLINT_PASS_MIRROR, ///< mirror times what mirrored rays bring
-    GLINT_PASS_TRANSMISSION, ///< transmission times what refracted rays bring
+    GLINT_PASS_MIRROR, ///< mirror times the light along mirrored rays
+    GLINT_PASS_TRANSMISSION, ///< transmission times the light along refracted rays
     GLINT_PASS_DEPTH, ///< one channel: distance from the eye, +inf where nothing is hit; at the pixel's centre
-    GLINT_PASS_NORMAL, ///< shading normal turned to the eye, 0 where nothing is hit; at the pixel's centre
+    GLINT_PASS_NORMAL, ///< shading normal facing the eye, 0 where nothing is hit; at the pixel's centre
     GLINT_PASS_OBJECT_ID, ///< one channel: 1.. in order of definition, 0 where nothing is hit; at the pixel's centre
-    GLINT_PASS_ALPHA, ///< one channel, 0 .. 1: the share of the samples that hit something. A sample that reaches the background
-        ///< through glass or translucent surfaces, without a reflection, counts 1 less the mean of its three channels' weight
-    GLINT_PASS_OUTLINE, ///< one channel: 1 where objects end, hide each other or have an edge, else 0; at the pixel's centre
-    GLINT_PASS_REFINED, ///< one channel: 1 where `adaptive` took all samples, else 0; 1 everywhere without it
+    GLINT_PASS_ALPHA, ///< one channel, 0 .. 1: the share of the samples that hit something. A sample that reaches the
+        ///< background through glass or translucent surfaces, without a reflection, counts as 1 - the mean of its
+        ///< weights in the three channels
+    GLINT_PASS_OUTLINE, ///< one channel: 1 at silhouettes, at borders between objects and at edges of objects, else
+        ///< 0; at the pixel's centre
+    GLINT_PASS_REFINED, ///< one channel: 1 where `adaptive` took all samples, else 0; without `adaptive` 1 everywhere
     GLINT_PASS_ALBEDO, ///< diffuse reflectance, 0 where nothing is hit; at the pixel's centre
     GLINT_PASS_COUNT, ///< how many there are
-    /// The first of the frame's derivatives, see glint_render_desc; the others follow it. Three channels
+    /// The first derivative of the frame, see glint_render_desc; the others follow it. Three channels
     GLINT_PASS_DERIVATIVE = GLINT_PASS_COUNT,
-    /// The first of the frame's light passes, see glint_render_desc; the others follow it. Three channels
+    /// The first light pass of the frame, see glint_render_desc; the others follow it. Three channels
     GLINT_PASS_LIGHT = GLINT_PASS_DERIVATIVE + 8
 } glint_pass;
 
-/// "beauty", "background", ...; NULL when out of range.
+/// Returns "beauty", "background", ...; NULL if out of range.
 const char *glint_pass_name(glint_pass pass);
-/// GLINT_PASS_COUNT when there is no such pass.
+/// Returns the pass of that name; GLINT_PASS_COUNT if there is none.
 glint_pass glint_pass_from_name(const char *name);
 int glint_pass_channels(glint_pass pass); ///< 1 or 3
 
-/// How light becomes codes.
+/// The encoding of light as integer pixel values.
 typedef enum glint_transfer {
     GLINT_TRANSFER_SRGB, ///< IEC 61966-2-1:1999
-    GLINT_TRANSFER_LINEAR, ///< codes are light, and the file says so (gAMA): viewers brighten them
-    GLINT_TRANSFER_NONE ///< codes are light, and the file does not say so: viewers take them for sRGB
+    GLINT_TRANSFER_LINEAR, ///< pixel values are linear, and the file says so (gAMA): viewers brighten them
+    GLINT_TRANSFER_NONE ///< pixel values are linear, but the file does not say so: viewers take them for sRGB
 } glint_transfer;
-/// How a code between two whole numbers is rounded.
+/// The rounding of pixel values to integers.
 typedef enum glint_rounding { GLINT_ROUND_NEAREST, GLINT_ROUND_TRUNCATE } glint_rounding;
 
-/// The tone curve, applied to each channel on its own. x is the light after exposure, the result 0 .. 1.
+/// The tone curve, applied to each channel separately. x is the light after exposure, the result is 0 .. 1.
 typedef enum glint_tone_curve {
     GLINT_TONE_CLAMP, ///< min(x, 1)
-    GLINT_TONE_REINHARD, ///< x / (1 + x): Reinhard, Stark, Shirley and Ferwerda 2002, equation 3. Nothing is cut off
-    GLINT_TONE_FILMIC ///< h(2 x) / h(11.2), h Hable's curve of "Uncharted 2" (Filmic Games, 2010): white from 5.6 on
+    GLINT_TONE_REINHARD, ///< x / (1 + x): Reinhard, Stark, Shirley and Ferwerda 2002, equation 3. Nothing is clipped
+    GLINT_TONE_FILMIC ///< h(2 x) / h(11.2), where h is Hable's curve of "Uncharted 2" (Filmic Games, 2010): white
+        ///< from 5.6 on
 } glint_tone_curve;
 
-#define GLINT_EXPOSURE_MAX 32 ///< stops, either way
+#define GLINT_EXPOSURE_MAX 32 ///< stops, in both directions
 
-/// How linear light becomes integer codes: exposure, curve, transfer, rounding. NaN and negative become 0, above the
-/// range M.
+/// The conversion of linear light to integer pixel values, 0 .. M: exposure, curve, transfer, rounding. NaN and
+/// negative values become 0; values above the range become M.
 typedef struct glint_tone_desc {
     glint_tone_curve curve; ///< default clamp
     glint_transfer transfer; ///< default sRGB, IEC 61966-2-1:1999
     glint_rounding rounding; ///< default nearest: floor(x M + 0.5); truncate: floor(x M)
     int bits; ///< 8 (default) or 16: M = 255 or 65535
-    double exposure; ///< stops: light is first multiplied by 2^exposure, in float; default 0
+    double exposure; ///< stops: light is multiplied by 2^exposure first, in float; default 0
 } glint_tone_desc;
 
-/// Clamp, sRGB, nearest, 8 bits, no exposure.
+/// Returns the defaults: clamp, sRGB, nearest, 8 bits, no exposure.
 glint_tone_desc glint_tone_desc_default(void);
-/// Writes the least float of light after exposure that has each code 1 .. 255 of 8 bits, by a valid tone: for programs that show the very
-/// codes of a file.
+/// Writes the smallest float of light, after exposure, that a valid tone maps to each of the 8-bit values 1 .. 255.
+/// For programs that display exactly the pixel values of a file.
 void glint_tone_steps(const glint_tone_desc *tone, float least[255]);
 
 /// Lines drawn into a PNG of beauty where the pass `outline` is 1.
 typedef enum glint_outline_color { GLINT_OUTLINE_NONE, GLINT_OUTLINE_BLACK, GLINT_OUTLINE_WHITE } glint_outline_color;
 
-#define GLINT_DERIVATIVES_MAX (GLINT_PASS_LIGHT - GLINT_PASS_DERIVATIVE) ///< of one frame
+#define GLINT_DERIVATIVES_MAX (GLINT_PASS_LIGHT - GLINT_PASS_DERIVATIVE) ///< derivatives of one frame, at most
 #define GLINT_DERIVATIVE_NAME_SIZE 32 ///< bytes of a derivative's name, with the ending NUL
 
-/// How fast one field of the scene changes with a parameter. At most one of the four objects is not NULL; without any it is a
-/// field of the scene's own description.
+/// The derivative of one field of the scene with respect to a parameter. At most one of the four objects is not NULL;
+/// if all are NULL, it is a field of the scene's own description.
 typedef struct glint_slope {
-    const glint_material *material; ///< whose field it is; or NULL
+    const glint_material *material; ///< the owner of the field; or NULL
     const glint_light *light; ///< likewise
     const glint_shape *shape; ///< likewise
     const glint_camera *camera; ///< likewise
-    const char *field; ///< its name in the description, one of those under glint_derivative
-    double slope[3]; ///< of each component; of a single number the first
-    const glint_program *program; ///< of a material's field that a program gives: how fast that changes, for each point, as
-        ///< glint_program_tangent has it; `slope` means nothing. Retained by the plan. NULL: numbers
+    const char *field; ///< the field's name in the description, one of those listed at glint_derivative
+    double slope[3]; ///< for each component; a single number uses the first
+    /// For a material's field that a program computes: the derivative at each point, from glint_program_tangent;
+    /// `slope` is then ignored. Retained by the plan. NULL: `slope` is used
+    const glint_program *program;
 } glint_slope;
 
-/// How fast the picture's light, linear beauty, changes with a parameter: exact where surfaces, shadows and the samples of area
-/// lights are held constant, and a point of a surface moves with its viewer, seen by the eye, in mirrors and through glass. Rays too
-/// weak to be seen (2^-20 of linear light, a sample) are not followed. Slopes of objects outside the scene are ignored.
+/// The derivative of the picture's light (linear beauty) with respect to a parameter. It is exact while the visible
+/// surfaces, the shadows and the samples of area lights stay the same, and while a surface point moves with its
+/// viewer, as seen by the eye, in mirrors and through glass. Rays too weak to be seen (2^-20 of linear light per
+/// sample) are not followed. Slopes of objects outside the scene are ignored. The fields that may have slopes:
 ///
-///   material  diffuse, ambient, specular, shininess, roughness, f0; mirror and transmission where they are above 0, ior, absorption;
-///             of those that programs give, of built-in models
+///   material  diffuse, ambient, specular, shininess, roughness, f0; mirror and transmission where they are above 0,
+///             ior, absorption; for fields that programs compute, only with built-in models
 ///   light     color, intensity, ambient, diffuse, specular, attenuation, position, direction, inner_rad, outer_rad,
 ///             exponent, radiance
 ///   scene     ambient, background, depth_cue_color, depth_cue_near, depth_cue_far
 ///   shape     spheres: center, radius; planes: point, normal
-///   camera    eye, at, direction, up, fov_y_rad, height; of a lens aperture, focus, focus_point
+///   camera    eye, at, direction, up, fov_y_rad, height; with a lens also aperture, focus, focus_point
 typedef struct glint_derivative {
     const char *name; ///< 1 .. 31 bytes; "lamp_x"
     const glint_slope *slopes; ///< slopes of the same field add up
-    size_t slope_count; ///< 0: nothing depends on it, which a plan refuses; a slope of 0 marks a field that depends on it with slope 0 here
+    size_t slope_count; ///< 0: the parameter affects nothing, which a plan refuses. A slope of 0 marks a field that
+        ///< depends on it but has slope 0 here
 } glint_derivative;
 
 /// One frame: its size, samples and passes.
 typedef struct glint_render_desc {
     /// Whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
     double width, height;
-    double samples; ///< a pixel; whole number, 1 .. 65536; default 1
-    /// 0 (default): every pixel gets all samples. Above, up to 3: first each gets one, in its middle. All are taken only
-    /// where a pixel and one of its eight neighbours show two objects or normals 26 degrees apart, or codes that differ by
-    /// more than this, red, green and blue together, in shares of white; that pixel is then as without `adaptive`, every
-    /// other as with one sample. With one sample it does nothing
+    double samples; ///< per pixel; whole number, 1 .. 65536; default 1
+    /// 0 (default): every pixel takes all samples. Above 0, at most 3: each pixel first takes one sample, at its
+    /// centre. A pixel takes all samples if it and one of its eight neighbours show different objects, normals 26
+    /// degrees apart, or pixel values that differ by more than this, summed over red, green and blue, in fractions of
+    /// white. Such a pixel is then as without `adaptive`, and every other pixel as with one sample. With one sample
+    /// it has no effect
     double adaptive;
-    glint_precision precision; ///< what decides hits and shadows; default GLINT_DOUBLE
+    glint_precision precision; ///< the precision of hits and shadows; default GLINT_DOUBLE
     glint_visibility visibility; ///< default GLINT_VISIBILITY_AUTO
-    double seed; ///< whole number, 0 .. 2^53; another seed, another (equally good) sample pattern; 0 = unshifted
-    double max_depth; ///< longest chain of mirrors and refractions; whole number, 0 .. 2^31; default 5. At most 31
-        ///< where the mirror + transmission of a material that has both is above 1: rays double at each surface. From
-        ///< the 17th surface of a chain on one of two rays, drawn by lot, stands for both
-    uint32_t passes; ///< bits 1u << GLINT_PASS_...; kept in the image as linear float planes. Beauty may be left out.
-        ///< With `outline`, the passes that it needs (depth, normal and object_id) are kept, too
-    bool codes; ///< make integer codes of the beauty pass while rendering, by `tone`
-    /// Where nothing is hit nothing is shown: the background is black there and codes have alpha, so that a PNG of beauty
-    /// is RGBA. Passes hold light times coverage; codes show only the light, beauty / alpha. The background is also left out
-    /// behind glass and translucent surfaces: see GLINT_PASS_ALPHA. Mirrored and totally reflected rays show the scene's
-    /// background. If beauty is kept, so is GLINT_PASS_ALPHA
+    double seed; ///< whole number, 0 .. 2^53; each seed gives another, equally good sample pattern; 0 = unshifted
+    /// Longest chain of reflections and refractions; whole number, 0 .. 2^31; default 5. At most 31 if a material has
+    /// both and its mirror + transmission is above 1, because rays then double at each surface. From the 17th surface
+    /// of a chain on, one of the two rays, chosen at random, represents both
+    double max_depth;
+    uint32_t passes; ///< bits 1u << GLINT_PASS_...; stored in the image as linear float planes. Beauty may be left
+        ///< out. With `outline`, the passes that it needs (depth, normal and object_id) are stored, too
+    bool codes; ///< compute integer pixel values of the beauty pass while rendering, by `tone`
+    /// Pixels that hit nothing are transparent: the background is black there and pixel values have alpha, so that a
+    /// PNG of beauty is RGBA. Passes hold premultiplied light; pixel values hold unpremultiplied light, beauty /
+    /// alpha. The background is also left out behind glass and translucent surfaces: see GLINT_PASS_ALPHA. Mirrored
+    /// and totally reflected rays show the scene's background. If beauty is stored, so is GLINT_PASS_ALPHA
     bool alpha;
-    glint_outline_color outline; ///< only in files: planes and codes do not have it; the pass is kept. Default none
+    glint_outline_color outline; ///< drawn only in files: planes and pixel values do not have it; the pass is stored.
+        ///< Default none
     glint_tone_desc tone;
-    /// x, y, width and height, in pixels, of the part of the frame that is rendered, with the bits that the whole has there;
-    /// the image has the part's size. Whole numbers within the frame; all 0 (default): the whole
+    /// x, y, width and height, in pixels, of the part of the frame to render. Its pixels are identical to the same
+    /// pixels of the whole frame; the image has the size of the part. Whole numbers within the frame; all 0
+    /// (default): the whole frame
     double region[4];
-    /// Number i is stored in the image as pass GLINT_PASS_DERIVATIVE + i. Borrowed by glint_plan_create; a plan's own
-    /// description has only the count
+    /// Derivative number i is stored in the image as pass GLINT_PASS_DERIVATIVE + i. Borrowed by glint_plan_create; a
+    /// plan's own description has only the count
     const glint_derivative *derivatives;
     size_t derivative_count; ///< 0 (default) .. GLINT_DERIVATIVES_MAX
-    /// Light passes, divided by commas: names of groups of lights, "ambient" for the light that no lamp sends, "*" for all
-    /// groups of the scene in the order of their first lights, then "ambient". NULL (default): none. A light belongs to the pass of
-    /// its `group`, or else of its name, or else to "point_light_2", by its kind and its number among the scene's lights.
+    /// Light passes, separated by commas: names of light groups, "ambient" for light that no lamp emits, "*" for all
+    /// groups of the scene in the order of their first lights, then "ambient". NULL (default): none. A light belongs
+    /// to the pass of its `group`; if it has none, of its name; if it has no name, of "point_light_2", by its kind
+    /// and its number among the scene's lights.
     ///
-    /// A light pass holds all light of the picture that those lights send: direct, in mirrors, through glass, indirect, and
-    /// their visible surfaces. "ambient" is the rest: the scene's ambient light, background, the depth cue's colour. Number i is
-    /// kept in the image as pass GLINT_PASS_LIGHT + i. Beauty is the same with or without light passes, and all of them
-    /// add up to it within 2^-21 of itself. Borrowed by glint_plan_create; a plan's own description has them without "*".
+    /// A light pass holds all light of the picture that those lights emit: direct, in mirrors, through glass,
+    /// indirect, and their visible surfaces. "ambient" is the rest: the scene's ambient light, background, the depth
+    /// cue's colour. Light pass number i is stored in the image as pass GLINT_PASS_LIGHT + i. Beauty is the same with
+    /// or without light passes, and all of them add up to it within a relative error of 2^-21. Borrowed by
+    /// glint_plan_create; a plan's own description has them without "*".
     const char *light_passes;
 } glint_render_desc;
 
-/// 1280 x 720, 1 sample, double, passes = beauty, codes = false.
+/// Returns the defaults: 1280 x 720, 1 sample, double, passes = beauty, codes = false.
 glint_render_desc glint_render_desc_default(void);
 
 // ---- Plan ---------------------------------------------------------------------------------------------------------
 
-/// The stages that one frame needs, with a snapshot of all they read. Immutable; any thread.
+/// The stages that one frame needs, with a snapshot of all data that they read. Immutable; any thread.
 typedef struct glint_plan glint_plan;
 
 /// Why a stage is in a plan. Both texts belong to the plan.
 typedef struct glint_effect {
     const char *effect; ///< "hard shadow", "specular phong", ...
-    const char *caller; ///< which object called for it: "point_light 'lamp'"
+    const char *caller; ///< the object that needs it: "point_light 'lamp'"
 } glint_effect;
 
 /// A stage of a plan. The texts belong to the plan.
 typedef struct glint_stage_info {
     const char *name; ///< "camera", "cast", "surface", "view", "light", "facet", "occlude", "vertex", ...
-    char key[33]; ///< hex XXH3-128 of exactly what the stage reads
+    char key[33]; ///< hex XXH3-128 of all data that the stage reads
     const char *why; ///< one line for people
 } glint_stage_info;
 
-/// Numbers of rays by purpose.
+/// Numbers of rays by type.
 typedef struct glint_ray_counts {
-    uint64_t primary, shadow, mirror, refraction, indirect; ///< 0 where none is cast
+    uint64_t primary, shadow, mirror, refraction, indirect; ///< 0 if none is cast
 } glint_ray_counts;
 
-/// Takes a snapshot of the scene for one frame and lists what the frame needs. The scene may be edited at once.
-/// Fails when the scene has no camera, a field of `desc` is out of range, or a derivative goes through what has none: the
-/// message then begins with "derivative 'NAME': ".
+/// Takes a snapshot of the scene for one frame and lists the stages that it needs. The scene may be edited
+/// afterwards. Fails if the scene has no camera, if a field of `desc` is out of range, or if a derivative depends on
+/// something that has no derivative: the message then begins with "derivative 'NAME': ".
 glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
                                glint_error *error);
-/// Returns the description for each time of a frame with an open shutter: the passes that have a mean, and no codes.
+/// Returns the description for each point in time of a frame with an open shutter: the passes that can be averaged,
+/// no pixel values.
 glint_render_desc glint_shutter_desc(const glint_render_desc *frame);
-/// Plans a frame that is seen while a shutter is open: light and alpha are the mean of `times`, `count` plans of the scene
-/// as it was then, by glint_shutter_desc(desc); 1 .. GLINT_SHUTTER_TIMES_MAX. All else is of `scene` as it is now: what the
-/// plan says, and depth, normal, object_id, albedo, outline and refined. If only lights differ, each such light becomes one light for each
-/// time, with its share of the strength. A derivative of the frame is the mean of those by its name that the times' own descriptions
-/// have; of a time without it, on which nothing depends then, 0.
-/// Takes over the plans and the list, which is from malloc, also when it fails.
+/// Plans a frame with an open shutter. `times` are `count` plans of the scene at different times, 1 ..
+/// GLINT_SHUTTER_TIMES_MAX, made with glint_shutter_desc(desc). Light and alpha are the mean over the times.
+/// Everything else comes from `scene` as it is now: the plan's effects and stages, and depth, normal, object_id,
+/// albedo, outline and refined. If only lights differ, each such light is replaced by one light per time with its
+/// share of the strength. A derivative of the frame is the mean of the derivatives of the same name at the times; a
+/// time without it counts as 0. Takes ownership of the plans and of the list, which malloc allocated, even on
+/// failure.
 glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_render_desc *desc, glint_plan **times,
                                        size_t count, glint_plan **out, glint_error *error);
-/// Frees the plan; images rendered from it stay. NULL: nothing.
+/// Frees the plan; images rendered from it stay valid. NULL: nothing.
 void glint_plan_destroy(glint_plan *plan);
-/// Calls `warns` for each overlay that a picture of the plan cannot show as it is: text outside of it, lines wider than it,
-/// letters that the font lacks. The message names the overlay. dpi: of the file, 0: not said.
+/// Calls `warns` for each overlay that the plan's picture cannot show as described: text outside the picture, lines
+/// wider than the picture, letters missing from the font. The message names the overlay. dpi: of the file; 0: not
+/// set.
 glint_status glint_plan_check_overlays(const glint_plan *plan, double dpi, void (*warns)(void *context, const char *message),
                                        void *context, glint_error *error);
-/// The frame as planned: passes that others are made of are added. Belongs to the plan.
+/// Returns the description of the frame as planned, with the passes added that others require. Belongs to the plan.
 const glint_render_desc *glint_plan_render_desc(const glint_plan *plan);
-/// The name of the frame's light pass number `index`, from 0; the plan's. NULL: it has not so many.
+/// Returns the name of light pass number `index`, from 0; owned by the plan. NULL: it has fewer.
 const char *glint_plan_light_pass(const glint_plan *plan, size_t index);
-/// The lists belong to the plan.
+/// Return the number of effects or stages, and their list; the lists belong to the plan.
 size_t glint_plan_effects(const glint_plan *plan, const glint_effect **list);
 size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list);
-/// Primary rays exactly; shadow rays at most (every sample hits and faces every light that casts shadows), without those
-/// that mirrored, refracted and indirect rays and transparent objects call for; mirror, refraction and indirect: 0 or the
-/// first generation.
+/// Returns the expected rays. Primary rays are exact. Shadow rays are an upper bound, as if every sample hit a
+/// surface facing every light that casts shadows; those of mirrored, refracted and indirect rays and of transparent
+/// objects are not included. mirror, refraction and indirect are 0 or the first generation.
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan);
-/// Estimates the work of rendering `plan` right after `before`, by their keys: a stage whose key differs counts 1, the stages
-/// `light` and `occlude` count 1 for each light or light sample that differs, `shade` counts a half where only highlights of
-/// materials differ. Bit i of *stages is set where number i of
-/// glint_plan_stages must run. 0: the two pictures are the same.
+/// Estimates the work of rendering `plan` right after `before`, from their keys. Each stage whose key differs counts
+/// 1. The stages `light` and `occlude` count 1 for each light or light sample that differs; `shade` counts a half if
+/// only highlights of materials differ. Bit i of *stages is set if stage number i of glint_plan_stages must run. 0:
+/// the two pictures are identical.
 double glint_plan_work_after(const glint_plan *plan, const glint_plan *before, uint32_t *stages);
 
-/// A program that a frame runs for a material, or for the background.
+/// A program that a frame runs for a material or for the background.
 typedef struct glint_program_use {
-    const char *material; ///< its name; may be empty; NULL: the scene's own
-    const char *field; ///< "diffuse"; "model" of a shader; "background"
-    const glint_program *program; ///< the plan's
+    const char *material; ///< the material's name; may be empty; NULL: the scene's background
+    const char *field; ///< "diffuse"; "model" for a shader; "background"
+    const glint_program *program; ///< owned by the plan
 } glint_program_use;
 
-/// Describes number `index` of the plan's programs, from 0; pointers belong to the plan. Returns false, and writes nothing, if there are not so
-/// many.
+/// Describes number `index` of the plan's programs, from 0; pointers belong to the plan. Returns false and writes
+/// nothing if there are fewer.
 bool glint_plan_program(const glint_plan *plan, size_t index, glint_program_use *out);
 
 // ---- Render -------------------------------------------------------------------------------------------------------
 
 /// Worker threads, and the cache between frames.
 typedef struct glint_renderer glint_renderer;
-/// A rendered picture: planes of its passes, and codes. Immutable, reference counted; any thread.
+/// A rendered picture: the planes of its passes, and pixel values. Immutable, reference counted; any thread.
 typedef struct glint_image glint_image;
 
 /// The fields of a renderer.
 typedef struct glint_renderer_desc {
-    int threads; ///< 1 .. 1024 workers; 0 (default): one per processor the process may use
-    const char *isa; ///< "ref", "generic" (also "sse2"), "avx2", "avx512"; NULL: the environment's GLINT_ISA, else the best
-    bool time_stages; ///< measure each stage on each tile (costs a few per cent)
-    bool count_work; ///< fill in the work of the stats (costs some per cent)
-    bool no_reuse; ///< keep nothing from frame to frame; the pictures are the same
-    size_t reuse_memory; ///< bytes that may be kept between frames; 0 (default): a quarter of the machine's memory
+    int threads; ///< 1 .. 1024 worker threads; 0 (default): one per processor available to the process
+    const char *isa; ///< "ref", "generic" (also "sse2"), "avx2", "avx512"; NULL: the variable GLINT_ISA, else the
+        ///< best
+    bool time_stages; ///< measure the time of each stage on each tile (costs a few per cent)
+    bool count_work; ///< count the work for the statistics (costs some per cent)
+    bool no_reuse; ///< cache nothing between frames; the pictures are the same
+    size_t reuse_memory; ///< bytes that may be cached between frames; 0 (default): a quarter of the machine's memory
 } glint_renderer_desc;
 
-/// A thread a processor, the best instruction set, reuse within a quarter of the memory.
+/// Returns the defaults: one thread per processor, the best instruction set, reuse within a quarter of the memory.
 glint_renderer_desc glint_renderer_desc_default(void);
-/// GLINT_ERR_UNSUPPORTED when the machine lacks that instruction set, GLINT_ERR_INVALID when there is none
-/// of that name.
+/// Starts the threads. GLINT_ERR_UNSUPPORTED if the machine lacks the instruction set, GLINT_ERR_INVALID if there is
+/// none of that name.
 glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error);
 /// Ends the threads and frees the cache; no frame may be running. NULL: nothing.
 void glint_renderer_destroy(glint_renderer *renderer);
-/// The instruction set in use: "avx2". A static string.
+/// Returns the instruction set in use: "avx2". A static string.
 const char *glint_renderer_isa(const glint_renderer *renderer);
-/// How many workers there are, the calling thread included.
+/// Returns the number of workers, including the calling thread.
 int glint_renderer_threads(const glint_renderer *renderer);
-/// Makes the running or next glint_render return GLINT_ERR_CANCELLED within a tile. Async-signal-safe; sticks.
+/// Makes the current or next glint_render return GLINT_ERR_CANCELLED, at the latest after the current tile.
+/// Async-signal-safe.
 void glint_renderer_cancel(glint_renderer *renderer);
-/// Share of the running frame that is done, 0 .. 1. Any thread.
+/// Returns the finished share of the current frame, 0 .. 1. Any thread.
 double glint_renderer_progress(const glint_renderer *renderer);
 
 #define GLINT_STAGE_MAX 24
 
-/// Work that a frame took: free of noise, unlike time.
+/// Work counters of a frame. Unlike times, they are free of noise.
 typedef struct glint_work {
-    uint64_t tests; ///< pairs of a ray and a primitive that were decided: what index and filters could not rule out
+    uint64_t tests; ///< exact tests of a ray against a primitive, after BVH and filters
     uint64_t light_samples; ///< pairs of a point and a light, or a sample of an area light, evaluated
-    uint64_t powers; ///< highlights raised to their exponent
-    uint64_t sites; ///< sides of faces and vertices whose light was computed once, for flat and gouraud shading
+    uint64_t powers; ///< highlights computed (powers of a cosine)
+    uint64_t sites; ///< sides of faces and vertices that were lit, for flat and gouraud shading
     uint64_t lights_seen; ///< rays that end on a visible light
-    uint64_t patterns; ///< points for which the programs of a material were run
-    uint64_t environment; ///< rays that left the scene, for which the background's was
-    uint64_t overlaps; ///< pairs of a point and a sphere or plane whose cover of a light was looked at, for caps
+    uint64_t patterns; ///< points at which a material's programs were run
+    uint64_t environment; ///< rays that left the scene, for which the background's program was run
+    uint64_t overlaps; ///< tests of how much of a light a sphere or plane covers from a point, for caps
 } glint_work;
 
-/// Numbers of a pattern that no field takes: NaN and numbers below 0 are taken as 0, numbers above 2^100 as 2^100.
+/// Kinds of pattern results that no field accepts: NaN and numbers below 0 become 0, numbers above 2^100 become
+/// 2^100.
 typedef enum glint_odd_kind { GLINT_ODD_NAN, GLINT_ODD_NEGATIVE, GLINT_ODD_HUGE, GLINT_ODD_COUNT } glint_odd_kind;
 
-/// How often a frame's patterns gave such a number, and where.
+/// How often a frame's patterns gave such a result, and where.
 typedef struct glint_odd {
-    uint64_t count; ///< points; of the background, directions
-    const char *field; ///< of one of them: static string, "diffuse"; "background" of the scene; NULL: there is none
-    char material[GLINT_NAME_SIZE]; ///< name of its material; may be empty
-    double point[3]; ///< in the world; of the background, the direction
+    uint64_t count; ///< number of points; for the background, of directions
+    const char *field; ///< field of one such result: static string, "diffuse"; "background" of the scene; NULL: there
+        ///< is none
+    char material[GLINT_NAME_SIZE]; ///< name of the material; may be empty
+    double point[3]; ///< position in the world; for the background, the direction
 } glint_odd;
 
 /// The statistics of a frame.
 typedef struct glint_frame_stats {
-    double build_ms; ///< wall time of building the spatial index; next to 0 when it was there
-    double render_ms; ///< wall time of the stages up to the film
-    double tone_ms; ///< wall time of making codes
+    double build_ms; ///< wall time of building the BVH; near 0 if it was cached
+    double render_ms; ///< wall time of the stages before the film
+    double tone_ms; ///< wall time of computing pixel values
     int stage_count; ///< the plan's stages, in its order
     const char *stage_name[GLINT_STAGE_MAX]; ///< static strings
     double stage_ms[GLINT_STAGE_MAX]; ///< summed over workers; 0 unless the renderer times stages
-    /// Share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
+    /// Share of the stage's results taken from earlier frames: 0 all were computed, 1 none
     double stage_reused[GLINT_STAGE_MAX];
-    glint_ray_counts rays; ///< as cast; reused stages cast none
-    glint_work work; ///< 0 unless the renderer counts it; reused results cost none
-    uint64_t refined; ///< pixels that got all samples, where `adaptive` chooses; else 0
-    uint64_t pixels; ///< rendered, for a region all pixels of the tiles that it touches; `clipped` and `nonfinite` count these
-    uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
-    uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes
-    uint64_t shifted; ///< pixels next to an edge of a shape or shadow that a derivative's parameter moves, or within a soft
-        ///< shadow: the derivative does not include the motion of the edge. 0 without derivatives
-    glint_odd odd[GLINT_ODD_COUNT]; ///< what patterns gave and fields cannot take
+    glint_ray_counts rays; ///< rays cast; reused stages cast none
+    glint_work work; ///< 0 unless the renderer counts work; reused results cost none
+    uint64_t refined; ///< pixels that took all samples with `adaptive`; else 0
+    uint64_t pixels; ///< pixels rendered; for a region, all pixels of the tiles that it touches. `clipped` and
+        ///< `nonfinite` count these
+    uint64_t clipped; ///< pixels with a channel above 1; 0 without pixel values
+    uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without pixel values
+    uint64_t shifted; ///< pixels within a soft shadow, or next to an edge of a shape or shadow that a derivative's
+        ///< parameter moves. The derivative does not include the motion of the edge. 0 without derivatives
+    glint_odd odd[GLINT_ODD_COUNT]; ///< invalid results of patterns
 } glint_frame_stats;
 
-/// Renders one frame. *out holds the passes and codes the plan's glint_render_desc names. `stats` may be NULL.
+/// Renders one frame. *out holds the passes and pixel values that the plan's description names. `stats` may be NULL.
 glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
                           glint_error *error);
 
@@ -1362,52 +1418,54 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
 
 /// Takes another reference; returns its argument. Any thread.
 glint_image *glint_image_retain(glint_image *image);
-/// Gives a reference back; the last one frees the image. NULL: nothing. Any thread.
+/// Releases a reference; the last one frees the image. NULL: nothing. Any thread.
 void glint_image_release(glint_image *image);
 /// Size in pixels.
 int glint_image_width(const glint_image *image);
 int glint_image_height(const glint_image *image);
-/// Returns whether the pass is stored; beauty may exist only as codes.
+/// Returns whether the pass is stored; beauty may exist only as pixel values.
 bool glint_image_has_pass(const glint_image *image, glint_pass pass);
 /// Returns the name of derivative number `index`, from 0; owned by the image. NULL: it has fewer.
 const char *glint_image_derivative(const glint_image *image, size_t index);
 /// Returns the name of light pass number `index`, from 0; owned by the image. NULL: it has fewer.
 const char *glint_image_light_pass(const glint_image *image, size_t index);
-/// Returns whether all codes are 0, except alpha; without codes, whether no value of beauty is above 0. Stops
-/// at the first other value. False if there is neither.
+/// Returns whether all pixel values except alpha are 0; without pixel values, whether no value of beauty is above 0.
+/// Stops at the first other value. False if the image has neither.
 bool glint_image_is_black(const glint_image *image);
-/// Stops of glint_tone_desc that the frame's codes have, or would have.
+/// Returns the exposure, in stops, that the frame's pixel values have or would have.
 double glint_image_exposure(const glint_image *image);
 
-/// How bright pictures are; begins as { 0 }.
+/// The brightness of pictures, summed up; starts as { 0 }.
 typedef struct glint_brightness {
-    double most; ///< greatest finite value of a channel, before exposure; 0: none is above 0
-    uint64_t pictures; ///< how many were added
-    uint64_t values; ///< three a pixel
+    double most; ///< largest finite value of a channel, before exposure; 0: none is above 0
+    uint64_t pictures; ///< number of images added
+    uint64_t values; ///< number of channel values: three per pixel
     uint64_t clipped; ///< finite values that are above 1 after exposure
 } glint_brightness;
 
-/// Adds an image's linear beauty to *sum, clipped after `exposure` stops. GLINT_ERR_INVALID: it has no linear beauty.
+/// Adds an image's linear beauty to *sum; counts clipping after `exposure` stops. GLINT_ERR_INVALID: it has no linear
+/// beauty.
 glint_status glint_image_brightness(const glint_image *image, double exposure, glint_brightness *sum, glint_error *error);
-/// Widens range[0] .. range[1] to the finite values of the pass: of depth its nearest and farthest, of a derivative the largest slope of
-/// a channel either way. Begins as +inf, -inf. GLINT_ERR_INVALID: the image has not that pass, or it is neither.
+/// Widens range[0] .. range[1] to the finite values of a pass: for depth, the nearest and farthest; for a derivative,
+/// plus and minus the largest slope of a channel. Starts as +inf, -inf. GLINT_ERR_INVALID: the image lacks that pass,
+/// or the pass is neither.
 glint_status glint_image_range(const glint_image *image, glint_pass pass, double range[2], glint_error *error);
-/// The greatest exposure, in whole hundredths of a stop within GLINT_EXPOSURE_MAX, that leaves light of `most` at or below 1; 0 of
-/// no light. The same on every machine.
+/// Returns the greatest exposure, in whole hundredths of a stop within GLINT_EXPOSURE_MAX, at which light of `most`
+/// does not exceed 1; 0 if `most` is 0. The same on every machine.
 double glint_exposure_for(double most);
-/// Reads one pixel of a kept pass; (0, 0) is the top left. One-channel passes give the same number three times.
+/// Reads one pixel of a stored pass; (0, 0) is the top left. One-channel passes give the same number three times.
 glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3],
                                glint_error *error);
 
 // ---- Files --------------------------------------------------------------------------------------------------------
 
-/// How PNG data are deflated: quickly, or into fewer bytes.
+/// How PNG data are compressed: quickly, or into fewer bytes.
 typedef enum glint_encode { GLINT_ENCODE_FAST, GLINT_ENCODE_SMALL } glint_encode;
 
-/// Name and version of the deflate library behind a setting in this build: "isal 2.30.0".
+/// Returns the name and version of the deflate library behind a setting in this build: "isal 2.30.0".
 const char *glint_encoder_name(glint_encode encode);
 
-/// A text that a PNG carries. Both strings are borrowed.
+/// A text chunk of a PNG. Both strings are borrowed.
 typedef struct glint_text {
     const char *keyword; ///< PNG tEXt keyword: 1 .. 79 Latin-1 characters
     const char *value; ///< any length up to 64 KiB; bytes outside Latin-1 are written as '?'
@@ -1415,220 +1473,230 @@ typedef struct glint_text {
 
 /// One pass as a file. Pointers are borrowed for the call.
 typedef struct glint_write_desc {
-    /// Ends in .png; in .pfm or .npy for the linear float32 of one pass (.npy: NumPy's, height x width or height x width x 3,
-    /// top row first); or in .exr for all passes of the image, as channels of one file: R, G, B, A, depth.Z,
-    /// normal.X ... diffuse.B
+    /// Ends in .png; in .pfm or .npy for the linear float32 of one pass (.npy: NumPy, height x width or height x
+    /// width x 3, top row first); or in .exr for all passes of the image, as channels of one file: R, G, B, A,
+    /// depth.Z, normal.X ... diffuse.B
     const char *path;
-    glint_pass pass; ///< one the image has; an .exr has all
-    /// .png; depth, normal, object_id and derivatives are scaled for viewing, see README. In an .exr, 16 `bits` make light and normals half,
-    /// 8 leave them float; the rest is float either way
+    glint_pass pass; ///< a pass of the image; ignored by .exr, which has all
+    /// .png; depth, normal, object_id and derivatives are scaled for viewing, see README. .exr: with 16 `bits`, light
+    /// and normals are half floats; with 8, they are float. Everything else is always float
     glint_tone_desc tone;
     glint_encode encode; ///< .png; default GLINT_ENCODE_FAST
-    double dpi; ///< .png: pixels an inch where it is printed, 0 .. 1e6; 0: not said
-    /// .png of depth and derivatives: 1 + a glint_colormap, whose colours replace greys; 0: grey. With depth, the
-    /// background stays black; with a derivative, the mean of its three components is shown
+    double dpi; ///< .png: pixels per inch for printing, 0 .. 1e6; 0: not set
+    /// .png of depth and derivatives: 1 + a glint_colormap, whose colours replace grey; 0: grey. For depth, the
+    /// background stays black; for a derivative, the mean of its three components is shown
     int colormap;
-    /// .png of depth and derivatives: the numbers at the ends of the greys or the map, which is linear between them; finite. Equal (default):
-    /// the picture's own, see README
+    /// .png of depth and derivatives: the values at the ends of the grey scale or colour map, which is linear;
+    /// finite. Equal (default): the picture's own range, see README
     double range[2];
     const glint_text *text; ///< .png and .exr
     size_t text_count; ///< 0: no texts
 } glint_write_desc;
 
-/// "OpenEXR 3.1.5"; NULL: this build cannot write .exr.
+/// Returns "OpenEXR 3.1.5"; NULL: this build cannot write .exr.
 const char *glint_exr_library(void);
-/// Names and versions of the libraries that are in use, the last one NULL. Static strings.
+/// Returns the names and versions of the libraries in use; the last entry is NULL. Static strings.
 const char *const *glint_libraries(void);
 
-/// Writes one pass to a file that appears whole or not at all: temporary name beside it, fsync, rename. An existing
-/// file that is not a regular one (a pipe, /dev/full) is written in place. Missing folders are made.
+/// Writes one pass to a file that appears complete or not at all: a temporary name in the same folder, fsync, rename.
+/// An existing file that is not a regular one (a pipe, /dev/full) is written in place. Missing folders are created.
 /// GLINT_ERR_NO_SPACE for ENOSPC and EDQUOT, GLINT_ERR_IO otherwise; the message names the file.
 glint_status glint_image_write(const glint_image *image, const glint_write_desc *desc, glint_error *error);
 
-/// The bytes that glint_image_write would write; `desc->path` gives the format by its ending. The caller frees *data
-/// with free().
+/// Returns the bytes that glint_image_write would write; the ending of `desc->path` gives the format. The caller
+/// frees *data with free().
 glint_status glint_image_to_bytes(const glint_image *image, const glint_write_desc *desc, uint8_t **data, size_t *size,
                                   glint_error *error);
 
-/// Fills `out`, which has 4 x width x height bytes, with the 8-bit codes of one pass as a .png would have them: RGBA, top row first,
-/// alpha 255 where the picture has none. Of `desc` the pass, the tone of 8 bits, dpi and colormap are read.
+/// Fills `out`, 4 x width x height bytes, with the 8-bit values of one pass as a .png would hold them: RGBA, top row
+/// first, alpha 255 where the picture has none. Reads from `desc` the pass, the tone (8 bits), dpi and colormap.
 glint_status glint_image_rgba(const glint_image *image, const glint_write_desc *desc, uint8_t *out, glint_error *error);
 
-/// Identifies a finished frame: 32 hex digits over engine version, everything the plan reads, `desc`'s tone, encode,
-/// encoder version and pass. Threads, instruction set, shard and path are not in it.
+/// Writes the key of a finished frame: 32 hex digits, a hash of the engine version, all data that the plan reads, and
+/// of `desc` the tone, encode, encoder version and pass. Threads, instruction set, shard and path are not included.
 void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char key[33]);
-/// The key of the whole frame that a region is a part of; without a region the frame's own.
+/// Writes the key of the whole frame that a region belongs to; without a region, the frame's own key.
 void glint_whole_key(const glint_plan *plan, const glint_write_desc *desc, char key[33]);
 
-/// Whether `path` is a whole PNG (every chunk's CRC right, IEND at the end) whose tEXt "glint:key" equals key.
+/// Returns whether `path` is a complete PNG (every CRC right, IEND at the end) whose tEXt "glint:key" equals key.
 bool glint_file_has_key(const char *path, const char *key);
 
-/// Writes images on threads of its own, in the order submitted, so that rendering, encoding and the disk overlap. It
-/// remembers the last picture deflated, about the size of its file, so as not to deflate again what has not changed.
+/// Writes images on its own threads, in the order submitted, so that rendering, encoding and disk writes overlap. It
+/// stores the last compressed picture, about the size of its file, so that unchanged parts are not compressed again.
 typedef struct glint_writer glint_writer;
 
 /// The result of one submitted file.
 typedef struct glint_write_result {
-    glint_status status; ///< GLINT_OK: the file is there
-    char message[512]; ///< "" when it is; else the file and the reason
-    double encode_ms; ///< codes to bytes
-    double write_ms; ///< bytes to a synced, renamed file
-    double reused; ///< share of the deflated bytes, in bands of rows, that the file before had already, 0 .. 1
-    void *user; ///< as submitted
+    glint_status status; ///< GLINT_OK: the file is complete
+    char message[512]; ///< "" on success; otherwise the file and the reason
+    double encode_ms; ///< time from pixel values to bytes
+    double write_ms; ///< time from bytes to a synced, renamed file
+    double reused; ///< share of the compressed bytes taken from the previous file, in bands of rows, 0 .. 1
+    void *user; ///< the pointer submitted with the image
 } glint_write_result;
 
-/// queue_depth  images that may wait, >= 1; a further submit blocks. With more than 2 a renderer that is faster than the
-///              encoder runs out of pictures whose memory it can use again.
-/// threads      that encode an image together, 1 .. 1024; 0: one per processor; 1: the writer's own. Files do not
-///              depend on it.
+/// Makes a writer.
+///
+/// queue_depth  images that may wait, >= 1; a further submit blocks. Above 2, a renderer that is faster than the
+///              encoder finds no finished pictures whose memory it could reuse.
+/// threads      that encode one image together, 1 .. 1024; 0: one per processor; 1: only the writer's own thread.
+///              Files do not depend on it.
 glint_status glint_writer_create(int queue_depth, int threads, glint_writer **out, glint_error *error);
-/// Finishes the queue, then frees. Results not collected are lost.
+/// Finishes the queue, then frees the writer. Results not collected are lost.
 void glint_writer_destroy(glint_writer *writer);
-/// Retains the image and copies `desc` with its strings. `user` comes back with the result.
+/// Retains the image and copies `desc` with its strings. The result carries `user`.
 glint_status glint_writer_submit(glint_writer *writer, glint_image *image, const glint_write_desc *desc, void *user,
                                  glint_error *error);
-/// Takes the next result, in the order submitted; waits for it when `wait`. False: none (left).
+/// Takes the next result, in the order submitted; waits for it if `wait` is set. False: there is none.
 bool glint_writer_collect(glint_writer *writer, bool wait, glint_write_result *result);
-/// Drops queued files that are not begun (their results read GLINT_ERR_CANCELLED); files that are begun are finished.
+/// Drops queued files that are not started (their results have GLINT_ERR_CANCELLED); files already started are
+/// finished.
 void glint_writer_cancel(glint_writer *writer);
 
-/// How far two pictures are apart, over all pixels and channels.
+/// The difference of two pictures, over all pixels and channels.
 typedef struct glint_compare_result {
-    int width, height, channels; ///< pixels; of both pictures
-    double mean_error, rms_error, peak_snr, max_error; ///< of values in 0 .. 1 (PNG) or linear (PFM)
-    int max_x, max_y, max_channel; ///< where max_error is, from 0
-    uint64_t failed, warned; ///< pixels off by more than the two thresholds
+    int width, height, channels; ///< size in pixels and channels of both pictures
+    double mean_error, rms_error, peak_snr, max_error; ///< differences of values in 0 .. 1 (PNG) or linear values
+        ///< (PFM); peak signal-to-noise ratio
+    int max_x, max_y, max_channel; ///< position of max_error, from 0
+    uint64_t failed, warned; ///< pixels whose difference exceeds the threshold `fail`, `warn`
     uint64_t pixels; ///< width x height
 } glint_compare_result;
 
 /// Thresholds of differences.
 typedef struct glint_compare_desc {
-    double fail, warn; ///< thresholds, default 1e-6 as in idiff
+    double fail, warn; ///< default 1e-6 as in idiff
 } glint_compare_desc;
 
-/// Compares two .png or .pfm files. GLINT_ERR_INVALID when the sizes or channels differ (out->width is then -1),
-/// GLINT_ERR_IO or GLINT_ERR_FORMAT when one cannot be read.
+/// Compares two .png or .pfm files. GLINT_ERR_INVALID if the sizes or channels differ (out->width is then -1),
+/// GLINT_ERR_IO or GLINT_ERR_FORMAT if one cannot be read.
 glint_status glint_compare_files(const char *a, const char *b, const glint_compare_desc *desc,
                                  glint_compare_result *out, glint_error *error);
 
 // ---- How far a picture is from a reference ------------------------------------------------------------------------
 
-/// A picture that others are measured against: the mean of pictures that ought to be the same. Immutable.
+/// A reference for measuring other pictures: the mean of pictures that should be identical. Immutable.
 typedef struct glint_reference glint_reference;
 
-/// How far a picture is from a reference.
+/// The error of a picture relative to a reference.
 typedef struct glint_picture_error {
     double rmse; ///< root of the mean squared difference of linear light, over pixels and channels
     double relmse; ///< mean of (x - r)^2 / (r^2 + 0.01)
-    double max_code; ///< largest difference of codes, in steps of 8 bits; fractions at 16 bits
-    double over1, over8; ///< share of pixels with a channel off by more than 1, 8 such steps
-    double flip; ///< mean LDR-FLIP, 0 .. 1 (Andersson et al. 2020), at 67 pixels a degree
+    double max_code; ///< largest difference of pixel values, in steps of 8 bits; fractions at 16 bits
+    double over1, over8; ///< share of pixels with a channel that differs by more than 1 or 8 such steps
+    double flip; ///< mean LDR-FLIP, 0 .. 1 (Andersson et al. 2020), at 67 pixels per degree
 } glint_picture_error;
 
-/// images  `count` >= 1 of them, of one size, each with the beauty pass; read only, not kept.
-/// tone    how the codes that are compared are made; its `bits` mean nothing here.
+/// Makes a reference.
+///
+/// images  `count` >= 1 images of the same size, each with the beauty pass; only read during the call.
+/// tone    the conversion to the pixel values that are compared; its `bits` are ignored.
 glint_status glint_reference_create(const glint_image *const *images, size_t count, const glint_tone_desc *tone,
                                     glint_reference **out, glint_error *error);
 /// Frees the reference with its image. NULL: nothing.
 void glint_reference_destroy(glint_reference *reference);
-/// The mean, with the beauty pass; borrowed.
+/// Returns the mean image, with the beauty pass; borrowed.
 const glint_image *glint_reference_image(const glint_reference *reference);
 
-/// Measures a picture of the reference's size that has the beauty pass.
+/// Measures a picture that has the reference's size and the beauty pass.
 ///
-/// file_bits  0: the linear light itself; 8 or 16: what the codes of such a file keep of it, exposure and curve undone.
-///            Light above white, which no file keeps, counts as it is either way, so that the numbers compare.
+/// file_bits  0: the linear light; 8 or 16: the light decoded from a file with such values, exposure and curve
+///            undone. Light above white, which no file can hold, counts unchanged in both cases, so that the numbers
+///            are comparable.
 ///
-/// Where a channel is not finite, rmse and relmse are not.
+/// If a channel is not finite, neither are rmse and relmse.
 glint_status glint_reference_measure(const glint_reference *reference, const glint_image *image, int file_bits,
                                      glint_picture_error *out, glint_error *error);
 
-/// A picture of codes for the eye: `scale` times the difference of the 8-bit codes in each channel, white at most.
+/// Makes a picture for viewing: `scale` times the difference of the 8-bit values in each channel, clamped to white.
 glint_status glint_reference_difference(const glint_reference *reference, const glint_image *image, double scale,
                                         glint_image **out, glint_error *error);
 
 // ---- Other strengths and colours of lights ---------------------------------------------------------------------------
 
-#define GLINT_LIGHT_OTHER "..." ///< the name of the light of a file that is in none of its passes
+#define GLINT_LIGHT_OTHER "..." ///< name of the light in a file that none of its light passes holds
 
-/// Reads an .exr of scan lines with light passes: channels R, G and B of the picture, light.NAME.R, .G and .B of each pass, and A, if any.
-/// Light of the picture that is in none of them, beyond rounding, is one more pass, GLINT_LIGHT_OTHER. The image has no beauty, which its
-/// passes make up. GLINT_ERR_IO, GLINT_ERR_FORMAT with the file's name; GLINT_ERR_UNSUPPORTED in a build without OpenEXR.
+/// Reads a scan-line .exr with light passes: channels R, G and B of the picture, light.NAME.R, .G and .B of each
+/// pass, and A, if any. If the passes do not add up to the picture, beyond rounding, the rest becomes one more pass,
+/// GLINT_LIGHT_OTHER. The image has no beauty plane, since the passes add up to it. GLINT_ERR_IO, GLINT_ERR_FORMAT
+/// with the file's name; GLINT_ERR_UNSUPPORTED in a build without OpenEXR.
 glint_status glint_lights_read(const char *path, glint_image **out, glint_error *error);
-/// Makes the picture in which light pass number i is `factors[i]` times as strong, in each channel: beauty, with the alpha that there is.
-/// The sum is made in double in the order of the passes, and rounded to float32 once.
+/// Makes a beauty picture in which light pass number i is multiplied by `factors[i]` in each channel; alpha is copied
+/// if there is any. The sum is computed in double in the order of the passes and rounded to float32 once.
 glint_status glint_image_relight(const glint_image *lights, const double (*factors)[3], glint_image **out, glint_error *error);
 
 // ---- Finished files, sheets and films -------------------------------------------------------------------------------
 
-/// A file being written: it grows under a hidden name beside its place, which has the whole file or none at any time.
+/// A file being written, under a hidden name in the same folder. At any time the final name holds a complete file or
+/// none.
 typedef struct glint_draft glint_draft;
 
-/// Opens a draft for `path`. Missing folders are made, a symbolic link is followed. An existing file that is not a
+/// Opens a draft for `path`. Missing folders are created; a symbolic link is followed. An existing file that is not a
 /// regular file (a pipe, a device) is written in place and never replaced.
 ///
-/// Messages of the three read "<path>: <reason>"; GLINT_ERR_NO_SPACE for ENOSPC and EDQUOT, GLINT_ERR_NOMEM, GLINT_ERR_IO
-/// for the rest. A draft belongs to one thread at a time.
+/// Messages of create, append and finish read "<path>: <reason>"; GLINT_ERR_NO_SPACE for ENOSPC and EDQUOT,
+/// GLINT_ERR_NOMEM, GLINT_ERR_IO for the rest. A draft belongs to one thread at a time.
 glint_status glint_draft_create(const char *path, glint_draft **out, glint_error *error);
-/// The hidden name, for another program to write to; the draft's.
+/// Returns the hidden name, for another program to write to; owned by the draft.
 const char *glint_draft_name(const glint_draft *draft);
 glint_status glint_draft_append(glint_draft *draft, const void *bytes, size_t size, glint_error *error);
-/// Syncs the file and gives it its name; an older one is replaced. Then only glint_draft_destroy may follow.
+/// Syncs the file and renames it to its final name, replacing an older file. Only glint_draft_destroy may follow.
 glint_status glint_draft_finish(glint_draft *draft, glint_error *error);
 /// Removes an unfinished draft. NULL does nothing.
 void glint_draft_destroy(glint_draft *draft);
 
-/// Removes from a folder the hidden files of drafts whose process was killed: drafts of this host at once, drafts of other hosts a
-/// day after they were last written. A process does it once in each folder where it opens a draft or calls glint_file_has_key. Any
-/// thread.
+/// Removes from a folder the hidden files of drafts whose process was killed: drafts of this host at once, drafts of
+/// other hosts one day after their last write. A process does this once in each folder where it opens a draft or
+/// calls glint_file_has_key. Any thread.
 void glint_drafts_collect(const char *path);
-/// Removes the hidden files of this process's drafts. For a signal's handler that ends the process next: it may be called
-/// there, and no draft can be finished afterwards.
+/// Removes the hidden files of this process's drafts, for a signal handler that ends the process next. It is
+/// async-signal-safe; no draft can be finished afterwards.
 void glint_drafts_abandon(void);
 
-/// A finished .png or .pfm, read again. Immutable.
+/// A finished .png or .pfm, read back. Immutable.
 typedef struct glint_picture glint_picture;
 
-/// Reads `path`; an incomplete file is GLINT_ERR_FORMAT. Without `pixels` only the size and the texts: then the
-/// deflated data are not looked at, the CRCs are. Messages name the file.
+/// Reads `path`; an incomplete file is GLINT_ERR_FORMAT. Without `pixels`, reads only the size and the texts: CRCs
+/// are checked, but nothing is decompressed. Messages name the file.
 glint_status glint_picture_read(const char *path, bool pixels, glint_picture **out, glint_error *error);
-/// The same of the bytes of a .png, with its pixels; they may be freed after the call.
+/// Reads a .png, with its pixels, from bytes in memory, which may be freed after the call.
 glint_status glint_picture_from_bytes(const void *data, size_t size, glint_picture **out, glint_error *error);
 /// Frees the picture with its texts. NULL: nothing.
 void glint_picture_destroy(glint_picture *picture);
 /// Size in pixels.
 int glint_picture_width(const glint_picture *picture);
 int glint_picture_height(const glint_picture *picture);
-int glint_picture_bits(const glint_picture *picture); ///< 8, 16; 32: a .pfm
-int glint_picture_channels(const glint_picture *picture); ///< 1 .. 4; 2 and 4: the last is alpha
-/// Whether codes are sRGB or light, by gAMA and sRGB chunks; a .pfm is light.
+int glint_picture_bits(const glint_picture *picture); ///< 8 or 16; 32 for a .pfm
+int glint_picture_channels(const glint_picture *picture); ///< 1 .. 4; with 2 and 4, the last is alpha
+/// Returns whether pixel values are sRGB or linear, by the gAMA and sRGB chunks; a .pfm is linear.
 glint_transfer glint_picture_transfer(const glint_picture *picture);
-/// The value of a PNG's tEXt, as UTF-8; the picture's; NULL: there is none.
+/// Returns the value of a PNG's tEXt, as UTF-8; owned by the picture. NULL: there is none.
 const char *glint_picture_text(const glint_picture *picture, const char *keyword);
-/// Row `y`, from 0 at the top, as 3 * width sRGB codes of 8 bits, for viewing: grey becomes RGB, 16 bits and linear codes
-/// are rounded, what shows through alpha is a grey of `backdrop`, 0 .. 255. Needs the pixels.
+/// Writes row `y`, from 0 at the top, as 3 * width 8-bit sRGB values for viewing. Grey becomes RGB, 16-bit and linear
+/// values are rounded, and transparent pixels are blended over a grey of `backdrop`, 0 .. 255. Needs the pixels.
 void glint_picture_row(const glint_picture *picture, int y, int backdrop, uint8_t *rgb);
-/// Row `y` as 3 * width numbers of linear light: sRGB codes are decoded, linear ones are shares of the largest code, grey becomes
-/// RGB, alpha is left out. Needs the pixels.
+/// Writes row `y` as 3 * width numbers of linear light. sRGB values are decoded, linear values are divided by the
+/// largest value, grey becomes RGB, alpha is dropped. Needs the pixels.
 void glint_picture_light(const glint_picture *picture, int y, float *rgb);
 
 /// A finished part of a picture.
 typedef struct glint_picture_part {
     const glint_picture *picture; ///< read with its pixels, of a .png with three or four channels
-    int x, y; ///< where its top left pixel is in the whole
+    int x, y; ///< position of its top left pixel in the whole picture
 } glint_picture_part;
 
-/// Writes the picture of width x height pixels that the parts make, as glint_image_write would have written the whole:
-/// `desc` has path (.png), transfer and bits of the tone, encode and text; its pass means nothing. Parts may overlap where they
-/// agree. GLINT_ERR_INVALID names by its number, from 1, a part that lies outside, is of other bits or channels than
-/// the first, or disagrees with one before it, and the first pixel that none has.
+/// Joins parts to a picture of width x height pixels and writes it as glint_image_write would have written the whole.
+/// `desc` gives path (.png), transfer and bits of the tone, encode and text; its pass is ignored. Parts may overlap
+/// if their pixels are equal. GLINT_ERR_INVALID: the message names, by its number from 1, a part that lies outside,
+/// that differs from the first in bits or channels, or that disagrees with an earlier part; or the first pixel that
+/// no part covers.
 glint_status glint_picture_join(const glint_picture_part *parts, size_t count, int width, int height, const glint_write_desc *desc,
                                glint_error *error);
 
 /// One picture of a contact sheet. Strings are borrowed.
 typedef struct glint_sheet_cell {
     const char *path; ///< a .png or .pfm, all of one size
-    const char *label; ///< UTF-8, parts divided by newlines, which share a line where they fit; NULL: none
+    const char *label; ///< UTF-8, parts separated by newlines, which share a line if they fit; NULL: none
 } glint_sheet_cell;
 
 /// A contact sheet. Pointers are borrowed for the call.
@@ -1636,20 +1704,23 @@ typedef struct glint_sheet_desc {
     const glint_sheet_cell *cells; ///< row by row
     size_t cell_count; ///< >= 1
     int columns; ///< >= 1
-    const char *title, *across, *down; ///< of the sheet, of its columns, of its rows; NULL: none
-    size_t difference; ///< the cell, from 1, that each row is compared with in a row below it; 0: no such rows
-    double gain; ///< factor of the differences; > 0
-    double size; ///< of labels, points of dpi / 72 pixels, 0 .. 10000; 0: 13 pixels, below pictures of 900 across and more 26
-    double dpi; ///< pixels an inch where it is printed, 0 .. 1e6; 0: not said, and a point is a pixel
-    bool transparent; ///< the paper is; pictures are as on white
-    /// A colour bar of all pictures, at their right, or below them where it is horizontal; NULL: none. It has its kind's own fields,
-    /// with `length` in points (default: as the pictures together, at most 20 times `size`), and the sheet's text and ink
+    const char *title, *across, *down; ///< titles of the sheet, of its columns, of its rows; NULL: none
+    size_t difference; ///< number of the cell, from 1, that each row is compared with in an extra row below it; 0: no
+        ///< such rows
+    double gain; ///< factor applied to the differences; > 0
+    double size; ///< size of labels, in points of dpi / 72 pixels, 0 .. 10000; 0: 13 pixels, or 26 below pictures at
+        ///< least 900 wide
+    double dpi; ///< pixels per inch for printing, 0 .. 1e6; 0: not set, and a point is a pixel
+    bool transparent; ///< transparent paper; pictures are drawn as on white
+    /// A colour bar for all pictures, to their right, or below them if horizontal; NULL: none. It uses the fields of
+    /// its kind, with `length` in points (default: as long as the pictures together, at most 20 times `size`), and
+    /// the sheet's text size and ink
     const glint_overlay_desc *colorbar;
 } glint_sheet_desc;
 
-/// Draws finished pictures in rows, with labels, as one PNG: dark text on white, pixels of 8 bits. A picture that is
-/// missing or of another size than the first is an error that names it; the file is then as it was.
-/// A row of differences holds |cell - chosen cell| times `gain`, in 8-bit sRGB codes.
+/// Draws finished pictures in rows, with labels, as one 8-bit PNG: dark text on white. If a picture is missing or
+/// differs in size from the first, the error names it and the file is unchanged. A row of differences holds |cell -
+/// chosen cell| times `gain`, in 8-bit sRGB values.
 glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error);
 
 /// An animated PNG being written.
@@ -1660,25 +1731,26 @@ typedef struct glint_apng_desc {
     int width, height; ///< 1 .. GLINT_SIDE_MAX
     int bits; ///< 8 or 16
     bool alpha; ///< frames are RGBA
-    glint_transfer transfer; ///< how the codes of all frames are made
+    glint_transfer transfer; ///< encoding of the pixel values of all frames
     uint32_t frame_count; ///< 1 .. 2^30
-    double fps; ///< 1/65535 .. 65535; a frame stays for the nearest ratio of two 16-bit numbers to 1/fps
+    double fps; ///< frames per second, 1/65535 .. 65535; a frame's duration is the ratio of two 16-bit numbers
+        ///< nearest to 1/fps
     uint32_t plays; ///< 0: for ever
-    glint_encode encode; ///< how frames are deflated
+    glint_encode encode; ///< how frames are compressed
 } glint_apng_desc;
 
-/// Opens a draft for `path` and writes its head.
+/// Opens a draft for `path` and writes the header.
 glint_status glint_apng_create(const char *path, const glint_apng_desc *desc, glint_apng **out, glint_error *error);
-/// Adds a frame, of which only what has changed is stored: RGB or RGBA, of the size, bits and transfer described.
+/// Adds a frame: RGB or RGBA, of the size, bits and transfer described. Only the part that changed is stored.
 glint_status glint_apng_add(glint_apng *apng, const glint_picture *picture, glint_error *error);
-/// Gives the file its name, once frame_count frames were added.
+/// Gives the file its name, after frame_count frames were added.
 glint_status glint_apng_finish(glint_apng *apng, glint_error *error);
-/// Removes what was not finished. NULL does nothing.
+/// Frees the writer; an unfinished file is removed. NULL does nothing.
 void glint_apng_destroy(glint_apng *apng);
 
 // ---- Numbers that are the same on every machine -------------------------------------------------------------------
 
-/// Elementary functions with the same bits on every machine, within 0.51 ulp of the truth (0.76 where the result
+/// Elementary functions with the same bits on every machine, within 0.51 ulp of the exact result (0.76 if the result
 /// is subnormal). Infinite and NaN arguments as in C11 annex F.
 double glint_sin(double radians);
 double glint_cos(double radians);
