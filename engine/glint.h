@@ -403,7 +403,8 @@ typedef enum glint_model {
 /// of B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007).
 typedef enum glint_distribution { GLINT_DISTRIBUTION_GGX, GLINT_DISTRIBUTION_BECKMANN } glint_distribution;
 
-/// The meaning of an opacity between 0 and 1. In every mode a surface of opacity 0 is invisible, and one of opacity 1 opaque.
+/// The meaning of an opacity between 0 and 1. In every mode a surface of opacity 0 is invisible and one of opacity 1
+/// is opaque.
 typedef enum glint_opacity_mode {
     GLINT_OPACITY_AUTO, ///< a number blends, a pattern cuts
     GLINT_OPACITY_CUT, ///< where the opacity is below 0.5 or NaN, the surface is absent for all rays of a frame;

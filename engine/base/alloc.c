@@ -6,13 +6,13 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#ifndef MAP_ANONYMOUS // of POSIX since 2024, and elsewhere by this name
+#ifndef MAP_ANONYMOUS // in POSIX since 2024; older systems have MAP_ANON only
 #define MAP_ANONYMOUS MAP_ANON
 #endif
 
 #define LARGE_PAGE ((size_t)2 << 20)
 
-/// Bytes of count * size, at least one, rounded up to whole units of `alignment`; 0: too many.
+/// Returns the bytes of count * size, at least one, rounded up to a multiple of `alignment`; 0: too many.
 static size_t whole_bytes(size_t count, size_t size, size_t alignment)
 {
     size_t bytes;
@@ -30,7 +30,8 @@ void *glint_alloc(size_t count, size_t size)
     return memory;
 }
 
-/// Advice: refused, the pages are small; so they are beyond the last whole large one.
+/// Asks the system for large pages. The part after the last whole large page stays in small pages, as does all if it
+/// refuses.
 static void want_large_pages(void *memory, size_t bytes)
 {
 #ifdef MADV_HUGEPAGE
@@ -48,11 +49,13 @@ void *glint_alloc_large(size_t count, size_t size)
     const size_t whole = whole_bytes(count, size, LARGE_PAGE);
     void *memory = whole ? aligned_alloc(LARGE_PAGE, whole) : NULL;
     if (memory)
-        want_large_pages(memory, bytes + LARGE_PAGE / 2); // the last one too where that is half full, within `whole`
+        want_large_pages(memory, bytes + LARGE_PAGE / 2); // includes the last page if it is at least half full; stays
+            // within `whole`
     return memory;
 }
 
-#define PAGED_FROM ((size_t)256 << 10) ///< bytes; what the C library has of its heap it keeps
+#define PAGED_FROM ((size_t)256 << 10) ///< bytes from which blocks are mapped, because the C library may not return
+    ///< heap memory to the system
 
 void *glint_scratch_resize(void *memory, size_t from, size_t to)
 {
@@ -83,7 +86,8 @@ void glint_scratch_drop(void *memory, size_t bytes, size_t from, size_t to)
     const long page = sysconf(_SC_PAGESIZE);
     if (bytes < PAGED_FROM || page <= 0)
         return;
-    const size_t first = (from + (size_t)page - 1) / (size_t)page, last = to / (size_t)page; // whole pages within
+    const size_t first = (from + (size_t)page - 1) / (size_t)page, last = to / (size_t)page; // whole pages inside the
+        // range
     if (first < last)
         madvise((char *)memory + first * (size_t)page, (last - first) * (size_t)page, MADV_DONTNEED);
 #else

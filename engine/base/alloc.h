@@ -4,19 +4,24 @@
 
 #include <stddef.h>
 
-/// Zeroed memory, 64-byte aligned, of count * size bytes (at least one), checked for overflow; free() frees it.
+/// Returns zeroed memory, 64-byte aligned, of count * size bytes (at least one), checked for overflow; free() frees
+/// it.
 void *glint_alloc(size_t count, size_t size);
-/// The same but not zeroed, and of large pages where the system has them: for megabytes that are written at once.
+/// Returns the same without zeroing, in large pages where the system has them: for megabytes that are written at
+/// once.
 void *glint_alloc_large(size_t count, size_t size);
 
-/// Memory for short-lived data, not zeroed, aligned for anything of 16 bytes; the system has it back at once where it is much, so
-/// that what is made next does not come on top of it. Changes its size, from 0: there is none yet. NULL: out of memory, and the old block stays.
+/// Resizes a block for short-lived data; from 0: allocates one. The memory is not zeroed and is aligned to 16 bytes.
+/// A large block goes back to the system as soon as it is freed, so that it does not add to the peak of later
+/// allocations. NULL: out of memory, and the old block stays.
 void *glint_scratch_resize(void *memory, size_t from, size_t to);
-/// Gives the system back what lies between two of its bytes, which nothing reads from now on. bytes: as resized to last.
+/// Returns the pages between two bytes of a block to the system; their contents are lost. bytes: size of the block,
+/// as last resized.
 void glint_scratch_drop(void *memory, size_t bytes, size_t from, size_t to);
 void glint_scratch_free(void *memory, size_t bytes);
 
-/// Prefetches memory that is read or written soon into the second-level cache: the first level is full of current data.
+/// Prefetches memory that is read or written soon into the second-level cache, because the first level is full of
+/// current data.
 static inline void glint_prefetch(const void *memory, size_t bytes)
 {
     for (size_t i = 0; i < bytes; i += 64)

@@ -1,4 +1,5 @@
-/// Dual numbers: a value, and how fast it changes with a parameter. Internal; as engine/base/vec.h.
+/// Dual numbers: a value and its derivative with respect to a parameter. Internal; conventions as in
+/// engine/base/vec.h.
 #ifndef GLINT_BASE_DUAL_H
 #define GLINT_BASE_DUAL_H
 
@@ -44,7 +45,7 @@ static inline glint_dual dual_exp2(glint_dual a)
     return dual(power, power * (0x1.62e42fefa39efp-1 * a.slope));
 }
 
-/// Unit vector of one that is not zero.
+/// Normalises a vector that is not zero.
 static inline void dual_normalize(glint_dual v[3])
 {
     const glint_dual length =

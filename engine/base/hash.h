@@ -1,4 +1,4 @@
-/// Keys: XXH3-128 over exactly the bytes something reads. Internal.
+/// Keys: XXH3-128 over exactly the bytes that something depends on. Internal.
 #ifndef GLINT_BASE_HASH_H
 #define GLINT_BASE_HASH_H
 
@@ -15,7 +15,8 @@ glint_key glint_key_add(glint_key key, const void *bytes, size_t size);
 glint_key glint_key_add_string(glint_key key, const char *string);
 void glint_key_hex(glint_key key, char hex[33]);
 
-/// Continues `key` with another, in a few instructions: of keys that are hashes already. For one `key` no two parts give the same.
+/// Combines two keys in a few instructions. Both must be hashes already. For a given `key`, different parts give
+/// different results.
 static inline glint_key glint_key_mix(glint_key key, glint_key part)
 {
     const uint64_t low = (key.low ^ part.low) * UINT64_C(0x9e3779b97f4a7c15);

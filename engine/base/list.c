@@ -9,7 +9,7 @@ static size_t hash_pointer(const void *object)
     return (size_t)(((uintptr_t)object >> 4) * UINT64_C(0x9e3779b97f4a7c15) >> 32);
 }
 
-/// The slot that holds `object`, or the free one where it would go.
+/// Returns the slot that holds `object`, or the free slot where it would go.
 static size_t find_slot(const glint_list *list, const void *object)
 {
     size_t slot = hash_pointer(object) & (list->slot_count - 1);
@@ -25,7 +25,7 @@ static void fill_slots(glint_list *list)
         list->slots[find_slot(list, list->items[i])] = (uint32_t)(i + 1);
 }
 
-/// Makes room for one more.
+/// Makes space for one more item.
 static glint_status grow(glint_list *list, glint_error *error)
 {
     if (list->count < list->capacity)

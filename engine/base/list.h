@@ -1,4 +1,4 @@
-/// A list of pointers that also knows where each one stands. Internal.
+/// A list of pointers with a hash table of their positions. Internal.
 #ifndef GLINT_BASE_LIST_H
 #define GLINT_BASE_LIST_H
 
@@ -12,7 +12,7 @@ typedef struct glint_list {
     size_t slot_count; ///< a power of two, at least twice `capacity`
 } glint_list;
 
-/// Index of `object`, or list->count when it is not there.
+/// Returns the index of `object`, or list->count if it is not in the list.
 size_t glint_list_find(const glint_list *list, const void *object);
 /// Appends an object that is not there yet.
 glint_status glint_list_add(glint_list *list, void *object, glint_error *error);

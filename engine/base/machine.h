@@ -1,4 +1,4 @@
-/// Requirements of the engine that no instruction set can replace, checked at compile time.
+/// Requirements on the machine for all instruction sets, checked at compile time.
 #ifndef GLINT_BASE_MACHINE_H
 #define GLINT_BASE_MACHINE_H
 

@@ -1,4 +1,4 @@
-/// Programs that the engine itself makes: a builder and its first error, after which calls do nothing. Internal.
+/// Makes programs inside the engine: a builder and its first error. After an error, calls do nothing. Internal.
 #ifndef GLINT_MAKER_H
 #define GLINT_MAKER_H
 
@@ -26,7 +26,7 @@ static inline glint_value glint_maker_number(glint_maker *m, double number)
     return out;
 }
 
-/// Applies an operation to three values, or to fewer: the others are not read.
+/// Applies an operation to up to three values; operands beyond its number are ignored.
 static inline glint_value glint_maker_apply3(glint_maker *m, glint_op op, glint_value a, glint_value b, glint_value c)
 {
     const glint_value operands[] = { a, b, c };
@@ -42,8 +42,9 @@ static inline glint_value glint_maker_apply(glint_maker *m, glint_op op, glint_v
     return glint_maker_apply3(m, op, a, b, 0);
 }
 
-/// Applies an operation to a value and a number. A builder numbers values in the order in which they are made, and C does not define
-/// the order of arguments. The number is made here, after the value, so that every compiler makes the same program.
+/// Applies an operation to a value and a number. A builder numbers values in the order in which they are made, and C
+/// does not define the order of arguments. The number is made here, after the value, so that every compiler makes the
+/// same program.
 static inline glint_value glint_maker_with(glint_maker *m, glint_op op, glint_value a, double number)
 {
     const glint_value b = glint_maker_number(m, number);

@@ -1,8 +1,8 @@
-/// Elementary functions made of + - * / sqrt and integer operations in one written order: the same bits everywhere.
+/// Elementary functions made of + - * / sqrt and integer operations in a fixed order: the same bits on every machine.
 ///
-/// Each result is formed as an unevaluated sum of two doubles (`sum2`) with a relative error below 2^-60 and rounded
-/// once, so that it is within 0.51 ulp of the truth (subnormal results are rounded twice: 0.76 ulp).
-/// Special cases follow C99, annex F.
+/// Each result is an unevaluated sum of two doubles (`sum2`) with a relative error below 2^-60, rounded once. It is
+/// within 0.51 ulp of the exact result (subnormal results are rounded twice: 0.76 ulp). Special cases follow C99,
+/// annex F.
 #include "engine/base/math.h"
 
 #include "engine/base/math_tables.h"
@@ -24,7 +24,7 @@ static uint64_t bits_of(double x)
     return bits;
 }
 
-/// x 2^e for 2^e that is a normal number.
+/// Returns x 2^e; 2^e must be a normal number.
 static double times_power(double x, int e)
 {
     uint64_t bits = (uint64_t)(e + 1023) << 52;
@@ -67,7 +67,7 @@ static sum2 mul2(sum2 a, sum2 b)
 
 // ---- Angles -------------------------------------------------------------------------------------------------------
 
-/// The 192 bits of 2/pi from binary digit `start` (may be negative, >= -64), most significant word first.
+/// Reads 192 bits of 2/pi from binary digit `start` (>= -64, may be negative), most significant word first.
 static void digits_of_two_over_pi(int start, uint64_t window[3])
 {
     unsigned at = (unsigned)(start + 64), word = at / 64, shift = at % 64;
@@ -77,7 +77,7 @@ static void digits_of_two_over_pi(int start, uint64_t window[3])
     }
 }
 
-/// m * window mod 2^192.
+/// Computes m * window mod 2^192.
 static void multiply_window(uint64_t m, uint64_t w[3])
 {
     __extension__ typedef unsigned __int128 uint128;
@@ -88,7 +88,7 @@ static void multiply_window(uint64_t m, uint64_t w[3])
     w[2] = (uint64_t)low;
 }
 
-/// The fraction 0.w (192 bits, not zero, w[0] < 2^63) times 4 as a sum.
+/// Returns the fraction 0.w (192 bits, not zero, w[0] < 2^63) times 4 as a sum.
 static sum2 fraction_to_sum(const uint64_t w[3])
 {
     uint64_t a = w[0], b = w[1], c = w[2];
@@ -107,7 +107,8 @@ static sum2 fraction_to_sum(const uint64_t w[3])
     return fast_two_sum(times_power(high, 2 - 53 - down - shift), times_power(low, 2 - 117 - down - shift));
 }
 
-/// x = quadrant * pi/2 + r, |r| <= pi/4. x finite. Payne and Hanek's method with integers: x 2/pi mod 4 to 2^-137.
+/// Reduces a finite x to quadrant * pi/2 + r, |r| <= pi/4. Payne and Hanek's method with integers: x 2/pi mod 4 to
+/// 2^-137.
 static sum2 reduce_angle(double x, unsigned *quadrant)
 {
     if (fabs(x) <= HALF_PI_HIGH / 2) {
@@ -135,7 +136,7 @@ static sum2 reduce_angle(double x, unsigned *quadrant)
     return r;
 }
 
-/// sin r for |r| <= pi/4: r - r^3/6 as sums, the rest of the series (to r^19) in double.
+/// Returns sin r for |r| <= pi/4: r - r^3/6 as sums, the rest of the series (to r^19) in double.
 static sum2 sine_series(sum2 r)
 {
     if (fabs(r.high) < 0x1p-54)
@@ -154,7 +155,7 @@ static sum2 sine_series(sum2 r)
     return add2(r, add2(third, (sum2) { cube.high * x * p, 0 }));
 }
 
-/// cos r for |r| <= pi/4: 1 - r^2/2 + r^4/24 as sums, the rest (to r^20) in double.
+/// Returns cos r for |r| <= pi/4: 1 - r^2/2 + r^4/24 as sums, the rest (to r^20) in double.
 static sum2 cosine_series(sum2 r)
 {
     if (fabs(r.high) < 0x1p-54)
@@ -224,7 +225,8 @@ double glint_tan_half(double angle_rad) { return angle_rad == HALF_PI_HIGH ? 1.0
 
 // ---- Exponential and logarithm ------------------------------------------------------------------------------------
 
-/// e^x, rounded; |x| <= 800 or so. x = k ln2/64 + r, |r| <= 0.0055; 2^(k/64) from the table, e^r by its series.
+/// Returns e^x, rounded; |x| <= about 800. x = k ln2/64 + r, |r| <= 0.0055; 2^(k/64) from the table, e^r by its
+/// series.
 static double exp_of_sum(sum2 x)
 {
     double k = floor(x.high * 0x1.71547652b82fep+6 + 0.5);
@@ -250,7 +252,8 @@ static double exp_of_sum(sum2 x)
     return times_power(y.high, e);
 }
 
-/// log x as a sum, relative error below 2^-74; x finite, > 0. x = 2^e m; c near 1/m from the table; m c = 1 + f.
+/// Returns log x as a sum, relative error below 2^-74; x finite, > 0. x = 2^e m; c near 1/m from the table; m c = 1 +
+/// f.
 static sum2 log_to_sum(double x)
 {
     int e = 0;
@@ -317,7 +320,7 @@ double glint_log(double x)
 
 // ---- Power --------------------------------------------------------------------------------------------------------
 
-/// 0: y is not an integer, 1: odd, 2: even.
+/// Returns 0: y is not an integer; 1: odd; 2: even.
 static int integer_kind(double y)
 {
     double size = fabs(y);
@@ -328,7 +331,7 @@ static int integer_kind(double y)
     return (uint64_t)size & 1 ? 1 : 2;
 }
 
-/// x is 0, or x or y is infinite; neither is NaN; x is not 1 and y not 0.
+/// Returns x^y if x is 0 or if x or y is infinite. Neither is NaN, x is not 1 and y is not 0.
 static double power_of_special(double x, double y)
 {
     if (isinf(y)) {

@@ -4,7 +4,7 @@
 
 double glint_read_double(const char *text, char **end, locale_t c)
 {
-#if (defined(__linux__) && !defined(GLINT_PORTABLE)) || defined(__NetBSD__) // which has no uselocale
+#if (defined(__linux__) && !defined(GLINT_PORTABLE)) || defined(__NetBSD__) // NetBSD has no uselocale
     return strtod_l(text, end, c);
 #else
     const locale_t before = uselocale(c);

@@ -1,4 +1,4 @@
-/// Numbers of text, with decimal points whatever locale a script has set.
+/// Reads numbers from text with a decimal point, whatever locale the process uses.
 #ifndef GLINT_BASE_NUMBER_H
 #define GLINT_BASE_NUMBER_H
 
@@ -7,7 +7,8 @@
 #include <xlocale.h> // locale_t is there
 #endif
 
-/// strtod in the locale `c`, which is that of newlocale(LC_ALL_MASK, "C", 0). The thread's locale is the same afterwards.
+/// Calls strtod in the locale `c`, made by newlocale(LC_ALL_MASK, "C", 0). The thread's locale is unchanged
+/// afterwards.
 double glint_read_double(const char *text, char **end, locale_t c);
 
 #endif

@@ -24,7 +24,7 @@ glint_status glint_file_fail(glint_error *error, const char *path, int code)
                                                            : GLINT_ERR_IO;
     char text[128];
 #if defined(__GLIBC__) && defined(_GNU_SOURCE)
-    const char *reason = strerror_r(code, text, sizeof text); // perhaps not in `text`
+    const char *reason = strerror_r(code, text, sizeof text); // the GNU version may return a text outside `text`
 #else
     const char *reason = strerror_r(code, text, sizeof text) == 0 ? text : "unknown error";
 #endif
@@ -32,7 +32,7 @@ glint_status glint_file_fail(glint_error *error, const char *path, int code)
     return glint_fail(error, status, "%s%s: %s", dots, end, reason);
 }
 
-/// Returns 0, or the status of something that is not a file.
+/// Returns GLINT_OK for a regular file, otherwise an error.
 static glint_status check_kind(const char *path, mode_t mode, glint_error *error)
 {
     const char *dots, *end = shown(path, &dots);
@@ -51,7 +51,8 @@ glint_status glint_open_file(const char *path, int *file, uint64_t *size, glint_
     struct stat info;
     int opened;
     do
-        opened = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK); // which waits for no writer of a pipe
+        opened = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK); // O_NONBLOCK: does not wait for a pipe's
+            // writer
     while (opened < 0 && errno == EINTR);
     if (opened < 0)
         return glint_file_fail(error, path, errno);

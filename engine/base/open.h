@@ -7,8 +7,8 @@
 /// Fills `error` with "<path>: <reason>" for an errno, and returns its status: GLINT_ERR_NO_SPACE, _NOMEM or _IO.
 glint_status glint_file_fail(glint_error *error, const char *path, int code);
 
-/// Opens a file for reading; *file is the caller's to close, *size its bytes. A device, a pipe or a folder may have no end,
-/// or keep its reader waiting: it is GLINT_ERR_IO at once.
+/// Opens a file for reading; the caller closes *file. *size is its size in bytes. A device, pipe or folder gives
+/// GLINT_ERR_IO at once, because it may have no end or block its reader.
 glint_status glint_open_file(const char *path, int *file, uint64_t *size, glint_error *error);
 
 #endif

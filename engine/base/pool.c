@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-// The stack of a worker: eight times the measured use of tiles. System defaults range from 128 KiB (musl), which is too little, to
-// 8 MiB, of which some hundred workers fill the addresses that a process may have.
+// The stack of a worker: eight times the measured use of tiles. The default of musl, 128 KiB, is too small. With a
+// default of 8 MiB, some hundred workers use up the address space that a process may have.
 #define STACK_BYTES ((size_t)1 << 20)
 
 struct worker {
@@ -23,14 +23,15 @@ struct glint_pool {
     pthread_mutex_t mutex; ///< protects all fields below; the job does not change while workers are busy
     pthread_cond_t work, done;
     unsigned long round; ///< counts the calls of glint_pool_run
-    int busy; ///< threads that work on this round's items: who comes when none is left is not waited for
+    int busy; ///< threads working on this round's items; glint_pool_run does not wait for threads that find no items
+        ///< left
     bool stop;
     size_t count;
     glint_pool_item *item;
     void *context;
     atomic_size_t next;
-    int threads; ///< with the caller's
-    struct worker workers[]; ///< of all but that
+    int threads; ///< including the caller's
+    struct worker workers[]; ///< all threads except the caller's
 };
 
 static void run_items(glint_pool *pool, int number)
@@ -53,7 +54,7 @@ static void *work(void *argument)
             break;
         seen = pool->round;
         if (atomic_load(&pool->next) >= pool->count)
-            continue; // late: the round is over, or its last items run
+            continue; // too late: all items of the round are taken
         pool->busy++;
         pthread_mutex_unlock(&pool->mutex);
         run_items(pool, self->number);
@@ -65,7 +66,7 @@ static void *work(void *argument)
     return NULL;
 }
 
-/// Starts workers with every signal blocked: signals are the main thread's.
+/// Starts workers with all signals blocked, so that the main thread handles signals.
 static int start_workers(glint_pool *pool, int threads)
 {
     sigset_t all, old;

@@ -81,7 +81,7 @@ void glint_sequence_point(uint32_t k, int bits, double seed, double out[2])
             second ^= v;
     out[0] = (reverse(k, bits) + 0.5) / cells;
     out[1] = ((bits ? second >> (32 - bits) : 0) + 0.5) / cells;
-    if (seed > 0) { // golden-ratio steps: neighbouring seeds fall far apart
+    if (seed > 0) { // golden-ratio steps: shifts of neighbouring seeds are far apart
         out[0] += fmod(seed * 0x1.3c6ef372fe95p-1, 1);
         out[1] += fmod(seed * 0x1.83b2b3de7cfacp-1, 1);
         out[0] -= floor(out[0]);

@@ -1,4 +1,4 @@
-/// Filling a glint_error. Internal.
+/// Fills a glint_error. Internal.
 #ifndef GLINT_BASE_STATUS_H
 #define GLINT_BASE_STATUS_H
 
@@ -8,17 +8,17 @@
 glint_status glint_fail(glint_error *error, glint_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/// Ends the function with GLINT_ERR_INVALID where a pointer that the caller must give is NULL.
+/// Makes the function return GLINT_ERR_INVALID if a required pointer is NULL.
 #define GLINT_REFUSE_NULL(argument, error) \
     do { \
         if (!(argument)) \
             return glint_fail(error, GLINT_ERR_INVALID, #argument ": pointer expected, got NULL"); \
     } while (0)
 
-/// "out of memory" with GLINT_ERR_NOMEM.
+/// Fails with "out of memory" and GLINT_ERR_NOMEM.
 glint_status glint_fail_nomem(glint_error *error);
 
-/// Checks of one field; on failure the message reads "<name>: <what is allowed> expected, got <value>".
+/// Check one field; on failure the message reads "<name>: <what is allowed> expected, got <value>".
 glint_status glint_check_range(const char *name, double value, double min, double max, const char *allowed,
                                glint_error *error);
 glint_status glint_check_whole(const char *name, double value, double min, double max, glint_error *error);

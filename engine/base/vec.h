@@ -1,4 +1,4 @@
-/// Three doubles. Internal; the arithmetic has one written order, like the stages.
+/// Vectors of three doubles. Internal; arithmetic has a fixed order, as in the stages.
 #ifndef GLINT_BASE_VEC_H
 #define GLINT_BASE_VEC_H
 
@@ -30,7 +30,7 @@ static inline void vec_cross(double out[3], const double a[3], const double b[3]
 
 static inline double vec_max_abs(const double v[3]) { return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))); }
 
-/// The power of two that brings x > 0 into [1, 2); kept within the normal numbers.
+/// Returns the power of two that scales x > 0 into [1, 2), limited to normal numbers.
 static inline double power_of_two_scale(double x)
 {
     int exponent;
@@ -39,7 +39,7 @@ static inline double power_of_two_scale(double x)
     return ldexp(1, exponent < -1022 ? -1022 : exponent > 1022 ? 1022 : exponent);
 }
 
-/// Scales by a power of two so that the largest component is in [1, 2): nothing overflows or is lost in a square.
+/// Scales by a power of two so that the largest component is in [1, 2), and squares neither overflow nor underflow.
 /// Returns the factor.
 static inline double vec_rescale(double out[3], const double v[3])
 {
@@ -48,11 +48,11 @@ static inline double vec_rescale(double out[3], const double v[3])
     return scale;
 }
 
-/// Unit vector of a finite vector that is not zero.
+/// Normalises a finite vector that is not zero.
 static inline void vec_normalize(double out[3], const double v[3])
 {
     const double largest = vec_max_abs(v);
-    if (largest > 0x1p-400 && largest < 0x1p400) { // where squares neither overflow nor lose what counts
+    if (largest > 0x1p-400 && largest < 0x1p400) { // squares neither overflow nor underflow
         vec_copy(out, v);
     } else {
         vec_rescale(out, v);

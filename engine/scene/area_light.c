@@ -8,14 +8,14 @@
 
 #define PI 0x1.921fb54442d18p+1
 #define GOLDEN 0x1.3c6ef372fe95p-1 // (sqrt(5) - 1) / 2
-#define PLANAR 1e-6 // corners may be out of the plane, or inwards, by so much of the polygon's size
-#define TURNS_SAMPLES 4096 // samples beyond which pixels' samples share their patterns
+#define PLANAR 1e-6 // tolerance for corners outside the plane or inside an edge, as a fraction of the polygon's size
+#define TURNS_SAMPLES 4096 // most light samples over all turns; beyond it, samples of a pixel share patterns
 
 typedef const double (*corners)[3];
 
 // ---- Polygons ----
 
-/// Twice the area along the normal: the sum of the fan's cross products.
+/// Computes the normal with twice the area as its length: the sum of the fan's cross products.
 static void area_vector(const glint_light_desc *desc, double out[3])
 {
     out[0] = out[1] = out[2] = 0;
@@ -35,7 +35,7 @@ void glint_light_sample_polygon_normal(const glint_light_desc *desc, double norm
     vec_normalize(normal, normal);
 }
 
-/// The largest distance of a corner from the first, by components.
+/// Returns the largest distance of a corner from the first one, by components.
 static double polygon_size(const glint_light_desc *desc)
 {
     double size = 0;
@@ -47,7 +47,7 @@ static double polygon_size(const glint_light_desc *desc)
     return size;
 }
 
-/// Every corner lies in the plane and on the inner side of the edge from corner i.
+/// Checks that every corner lies in the plane and on the inner side of the edge from corner i.
 static glint_status check_edge(const glint_light_desc *desc, size_t i, const double normal[3], double size,
                                glint_error *error)
 {
@@ -130,7 +130,7 @@ double glint_light_sample_size(const glint_light_desc *desc)
 
 // ---- From the unit square to the surface ----
 
-/// Constants of a light for the maps, besides its description.
+/// Constants of a light for the mappings, besides its description.
 typedef struct surface {
     const glint_light_desc *desc;
     double normal[3], right[3], up[3]; ///< disk, polygon: unit
@@ -138,7 +138,7 @@ typedef struct surface {
     bool parallelogram;
 } surface;
 
-/// Two unit vectors across the normal; with zeros where the normal is an axis.
+/// Computes two unit vectors perpendicular to the normal; if the normal is an axis, they have zeros.
 static void find_frame(surface *s)
 {
     double axis[3] = { 0, 0, 0 };
@@ -169,7 +169,7 @@ static void surface_init(surface *s, const glint_light_desc *desc)
     }
 }
 
-/// Rings of equal area, Archimedes' way.
+/// Maps the square to a sphere with equal areas, by Archimedes' theorem.
 static void sphere_point(const surface *s, double u, double v, double position[3], double normal[3])
 {
     const double ring = 2 * sqrt(u * (1 - u)), angle = 2 * PI * v;
@@ -194,7 +194,7 @@ static void on_triangle(const double a[3], const double b[3], const double c[3],
         out[k] = a[k] + (x * (b[k] - a[k]) + y * (c[k] - a[k]));
 }
 
-/// The triangles of the fan share u by their areas.
+/// Maps the square to the fan's triangles, which divide u by their areas.
 static void polygon_point(const surface *s, double u, double v, double position[3])
 {
     corners corner = s->desc->vertices;
@@ -241,7 +241,8 @@ uint32_t glint_light_sample_turns(const glint_light_desc *desc, double pixel_sam
     return turns;
 }
 
-/// The blocks of a sequence's points belong to 2 x 2 pixels first, so that these have an even set as well.
+/// Returns a pixel's position in the sequence: each 2 x 2 pixels are consecutive, so that they also have an even set
+/// of points.
 static uint32_t lane_order(uint32_t lane)
 {
     const uint32_t x = lane & 3, y = lane >> 2;
@@ -258,7 +259,8 @@ static uint32_t emission_of(const glint_light_desc *desc)
     return flat ? GLINT_EMIT_RADIANT_BOTH : GLINT_EMIT_CONE;
 }
 
-/// Box and ball around all samples: of a cone's, which lie where the points see them, around the light.
+/// Computes the box and ball around all samples. Samples in a cone depend on the shaded point; box and ball then
+/// enclose the light.
 static void enclose(const glint_light_desc *desc, glint_light_sample *light_samples, size_t count)
 {
     double lower[3] = { DBL_MAX, DBL_MAX, DBL_MAX }, upper[3] = { -DBL_MAX, -DBL_MAX, -DBL_MAX };
@@ -300,8 +302,8 @@ void glint_light_sample_whole(const glint_light_desc *desc, glint_light_sample *
     }
 }
 
-/// Sample i of N in the unit square. In a cone pairs stand on either side of the axis, their shares mirrored in the middle
-/// of their stratum: what changes evenly across the cone, as cosines do, is summed without an error.
+/// Computes sample i of N in the unit square. In a cone, samples form pairs on opposite sides of the axis, mirrored
+/// within their stratum. Quantities that vary linearly across the cone, as cosines do, are then summed without error.
 static void square_point(uint32_t i, uint32_t samples, bool cone, const double shift[2], double square[2])
 {
     const bool paired = cone && samples % 2 == 0;

@@ -37,7 +37,7 @@ static glint_status check_view(const glint_camera_desc *desc, glint_error *error
     return status;
 }
 
-/// fx .. h.
+/// Checks fx, fy, w and h.
 static glint_status check_pixels(const glint_camera_desc *desc, glint_error *error)
 {
     const double numbers[] = { desc->fx, desc->fy, desc->w, desc->h };

@@ -52,7 +52,7 @@ static bool is_given(const glint_object_field *f, const void *desc)
 
 static glint_status check(const glint_object_field *f, const char *desc, glint_error *error);
 
-/// Checks the parts of a table; messages have "table.part".
+/// Checks the parts of a table; messages name "table.part".
 static glint_status check_parts(const glint_object_field *table, const char *desc, glint_error *error)
 {
     glint_status status = GLINT_OK;

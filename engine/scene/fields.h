@@ -1,4 +1,4 @@
-/// Defaults and checks from the tables of fields. Internal.
+/// Applies defaults and checks from the tables of fields. Internal.
 #ifndef GLINT_FIELDS_H
 #define GLINT_FIELDS_H
 
@@ -6,14 +6,15 @@
 
 #include <float.h>
 
-/// The tables, one an object; each stands in the object's file.
+/// The tables of fields, one per object, each defined in the object's file.
 extern const glint_object_field glint_material_fields[];
 extern const glint_object_field glint_scene_fields[];
 extern const glint_object_field *const glint_light_fields[]; ///< of each glint_light_kind
 
-/// Where rows of a table begin, for a description of the type DESC, which the file defines: a field and its type, GLINT_TYPE_...
+/// The first members of a table row: a field of the type DESC, which the file defines, and the last part of its
+/// GLINT_TYPE_ name.
 #define GLINT_ROW(field, kind) GLINT_NAMED(#field, field, kind)
-/// The same of a field that scripts call otherwise.
+/// The same for a field that has another name in scripts.
 #define GLINT_NAMED(script, field, kind) .name = script, .member = #field, .type = GLINT_TYPE_##kind, .offset = offsetof(DESC, field)
 #define GLINT_AT_LEAST_0 .low = 0, .high = DBL_MAX, .expected = "number >= 0"
 #define GLINT_ABOVE_0 .low = 4.9406564584124654e-324, .high = DBL_MAX, .expected = "number > 0"
@@ -24,7 +25,7 @@ void glint_fields_reset(const glint_object_field *fields, void *desc);
 /// Checks the fields that are set, in the order of the table; the message names the first that is wrong. The caller checks numbers
 /// and angles without `expected`, and types other than numbers, vectors, colours and choices.
 glint_status glint_fields_check(const glint_object_field *fields, const void *desc, glint_error *error);
-/// How many numbers a field has: 3, 1 or 0.
+/// Returns how many numbers a field has: 3, 1 or 0.
 int glint_field_numbers(const glint_object_field *field);
 
 #endif

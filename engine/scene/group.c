@@ -1,11 +1,11 @@
-/// Groups, shapes that share a transform, and combined solids. Each may be in several others, and so may its members.
+/// Groups (shapes with a common transform) and combined solids. They and their members may be in several others.
 #include "engine/base/hash.h"
 #include "engine/base/status.h"
 #include "engine/scene/objects.h"
 
 #include <string.h>
 
-/// Whether anything would be within more groups than allowed, were `shape` within `level`.
+/// Returns whether any shape would be nested deeper than allowed if `shape` were at `level`.
 static bool too_deep(glint_shape *shape, size_t level, uint64_t stamp)
 {
     if (level > GLINT_GROUP_DEPTH)
@@ -20,7 +20,7 @@ static bool too_deep(glint_shape *shape, size_t level, uint64_t stamp)
     return false;
 }
 
-/// A shape is `level` groups deep from now on, or deeper.
+/// Records that a shape is at least `level` groups deep.
 static void sink(glint_shape *shape, size_t level)
 {
     if (shape->level >= level)
@@ -30,7 +30,7 @@ static void sink(glint_shape *shape, size_t level)
         sink(shape->children.items[i], level + 1);
 }
 
-/// `stamp` marks what has been looked at.
+/// Returns whether `wanted` is inside a shape. `stamp` marks the shapes already visited.
 static bool holds(glint_shape *shape, const glint_shape *wanted, uint64_t stamp)
 {
     if (shape == wanted)
@@ -44,7 +44,7 @@ static bool holds(glint_shape *shape, const glint_shape *wanted, uint64_t stamp)
     return false;
 }
 
-/// Finds out of every mesh within whether it is closed.
+/// Determines for each mesh in a part whether it is closed.
 static glint_status find_closures(const glint_shape *part, glint_error *error)
 {
     glint_status status = part->mesh ? glint_mesh_find_closure(part->mesh, error) : GLINT_OK;
@@ -79,7 +79,7 @@ static const char *refusal_of(const glint_shape *part, const glint_shape **found
     return NULL;
 }
 
-/// Names the edge where a mesh is open.
+/// Fails with a message that names the open edge of a mesh.
 static glint_status fail_open(const char *who, const glint_shape *shape, glint_error *error)
 {
     const glint_closure *open = &shape->mesh->closure;

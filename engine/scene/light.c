@@ -150,7 +150,8 @@ static glint_status check_area(const glint_light_desc *desc, glint_error *error)
             glint_fail(error, GLINT_ERR_INVALID,
                        "attenuation: {1, 0, 0} expected beside a radiance and shadow = caps, got {%.9g, %.9g, %.9g}",
                        a[0], a[1], a[2]);
-    if (!status && desc->kind != GLINT_LIGHT_POLYGON && desc->has_radiance && desc->radius > 0) // which is squared
+    if (!status && desc->kind != GLINT_LIGHT_POLYGON && desc->has_radiance && desc->radius > 0) // the radius is
+        // squared
         status = glint_check_range("radius", desc->radius, 1e-150, 1e150,
                                    "0 or a number 1e-150 .. 1e150 beside a radiance", error);
     if (!status && desc->kind == GLINT_LIGHT_POLYGON)
@@ -173,7 +174,7 @@ static glint_status check(const glint_light_desc *desc, glint_error *error)
 
 // ---- The object ----
 
-/// Takes a checked description over, with a copy of the corners. On error the light is as it was.
+/// Takes over a checked description, with a copy of the corners. On error the light is unchanged.
 static glint_status take(glint_light *light, const glint_light_desc *desc, glint_error *error)
 {
     double(*vertices)[3] = NULL;

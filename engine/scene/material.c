@@ -120,13 +120,14 @@ bool glint_pattern_numbers(const glint_program *program, double most, double out
     return good;
 }
 
-/// Returns whether a number means the same as a pattern of that number. An opacity does not: by default patterns cut and numbers blend.
+/// Returns whether a number means the same as a pattern of that number. For an opacity it does not: by default,
+/// patterns cut and numbers blend.
 static bool means_the_same(const glint_object_field *field, const double *value)
 {
     return field->offset != offsetof(DESC, opacity) || value[0] == 0 || value[0] == 1;
 }
 
-/// Puts the numbers of a pattern that is the same everywhere into its field. A constant height is not a bump.
+/// Replaces a pattern that is constant by its numbers. A constant height is not a bump.
 static void fold_program(const glint_object_field *field, glint_material_desc *desc)
 {
     double value[GLINT_PROGRAM_OUTPUTS_MAX];
@@ -151,7 +152,7 @@ static void drop_signs_of_zeros(glint_material_desc *desc)
             ((double *)(void *)((char *)desc + f->offset))[i] += 0.0;
 }
 
-/// Checks a description, and puts numbers in the place of programs that are the same everywhere.
+/// Checks a description and replaces constant programs by their numbers.
 static glint_status take(const glint_material_desc *desc, glint_material_desc *out, glint_error *error)
 {
     *out = *desc;
@@ -166,7 +167,7 @@ static glint_status take(const glint_material_desc *desc, glint_material_desc *o
     }
     drop_signs_of_zeros(out);
     const glint_status status = glint_fields_check(glint_material_fields, out, error);
-    return status ? status : glint_check_color("specular", out->specular, error); // which counts unset, too
+    return status ? status : glint_check_color("specular", out->specular, error); // it is used even if unset
 }
 
 glint_status glint_material_create(const glint_material_desc *desc, glint_material **out, glint_error *error)

@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-#define MOST ((size_t)INT32_MAX - 1) ///< vertices, faces, triangles, normals, pairs of coordinates
+#define MOST ((size_t)INT32_MAX - 1) ///< most vertices, faces, triangles, normals and texture coordinates
 
 glint_mesh_desc glint_mesh_desc_default(void)
 {
@@ -41,12 +41,12 @@ glint_status glint_check_shading(glint_shading shading, glint_error *error)
 typedef struct builder {
     const glint_mesh_desc *desc;
     glint_mesh *mesh;
-    size_t room; ///< triangles
+    size_t room; ///< capacity, in triangles
     glint_polygon face;
     size_t number; ///< of the face, from 1
     glint_ears ears;
-    uint32_t *index; ///< of each triangle, a material; NULL: they have one
-    glint_mesh_faults *faults; ///< NULL: they are errors
+    uint32_t *index; ///< material of each triangle; NULL: all have the same
+    glint_mesh_faults *faults; ///< NULL: faults are errors
     glint_error *error;
 } builder;
 
@@ -57,7 +57,7 @@ static const double *vertex(const builder *b, uint32_t place)
 
 static bool is_zero(const double v[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
-/// Another size for an array that is there. Returns false, with the array as it was, when memory is out.
+/// Resizes an array unless it is NULL. Returns false and leaves the array unchanged if memory is out.
 static bool resize(void **array, size_t bytes)
 {
     void *made = *array ? realloc(*array, bytes) : NULL;
@@ -67,7 +67,7 @@ static bool resize(void **array, size_t bytes)
     return true;
 }
 
-/// Makes room for as many triangles again.
+/// Doubles the capacity for triangles.
 static bool grow(builder *b)
 {
     glint_mesh *mesh = b->mesh;
@@ -87,13 +87,13 @@ static bool grow(builder *b)
     return good;
 }
 
-/// Returns an index of a corner, or the index that stands for `none`: it comes after the others.
+/// Returns the index of a corner; `none` becomes the index after the last one.
 static uint32_t number_or(uint32_t number, uint32_t none, size_t count)
 {
     return number == none ? (uint32_t)count : number;
 }
 
-/// The number of the material of the face at hand.
+/// Returns the index of the current face's material.
 static uint32_t material_of(const builder *b)
 {
     return b->desc->material_index ? b->desc->material_index[b->number - 1] : 0;
@@ -145,7 +145,7 @@ static void polygon_normal(builder *b)
     }
 }
 
-/// A fan from the first corner stays within the polygon where no triangle of it is turned over.
+/// Returns whether the fan from the first corner stays within the polygon: no triangle of it is flipped.
 static bool fan_fits(const builder *b)
 {
     double cross[3];
@@ -169,7 +169,7 @@ static glint_status cut_fan(builder *b, size_t first_corner)
     return status;
 }
 
-/// Cuts a polygon ear by ear. One that crosses itself is an error, or a fan.
+/// Cuts a polygon ear by ear. A polygon that crosses itself is an error, or is cut as a fan.
 static glint_status cut_ears(builder *b, size_t first_corner)
 {
     bool whole;
@@ -296,7 +296,7 @@ static glint_status copy_vertices(const glint_mesh_desc *desc, glint_mesh *mesh,
         return glint_fail_nomem(error);
     for (size_t i = 0; i < desc->vertex_count; i++)
         for (int c = 0; c < 3; c++)
-            mesh->vertices[i][c] = desc->vertices[3 * i + (size_t)c] + 0.0; // -0 and 0 are one place
+            mesh->vertices[i][c] = desc->vertices[3 * i + (size_t)c] + 0.0; // -0 and 0 are the same position
     for (size_t i = 0; desc->normals && i < desc->normal_count; i++)
         vec_normalize(mesh->normals[i], desc->normals + 3 * i);
     if (desc->normals)
@@ -321,7 +321,7 @@ static bool has_polygons(const glint_mesh_desc *desc)
     return false;
 }
 
-/// Room for a triangle a face.
+/// Allocates space for one triangle per face.
 static glint_status allocate(builder *b)
 {
     glint_mesh *mesh = b->mesh;

@@ -1,5 +1,6 @@
-/// Whether a mesh has an inside: along every edge as many triangles run one way as the other, corners at one place being one. A
-/// ray then goes in as often as out, whatever edges and corners it passes.
+/// Determines whether a mesh has an inside: along every edge, as many triangles run in one direction as in the other.
+/// Corners at the same position count as one. A ray then enters as often as it leaves, whatever edges and corners it
+/// hits.
 #include "engine/base/hash.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -9,14 +10,14 @@
 #include <string.h>
 
 typedef struct edge {
-    uint32_t low, high; ///< numbers of places; low + 1 == 0: a free slot
-    uint32_t up, down; ///< triangles that run from low to high, from high to low
+    uint32_t low, high; ///< positions of its ends; low + 1 == 0: a free slot
+    uint32_t up, down; ///< number of triangles that run from low to high, and from high to low
 } edge;
 
 typedef struct seams {
     const glint_mesh *mesh;
-    uint32_t *place; ///< of each vertex: the first vertex that is there
-    edge *edges; ///< by hash
+    uint32_t *place; ///< for each vertex, the first vertex at the same position
+    edge *edges; ///< hash table
     size_t slots; ///< a power of two
 } seams;
 
@@ -37,7 +38,7 @@ static bool find_vertex_places(seams *s)
     for (size_t i = 0; i < count; i++) {
         double at[3], other[3];
         for (int c = 0; c < 3; c++)
-            at[c] = s->mesh->vertices[i][c] + 0.0; // -0 and 0 are one place
+            at[c] = s->mesh->vertices[i][c] + 0.0; // -0 and 0 are the same position
         size_t slot = glint_key_add((glint_key) { 0 }, at, sizeof at).low & (size - 1);
         for (; slots[slot]; slot = (slot + 1) & (size - 1)) {
             for (int c = 0; c < 3; c++)
@@ -65,7 +66,7 @@ static edge *find_edge(const seams *s, uint32_t a, uint32_t b)
     return e;
 }
 
-/// From corner j of a triangle to the next. False: it has no length.
+/// Writes the ends of the edge from corner j of a triangle to the next. False: the edge has no length.
 static bool edge_ends(const seams *s, size_t triangle, int j, uint32_t ends[2])
 {
     const uint32_t *at = s->mesh->triangles[triangle];
@@ -90,7 +91,7 @@ static void count_edges(seams *s)
         }
 }
 
-/// Notes the first open edge, in the order of the triangles.
+/// Stores the first open edge, in the order of the triangles.
 static void find_open_edge(const seams *s, glint_closure *out)
 {
     for (size_t i = 0; i < s->mesh->triangle_count; i++)
@@ -108,7 +109,7 @@ static void find_open_edge(const seams *s, glint_closure *out)
         }
 }
 
-/// Six times the volume, in units of the largest extent: below 0 where the triangles run the other way round.
+/// Returns six times the volume, in units of the largest extent; below 0 if the triangles are inside out.
 static double volume_of(const glint_mesh *mesh)
 {
     const double *from = mesh->vertices[mesh->triangles[0][0]];

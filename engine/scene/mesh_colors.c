@@ -1,4 +1,5 @@
-/// Colours and pictures of vertices and faces: each face has a material of one colour, its own or the mean of its corners'.
+/// Colours and pictures of vertices and faces. Each face gets a material of one colour: its own, or the mean of its
+/// corners.
 #include "engine/base/status.h"
 #include "engine/scene/mesh_mtl.h"
 
@@ -6,17 +7,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define GREY_CODE 231 ///< as default materials have it: 0.8 of the light
-#define FAR_ABOVE_1 16.0 ///< no light of 0 .. 1
+#define GREY_CODE 231 ///< 8-bit value of default materials: 0.8 of the light
+#define FAR_ABOVE_1 16.0 ///< no colour of range 0 .. 1 is this bright
 
-/// The light of each code.
+/// Computes the light of each 8-bit value.
 static void fill_lights(double lights[256])
 {
     for (int code = 0; code < 256; code++)
         lights[code] = glint_srgb_decode(code / 255.0);
 }
 
-/// The code of the mean light of a face's corners, of the c-th of red, green and blue; corners that agree have their own.
+/// Returns the 8-bit value of the mean light of a face's corners in channel c. Corners that agree keep their value.
 static uint8_t mean_code(const uint8_t (*colors)[3], const uint32_t *corners, uint32_t count, int c,
                          const double lights[256])
 {
@@ -40,7 +41,8 @@ static glint_status add_material(glint_mesh_array *materials, uint32_t color, co
     return status;
 }
 
-/// Whether numbers are codes 0 .. 255. A light of 0 .. 1 that is a little too bright has fractions.
+/// Returns whether numbers are 8-bit values 0 .. 255. Colours of range 0 .. 1 that are a little too bright have
+/// fractions.
 static bool are_codes(const double *numbers, size_t count)
 {
     double most = 0;
@@ -73,7 +75,7 @@ glint_status glint_mesh_color_faces(glint_mesh_reader *r)
 {
     const uint8_t(*colors)[3] = r->colors.items;
     const uint32_t *corners = r->corners.items, *sizes = r->sizes.items;
-    glint_mesh_array shades = { .size = sizeof(uint32_t) }; // 0xrrggbb, beside the materials
+    glint_mesh_array shades = { .size = sizeof(uint32_t) }; // 0xrrggbb of each material
     glint_mesh_set set = { 0 };
     glint_status status = GLINT_OK;
     double lights[256];
@@ -93,7 +95,7 @@ glint_status glint_mesh_color_faces(glint_mesh_reader *r)
     return status;
 }
 
-/// A material whose diffuse colour is a picture.
+/// Makes a material whose diffuse colour is a picture.
 static glint_status make_painted(const glint_texture *texture, const char *name, glint_material **out,
                                  glint_error *error)
 {

@@ -1,6 +1,6 @@
-/// Ears of a polygon: corners that can be cut off, as no other corner lies in the triangle with both neighbours. The first one
-/// in the polygon's order is always cut. A corner that is not an ear remembers a corner that prevents it, and is tested again when
-/// that one or a neighbour has gone; a tree over the corners finds those that are in the way.
+/// Cuts ears off a polygon: corners for which no other corner lies in the triangle with both neighbours. The first
+/// ear in the polygon's order is always cut. A corner that is not an ear remembers a corner that blocks it, and is
+/// tested again when that corner or a neighbour has been cut. A tree over the corners finds the blocking corners.
 #include "engine/scene/mesh_ears.h"
 
 #include "engine/base/status.h"
@@ -18,14 +18,14 @@ typedef struct corner {
     uint32_t previous, next;
     uint32_t blocker; ///< the corner that blocks it; NONE: none
     uint32_t first_blocked, list_previous, list_next;
-    uint32_t leaf; ///< the node that it is in
+    uint32_t leaf; ///< the node that contains it
     bool is_there, is_ear, is_queued;
 } corner;
 
 /// A node of the tree has a range of `order`; the children of node k are 2 k + 1 and 2 k + 2.
 typedef struct node {
     double low[2], high[2];
-    uint32_t first, count, left; ///< left: corners of it that are there
+    uint32_t first, count, left; ///< left: corners not yet cut
     bool is_leaf;
 } node;
 
@@ -85,7 +85,7 @@ void glint_polygon_cross(const glint_polygon *polygon, uint32_t i, uint32_t j, u
 
 // ---- The tree ----
 
-/// Puts the corners in the polygon's plane.
+/// Projects the corners to the polygon's plane.
 static void flatten(const cutting *c)
 {
     const glint_polygon *polygon = c->polygon;
@@ -108,12 +108,14 @@ static void flatten(const cutting *c)
     }
 }
 
-/// Puts the n-th smallest of a range of `order`, along an axis, where it belongs, with no larger ones before it.
+/// Moves the n-th smallest element of a range of `order`, along an axis, to its sorted position, with no larger ones
+/// before it.
 static void select_nth(const corner *corners, uint32_t *order, uint32_t count, uint32_t n, int axis)
 {
     uint32_t low = 0, high = count - 1;
     while (low < high) {
-        const uint32_t any = low + (low * 2654435761u + high * 40503u) % (high - low); // no order of corners is bad
+        const uint32_t any = low + (low * 2654435761u + high * 40503u) % (high - low); // pseudo-random, so that no
+            // order of corners is a worst case
         const double pivot = corners[order[any]].at[axis];
         uint32_t i = low, j = high;
         for (;; i++, j--) {
@@ -145,7 +147,7 @@ static void bound(const cutting *c, node *made)
     }
 }
 
-/// Makes node `k` over a range of `order`, with its subtree of `leaves` leaves, a power of two.
+/// Builds node `k` over a range of `order`, and its subtree of `leaves` leaves, a power of two.
 static void build(const cutting *c, uint32_t k, uint32_t first, uint32_t count, uint32_t leaves)
 {
     glint_ears *ears = c->ears;
@@ -164,7 +166,7 @@ static void build(const cutting *c, uint32_t k, uint32_t first, uint32_t count, 
     build(c, 2 * k + 2, first + half, count - half, leaves / 2);
 }
 
-/// Whether no corner of a node can lie in the triangle of three corners, by more than rounding.
+/// Returns whether no corner of a node can lie in a triangle, apart from rounding.
 static bool is_apart(const node *at, const corner *const triangle[3])
 {
     const double slack = 1e-12;
@@ -189,7 +191,7 @@ static bool is_apart(const node *at, const corner *const triangle[3])
 
 // ---- Ears ----
 
-/// Whether corner p is in the triangle of i, j and k as seen along the polygon's normal, its sides included.
+/// Returns whether corner p is in the triangle of i, j and k or on its sides, as seen along the polygon's normal.
 static bool covers(const glint_polygon *polygon, uint32_t i, uint32_t j, uint32_t k, uint32_t p)
 {
     double cross[3];
@@ -202,7 +204,7 @@ static bool covers(const glint_polygon *polygon, uint32_t i, uint32_t j, uint32_
     return true;
 }
 
-/// A corner of a leaf that is in the triangle; NONE: there is none.
+/// Returns a corner of a leaf that is in the triangle; NONE: there is none.
 static uint32_t find_in_leaf(const cutting *c, const node *leaf, uint32_t i, uint32_t j, uint32_t k)
 {
     const uint32_t *v = c->polygon->corners;
@@ -215,7 +217,7 @@ static uint32_t find_in_leaf(const cutting *c, const node *leaf, uint32_t i, uin
     return NONE;
 }
 
-/// A corner that is in the triangle of i, j and k; NONE: there is none.
+/// Returns a corner that is in the triangle of i, j and k; NONE: there is none.
 static uint32_t find_blocker(const cutting *c, uint32_t i, uint32_t j, uint32_t k)
 {
     uint32_t stack[DEPTH_MAX], height = 0;
@@ -279,7 +281,7 @@ static void set_blocker(cutting *c, uint32_t i, uint32_t blocker)
     corners[blocker].first_blocked = i;
 }
 
-/// Finds whether a corner can be cut off.
+/// Determines whether a corner can be cut off.
 static void look_at(cutting *c, uint32_t i)
 {
     corner *at = &c->ears->corners[i];
@@ -287,7 +289,7 @@ static void look_at(cutting *c, uint32_t i)
     uint32_t blocker = NONE;
     glint_polygon_cross(c->polygon, at->previous, i, at->next, cross);
     at->is_ear = !(vec_dot(cross, c->polygon->normal) < 0);
-    if (at->is_ear && (cross[0] != 0 || cross[1] != 0 || cross[2] != 0)) // nothing is lost with a corner of no area
+    if (at->is_ear && (cross[0] != 0 || cross[1] != 0 || cross[2] != 0)) // a corner without area can always be cut
         blocker = find_blocker(c, at->previous, i, at->next);
     set_blocker(c, i, blocker);
     at->is_ear = at->is_ear && blocker == NONE;

@@ -15,43 +15,43 @@ typedef enum glint_mesh_map_kind {
     GLINT_MAP_COUNT
 } glint_mesh_map_kind;
 
-/// A material as a file has it. Sets find these by their key.
+/// A material as a file describes it. Sets find entries by their key.
 typedef struct glint_mesh_entry {
-    glint_key key; ///< of its name; 0: the faces before the first usemtl
+    glint_key key; ///< hash of the name; 0: the faces before the first usemtl
     glint_material_desc desc;
-    double clear; ///< what it lets through: 1 - d
-    bool has_d; ///< d is there: Tr does not count
+    double clear; ///< transparency: 1 - d
+    bool has_d; ///< d was given, so Tr is ignored
     double
-        illum; ///< 0 or 1: without a highlight; 3 .. 7: a mirror of Ks; 5 and 7: by Fresnel's formulas; 6 and 7: bends light
+        illum; ///< 0 or 1: no highlight; 3 .. 7: mirror of Ks; 5 and 7: with Fresnel; 6 and 7: with refraction
     double ni; ///< index of refraction; 0: none
     double rough, metal; ///< Pr, Pm; below 0: none
-    bool lacks_uv; ///< a face has it and a corner without coordinates
-    char *map[GLINT_MAP_COUNT]; ///< NULL: none
-    glint_mesh_map place[GLINT_MAP_COUNT]; ///< of each
-    double height; ///< -bm of the relief, world units; 0: none that can be taken
-    char bm[GLINT_NAME_SIZE]; ///< what the file says for it; "": nothing
+    bool lacks_uv; ///< one of its faces has a corner without texture coordinates
+    char *map[GLINT_MAP_COUNT]; ///< paths of pictures; NULL: none
+    glint_mesh_map place[GLINT_MAP_COUNT]; ///< mapping of each picture
+    double height; ///< -bm of the bump map, world units; 0: none, or not usable
+    char bm[GLINT_NAME_SIZE]; ///< the file's text for -bm; "": none
 } glint_mesh_entry;
 
 typedef struct glint_mesh_picture {
-    glint_key key; ///< of its path, of `clamp`, and of whether its codes are numbers as they are
+    glint_key key; ///< hash of its path, of `clamp`, and of whether its pixel values are linear
     glint_texture *texture; ///< NULL: it cannot be read
 } glint_mesh_picture;
 
 struct glint_mesh_library {
-    glint_mesh_array known, used, pictures; ///< of the files; of the faces; of both
+    glint_mesh_array known, used, pictures; ///< materials in the files; materials that faces use; pictures of both
     glint_mesh_set known_set, used_set, picture_set;
     glint_mesh_array materials; ///< glint_material *, one for each of `used`
-    glint_mesh_entry current; ///< of faces that follow: its key and name
+    glint_mesh_entry current; ///< key and name of the material for the next faces
     uint32_t current_number; ///< among `used`; GLINT_MESH_NO_FACE: no face has it yet
-    char *file; ///< the first that was named; NULL: none
-    bool found; ///< a face has a material of a file
-    size_t missing; ///< materials of faces that no file has
+    char *file; ///< the first file named; NULL: none
+    bool found; ///< a face uses a material from a file
+    size_t missing; ///< materials that faces use and no file defines
     char first_missing[GLINT_NAME_SIZE];
-    size_t flat; ///< materials whose relief has no height
-    glint_mesh_entry first_flat; ///< its pictures are another's
-    size_t invisible; ///< materials that let all light through
+    size_t flat; ///< materials whose bump map has no height
+    glint_mesh_entry first_flat; ///< the first of them; it does not own its pictures
+    size_t invisible; ///< materials that transmit all light
     char first_invisible[GLINT_NAME_SIZE];
-    bool told; ///< a file could not be read, which was a warning
+    bool told; ///< a warning reported that a file could not be read
 };
 
 static inline glint_mesh_entry *glint_mesh_known_at(const glint_mesh_library *library, size_t i)
@@ -65,12 +65,13 @@ static inline glint_mesh_entry *glint_mesh_used_at(const glint_mesh_library *lib
 }
 
 glint_key glint_mesh_key_of(const char *name);
-/// As much of a name as an object's has room for, without half a character at its end.
+/// Copies as much of a name as fits into an object's name, without cutting a character in half.
 void glint_mesh_copy_name(char out[GLINT_NAME_SIZE], const char *name);
-/// newmtl: the number of the entry that the lines below are about. A second one of a name takes its place.
+/// Handles newmtl: writes the index of the entry that the next lines describe. A second material of the same name
+/// replaces the first.
 glint_status glint_mesh_library_begin(glint_mesh_library *library, const char *name, uint32_t *number,
                                       glint_error *error);
-/// The words of pictures, by kind: map_Kd ...
+/// The keywords of pictures, by kind: map_Kd ...
 extern const char *const glint_mesh_map_words[GLINT_MAP_COUNT];
 
 #endif

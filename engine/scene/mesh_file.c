@@ -24,11 +24,12 @@ static void tell_notes(const glint_mesh_reader *r)
     }
 }
 
-// ---- What a mesh cannot have ----
+// ---- Data that a mesh cannot have ----
 
 static bool is_finite(const double v[3]) { return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]); }
 
-/// Moves the items from `from` on to `to`, in an array that has one for each corner or face; those that have none stay so.
+/// Moves items from `from` to `to` in an array with one item per corner or face. Does nothing if the array is not
+/// used.
 static void move_items(glint_mesh_array *array, size_t to, size_t from, size_t count)
 {
     if (from + count <= array->count)
@@ -41,7 +42,7 @@ static void cut_array(glint_mesh_array *array, size_t count)
     array->count = array->count < count ? array->count : count;
 }
 
-/// Leaves out the faces of vertices that are not finite, and puts such vertices where another one is.
+/// Leaves out faces with vertices that are not finite, and replaces such vertices by a finite one.
 static void drop_vertices(glint_mesh_reader *r)
 {
     double *vertices = r->vertices.items;
@@ -188,7 +189,7 @@ static const char *const ENDINGS[][2] = {
     { "mtl", "materials of an .obj" },
 };
 
-/// By their first bytes, whatever the name.
+/// Formats by the first bytes of a file, whatever its name.
 static const char *const BEGINNINGS[][2] = {
     { "glTF", "glTF" },          { "PK\3\4", "a zip archive, as .3mf and .usdz are" },
     { "Kaydara FBX", "FBX" },    { "BLENDER", "Blender's" },
@@ -230,7 +231,7 @@ static bool begins(const glint_mesh_text *text, const char *word)
            text->begin[from + length] <= ' ';
 }
 
-/// By the first bytes where these say it, else by the ending of the name.
+/// Chooses the reader by the first bytes if they identify the format, otherwise by the ending of the name.
 static reading reader_of(const glint_mesh_text *text)
 {
     const char *ending = ending_of(text->path);

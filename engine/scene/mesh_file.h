@@ -17,13 +17,13 @@ typedef struct glint_mesh_array {
 
 glint_status glint_mesh_append(glint_mesh_array *array, const void *item, glint_error *error);
 
-/// Finds items of an array by their first bytes, which no two of them share.
+/// Finds items of an array by their first bytes, which are unique.
 typedef struct glint_mesh_set {
-    uint32_t *slots; ///< numbers of items from 1; 0: free
+    uint32_t *slots; ///< indices of items from 1; 0: free
     size_t room; ///< a power of two
 } glint_mesh_set;
 
-/// The number of the item that begins with the same `key_size` bytes; `item` is appended where there is none.
+/// Writes the index of the item that begins with the same `key_size` bytes; appends `item` if there is none.
 glint_status glint_mesh_find(glint_mesh_set *set, glint_mesh_array *array, const void *item, size_t key_size,
                              uint32_t *number, glint_error *error);
 
@@ -32,33 +32,34 @@ typedef struct glint_mesh_text {
     const char *path;
     FILE *file;
     uint64_t size; ///< bytes
-    unsigned char begin[16]; ///< the first bytes, of which there are begin_bytes
+    unsigned char begin[16]; ///< the first bytes of the file, `begin_bytes` of them
     size_t begin_bytes;
-    long start; ///< where the text begins: behind a byte order mark
+    long start; ///< start of the text, after a byte order mark
     bool lone_returns; ///< lines end in CR without LF
-    size_t skipped; ///< empty lines behind the line at hand that are ignored
-    locale_t c_locale; ///< decimal points whatever the script's locale
+    size_t skipped; ///< ignored empty lines after the current line
+    locale_t c_locale; ///< a locale with decimal points, whatever the script's locale
     char *line;
-    size_t room, longest; ///< bytes of a line
-    size_t number; ///< of the line at hand, from 1
+    size_t room, longest; ///< bytes of `line`: capacity, and its limit
+    size_t number; ///< of the current line, from 1
     glint_error *error;
 } glint_mesh_text;
 
-/// Opens a file; to be closed whatever it returns.
+/// Opens a file; it must be closed even if this fails.
 glint_status glint_mesh_text_open(glint_mesh_text *text, const char *path, glint_error *error);
 void glint_mesh_text_close(glint_mesh_text *text);
-/// Goes on from a place of the file, bytes.
+/// Continues at byte `start` of the file.
 glint_status glint_mesh_text_rewind(glint_mesh_text *text, long start);
-/// Whether the file begins with the mark of UTF-16.
+/// Returns whether the file begins with the mark of UTF-16.
 bool glint_mesh_text_is_utf16(const glint_mesh_text *text);
-/// The next line, without its end, which is LF, CRLF or CR. *more: there was one. joined: a backslash at the end joins the following one.
+/// Reads the next line, without its end, which is LF, CRLF or CR. *more: there was one. joined: a backslash at the
+/// end of a line joins it to the next one.
 glint_status glint_mesh_next_line(glint_mesh_text *text, bool joined, bool *more);
-/// GLINT_ERR_FORMAT: "PATH:LINE: WHAT expected, got 'GOT'".
+/// Fails with GLINT_ERR_FORMAT and "PATH:LINE: WHAT expected, got 'GOT'".
 glint_status glint_mesh_refuse(const glint_mesh_text *text, const char *expected, const char *got);
-/// Reads a number as strtod does, in decimal points. Also takes exponents as Fortran writes them (1.5D+03), and numbers
-/// that are none as Windows writes them (-1.#IND). *end is `at` where there is no number.
+/// Reads a number as strtod does, with a decimal point. Also accepts exponents as written by Fortran (1.5D+03) and
+/// NaN and infinity as written by Windows (-1.#IND). *end is `at` if there is no number.
 double glint_mesh_read_double(const glint_mesh_text *text, const char *at, const char **end);
-/// A finite number at *at, which moves behind it; ended by a blank, a comment (#) or the line's end.
+/// Reads a finite number at *at and moves *at past it. It ends at a blank, a comment (#) or the end of the line.
 glint_status glint_mesh_number(const glint_mesh_text *text, const char **at, double *out);
 
 static inline bool glint_is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -72,16 +73,17 @@ static inline const char *glint_skip_blanks(const char *at)
     return at;
 }
 
-/// Whether a line begins with a word.
+/// Returns whether a line begins with a word.
 bool glint_mesh_is_word(const char *line, const char *word);
 
-/// The file named `name`, perhaps in quotation marks, in the folder of `path`, or `name` where it begins at the root; where that is not there, the file of
-/// the same last name in the folder of `path`. NULL: out of memory; free() frees it.
+/// Returns the path of the file `name`, which may be quoted: relative to the folder of `path`, or as it is if
+/// absolute. If that file does not exist, returns the file of the same last name in the folder of `path`. NULL: out
+/// of memory; the caller frees it.
 char *glint_mesh_beside(const char *path, const char *name);
 
 typedef struct glint_mesh_library glint_mesh_library; ///< mesh_mtl.h
 
-/// The arrays that the numbers of a corner refer to.
+/// The arrays that the indices of a corner refer to.
 typedef enum glint_mesh_index_kind {
     GLINT_MESH_OF_VERTEX,
     GLINT_MESH_OF_NORMAL,
@@ -94,18 +96,18 @@ typedef enum glint_mesh_note_kind {
     GLINT_MESH_NOTE_FACE, ///< a face of fewer than 3 corners
     GLINT_MESH_NOTE_VERTEX, ///< a face with a vertex that is not finite
     GLINT_MESH_NOTE_NORMAL, ///< a normal of length 0
-    GLINT_MESH_NOTE_NO_NORMALS, ///< a corner names a normal, and there are none
-    GLINT_MESH_NOTE_NO_UV, ///< likewise texture coordinates
+    GLINT_MESH_NOTE_NO_NORMALS, ///< a corner has the index of a normal, but the file has no normals
+    GLINT_MESH_NOTE_NO_UV, ///< likewise for texture coordinates
     GLINT_MESH_NOTE_FREE_FORM, ///< curves and surfaces
-    GLINT_MESH_NOTE_UNKNOWN, ///< a statement
-    GLINT_MESH_NOTE_COLOR, ///< colours that are not shown
-    GLINT_MESH_NOTE_PICTURE, ///< a picture that is not shown
+    GLINT_MESH_NOTE_UNKNOWN, ///< an unknown statement
+    GLINT_MESH_NOTE_COLOR, ///< colours that are ignored
+    GLINT_MESH_NOTE_PICTURE, ///< a picture that is ignored
     GLINT_MESH_NOTE_COUNT
 } glint_mesh_note_kind;
 
 typedef struct glint_mesh_note {
     size_t count;
-    size_t line; ///< of the first one; 0: the message says where it is
+    size_t line; ///< of the first one; 0: the message contains the position
     char first[160]; ///< the message about the first one
 } glint_mesh_note;
 
@@ -114,18 +116,19 @@ typedef struct glint_mesh_reader {
     glint_mesh_text text;
     const glint_mesh_desc *desc;
     glint_mesh_array vertices, normals, uv, corners, corner_normals, sizes;
-    glint_mesh_array corner_uv; ///< .obj: indices of the corners; empty: those of the vertices, or none
-    glint_mesh_array material_index; ///< of each face, where faces have materials of their own
+    glint_mesh_array corner_uv; ///< .obj: for each corner; empty: the same as the vertex indices, or none
+    glint_mesh_array material_index; ///< for each face, if faces have materials
     glint_mesh_library *library; ///< .obj: the materials; NULL: the materials of `desc`
-    glint_mesh_array colors; ///< sRGB codes of red, green and blue, of each vertex or face; none: there are none
-    bool colors_of_faces; ///< not of vertices
+    glint_mesh_array colors; ///< 8-bit sRGB red, green and blue of each vertex or face; empty: none
+    bool colors_of_faces; ///< `colors` belong to faces, not to vertices
     glint_mesh_array
-        numbers_of_colors; ///< red, green and blue as numbers, of vertices or faces, up to the last that has them
+        numbers_of_colors; ///< red, green and blue as numbers, for vertices or faces, up to the last one that has
+            ///< them
     struct {
         size_t index, line;
-    } far[GLINT_MESH_OF_COUNT]; ///< .obj: the largest number that named nothing so far, from 0, and its line; 0: none
+    } far[GLINT_MESH_OF_COUNT]; ///< .obj: the largest index that was not defined yet, from 0, and its line; 0: none
     glint_mesh_array materials; ///< materials of `colors`: glint_material *, owned; empty: the materials of `desc`
-    glint_mesh_set places; ///< .stl: of the vertices
+    glint_mesh_set places; ///< .stl: vertices by position
     bool has_normals;
     glint_mesh_note notes[GLINT_MESH_NOTE_COUNT];
     glint_error *error;
@@ -135,33 +138,34 @@ typedef struct glint_mesh_reader {
 /// line  of the file, which the warning names; 0: none
 void glint_mesh_note_that(glint_mesh_reader *reader, glint_mesh_note_kind kind, size_t line, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/// Gives corners without a normal the normal of their face.
+/// Gives corners whose normal has length 0 the normal of their face.
 glint_status glint_mesh_drop_normals(glint_mesh_reader *reader);
 
-/// Says that something is ignored; the file's name stands before the message.
+/// Warns that something is ignored; the message starts with the file's name.
 void glint_mesh_warn(const glint_mesh_desc *desc, const char *path, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 glint_status glint_mesh_read_obj(glint_mesh_reader *reader);
 glint_status glint_mesh_read_stl(glint_mesh_reader *reader);
 glint_status glint_mesh_read_ply(glint_mesh_reader *reader);
-/// A number of a colour that is not there.
+/// Marks a colour that is not given.
 #define GLINT_MESH_NO_COLOR (-1.0)
-/// Fills `colors`, for `count` vertices or faces, from numbers_of_colors. These are 0 .. 1, or codes 0 .. 255 where one is
-/// above 1 and all are whole, or one is far above 1. Vertices and faces without a colour are grey, as default materials are.
+/// Fills `colors`, for `count` vertices or faces, from numbers_of_colors. The numbers are 8-bit values 0 .. 255 if
+/// one is above 1 and all are whole, or if one is far above 1; otherwise they are 0 .. 1. Vertices and faces without
+/// a colour become grey, like default materials.
 glint_status glint_mesh_take_colors(glint_mesh_reader *reader, size_t count);
-/// Makes the materials, and the index of each face among them, of the colours of a file that is read.
+/// Makes the materials for a file's colours, and the material index of each face.
 glint_status glint_mesh_color_faces(glint_mesh_reader *reader);
-/// Makes one material of the picture that a file names; a picture that cannot be read is a warning.
+/// Makes one material from the picture that a file names; a picture that cannot be read causes a warning.
 glint_status glint_mesh_picture_faces(glint_mesh_reader *reader, const char *name);
 
-/// Faces of files that cannot be as they are.
+/// Counts of faces that had to be left out or changed.
 typedef struct glint_mesh_faults {
     size_t flat; ///< faces without an area, which are left out
     size_t crossed; ///< polygons that cross themselves, which are cut as fans
 } glint_mesh_faults;
 
-/// glint_mesh_create; faults: NULL, or these are no errors but counted here.
+/// Does the same as glint_mesh_create. faults: counts these faults instead of failing; NULL: they are errors.
 glint_status glint_mesh_make(const glint_mesh_desc *desc, glint_mesh_faults *faults, glint_shape **out,
                              glint_error *error);
 

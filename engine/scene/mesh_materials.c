@@ -1,4 +1,4 @@
-/// The materials of .obj files: those that faces name, as glint_mesh_library_read found them.
+/// Makes the materials that the faces of .obj files use, from the entries that glint_mesh_library_read stored.
 #include "engine/scene/mesh_entry.h"
 
 #include "engine/base/status.h"
@@ -9,7 +9,7 @@
 
 #define ILLUM_DEFAULT 2 ///< a highlight, no mirror
 #define ROUGHNESS_DEFAULT 0.5
-#define F0_OF_PLASTIC 0.04 ///< reflectance head-on at an index of 1.5
+#define F0_OF_PLASTIC 0.04 ///< reflectance at normal incidence for an index of 1.5
 
 glint_mesh_library *glint_mesh_library_create(void)
 {
@@ -104,10 +104,10 @@ glint_status glint_mesh_library_begin(glint_mesh_library *library, const char *n
 
 // ---- Pictures ----
 
-/// The field of a material whose picture cannot be read.
+/// The replacement for each kind of picture that cannot be read, for messages.
 static const char *const map_instead[GLINT_MAP_COUNT] = { "its Kd", "its Ks", "its d", "no relief" };
 
-/// The picture of a material; *out NULL, after a warning: there is none.
+/// Writes the picture of a material to *out; NULL, after a warning: it cannot be read.
 static glint_status find_picture(glint_mesh_library *library, const glint_mesh_reader *reader,
                                  const glint_mesh_entry *e, glint_mesh_map_kind kind, glint_texture **out)
 {
@@ -125,7 +125,7 @@ static glint_status find_picture(glint_mesh_library *library, const glint_mesh_r
     glint_mesh_picture *found = (glint_mesh_picture *)library->pictures.items + number;
     if (library->pictures.count > before) {
         desc.path = e->map[kind];
-        desc.linear = kind >= GLINT_MAP_D; // numbers, not colours
+        desc.linear = kind >= GLINT_MAP_D; // these maps hold numbers, not colours
         desc.wrap = e->place[kind].clamp ? GLINT_WRAP_CLAMP : GLINT_WRAP_REPEAT;
         if (reader->desc->reads)
             reader->desc->reads(reader->desc->context, e->map[kind]);
@@ -142,7 +142,7 @@ static glint_status find_picture(glint_mesh_library *library, const glint_mesh_r
 
 // ---- Materials ----
 
-/// Microfacets of a roughness, which are a metal as far as Pm says.
+/// Selects microfacets with the roughness Pr and the metallic share Pm.
 static void roughen(glint_mesh_entry *e)
 {
     const double metal = e->metal < 0 ? 0 : e->metal;
@@ -156,7 +156,7 @@ static void roughen(glint_mesh_entry *e)
     }
 }
 
-/// Mirrors and glass, by illum.
+/// Sets up mirror and refraction, by illum.
 static void polish(glint_mesh_entry *e)
 {
     const bool bends = (e->illum == 6 || e->illum == 7) && e->clear > 0;
@@ -168,7 +168,7 @@ static void polish(glint_mesh_entry *e)
     vec_copy(e->desc.mirror, e->desc.specular);
 }
 
-/// Fills the fields of a material. If it is transparent, the surface's own light counts with the factor d.
+/// Completes the fields of a material. If it is transparent, the surface's own light is multiplied by d.
 static void finish_fields(glint_mesh_library *library, glint_mesh_entry *e)
 {
     const bool is_dull = e->illum < 2;
@@ -184,7 +184,7 @@ static void finish_fields(glint_mesh_library *library, glint_mesh_entry *e)
     }
 }
 
-/// Whether the relief of a material has a height. Materials without one are counted.
+/// Returns whether the bump map of a material has a height. Counts materials without one.
 static bool has_height(glint_mesh_library *library, const glint_mesh_entry *e)
 {
     if (e->height == 0 && library->flat++ == 0)
@@ -192,7 +192,7 @@ static bool has_height(glint_mesh_library *library, const glint_mesh_entry *e)
     return e->height != 0;
 }
 
-/// The pattern of one of its pictures, times what the file says beside it.
+/// Makes the pattern of one of the pictures, multiplied by the factor in the file.
 static glint_status paint(glint_mesh_library *library, const glint_mesh_reader *reader, const glint_mesh_entry *e,
                           glint_mesh_map_kind kind, glint_program **out)
 {
@@ -253,7 +253,7 @@ static glint_status make_material(glint_mesh_library *library, const glint_mesh_
     return status;
 }
 
-/// Notes which materials have faces without coordinates.
+/// Records which materials have faces without texture coordinates.
 static void find_uv(glint_mesh_library *library, const glint_mesh_reader *reader)
 {
     const uint32_t *sizes = reader->sizes.items, *index = reader->material_index.items, *uv = reader->corner_uv.items;
@@ -263,7 +263,8 @@ static void find_uv(glint_mesh_library *library, const glint_mesh_reader *reader
                 glint_mesh_used_at(library, index[i])->lacks_uv = true;
 }
 
-/// Faces without a usemtl, or with one that no file has, get a material with default fields.
+/// Finds the entry of a used material. Faces without a usemtl, or with an undefined one, get a material with default
+/// fields.
 static glint_status look_up(glint_mesh_library *library, const glint_mesh_reader *reader, glint_mesh_entry *used)
 {
     static const glint_key none;
@@ -286,7 +287,7 @@ static glint_status look_up(glint_mesh_library *library, const glint_mesh_reader
     return GLINT_OK;
 }
 
-/// " and 2 more" of `count`; "" of 1.
+/// Writes " and N more" for `count` - 1 more items; "" if there are none.
 static const char *spell_more(size_t count, char out[32])
 {
     out[0] = 0;
@@ -295,7 +296,7 @@ static const char *spell_more(size_t count, char out[32])
     return out;
 }
 
-/// Once.
+/// Warns once about bump maps without a height.
 static void tell_flat(const glint_mesh_library *library, const glint_mesh_reader *reader)
 {
     char more[32];
@@ -323,7 +324,7 @@ static void tell_invisible(const glint_mesh_library *library, const glint_mesh_r
                         library->first_invisible, spell_more(library->invisible, more));
 }
 
-/// Once, and not where a file that was not read is the reason.
+/// Warns once about undefined materials, unless a file that could not be read explains them.
 static void tell_missing(const glint_mesh_library *library, const glint_mesh_reader *reader)
 {
     char more[32];

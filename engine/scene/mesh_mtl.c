@@ -1,4 +1,4 @@
-/// The files of materials that .obj files name: their statements, Kd, Ks, Ns, d ..., and pictures by name.
+/// Reads the material files that .obj files name: the statements Kd, Ks, Ns, d ..., and names of pictures.
 #include "engine/scene/mesh_entry.h"
 
 #include "engine/base/status.h"
@@ -9,14 +9,14 @@
 
 // ---- The statements of a file ----
 
-/// The ignored lines and words of a .mtl file. Each of both kinds becomes one warning.
+/// The ignored lines and words of a .mtl file. Each of the two kinds gives one warning.
 typedef struct leavings {
-    size_t bad; ///< lines that are not as they should be
+    size_t bad; ///< invalid lines
     glint_error first_bad;
-    char words[160]; ///< statements that mean nothing here, each once
+    char words[160]; ///< unsupported statements, each once
 } leavings;
 
-/// Notes a word that means nothing here, once.
+/// Adds a word to the unsupported statements, once.
 static void add_word(const char *at, leavings *left)
 {
     char word[40];
@@ -26,7 +26,7 @@ static void add_word(const char *at, leavings *left)
         strcpy(left->words + used, word);
 }
 
-/// One number stands for three.
+/// Reads a colour; a single number stands for all three.
 static glint_status read_color(const glint_mesh_text *text, const char *at, double out[3])
 {
     if (glint_mesh_is_word(glint_skip_blanks(at), "spectral") || glint_mesh_is_word(glint_skip_blanks(at), "xyz"))
@@ -67,7 +67,7 @@ static glint_status read_range(const glint_mesh_text *text, const char *at, doub
     return GLINT_OK;
 }
 
-/// The words of an option of a map; 0: it is none.
+/// Returns the number of words of a map option; 0: it is not an option.
 static int option_words(const char *at)
 {
     static const struct {
@@ -82,7 +82,7 @@ static int option_words(const char *at)
     return 0;
 }
 
-/// Numbers of -o and -s, of which those after the first may be missing.
+/// Reads the numbers of -o and -s; numbers after the first may be missing.
 static const char *skip_option(const glint_mesh_text *text, const char *at, int words, double *numbers)
 {
     while (!glint_ends_word(*at))
@@ -105,10 +105,10 @@ static const char *skip_option(const glint_mesh_text *text, const char *at, int 
 typedef struct map_options {
     glint_mesh_map place;
     double height; ///< -bm
-    char bm[GLINT_NAME_SIZE]; ///< what the file says for it
+    char bm[GLINT_NAME_SIZE]; ///< the file's text for -bm
 } map_options;
 
-/// Reads options up to the first word that is none, which it returns.
+/// Reads options up to the first word that is not an option, and returns the position of that word.
 static const char *read_options(const glint_mesh_text *text, const char *at, map_options *o, leavings *left)
 {
     for (int words; (words = option_words(at)) > 0;) {
@@ -132,7 +132,7 @@ static const char *read_options(const glint_mesh_text *text, const char *at, map
     return at;
 }
 
-/// Where the name of a picture ends: at the end of the line, or before options that follow it.
+/// Returns the end of a picture's name: the end of the line, or the options that follow it.
 static const char *find_name_end(const char *at)
 {
     const char *end = at;
@@ -141,7 +141,7 @@ static const char *find_name_end(const char *at)
     return end ? end : at + strlen(at);
 }
 
-/// Takes a picture, with its options; the options of a statement that names no picture are not taken.
+/// Reads a picture with its options; the options of a statement without a picture are ignored.
 static glint_status read_map(const glint_mesh_text *text, const char *at, glint_mesh_map_kind kind,
                              glint_mesh_entry *to, leavings *left)
 {
@@ -172,7 +172,7 @@ static glint_status read_map(const glint_mesh_text *text, const char *at, glint_
 const char *const glint_mesh_map_words[GLINT_MAP_COUNT] = { "map_Kd", "map_Ks", "map_d", "map_Bump" };
 static const char *const bump_words[] = { "map_bump", "bump" }; ///< other spellings of map_Bump
 
-/// Reads a statement that is about a picture; *known: it was one.
+/// Reads a statement about a picture; *known: it was one.
 static glint_status read_picture(const glint_mesh_text *text, const char *at, glint_mesh_entry *to, leavings *left,
                                  bool *known)
 {
@@ -187,7 +187,7 @@ static glint_status read_picture(const glint_mesh_text *text, const char *at, gl
     return GLINT_OK;
 }
 
-/// Reads a statement of one number; *known: it was one. A statement that is not as it should be changes nothing.
+/// Reads a statement with one number; *known: it was one. An invalid statement changes nothing.
 static glint_status read_one(const glint_mesh_text *text, const char *at, glint_mesh_entry *to, bool *known)
 {
     const struct {
@@ -214,7 +214,7 @@ static glint_status read_one(const glint_mesh_text *text, const char *at, glint_
     return status;
 }
 
-/// Returns whether all words of a statement are 0, or of Tf, which filters light, 1.
+/// Returns whether a statement has no effect: all its numbers are 0, or 1 for the transmission filter Tf.
 static bool says_nothing(const glint_mesh_text *text, const char *at)
 {
     const bool is_tf = glint_mesh_is_word(at, "Tf");
@@ -233,7 +233,8 @@ static bool says_nothing(const glint_mesh_text *text, const char *at)
     return true;
 }
 
-/// Notes a statement that materials have no field for. Ka follows Kd here; sharpness belongs to another one.
+/// Notes a statement that has no field in materials. Ka is ignored because ambient follows Kd; sharpness belongs to
+/// another one.
 static void note_word(const glint_mesh_text *text, const char *at, leavings *left)
 {
     static const char *const silent[] = { "Ka", "map_Ka", "sharpness", "Km" };
@@ -263,7 +264,7 @@ static glint_status read_field(const glint_mesh_text *text, const char *at, glin
     return status;
 }
 
-/// Reads the statements of a file. One that is not as it should be is ignored.
+/// Reads the statements of a file. Invalid ones are ignored.
 static glint_status read_lines(glint_mesh_library *library, glint_mesh_text *text, leavings *left)
 {
     bool more = true;
@@ -289,7 +290,7 @@ static glint_status read_lines(glint_mesh_library *library, glint_mesh_text *tex
 
 // ---- Files ----
 
-/// Writes the warnings about ignored parts of a file.
+/// Writes the warnings about the ignored parts of a file.
 static void tell_left(const glint_mesh_reader *reader, const char *path, leavings *left)
 {
     const size_t length = strlen(left->words);
@@ -305,7 +306,7 @@ static void tell_left(const glint_mesh_reader *reader, const char *path, leaving
                     left->words, strchr(left->words, ',') ? "are" : "is");
 }
 
-/// Reads one file; *there: it could be opened. Faults in it give a warning.
+/// Reads one file; *there: it could be opened. Faults in the file cause warnings.
 static glint_status read_file(glint_mesh_library *library, const glint_mesh_reader *reader, const char *path, bool last,
                               bool *there)
 {
@@ -330,7 +331,7 @@ static glint_status read_file(glint_mesh_library *library, const glint_mesh_read
     return GLINT_OK;
 }
 
-/// The whole of `names` is a file, which may have blanks in its name, or each word of it is one, up to a comment.
+/// Reads `names` as one file, whose name may contain blanks, or as several files, one per word, up to a comment.
 glint_status glint_mesh_library_read(glint_mesh_library *library, const glint_mesh_reader *reader, const char *names)
 {
     bool there = false;

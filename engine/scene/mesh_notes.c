@@ -1,4 +1,4 @@
-/// Warnings of the readers of meshes, and normals of length 0.
+/// Warnings of the mesh readers, and normals of length 0.
 #include "engine/scene/mesh_file.h"
 
 #include "engine/base/vec.h"

@@ -1,4 +1,5 @@
-/// Reads Wavefront .obj files line by line: memory holds only the vertices, normals, coordinates and faces read so far.
+/// Reads Wavefront .obj files line by line. Memory holds only the vertices, normals, coordinates and faces read so
+/// far.
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/mesh_mtl.h"
@@ -24,9 +25,10 @@ static glint_status complain(const reader *r, const char *expected, const char *
     return glint_mesh_refuse(&r->text, expected, got);
 }
 
-// ---- What a line says ----
+// ---- The contents of a line ----
 
-/// Three numbers, of coordinates two, of which the second may be missing. Numbers that are not finite are stored unchanged.
+/// Reads three numbers, or two texture coordinates, the second of which is optional. Non-finite numbers are stored
+/// unchanged.
 static glint_status read_numbers(reader *r, const char **at, int count, double v[3])
 {
     for (int i = 0; i < count; i++) {
@@ -42,14 +44,15 @@ static glint_status read_numbers(reader *r, const char **at, int count, double v
     return GLINT_OK;
 }
 
-/// Notes that numbers which could be colours are none, of this vertex and of all others.
+/// Notes that the numbers after the coordinates are not colours, for this vertex and all others.
 static void refuse_colors(reader *r)
 {
     glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, r->text.number,
                          "the numbers after the coordinates are ignored: colours 0 .. 1 or 0 .. 255 expected");
 }
 
-/// Numbers after a vertex: three are its colour, as many programs write it, also with a fourth, alpha. One is its weight.
+/// Reads the numbers after a vertex. Three are its colour, as many programs write it; a fourth is alpha. A single one
+/// is its weight.
 static glint_status read_color(reader *r, const char *at)
 {
     static const double grey[3] = { GLINT_MESH_NO_COLOR, GLINT_MESH_NO_COLOR, GLINT_MESH_NO_COLOR };
@@ -72,7 +75,7 @@ static glint_status read_color(reader *r, const char *at)
     return status ? status : append(r, &r->numbers_of_colors, v);
 }
 
-/// A comment "#MRGB " of ZBrush has the mask, red, green and blue of the next vertices, two hexadecimal digits each.
+/// Reads ZBrush's comment "#MRGB ": mask, red, green and blue of the next vertices, two hexadecimal digits each.
 static glint_status read_zbrush(reader *r, const char *at)
 {
     glint_status status = GLINT_OK;
@@ -116,8 +119,8 @@ static glint_status read_pair(reader *r, const char *at)
     return status ? status : append(r, &r->uv, v);
 }
 
-/// A number of a vertex, normal or pair of coordinates, from 1, or from the end where negative; 0-based in *out. One that is
-/// not there yet may follow: the largest is checked at the end.
+/// Reads the index of a vertex, normal or pair of coordinates, from 1, or from the end if negative; *out counts from
+/// 0. It may refer to an item that follows later: the largest index is checked at the end.
 static glint_status read_index(reader *r, const char **at, size_t count, index_kind kind, uint32_t *out)
 {
     char *end, expected[96];
@@ -126,7 +129,7 @@ static glint_status read_index(reader *r, const char **at, size_t count, index_k
     const long long index = value < 0 ? (long long)count + value : value - 1;
     if (end != *at && !errno && value == 0 && kind != GLINT_MESH_OF_VERTEX) {
         *at = end;
-        *out = GLINT_NO_NORMAL; // and GLINT_NO_UV
+        *out = GLINT_NO_NORMAL; // the same value as GLINT_NO_UV
         return GLINT_OK;
     }
     if (end == *at || errno || value == 0 || index < 0 || index >= INT32_MAX) {
@@ -142,7 +145,7 @@ static glint_status read_index(reader *r, const char **at, size_t count, index_k
     return GLINT_OK;
 }
 
-/// Another number of a corner, behind a slash; none where nothing is.
+/// Reads another index of a corner, after a slash, if there is one.
 static glint_status read_part(reader *r, const char **at, size_t count, index_kind kind, uint32_t *out)
 {
     ++*at;
@@ -150,7 +153,7 @@ static glint_status read_part(reader *r, const char **at, size_t count, index_ki
     return is_number ? read_index(r, at, count, kind, out) : GLINT_OK;
 }
 
-/// v, v/vt, v//vn or v/vt/vn.
+/// Reads a corner: v, v/vt, v//vn or v/vt/vn.
 static glint_status read_corner(reader *r, const char **at)
 {
     uint32_t vertex, normal = GLINT_NO_NORMAL, uv = GLINT_NO_UV;
@@ -190,7 +193,7 @@ static glint_status read_face(reader *r, const char *at)
     return status || !r->library ? status : append(r, &r->material_index, &material);
 }
 
-/// The rest of a line, without blanks around it.
+/// Returns the rest of a line, without blanks around it.
 static const char *rest_of(char *at)
 {
     size_t length;
@@ -202,7 +205,7 @@ static const char *rest_of(char *at)
     return at;
 }
 
-/// Statements about materials; *known: it was one.
+/// Reads a statement about materials; *known: it was one.
 static glint_status read_material(reader *r, char *at, bool *known)
 {
     const bool uses = glint_mesh_is_word(at, "usemtl");
@@ -223,7 +226,7 @@ static bool is_among(const char *line, const char *const *words)
     return *words != NULL;
 }
 
-/// A statement that has nothing to do with meshes.
+/// Skips a statement that does not concern meshes.
 static void pass_over(reader *r, const char *at)
 {
     static const char *const silent[] = { "vp",         "g",         "o",      "s",      "l",        "p",
@@ -268,7 +271,8 @@ static glint_status read_statement(reader *r)
 
 // ---- The file ----
 
-/// Whether all numbers of one kind name something that the file has. Without any normals or coordinates none are named.
+/// Checks that all indices of one kind exist in the file. If it has no normals or texture coordinates, their indices
+/// are ignored.
 static glint_status check_far(reader *r, index_kind kind, size_t count)
 {
     char expected[96], got[32];
@@ -294,7 +298,7 @@ static bool names_any(const glint_mesh_array *numbers)
     return false;
 }
 
-/// Checks the numbers of corners, now that all is read.
+/// Checks the indices of corners after the whole file has been read.
 static glint_status check_corners(reader *r)
 {
     glint_status status = check_far(r, GLINT_MESH_OF_VERTEX, r->vertices.count);

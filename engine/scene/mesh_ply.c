@@ -1,4 +1,5 @@
-/// PLY files: a head that says which numbers each vertex and each face has, then these, as text or binary in either byte order.
+/// Reads PLY files: a header that describes the numbers of each vertex and face, then the numbers, as text or binary
+/// in either byte order.
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/mesh_ply.h"
@@ -8,15 +9,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// The file while its numbers are read.
+/// The state of reading the numbers.
 typedef struct body {
     glint_mesh_reader *reader;
     const glint_ply_head *head;
     const glint_ply_element *element;
-    uint64_t row; ///< of the element, from 1
-    const char *at; ///< GLINT_PLY_TEXT: in the line of the row
-    bool takes_wedges; ///< corners of faces have coordinates, as vertices have none
-    bool bad_normals; ///< some are 0 or not finite
+    uint64_t row; ///< row within the element, from 1
+    const char *at; ///< GLINT_PLY_TEXT: position in the row's line
+    bool takes_wedges; ///< corners of faces have texture coordinates, because vertices have none
+    bool bad_normals; ///< some normals are 0 or not finite
 } body;
 
 // ---- Numbers ----
@@ -80,7 +81,7 @@ static glint_status read_bytes(body *b, glint_ply_type type, double *out)
     return GLINT_OK;
 }
 
-/// The next line that has something.
+/// Reads the next line that is not empty.
 static glint_status next_line(body *b)
 {
     bool more = true;
@@ -95,7 +96,7 @@ static glint_status next_line(body *b)
     return GLINT_OK;
 }
 
-/// The next word, on this line or a later one.
+/// Reads the next word as a number, from this line or a later one.
 static glint_status read_word(body *b, double *out)
 {
     const char *end;
@@ -120,7 +121,7 @@ static glint_status read_number(body *b, glint_ply_type type, double *out)
     return b->head->format == GLINT_PLY_TEXT ? read_word(b, out) : read_bytes(b, type, out);
 }
 
-/// A whole number 0 .. most.
+/// Checks that a number is whole and 0 .. most.
 static glint_status check_whole(body *b, double number, double most, const char *what, uint32_t *out)
 {
     char expected[96], got[40];
@@ -142,7 +143,7 @@ static glint_status read_whole(body *b, glint_ply_type type, double most, const 
 
 // ---- Rows ----
 
-/// Reads a face. One of fewer than 3 corners is left out.
+/// Reads a face. A face of fewer than 3 corners is left out.
 static glint_status read_face(body *b, const glint_ply_property *p, uint32_t *size)
 {
     glint_mesh_reader *r = b->reader;
@@ -161,7 +162,8 @@ static glint_status read_face(body *b, const glint_ply_property *p, uint32_t *si
     return GLINT_OK;
 }
 
-/// Reads strips: each vertex after the second of one makes a triangle with the two before it, every other one turned.
+/// Reads triangle strips: each vertex after the first two makes a triangle with the two before it; every other one is
+/// flipped.
 static glint_status read_strips(body *b, const glint_ply_property *p)
 {
     static const uint32_t three = 3;
@@ -192,7 +194,7 @@ static glint_status read_strips(body *b, const glint_ply_property *p)
     return status;
 }
 
-/// Reads the coordinates of a face's corners, which its property of corners has given a size.
+/// Reads the texture coordinates of a face's corners; `size` is the number of corners.
 static glint_status read_wedge(body *b, const glint_ply_property *p, uint32_t size)
 {
     glint_mesh_reader *r = b->reader;
@@ -223,10 +225,10 @@ static glint_status pass_over(body *b, const glint_ply_property *p)
     return status;
 }
 
-/// The numbers of a row that a mesh has go to `v`.
+/// Reads the properties of a row. Numbers that meshes use go to `v`.
 static glint_status read_properties(body *b, double v[GLINT_PLY_NUMBERS])
 {
-    uint32_t size = 0; // of a face
+    uint32_t size = 0; // corners of the face
     for (uint32_t i = 0; i < b->element->property_count; i++) {
         const glint_ply_property *p = &b->element->properties[i];
         glint_status status;
@@ -248,8 +250,8 @@ static glint_status read_properties(body *b, double v[GLINT_PLY_NUMBERS])
     return GLINT_OK;
 }
 
-/// Adds a colour that is not made of 8-bit codes: as numbers, whose range is known when all are read. Whole numbers of 16 bits are shares of
-/// 65535, others of 255.
+/// Adds a colour that is not 8-bit, as numbers, whose range is known only after all are read. 16-bit integers are
+/// divided by 65535, others by 255.
 static glint_status add_color_of_type(body *b, const double rgb[3])
 {
     glint_mesh_reader *r = b->reader;
@@ -275,7 +277,7 @@ static glint_status add_color(body *b, const double v[GLINT_PLY_NUMBERS])
         return add_color_of_type(b, v + GLINT_PLY_RED);
     for (int c = 0; c < 3; c++) {
         const double code = v[GLINT_PLY_RED + c];
-        if (!(code >= 0 && code <= 255 && code == floor(code))) { // of a text
+        if (!(code >= 0 && code <= 255 && code == floor(code))) { // possible in text files
             snprintf(got, sizeof got, "%.15g", code);
             return fail_at(b, "a colour's code, 0 .. 255,", got);
         }
@@ -304,7 +306,7 @@ static glint_status add_vertex(body *b, const double v[GLINT_PLY_NUMBERS])
     return status;
 }
 
-/// Corners of a face that have no coordinates, where others have, have none.
+/// Gives corners without texture coordinates the index GLINT_NO_UV, if other corners have coordinates.
 static glint_status fill_wedges(glint_mesh_reader *r)
 {
     static const uint32_t none = GLINT_NO_UV;
@@ -391,7 +393,7 @@ glint_status glint_mesh_read_ply(glint_mesh_reader *r)
         return glint_fail_nomem(r->error);
     body b = { .reader = r, .head = h };
     glint_status status = glint_ply_read_head(r, h);
-    r->text.longest = (size_t)1 << 26; // strips are one line
+    r->text.longest = (size_t)1 << 26; // a strip is one line
     if (!status)
         status = read_elements(&b);
     r->colors_of_faces = h->colored && strcmp(h->colored->name, "face") == 0;

@@ -1,4 +1,4 @@
-/// PLY files: what their head says. Internal to scene/.
+/// PLY files: the contents of the header. Internal to scene/.
 #ifndef GLINT_MESH_PLY_H
 #define GLINT_MESH_PLY_H
 
@@ -35,15 +35,15 @@ typedef enum glint_ply_role {
     GLINT_PLY_RED,
     GLINT_PLY_GREEN,
     GLINT_PLY_BLUE,
-    GLINT_PLY_NUMBERS, ///< how many these are
+    GLINT_PLY_NUMBERS, ///< number of the properties above
     GLINT_PLY_VERTEX_NUMBERS = GLINT_PLY_NUMBERS,
-    GLINT_PLY_STRIP, ///< vertices of strips of triangles, -1 between these
-    GLINT_PLY_WEDGE, ///< coordinates of the corners of a face, u and v each
+    GLINT_PLY_STRIP, ///< vertices of triangle strips, with -1 between strips
+    GLINT_PLY_WEDGE, ///< texture coordinates of a face's corners, u and v each
     GLINT_PLY_PASSED_OVER
 } glint_ply_role;
 
 typedef struct glint_ply_property {
-    glint_ply_type type, count_type; ///< count_type: of a list
+    glint_ply_type type, count_type; ///< count_type: type of a list's length
     bool is_list;
     glint_ply_role role;
 } glint_ply_property;
@@ -60,15 +60,15 @@ typedef struct glint_ply_head {
     uint32_t element_count;
     uint64_t vertex_count, face_count; ///< face_count: rows of elements that have faces or strips
     char texture[512]; ///< the picture that the file names; "": none
-    const glint_ply_element *colored; ///< whose colours count; NULL: there are none
-    glint_ply_type color_type; ///< of these
+    const glint_ply_element *colored; ///< the element that gives the colours; NULL: there are none
+    glint_ply_type color_type; ///< type of these colours
     glint_ply_element elements[GLINT_PLY_ELEMENTS_MAX];
 } glint_ply_head;
 
 extern const unsigned char glint_ply_sizes[GLINT_PLY_TYPE_COUNT]; ///< bytes
 
 bool glint_ply_has_role(const glint_ply_element *e, glint_ply_role role);
-/// Reads the head of a file, to behind its end_header.
+/// Reads the header of a file, including its end_header.
 glint_status glint_ply_read_head(glint_mesh_reader *reader, glint_ply_head *head);
 
 #endif

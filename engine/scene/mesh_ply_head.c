@@ -1,4 +1,4 @@
-/// The head of PLY files: which numbers each vertex and each face has.
+/// Reads the header of PLY files, which describes the numbers of each vertex and face.
 #include "engine/base/status.h"
 #include "engine/scene/mesh_ply.h"
 
@@ -74,7 +74,7 @@ static glint_status read_property(glint_mesh_reader *r, glint_ply_element *e, ch
         return glint_mesh_refuse(&r->text, "at most 256 properties", words[0]);
     p.role = role_of(e, &p, rest[1]);
     if (p.role >= GLINT_PLY_RED && p.role <= GLINT_PLY_BLUE && glint_ply_has_role(e, p.role))
-        p.role = GLINT_PLY_PASSED_OVER; // other colours, under another name
+        p.role = GLINT_PLY_PASSED_OVER; // other colours, with another name
     if (p.role != GLINT_PLY_PASSED_OVER && glint_ply_has_role(e, p.role))
         return glint_mesh_refuse(&r->text, "a property once", rest[1]);
     e->properties[e->property_count++] = p;
@@ -115,7 +115,7 @@ static glint_status read_format(glint_mesh_reader *r, glint_ply_head *h, char **
                              words[1] ? words[1] : "");
 }
 
-/// Cuts a line into words, NULL after the last; those past the fifth are left out.
+/// Splits a line into words, NULL after the last; words after the sixth are dropped.
 static void split(char *line, char *words[7])
 {
     char *rest = NULL;
@@ -125,7 +125,7 @@ static void split(char *line, char *words[7])
     words[count] = NULL;
 }
 
-/// A comment may name the picture of a mesh; the first one counts.
+/// Reads the comment that names the picture of a mesh; the first one counts.
 static void take_texture(glint_mesh_reader *r, glint_ply_head *h)
 {
     static const char comment[] = "comment TextureFile";
@@ -170,7 +170,7 @@ static glint_status read_words(glint_mesh_reader *r, glint_ply_head *h)
     return status;
 }
 
-/// Whether an element has red, green and blue of one type, which goes to *type.
+/// Returns whether an element has red, green and blue of the same type, and writes *type.
 static bool has_colors(const glint_ply_element *e, glint_ply_type *type)
 {
     int count = 0;
@@ -205,7 +205,7 @@ static void find_colors(const glint_mesh_reader *r, glint_ply_head *h)
         glint_mesh_warn(r->desc, r->text.path, "its colours are ignored: red, green and blue of one type expected");
 }
 
-/// Whether the elements make a mesh, and have no more rows than the file has room for.
+/// Checks that the elements make a mesh, and that the file is long enough for their rows.
 static glint_status check_head(const glint_mesh_reader *r, const glint_ply_head *h)
 {
     bool places = false, faces = false, strips = false;

@@ -1,4 +1,5 @@
-/// Data of a mesh for smooth shading: normals of its vertices, and the points where light is computed once for several faces.
+/// Data of a mesh for smooth shading: vertex normals, and the points at which light is computed once for several
+/// faces.
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/objects.h"
@@ -7,7 +8,7 @@
 
 static bool is_zero(const double v[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
-/// Means of the faces around each vertex, by area.
+/// Computes vertex normals as the area-weighted mean of the faces around each vertex.
 static glint_status make_normals(glint_mesh *mesh, glint_error *error)
 {
     double(*normals)[3] = calloc(mesh->vertex_count, sizeof *normals);
@@ -39,15 +40,15 @@ static glint_status make_normals(glint_mesh *mesh, glint_error *error)
     return GLINT_OK;
 }
 
-/// The sites of each vertex, one behind the other: those with a normal and a material of their own.
+/// The shading points of each vertex, as linked lists: one for each combination of normal and material.
 typedef struct chains {
-    uint32_t *first; ///< of each vertex; GLINT_NO_NORMAL: none
-    uint32_t *next, *normal; ///< of each site
-    uint32_t *material; ///< likewise; NULL: there is one
+    uint32_t *first; ///< first of each vertex; GLINT_NO_NORMAL: none
+    uint32_t *next, *normal; ///< for each shading point
+    uint32_t *material; ///< likewise; NULL: all have the same
 } chains;
 
-/// The number of the site of a vertex with a normal, a new one where it has none yet. A corner without a normal, which takes
-/// its face's, is a site of its own.
+/// Returns the shading point of a vertex with a given normal and material, and makes it if needed. A corner without a
+/// normal uses the face's normal and gets a shading point of its own.
 static uint32_t shading_point_of(const glint_mesh *mesh, chains *c, uint32_t vertex, uint32_t normal, uint32_t material,
                                  size_t *count)
 {
@@ -115,7 +116,7 @@ glint_status glint_mesh_prepare(glint_mesh *mesh, const uint32_t *index, glint_s
     return status;
 }
 
-/// The cosine of the angle between a triangle's face and the normal of its corner that leans the most.
+/// Returns the smallest cosine between a triangle's face and the normals of its corners.
 static double least_cosine(const glint_mesh *mesh, size_t i)
 {
     const uint32_t *at = mesh->triangles[i], *normal = mesh->triangle_normals ? mesh->triangle_normals[i] : at;

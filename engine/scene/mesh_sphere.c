@@ -1,4 +1,4 @@
-/// A sphere of triangles, to set beside the exact one.
+/// A sphere made of triangles, for comparison with the exact one.
 #include "engine/base/math.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -15,7 +15,7 @@ typedef struct globe {
     uint32_t *corners, *sizes;
 } globe;
 
-/// The point of ring y (0 is the north pole, along +y) and segment x.
+/// Computes the direction of a point on ring y (0 is the north pole, along +y) and segment x.
 static void globe_direction(const globe *g, uint32_t x, uint32_t y, double out[3])
 {
     const double around = 2 * PI * x / g->across, down = PI * y / g->down;
@@ -37,7 +37,7 @@ static void add_vertex(globe *g, const double center[3], double radius, uint32_t
     g->vertex_count++;
 }
 
-/// Number of a vertex: the pole, then ring after ring, then the other pole.
+/// Returns the index of a vertex: one pole, then ring after ring, then the other pole.
 static uint32_t vertex_at(const globe *g, uint32_t x, uint32_t y)
 {
     if (y == 0)
@@ -50,7 +50,7 @@ static void add_face(globe *g, uint32_t x, uint32_t y, size_t *corner)
     const uint32_t at[4] = { vertex_at(g, x, y), vertex_at(g, x + 1, y), vertex_at(g, x + 1, y + 1),
                              vertex_at(g, x, y + 1) };
     uint32_t size = 0;
-    for (int i = 0; i < 4; i++) { // two corners of a face at a pole are one
+    for (int i = 0; i < 4; i++) { // two corners of a face at a pole coincide
         if ((i == 1 && at[1] == at[0]) || (i == 3 && at[3] == at[2]))
             continue;
         g->corners[*corner + size] = at[i];

@@ -1,4 +1,4 @@
-/// STL files: triangles one by one, as text or binary. Corners at one place become one vertex.
+/// Reads STL files: single triangles, as text or binary. Corners at the same position become one vertex.
 #include "engine/base/status.h"
 #include "engine/scene/mesh_file.h"
 
@@ -9,7 +9,7 @@
 #define HEAD_BYTES 84 ///< a text and the number of triangles
 #define TRIANGLE_BYTES 50 ///< a normal, three corners in binary32, two bytes of no fixed meaning
 
-/// Adds a triangle: its vertices are found by their numbers' bits.
+/// Adds a triangle. Corners with the same bits share a vertex.
 static glint_status add_triangle(glint_mesh_reader *r, double corners[3][3])
 {
     static const uint32_t size = 3;
@@ -17,7 +17,7 @@ static glint_status add_triangle(glint_mesh_reader *r, double corners[3][3])
     glint_status status = GLINT_OK;
     for (int i = 0; i < 3 && !status; i++) {
         for (int c = 0; c < 3; c++)
-            corners[i][c] += 0.0; // -0 and 0 are one place
+            corners[i][c] += 0.0; // -0 and 0 are the same position
         status = glint_mesh_find(&r->places, &r->vertices, corners[i], sizeof corners[i], &number, r->error);
         if (!status)
             status = glint_mesh_append(&r->corners, &number, r->error);
@@ -30,7 +30,7 @@ static glint_status add_triangle(glint_mesh_reader *r, double corners[3][3])
 static float float_at(const unsigned char *bytes)
 {
     float number;
-    memcpy(&number, bytes, sizeof number); // little-endian, as every machine that the engine runs on
+    memcpy(&number, bytes, sizeof number); // little-endian, like all machines that the engine supports
     return number;
 }
 
@@ -56,14 +56,14 @@ static glint_status read_binary(glint_mesh_reader *r, uint32_t count)
 
 static const char *const WORDS[] = { "facet", "outer", "vertex", "vertex", "vertex", "endloop", "endfacet" };
 
-/// Where the lines of a text are.
+/// The position within the structure of a text.
 typedef struct state {
-    int place; ///< 0 .. 6, in a facet; 0 also between facets
+    int place; ///< 0 .. 6, within a facet; 0 also between facets
     bool ended; ///< the last solid has ended
     double corners[3][3];
 } state;
 
-/// Reads a line of a facet, or between facets. Text after a solid is skipped, up to the next one.
+/// Reads a line of a facet or between facets. Text after a solid is skipped, up to the next solid.
 static glint_status read_statement(glint_mesh_reader *r, const char *at, state *s)
 {
     char expected[32];
@@ -98,7 +98,7 @@ static glint_status read_statement(glint_mesh_reader *r, const char *at, state *
     return s->place ? GLINT_OK : add_triangle(r, s->corners);
 }
 
-/// The next line in place, its first word in small letters; *at NULL: there is none.
+/// Reads the next line that is not empty, with its first word in lower case; *at NULL: there is none.
 static glint_status next_statement(glint_mesh_reader *r, char **at)
 {
     bool more = true;
@@ -132,8 +132,8 @@ static glint_status read_text(glint_mesh_reader *r)
 
 // ---- The file ----
 
-/// Whether a file is text: "solid" is its first word, and its first bytes have a facet or an end after the first line, or no
-/// byte that no text has.
+/// Returns whether a file is text: its first word is "solid", and its first bytes contain a facet or an end after the
+/// first line, or no byte that cannot be in a text.
 static bool is_text(const char *bytes, size_t count)
 {
     size_t at = 0;
@@ -151,7 +151,7 @@ static bool is_text(const char *bytes, size_t count)
     return facets || printable;
 }
 
-/// Refuses a file that is neither text nor as long as its number of triangles says.
+/// Refuses a file that is not text and does not have the size that its number of triangles requires.
 static glint_status refuse_size(glint_mesh_reader *r, const char *head, size_t got, uint32_t count)
 {
     bool printable = got > 0;
@@ -165,8 +165,8 @@ static glint_status refuse_size(glint_mesh_reader *r, const char *head, size_t g
     return glint_mesh_refuse(&r->text, "solid, as the first word of a text,", head);
 }
 
-/// A file whose size fits its number of triangles is binary, whatever its head says: "solid" begins some of both kinds. So
-/// is a longer file that is not text; the bytes behind its triangles are ignored.
+/// A file whose size fits its number of triangles is binary, whatever its header says, because both formats may begin
+/// with "solid". A longer file that is not text is binary, too; the bytes after its triangles are ignored.
 glint_status glint_mesh_read_stl(glint_mesh_reader *r)
 {
     char bytes[1024 + 8] = { 0 }; // the zeros end every comparison

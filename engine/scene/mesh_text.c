@@ -39,7 +39,7 @@ static size_t slot_of(const glint_mesh_set *set, const void *item, size_t key_si
     return (size_t)glint_key_add((glint_key) { 0 }, item, key_size).low & (set->room - 1);
 }
 
-/// Room for twice as many items, at most half of the slots taken.
+/// Doubles the capacity, so that at most half of the slots are used.
 static glint_status grow_set(glint_mesh_set *set, const glint_mesh_array *array, size_t key_size, glint_error *error)
 {
     glint_mesh_set grown = { .room = set->room ? 2 * set->room : 1024 };
@@ -137,8 +137,8 @@ static glint_status grow_line(glint_mesh_text *text, size_t used)
     return GLINT_OK;
 }
 
-/// Reads the rest of a line's end after a carriage return: LF, also after more of them. In a file whose first line ends in
-/// CR without LF nothing more belongs to it: the bytes that follow a head may be anything.
+/// Reads the rest of a line's end after a carriage return: LF, also after several carriage returns. If a file's first
+/// line ends in CR without LF, nothing else belongs to the end: any bytes may follow a header.
 static void end_at_return(glint_mesh_text *text)
 {
     int c = '\r', returns = 0;
@@ -181,7 +181,7 @@ glint_status glint_mesh_next_line(glint_mesh_text *text, bool joined, bool *more
     return GLINT_OK;
 }
 
-/// Reads the number again with an E where Fortran writes a D, or nothing: 1.5D+03, 1.5-103.
+/// Reads a number again, with E instead of Fortran's D or of a missing letter: 1.5D+03, 1.5-103.
 static double read_fortran(const glint_mesh_text *text, const char *at, const char **end)
 {
     char copy[64], *copy_end;
@@ -238,7 +238,7 @@ bool glint_mesh_text_is_utf16(const glint_mesh_text *text)
            (memcmp(text->begin, "\xff\xfe", 2) == 0 || memcmp(text->begin, "\xfe\xff", 2) == 0);
 }
 
-/// Puts a name into the folder of a path. Quotation marks around the name go.
+/// Joins the folder of a path and a name. Quotation marks around the name are removed.
 static char *join(const char *path, const char *name)
 {
     const char *slash = strrchr(path, '/');
@@ -267,7 +267,7 @@ char *glint_mesh_beside(const char *path, const char *name)
         return out;
     for (const char *next; (next = strpbrk(slash + 1, "/\\")) != NULL;)
         slash = next;
-    char *base = join(path, slash + 1); // of a path on another machine
+    char *base = join(path, slash + 1); // last part of a path from another machine
     if (!base || access(base, F_OK) != 0) {
         free(base);
         return out;

@@ -1,4 +1,4 @@
-/// The structures of the described objects. Internal to the engine; nothing below engine/ itself includes it.
+/// The structures of the described objects. Internal: only scene/ and geometry/ include this header.
 #ifndef GLINT_OBJECTS_H
 #define GLINT_OBJECTS_H
 
@@ -13,8 +13,8 @@ struct glint_material {
 
 struct glint_light {
     size_t references;
-    glint_light_desc desc; ///< its `vertices` are the light's own
-    double (*vertices)[3]; ///< or NULL
+    glint_light_desc desc; ///< its `vertices` point to the copy below
+    double (*vertices)[3]; ///< owned copy; or NULL
 };
 
 struct glint_camera {
@@ -24,54 +24,54 @@ struct glint_camera {
 
 /// Whether a mesh has an inside.
 typedef struct glint_closure {
-    bool found; ///< the rest is known
-    bool inverted; ///< its triangles run clockwise as seen from outside
-    uint32_t triangles; ///< of an edge along which not as many run one way as the other; 0: there is none, it is closed
-    double edge[2][3]; ///< that edge, in the order in which the first of these runs
+    bool found; ///< the other fields are valid
+    bool inverted; ///< triangles run clockwise as seen from outside
+    uint32_t triangles; ///< number of triangles at the open edge, where they do not balance; 0: the mesh is closed
+    double edge[2][3]; ///< the open edge, in the direction of the first of these triangles
 } glint_closure;
 
 /// A mesh's triangles.
 typedef struct glint_mesh {
     double (*vertices)[3];
-    uint32_t (*triangles)[3]; ///< numbers of vertices
+    uint32_t (*triangles)[3]; ///< indices of vertices
     size_t vertex_count, triangle_count;
     double (*normals)[3]; ///< unit, or 0: none; NULL: there are none
-    uint32_t (*triangle_normals)[3]; ///< indices of normals; NULL: the same as of the vertices
-    double (*uv)[2]; ///< coordinates on a picture; NULL: there are none
-    uint32_t (*triangle_uv)[3]; ///< indices of these; NULL: the same as of the vertices
-    glint_key uv_key; ///< of both
-    size_t *uv_missing; ///< of each material, the first face that has a corner without, from 1; 0: none
-    uint32_t *faces; ///< the face each triangle was cut from, from 0; NULL: each is a face
+    uint32_t (*triangle_normals)[3]; ///< indices of normals; NULL: equal to the vertex indices
+    double (*uv)[2]; ///< texture coordinates; NULL: there are none
+    uint32_t (*triangle_uv)[3]; ///< indices of uv pairs; NULL: equal to the vertex indices
+    glint_key uv_key; ///< hash of `uv` and `triangle_uv`
+    size_t *uv_missing; ///< for each material, the first face with a corner without coordinates, from 1; 0: none
+    uint32_t *faces; ///< the face that each triangle was cut from, from 0; NULL: each triangle is a face
     size_t face_count;
-    uint32_t (*shading_points)[3]; ///< gouraud shading: one index for each combination of vertex, normal and material;
-                                   ///< NULL: the same as of the vertices
-    size_t shading_point_count; ///< 0: not counted yet
-    double center[3], radius, segments; ///< of a sphere of triangles; segments 0: it is none
-    double bend; ///< see glint_mesh_bend; 0: none, or not looked for yet
+    uint32_t (*shading_points)[3]; ///< gouraud shading: one index for each combination of vertex, normal and
+        ///< material; NULL: equal to the vertex indices
+    size_t shading_point_count; ///< 0: not computed yet
+    double center[3], radius, segments; ///< of a triangulated sphere; segments 0: the mesh is not one
+    double bend; ///< see glint_mesh_bend; 0: none, or not computed yet
     glint_closure closure; ///< see glint_mesh_find_closure
 } glint_mesh;
 
 struct glint_shape {
     size_t references;
-    uint64_t revision; ///< another one after every change; no two shapes ever have the same
+    uint64_t revision; ///< changes with every change of the shape; unique among all shapes
     glint_shape_desc desc;
     size_t count; ///< spheres, or triangles; 1 for other kinds
     glint_mesh *mesh; ///< GLINT_SHAPE_MESH
     glint_list children; ///< of a group or combined solid
-    size_t level; ///< how many groups it has been within
-    uint64_t stamp; ///< of the last search that came by
-    size_t probed; ///< the level that search supposed
-    uint64_t checked; ///< a group: the last revision given to any shape when its children were looked at
-    uint64_t children_hash; ///< of their revisions then
-    bool dressed; ///< it has a material of its own, not that of the whole
-    double lower[3], upper[3]; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: a box around them
-    double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each
-    uint32_t *index; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: material of each sphere or triangle, or NULL
+    size_t level; ///< largest nesting depth that it has had
+    uint64_t stamp; ///< stamp of the last search that visited it
+    size_t probed; ///< level that this search assumed
+    uint64_t checked; ///< a group: the latest revision of any shape when its children were last checked
+    uint64_t children_hash; ///< hash of the children's revisions at that time
+    bool dressed; ///< it has its own material instead of the whole solid's
+    double lower[3], upper[3]; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: bounding box
+    double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each sphere
+    uint32_t *index; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: material index of each sphere or triangle, or NULL
     glint_material **materials;
     size_t material_count;
 };
 
-typedef struct glint_geometry glint_geometry; ///< geometry/geometry.h
+typedef struct glint_geometry glint_geometry; ///< defined in geometry/geometry.h
 void glint_geometry_release(glint_geometry *geometry); ///< NULL: nothing
 
 struct glint_scene {
@@ -84,25 +84,25 @@ struct glint_scene {
 static inline glint_shape *glint_scene_shape(const glint_scene *scene, size_t i) { return scene->shapes.items[i]; }
 static inline glint_light *glint_scene_light(const glint_scene *scene, size_t i) { return scene->lights.items[i]; }
 
-/// A shape of `count` primitives with room for `material_count` materials, none there yet; NULL: no memory.
+/// Allocates a shape with space for `material_count` materials, none set yet; NULL: out of memory.
 glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_count);
-/// Makes the box of the shape hold a ball around the point, too; `first`: it holds nothing yet.
+/// Extends the bounding box by a ball; `first`: the box is empty so far.
 void glint_shape_stretch(glint_shape *shape, const double center[3], double radius, bool first);
 static inline bool glint_shape_combines(const glint_shape *shape) { return shape->desc.kind >= GLINT_SHAPE_UNION; }
-/// Whether it is nothing but its children.
+/// Returns whether it consists only of its children.
 static inline bool glint_shape_has_children(const glint_shape *shape) { return shape->desc.kind >= GLINT_SHAPE_GROUP; }
-/// Whether rays meet it by the rules of solids: a box, disk, cylinder, cone or torus.
+/// Returns whether rays intersect it as a solid: a box, disk, cylinder, cone or torus.
 static inline bool glint_shape_is_solid(const glint_shape *shape)
 {
     return shape->desc.kind >= GLINT_SHAPE_BOX && shape->desc.kind <= GLINT_SHAPE_TORUS;
 }
-/// Refuses a part of a combined solid that has no inside. who: the solid, for the message.
+/// Refuses a part of a combined solid that has no inside. who: the solid's name, for the message.
 glint_status glint_check_part(const char *who, const glint_shape *part, glint_error *error);
-/// "difference", ... of a kind.
+/// Returns the name of a kind: "difference", ...
 const char *glint_shape_kind_name(glint_shape_kind kind);
 /// Gives a shape a new revision.
 void glint_shape_changed(glint_shape *shape);
-/// Its revision; of a group, another one after every change of anything within.
+/// Returns the revision; a group's revision changes with every change of anything in it.
 uint64_t glint_shape_revision(glint_shape *shape);
 
 bool glint_transform_is_identity(const glint_transform *t);
@@ -110,29 +110,30 @@ bool glint_transform_is_identity(const glint_transform *t);
 bool glint_transform_similar(const glint_transform *t, double *factor);
 void glint_transform_point(const glint_transform *t, const double p[3], double out[3]);
 void glint_transform_linear(const glint_transform *t, double out[3][3]);
-/// Rows of the matrix that takes normals along, and its determinant.
+/// Computes the matrix that transforms normals; returns the determinant of `m`.
 double glint_linear_cofactors(double m[3][3], double out[3][3]);
 glint_status glint_check_transform(const char *name, const glint_transform *t, glint_error *error);
 
-/// Returns whether a pattern consists only of numbers, 0 .. most, which can replace it; one number stands for all three. Others
-/// are run, so that those that are out of range become what a pattern's are, and are counted.
+/// Returns whether a pattern consists only of numbers 0 .. most, which can replace it; one number stands for all
+/// three. Patterns with numbers out of range are run, so that the numbers are clamped and counted like other pattern
+/// results.
 bool glint_pattern_numbers(const glint_program *program, double most, double out[3]);
 
-/// Takes a reference to `material`, or makes one with default fields.
+/// Retains `material`, or makes one with default fields if it is NULL.
 glint_material *glint_material_or_default(glint_material *material, glint_error *error);
 void glint_mesh_free(glint_mesh *mesh);
-/// Makes what a mesh lacks to be shaded so: normals of the vertices, and the numbers of its sites.
-/// index: the material of each triangle; NULL: they have one.
+/// Computes the data that a mesh needs for a kind of shading: vertex normals and shading points. index: the material
+/// of each triangle; NULL: all have the same.
 glint_status glint_mesh_prepare(glint_mesh *mesh, const uint32_t *index, glint_shading shading, glint_error *error);
 glint_status glint_check_shading(glint_shading shading, glint_error *error);
-/// Fills `closure`, once.
+/// Fills in `closure` on the first call.
 glint_status glint_mesh_find_closure(glint_mesh *mesh, glint_error *error);
 
-/// "point_light 'lamp'", or "point_light #2" without a name. `number` counts from 1.
+/// Writes "point_light 'lamp'", or "point_light #2" without a name. `number` counts from 1.
 void glint_describe_light(const glint_light_desc *desc, size_t number, char *out, size_t size);
-/// Whether it has a specular term that is not black, as far as its numbers say.
+/// Returns whether it has a specular term that is not black, judging by its numbers.
 bool glint_material_is_shiny(const glint_material_desc *desc);
-/// Whether light goes through, somewhere; whether it has a mirror.
+/// Return whether the material transmits light anywhere, and whether it has a mirror.
 bool glint_material_transmits(const glint_material_desc *desc);
 bool glint_material_mirrors(const glint_material_desc *desc);
 bool glint_material_is_cut(const glint_material_desc *desc); ///< returns whether its surfaces may have holes

@@ -66,7 +66,7 @@ glint_status glint_scene_create(glint_scene **out, glint_error *error)
     return GLINT_OK;
 }
 
-/// Checks what the fields are together.
+/// Checks the combination of fields.
 static glint_status check_together(const glint_scene_desc *desc, glint_error *error)
 {
     const glint_program *program = desc->background_program;

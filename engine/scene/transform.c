@@ -65,7 +65,7 @@ glint_transform glint_transform_rotate(const double axis[3], double degrees)
     turn(degrees, &s, &c);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
-            const int k = 3 - i - j; // of i != j, the third axis
+            const int k = 3 - i - j; // for i != j, the third axis
             const double across = i == j ? c : (j == (i + 1) % 3 ? -1 : 1) * a[k] * s;
             out.m[i][j] = a[i] * a[j] * (1 - c) + across;
         }
@@ -88,16 +88,16 @@ void glint_transform_linear(const glint_transform *t, double out[3][3])
             out[i][j] = t->m[i][j];
 }
 
-/// a b - c d to two units of 2^-53 of itself, however much of it cancels (Kahan; Jeannerod, Louvet, Muller, Math. Comp. 82,
-/// 2013).
+/// Returns a b - c d with an error of at most two units of 2^-53 relative to the result, even under cancellation
+/// (Kahan; Jeannerod, Louvet, Muller, Math. Comp. 82, 2013).
 static double difference_of_products(double a, double b, double c, double d)
 {
     const double product = c * d, lost = fma(-c, d, product);
     return fma(a, b, -product) + lost;
 }
 
-/// Differences rounded plainly would be off by a share of the largest squared, which of a map that flattens in two
-/// directions is far more than a share of its condition.
+/// Plainly rounded differences would have errors in proportion to the square of the largest entry. For a map that
+/// flattens in two directions, these errors are far larger than its condition number implies.
 double glint_linear_cofactors(double m[3][3], double out[3][3])
 {
     for (int i = 0; i < 3; i++) {
@@ -108,7 +108,7 @@ double glint_linear_cofactors(double m[3][3], double out[3][3])
     return vec_dot(m[0], out[0]);
 }
 
-/// The determinant of the matrix with its columns brought to length 1: 0 when they are in one plane.
+/// Returns the determinant of the matrix with columns of length 1: 0 if they lie in one plane.
 static double openness(const glint_transform *t)
 {
     double columns[3][3], cofactors[3][3];
