@@ -1094,7 +1094,8 @@ typedef enum glint_visibility {
 
 /// The values stored for a pixel, as linear float32. Light is the mean over the samples.
 typedef enum glint_pass {
-    GLINT_PASS_BEAUTY, ///< (((((background + ambient) + diffuse) + specular) + indirect) + mirror) + transmission, in float32
+    GLINT_PASS_BEAUTY, ///< (((((background + ambient) + diffuse) + specular) + indirect) + mirror) + transmission, in
+        ///< float32
     GLINT_PASS_BACKGROUND, ///< light of samples that hit nothing, and the colour of the depth cue
     GLINT_PASS_AMBIENT, ///< ambient terms
     GLINT_PASS_DIFFUSE, ///< diffuse terms of all lights

@@ -3,10 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-#define FEWEST 256 ///< primitives; with fewer, traversing the index is as fast
-#define SAMPLES_A_PRIMITIVE 0.5 ///< of a frame; with fewer, a grid is never made
-#define SAMPLES_AT_ONCE 4.0 ///< with this many, shared by the threads, a grid pays in one frame; with fewer it is
-    ///< made in the second frame with unchanged light and geometry
+#define FEWEST 256 ///< primitives; with fewer, traversing the BVH is as fast
+#define SAMPLES_A_PRIMITIVE 0.5 ///< samples of a frame per primitive; with fewer, a grid is never made
+#define SAMPLES_AT_ONCE 4.0 ///< samples per primitive and thread from which a grid pays in one frame; with fewer it
+    ///< is made in the second frame with unchanged light and geometry
 
 void glint_grids_clear(glint_grids *grids)
 {

@@ -1,6 +1,6 @@
-/// Pictures of earlier frames, returned again when a frame has the same inputs. A picture whose key returns once is stored from then
-/// on. When there is no space, the picture that cost the fewest rays per byte is dropped, and among equal ones the least recently
-/// returned: a large cheap picture goes before a small expensive one.
+/// Pictures of earlier frames, returned again when a frame has the same inputs. A picture is stored once its key has
+/// recurred. When there is no space, the picture that cost the fewest rays per byte is dropped, and among equal ones
+/// the least recently returned: a large cheap picture goes before a small expensive one.
 #include "engine/frame/renderer.h"
 
 /// Returns the key of the whole picture, or of its region.
@@ -11,7 +11,7 @@ static glint_key picture_key(const glint_plan *plan)
     return glint_key_add(key, plan->desc.region, sizeof plan->desc.region);
 }
 
-/// Stats of a frame for which no stage ran.
+/// Fills in the statistics of a frame for which no stage ran.
 static void tell_given(const glint_frame_stats *of, glint_frame_stats *stats)
 {
     *stats = (glint_frame_stats) { .stage_count = of->stage_count };
@@ -57,7 +57,7 @@ static double cost_of(const glint_plan *plan, const glint_image *image)
            (double)glint_image_bytes(image);
 }
 
-/// Reserves memory for a picture; those that are worth less go. NULL: there is none for it.
+/// Reserves memory for a picture, and drops pictures that are worth less. NULL: there is not enough memory.
 static glint_picture *make_place(glint_renderer *renderer, double worth, size_t bytes)
 {
     for (;;) {
@@ -85,7 +85,8 @@ static void set_aside(glint_renderer *renderer, const glint_picture *last, int s
     if (!place)
         return;
     *place = *last;
-    place->worth = renderer->picture_floor + last->cost; // which has risen to that of the last evicted one
+    place->worth = renderer->picture_floor + last->cost; // the floor may have risen to the worth of the last dropped
+        // picture
     glint_image_retain(place->image);
     glint_reuse_unreserve(&renderer->reuse, bytes); // the spare image's memory was reserved already
     glint_image_release(renderer->spare[spare]);

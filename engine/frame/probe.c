@@ -45,10 +45,12 @@ static void cast_lane(const glint_stages *stages, const glint_geometry_table *ge
         stages->geometry[GLINT_DOUBLE].surface(&surface);
 }
 
-/// Returns the number of a part of a combined solid, from 0. whole, id: ids of the solid, and of the part or of a triangle if the part is a mesh.
+/// Returns the number of a part of a combined solid, from 0. whole, id: ids of the solid, and of the part, or of a
+/// triangle if the part is a mesh.
 static size_t part_number(const glint_geometry *geometry, uint32_t whole, uint32_t id)
 {
-    const uint32_t count = geometry->hull_count ? geometry->hulls[0].first : geometry->member_count; // triangles come after
+    const uint32_t count = geometry->hull_count ? geometry->hulls[0].first : geometry->member_count; // triangles come
+        // after
     size_t parts = 0;
     for (uint32_t i = 0; i < count; i++) {
         const glint_prim *member = &geometry->members[i];
@@ -62,7 +64,7 @@ static void read_hit(const glint_geometry *geometry, uint32_t id, const lane_gro
 {
     const glint_part *part = &geometry->parts[geometry->prim_part[id]];
     *out = (glint_hit) { .t = g->t[0] * scale, .shape = part->shape, .element = id - part->first_prim };
-    for (uint32_t whole = id; part->whole; whole--) { // its id is before those of its parts
+    for (uint32_t whole = id; part->whole; whole--) { // the id of a solid precedes the ids of its parts
         const glint_part *other = &geometry->parts[geometry->prim_part[whole]];
         if (other->whole)
             continue;

@@ -1,4 +1,4 @@
-/// A frame: its tiles on the worker pool, each walked through the plan's stages; progress and cancel.
+/// Renders a frame: its tiles on the worker pool, each walked through the plan's stages; progress and cancelling.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/effects/outline/outline.h"
@@ -299,8 +299,8 @@ glint_status glint_renderer_take_image(glint_renderer *renderer, const glint_ren
     return status;
 }
 
-/// The last picture, when nobody else holds it: the tiles that are unchanged are then in their place already. NULL: it is held, or of
-/// another format.
+/// Returns the last picture if nobody else references it: unchanged tiles are then already in place. NULL: it is
+/// referenced, or it has another format.
 static glint_image *take_last(glint_renderer *renderer, const glint_plan *plan)
 {
     glint_picture *last = &renderer->pictures[0];

@@ -8,17 +8,17 @@
 
 glint_pool *glint_renderer_pool(const glint_renderer *renderer);
 
-/// Renders one instant into an image of the whole frame's size, within the plan's extent. The image may be the renderer's
-/// last one; the caller must not write to it.
+/// Renders one instant into an image of the whole frame's size, within the plan's extent. The image may be the
+/// renderer's last one; the caller must not write to it.
 glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
                                   glint_frame_stats *stats, glint_error *error);
 
-/// likewise for a plan that has `times`, into a new image.
+/// Does the same for a plan that has `times`, into a new image.
 glint_status glint_render_times(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
                                 glint_frame_stats *stats, glint_error *error);
 
-/// Adds the times, rays and work of another part of the frame. The stages are those of `to`; `share` of their work belongs to the
-/// other part.
+/// Adds the times, rays and work of another part of the frame. The stages are the stages of `to`; `share` of their
+/// work belongs to the other part.
 void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more, double share);
 
 #endif

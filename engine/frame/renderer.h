@@ -13,8 +13,9 @@
 
 #include <stdatomic.h>
 
-/// Number of pictures whose memory a renderer reuses, for a job with two in its queue: these two, the one being encoded and the one
-/// being rendered. A fifth would cost new memory and a whole picture to copy or render each time.
+/// Number of pictures whose memory a renderer reuses, for a job with two in its queue: these two, the one being
+/// encoded and the one being rendered. A fifth picture would cost new memory, and a whole picture to copy or render
+/// each time.
 #define GLINT_SPARE_IMAGES 4
 
 #define GLINT_PICTURES_MAX 33 ///< largest number of stored pictures
@@ -33,27 +34,27 @@ struct glint_renderer {
     const glint_stages *stages;
     bool time_stages, count_work;
     atomic_bool cancelled;
-    atomic_bool *stop; ///< its own `cancelled`; for a renderer of bases, that of the frame's renderer
+    atomic_bool *stop; ///< its own `cancelled`; for a renderer of bases, the flag of the frame's renderer
     atomic_size_t tiles_done;
     atomic_size_t tile_count;
-    glint_tile **tiles; ///< a tile's working memory for each worker
+    glint_tile **tiles; ///< working memory for a tile, one for each worker
     glint_reuse reuse;
     glint_shading_points_cached shading_points;
     glint_raster raster;
     glint_tints tints; ///< for frames where transparent materials tint shadows
-    glint_grids own_grids, *grids; ///< a renderer of bases uses those of the frame's renderer
+    glint_grids own_grids, *grids; ///< a renderer of bases uses the grids of the frame's renderer
     glint_picture pictures[GLINT_PICTURES_MAX]; ///< the last frame's; stored ones
-    double picture_floor; ///< the worth of the last dropped picture; it rises, so that unused pictures age
+    double picture_floor; ///< worth of the last dropped picture; it rises, so that unused pictures age
     glint_recent recent; ///< keys of the last pictures
-    /// Earlier pictures, whose memory is used again when there is no other reference.
+    /// Earlier pictures, whose memory is reused when there is no other reference.
     glint_image *spare[GLINT_SPARE_IMAGES];
-    glint_refine own_refine, *refine; ///< a renderer of bases uses that of the frame's renderer
+    glint_refine own_refine, *refine; ///< a renderer of bases uses the data of the frame's renderer
     double refined_by[3]; ///< threshold, curve and exposure of the last base's comparison
     glint_key setting; ///< setting_key of the last frame with a base
     /// Renders the bases of adaptive sampling, with the pool and the tiles of this renderer; NULL until a frame
     /// needs it, and again after a frame that does not.
     struct glint_renderer *base;
-    bool shares; ///< this is such a renderer: pool and tiles belong to another one
+    bool shares; ///< this renderer renders bases: pool and tiles belong to another one
 };
 
 /// Renders a plan of one instant into `image`, which has its format and size. The caller owns all arguments.
@@ -83,7 +84,7 @@ void glint_renderer_collect(const glint_renderer *renderer, const glint_plan *pl
 /// Counts the pixels at edges that a derivative's parameter moves.
 uint64_t glint_count_shifted(const glint_image *image, const glint_extent *extent);
 
-/// Milliseconds since a fixed moment.
+/// Returns the milliseconds since a fixed moment.
 double glint_frame_now_ms(void);
 
 #endif

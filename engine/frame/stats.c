@@ -12,7 +12,7 @@ double glint_frame_now_ms(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-// ---- Of the tiles ----
+// ---- Tiles ----
 
 static void add_counts(glint_tile_counts *to, const glint_tile_counts *more)
 {
@@ -88,8 +88,8 @@ static inline bool is_shifted(uint32_t own, uint32_t before, uint32_t after, uin
     return (own == 0) | (((own ^ before) | (own ^ after) | (own ^ up) | (own ^ down)) != 0);
 }
 
-/// Counts the pixels of a row whose hidden lights differ from a neighbour's, or between their samples. `up` and
-/// `down`: the neighbouring rows; at an edge the row itself.
+/// Counts the pixels of a row where the set of occluded lights differs from a neighbour's, or between samples. `up`
+/// and `down`: the neighbouring rows; at an edge the row itself.
 static uint64_t count_row(const uint32_t *at, const uint32_t *up, const uint32_t *down, int width)
 {
     const int last = width - 1;
@@ -113,7 +113,7 @@ uint64_t glint_count_shifted(const glint_image *image, const glint_extent *exten
     return count;
 }
 
-// ---- Of several parts ----
+// ---- Several parts ----
 
 static void add_odd(glint_odd *to, const glint_odd *more)
 {

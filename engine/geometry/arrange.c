@@ -1,4 +1,4 @@
-/// Puts primitives into the order of the index, where they are: there is no room for all of them twice.
+/// Puts primitives into the order of the BVH, in place, because memory may not suffice for a copy of all of them.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/geometry/geometry.h"
@@ -6,22 +6,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STRIDE 1024 ///< every so many places a walk begins
+#define STRIDE 1024 ///< distance between the positions where walks begin
 #define RUN 64 ///< walks that a worker takes at a time
-#define WALKS 8 ///< that it goes on with in turn: each waits for memory
+#define WALKS 8 ///< walks that it advances in turn, because each waits for memory
 #define CHUNK 4096 ///< primitives whose corners a worker moves at a time
-#define AHEAD 8 ///< primitives whose corners are on their way
+#define AHEAD 8 ///< primitives whose corners are prefetched
 
-/// Orders the primitives: those of the index first, then unbounded ones, then repeats.
+/// The new order of the primitives: first those in the BVH, then unbounded ones, then repeats.
 typedef struct arrangement {
     const glint_geometry *geometry;
     glint_prim *prims;
     uint32_t count;
-    uint32_t *rest; ///< from the index's last on
-    uint8_t *done; ///< of each place
-    glint_prim *first; ///< what was in the places where walks begin
-    double (*corners)[3][3]; ///< room for all, in their new order; NULL: there are none
-    uint32_t *chunks; ///< scratch: a number for each chunk of primitives or of members
+    uint32_t *rest; ///< old positions of the primitives after the BVH's last one
+    uint8_t *done; ///< for each position
+    glint_prim *first; ///< the primitives that were at the positions where walks begin
+    double (*corners)[3][3]; ///< memory for all corners in their new order; NULL: there are none
+    uint32_t *chunks; ///< scratch: one number for each chunk of primitives or of members
 } arrangement;
 
 static inline uint32_t comes_from(const arrangement *a, uint32_t place)
@@ -68,7 +68,7 @@ static bool arrangement_init(arrangement *a, const glint_geometry *geometry)
     return true;
 }
 
-/// Walks from each of a run's places along the cycle that it is on, up to the next place that is a walk's first.
+/// Follows the permutation's cycle from each start position of a run to the next start position of any walk.
 static void walk_cycles(void *context, size_t index, int worker)
 {
     (void)worker;
@@ -95,7 +95,7 @@ static void walk_cycles(void *context, size_t index, int worker)
         }
 }
 
-/// The cycles that no walk has come to.
+/// Moves the cycles that no walk has reached.
 static void move_rest(arrangement *a)
 {
     for (uint32_t i = 0; i < a->count; i++) {
@@ -123,7 +123,7 @@ static void move_prims(arrangement *a, glint_pool *pool)
 typedef struct corner_work {
     glint_prim *prims;
     uint32_t count;
-    uint32_t *first; ///< of each chunk's corners; before that is known: how many they are
+    uint32_t *first; ///< first corner of each chunk; before that is known, its number of corners
     double (*to)[3][3];
 } corner_work;
 
@@ -159,7 +159,7 @@ static void move_chunk(void *context, size_t index, int worker)
     }
 }
 
-/// Returns how many; first: room for a number a chunk.
+/// Moves the corners of primitives and returns how many there are. first: space for one number per chunk.
 static uint32_t move_corners_of(glint_prim *prims, uint32_t count, double (*to)[3][3], uint32_t *first, glint_pool *pool)
 {
     corner_work work = { prims, count, first, to };
@@ -175,7 +175,7 @@ static uint32_t move_corners_of(glint_prim *prims, uint32_t count, double (*to)[
     return next;
 }
 
-/// Has the corners follow the primitives: neighbours in space are neighbours in memory.
+/// Moves the corners to the order of the primitives, so that neighbours in space are neighbours in memory.
 static void move_corners(glint_geometry *geometry, arrangement *a, glint_pool *pool)
 {
     const uint32_t moved = move_corners_of(a->prims, a->count, a->corners, a->chunks, pool);

@@ -1,4 +1,5 @@
-/// Boxes of primitives in the index's frame, and the spheres around them by which kernels throw out what a ray is far from.
+/// Boxes of primitives in the BVH's frame, and the bounding spheres that kernels use to reject primitives far from a
+/// ray.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/geometry/geometry.h"
@@ -10,7 +11,7 @@
 
 #define CHUNK 8192 ///< primitives that a worker takes at a time
 
-/// The least float that is not below x. No branch: half of all x are rounded down.
+/// Returns the smallest float not below x. Branch-free, because half of all x are rounded down.
 static inline float float_up(double x)
 {
     float f = (float)x;
@@ -23,10 +24,10 @@ static inline float float_up(double x)
 
 static inline float float_down(double x) { return -float_up(-x); }
 
-/// Numbers beyond this are as good as infinite, and differences of such floats are still finite.
+/// Numbers beyond this count as infinite; differences of floats up to it are still finite.
 #define BOX_MAX 0x1p120
 
-/// Computes a primitive's box in the index's frame: its middle, half its size, and half its size with the margin.
+/// A primitive's box in the BVH's frame: its centre, half its size, and half its size with the margin.
 typedef struct placed_box {
     double center[3], half[3], loose[3];
 } placed_box;
@@ -42,9 +43,10 @@ static inline placed_box place_sphere(const glint_geometry_table *table, const g
     return box;
 }
 
-/// Returns the margin of a box in the index's units: for rounding; for the difference between a solid and its inverse; for
-/// what a point may be off a triangle and still count as on it. That last is 13 slacks of the scene's coordinates at most:
-/// twice what surface states of the point, of two edges and a coordinate, and one of the corners as the point sees them.
+/// Returns the margin of a box in the BVH's units. It covers rounding, the difference between a solid and its
+/// inverse, and the distance by which a point may be off a triangle and still count as on it. This distance is at
+/// most 13 slacks of the scene's coordinates: twice the error that `surface` states for the point, for two edges and
+/// for a coordinate, plus one for the corners relative to the point.
 static double box_slack(const glint_geometry_table *table, const glint_prim *prim, double center, double half)
 {
     const double rounding = 0x1p-50 * (fabs(center) + half);
@@ -81,8 +83,8 @@ static inline void write_box(const placed_box *placed, uint32_t item, glint_box 
     box->unused = 0;
 }
 
-/// The radius of a sphere around an ellipsoid or torus, in the world. The map stretches nothing by more than the root of the
-/// largest sum in a row of its columns' products, which is exact where it keeps angles.
+/// Returns the radius of a sphere around an ellipsoid or torus, in the world. The map M stretches no vector by more
+/// than the square root of the largest row sum of |M^T M|, which is exact if the map preserves angles.
 static double reach_of(const glint_solid *solid)
 {
     const double unit = solid->form == GLINT_FORM_BALL ? 1 : solid->form == GLINT_FORM_TORUS ? 1 + solid->tube : HUGE_VAL;
@@ -108,7 +110,8 @@ void glint_prim_place_sphere(const glint_geometry_table *table, glint_prim *prim
     prim->filter_bound = float_up(radius * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(vec_dot(box.center, box.center)) + FLT_MIN);
 }
 
-/// The map makes of a unit circle an ellipse; the root of the larger eigenvalue of its columns' products is half of its length.
+/// The map turns a unit circle into an ellipse. Half of its length is the square root of the larger eigenvalue of the
+/// products of its columns.
 void glint_prim_place_axis(const glint_geometry_table *table, const glint_prim *prim, glint_solid *solid)
 {
     const bool about_axis = solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE ||
@@ -131,12 +134,12 @@ void glint_prim_place_box(const glint_geometry_table *table, const glint_prim *p
     write_box(&placed, item, box);
 }
 
-// ---- Of all ----
+// ---- All boxes ----
 
 typedef struct box_work {
     const glint_geometry *geometry;
     glint_box *boxes;
-    uint32_t *first; ///< of each chunk's boxes; before that is known: how many they are
+    uint32_t *first; ///< first box of each chunk; before that is known, its number of boxes
     bool solids;
 } box_work;
 

@@ -7,25 +7,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// A subtree is left to a worker when it holds at most 1 / TASK_SHARE of all, and at least TASK_MIN boxes.
+/// A subtree becomes a task for one worker if it has at most 1 / TASK_SHARE of all boxes, and at least TASK_MIN.
 #define TASK_SHARE 12
 #define TASK_MIN 2048
 
-#define RECORDS_A_NODE 12 ///< fewer than most trees have
+#define RECORDS_A_NODE 12 ///< boxes per node; most trees have more
 
-/// Nodes in a row that grows. A child index counts from the row's start.
+/// A growing array of nodes. A child index counts from the array's start.
 typedef struct node_list {
     glint_node *nodes; ///< owned, unless `lent`
     uint32_t count, capacity;
-    bool lent; ///< of the builder's room
+    bool lent; ///< `nodes` belongs to the builder's `room`
 } node_list;
 
-/// A subtree that a worker builds. Its first node has a place in the top, the others follow all that came before.
+/// A subtree that one worker builds. Its first node is in the top; the others follow all earlier nodes.
 typedef struct task {
     glint_record_set set;
-    int depth; ///< nodes that a path may have in it
-    uint32_t at; ///< in the top
-    uint32_t base; ///< of its second node in the finished tree
+    int depth; ///< most nodes on a path in it
+    uint32_t at; ///< index of its first node in the top
+    uint32_t base; ///< index of its second node in the finished tree
     node_list list;
     bool failed;
 } task;
@@ -36,7 +36,7 @@ typedef struct builder {
     task *tasks; ///< owned
     size_t task_count, task_capacity;
     uint32_t task_max; ///< boxes in a task; larger sets are split by all workers together
-    glint_node *room; ///< owned; where the tasks' lists begin, which few outgrow
+    glint_node *room; ///< owned; the tasks' lists begin here, and few outgrow it
     size_t room_bytes;
     glint_node *nodes; ///< the finished tree
 } builder;
@@ -45,7 +45,7 @@ typedef struct builder {
 typedef struct node_plan {
     glint_record_set sets[GLINT_NODE_WIDTH];
     double area[GLINT_NODE_WIDTH];
-    bool open[GLINT_NODE_WIDTH]; ///< a slot for each record
+    bool open[GLINT_NODE_WIDTH]; ///< each record gets a slot
     uint32_t count;
 } node_plan;
 
@@ -63,7 +63,7 @@ static void nodes_free(node_list *list)
     *list = (node_list) { .count = list->count };
 }
 
-/// Makes room for `count` more nodes; UINT32_MAX: out of memory, else the index of the first.
+/// Makes space for `count` more nodes and returns the index of the first; UINT32_MAX: out of memory.
 static uint32_t nodes_add(node_list *list, uint32_t count)
 {
     if (count > list->capacity - list->count) {
@@ -80,7 +80,7 @@ static uint32_t nodes_add(node_list *list, uint32_t count)
     return list->count - count;
 }
 
-/// Half the area; nothing in float overflows a double's.
+/// Returns half the area, in double, which no product of floats overflows.
 static double half_area(const glint_bounds *box)
 {
     double size[3];
@@ -89,7 +89,7 @@ static double half_area(const glint_bounds *box)
     return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
 }
 
-/// Nodes on the longest path when `count` boxes are split by number.
+/// Returns the number of nodes on the longest path if `count` boxes are split by number.
 static int least_depth(uint32_t count)
 {
     int depth = 1;
@@ -98,7 +98,7 @@ static int least_depth(uint32_t count)
     return depth;
 }
 
-/// The set to split next: the largest by area, or by number. plan->count: none is too large for one node.
+/// Returns the set to split next: the largest by area, or by number; plan->count if each set fits into one node.
 static uint32_t pick_set(const node_plan *plan, bool by_number)
 {
     uint32_t best = plan->count;
@@ -113,7 +113,7 @@ static uint32_t pick_set(const node_plan *plan, bool by_number)
     return best;
 }
 
-/// Splits until every slot is taken or every set fits a node. depth: nodes that a path may have from here on.
+/// Splits until every slot is taken or every set fits into a node. depth: most nodes on a path from here on.
 static void plan_sets(const builder *b, const glint_record_set *set, int depth, bool shared, node_plan *plan)
 {
     const bool by_number = least_depth(set->count) >= depth;
@@ -133,7 +133,7 @@ static void plan_sets(const builder *b, const glint_record_set *set, int depth, 
     }
 }
 
-/// Free slots go to the records of small sets, which then need no node: the largest first.
+/// Gives free slots to the records of small sets, the largest sets first. Such sets need no node.
 static void plan_open(node_plan *plan)
 {
     uint32_t room = GLINT_NODE_WIDTH - plan->count;
@@ -161,7 +161,7 @@ static int widest_axis(const glint_bounds *box)
     return widest;
 }
 
-/// Returns how many of the slots are sets.
+/// Fills the slots and returns how many of them are sets.
 static uint32_t plan_slots(const builder *b, const node_plan *plan, node_slots *slots)
 {
     uint32_t count = 0, sets = 0;
@@ -181,7 +181,7 @@ static uint32_t plan_slots(const builder *b, const node_plan *plan, node_slots *
     return sets;
 }
 
-/// Where each slot goes: by the centres along an axis, equal ones in the order they came.
+/// Ranks the slots by their centres along an axis; equal ones keep their order.
 static void rank_slots(const node_slots *slots, int axis, uint32_t ranks[GLINT_NODE_WIDTH])
 {
     typedef int32_t int4 __attribute__((vector_size(16)));
@@ -242,8 +242,8 @@ static bool add_task(builder *b, const glint_record_set *set, int depth, uint32_
     return true;
 }
 
-/// Builds the node of `set` at list->nodes[at] and all below it. In the top, what a worker can do becomes a task.
-/// False: out of memory.
+/// Builds the node of `set` at list->nodes[at] and all nodes below it. In the top, subtrees of a suitable size become
+/// tasks. False: out of memory.
 static bool build_node(builder *b, node_list *list, uint32_t at, const glint_record_set *set, int depth)
 {
     const bool top = list == &b->top;
@@ -277,7 +277,7 @@ static void build_task(void *context, size_t index, int worker)
     glint_records_drop(&b->records, &t->set);
 }
 
-/// Copies a task's nodes to where they stay.
+/// Copies a task's nodes to their final position.
 static void join_task(void *context, size_t index, int worker)
 {
     (void)worker;
@@ -295,7 +295,7 @@ static void join_task(void *context, size_t index, int worker)
 
 static uint32_t nodes_of(const task *t) { return t->set.count / RECORDS_A_NODE + GLINT_NODE_WIDTH; }
 
-/// Lends each task the nodes that it needs, most likely: one piece of memory, whose pages are large.
+/// Lends each task the nodes that it will probably need, from one block of memory with large pages.
 static bool make_room(builder *b)
 {
     size_t total = 0, next = 0;
@@ -324,7 +324,7 @@ static bool build_lists(builder *b, const glint_record_set *root)
     return true;
 }
 
-/// The top, then the rest of each task in order. Nodes are all that is needed now.
+/// Joins the top and the rest of each task in order. The records are not needed any more and are freed first.
 static bool join(builder *b, glint_bvh *out)
 {
     uint32_t count = b->top.count;

@@ -10,9 +10,9 @@
 #endif
 
 #define BINS 16
-#define CHUNK 16384 ///< records; what one worker takes at a time
+#define CHUNK 16384 ///< records that one worker takes at a time
 #define CHUNKS_MAX 64
-/// By place a path may split this often, then by number: what peels off a few of a million each time must end.
+/// Splits by position allowed on a path, then by number: splits that remove only a few of a million records must end.
 #define SPLITS_MAX 64
 
 typedef glint_float4 v4;
@@ -24,17 +24,17 @@ typedef struct bins {
     uint32_t count[3][BINS];
 } bins;
 
-/// Where the centres of a set fall: bin = (center - origin) scale. An axis that tells nothing apart has scale 0.
+/// The bins of a set's centres: bin = (center - origin) scale. On an axis where all centres are equal, scale is 0.
 typedef struct grid {
     v4 origin, scale;
 } grid;
 
 typedef struct cut {
     int axis; ///< -1: none
-    int bin; ///< first of the upper part
+    int bin; ///< first bin of the upper part
 } cut;
 
-/// The part of one worker in a split, or in loading the boxes.
+/// The share of one worker in a split, or in loading the boxes.
 typedef struct glint_chunk {
     bins bins;
     bounds box; ///< loading: of the boxes
@@ -42,25 +42,26 @@ typedef struct glint_chunk {
     uint32_t begin, count; ///< in the set
 } chunk;
 
-/// The part of one worker in moving records together.
+/// The share of one worker in moving records of a part together.
 typedef struct piece {
     bounds center[2]; ///< of the records that go to the lower and to the upper part
     uint32_t begin, count; ///< in the set
-    uint32_t wrong, wrong_before; ///< how many are in the wrong part, here and in the part's pieces before
+    uint32_t wrong, wrong_before; ///< number of records in the wrong part, in this piece and in the part's pieces
+        ///< before it
 } piece;
 
 typedef struct split_work {
     glint_record *records; ///< of the set
-    uint32_t *wrong; ///< likewise: numbers in the set
+    uint32_t *wrong; ///< the same for their numbers in the set
     chunk *chunks;
     piece pieces[2][CHUNKS_MAX]; ///< of the lower and of the upper part
-    size_t count; ///< of chunks, and of pieces of each part
+    size_t count; ///< number of chunks, and of pieces of each part
     glint_pool *pool; ///< NULL: one thread does all
     grid grid;
     cut cut;
 } split_work;
 
-/// a < b ? a : b in each lane: where a is NaN, b.
+/// Returns a < b ? a : b in each lane; where a is NaN, b.
 static inline v4 min4(v4 a, v4 b)
 {
 #if defined(__SSE2__)
@@ -71,7 +72,7 @@ static inline v4 min4(v4 a, v4 b)
 #endif
 }
 
-/// a > b ? a : b in each lane: where a is NaN, b.
+/// Returns a > b ? a : b in each lane; where a is NaN, b.
 static inline v4 max4(v4 a, v4 b)
 {
 #if defined(__SSE2__)
@@ -97,7 +98,7 @@ static inline void bounds_add_point(bounds *sum, v4 point)
     sum->upper = max4(point, sum->upper);
 }
 
-/// Only the box: the fourth element is an index, not a number.
+/// Returns only the box: the fourth lane of a record is an index, not a number.
 static inline bounds record_box(const glint_record *record)
 {
     return (bounds) { (v4)((v4i)record->lower & (v4i) { -1, -1, -1, 0 }), record->upper };
@@ -115,7 +116,7 @@ static grid grid_of(const glint_record_set *set)
     return g;
 }
 
-/// Only the first three lanes count.
+/// Returns bins of which only the first three lanes are defined.
 static inline v4i bins_of(grid g, v4 center)
 {
     const v4 last = { BINS - 1, BINS - 1, BINS - 1, 0 };
@@ -148,7 +149,8 @@ static void bin_chunk(void *context, size_t index, int worker)
     }
 }
 
-/// Half the area of a box, in units of the set, and a little of its sides, which tell boxes without area apart.
+/// Returns half the area of a box, in units of the set, plus a small part of its sides, which distinguishes boxes
+/// without area.
 static inline float half_area(bounds box, float scale)
 {
     const v4 size = max4(box.upper * scale - box.lower * scale, (v4) { 0 });
@@ -156,7 +158,7 @@ static inline float half_area(bounds box, float scale)
     return sides[0] + sides[1] + sides[2];
 }
 
-/// 1 / the longest side of a box, so that areas neither overflow nor vanish together.
+/// Returns 1 / the longest side of a box, so that areas neither overflow nor all underflow.
 static float area_scale(const bounds *box)
 {
     float longest = 0;
@@ -165,13 +167,13 @@ static float area_scale(const bounds *box)
     return fminf(0.5f / longest, 0x1p120f);
 }
 
-/// Nodes full of records; the cost of a set is its area times this.
+/// Returns the number of nodes that the records fill; the cost of a set is its area times this number.
 static inline float node_count(uint32_t records)
 {
     return (float)((records + GLINT_NODE_WIDTH - 1) / GLINT_NODE_WIDTH);
 }
 
-/// The cheapest place on one axis, when it is cheaper than *cost.
+/// Finds the cheapest cut on one axis, if it is cheaper than *cost.
 static void cut_axis(const bins *b, int axis, uint32_t total, float scale, float *cost, cut *best)
 {
     float above[BINS];
@@ -205,7 +207,7 @@ static cut find_cut(const bins *b, const glint_record_set *set)
     return best;
 }
 
-/// Finds what of a piece is in the wrong part.
+/// Finds the records of a piece that are in the wrong part.
 static void find_wrong(void *context, size_t index, int worker)
 {
     (void)worker;
@@ -225,7 +227,7 @@ static void find_wrong(void *context, size_t index, int worker)
         const size_t is_upper = (int)place >= bin;
         wrong[count] = i;
         count += is_upper != upper_part;
-        // all ones are a NaN, which min4 and max4 pass over
+        // all bits set make a NaN, which min4 and max4 ignore
         bounds_add_point(&lower, (v4)((v4i)center | skip[is_upper]));
         bounds_add_point(&upper, (v4)((v4i)center | skip[!is_upper]));
     }
@@ -234,7 +236,7 @@ static void find_wrong(void *context, size_t index, int worker)
     p->wrong = (uint32_t)count;
 }
 
-/// Swaps misplaced records of a piece of the lower part with those of the upper part that have the same numbers.
+/// Swaps misplaced records of a piece of the lower part with the misplaced records of equal rank in the upper part.
 static void swap_wrong(void *context, size_t index, int worker)
 {
     (void)worker;
@@ -273,7 +275,7 @@ static uint32_t count_below(const bins *b, cut where)
     return count;
 }
 
-/// Everything of the two sets but their centres, which the move finds out.
+/// Fills in both sets except for their centres, which moving the records computes.
 static void part(const bins *b, cut where, glint_record_set *set, glint_record_set *above)
 {
     *above = *set;
@@ -292,7 +294,7 @@ static size_t chunk_count(uint32_t records)
     return count < 1 ? 1 : count < CHUNKS_MAX ? count : CHUNKS_MAX;
 }
 
-/// Shares `total` records out to `count` chunks, and returns `count`.
+/// Divides `total` records among `count` chunks, and returns `count`.
 static size_t cut_chunks(chunk *chunks, size_t count, uint32_t total)
 {
     for (size_t i = 0; i < count; i++) {
@@ -312,7 +314,7 @@ static void cut_pieces(split_work *work, int part, uint32_t begin, uint32_t tota
     }
 }
 
-/// Brings the records of the two parts together.
+/// Moves the records of each part together.
 static void move_records(split_work *work, glint_record_set *set, glint_record_set *above)
 {
     cut_pieces(work, 0, 0, set->count);
@@ -335,7 +337,7 @@ static void split_chunks(const glint_records *records, chunk *chunks, size_t cou
     work.records = records->all + set->begin;
     work.wrong = records->wrong + set->begin;
     work.chunks = chunks;
-    work.pool = count > 1 ? records->pool : NULL; // with one chunk it may be one of the pool's workers that splits
+    work.pool = count > 1 ? records->pool : NULL; // with one chunk, the caller may be one of the pool's workers
     work.count = cut_chunks(chunks, count, set->count);
     work.grid = grid_of(set);
     glint_run_items(work.pool, count, bin_chunk, &work);

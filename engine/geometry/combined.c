@@ -1,4 +1,4 @@
-/// Combined solids as sets: the box around one, and whether a place is in it.
+/// Combined solids as sets: bounding boxes, and whether a point is inside.
 #include "engine/base/vec.h"
 #include "engine/geometry/geometry.h"
 
@@ -87,7 +87,7 @@ void glint_combined_box(const glint_geometry *geometry, const glint_combined *co
     }
 }
 
-/// The operands that a set operation needs, and those that may be the result on their own.
+/// The parts that a set operation needs, and the parts that can be its result on their own.
 typedef struct roles {
     uint64_t needs, alone;
 } roles;
@@ -121,7 +121,8 @@ void glint_combined_roles(glint_combined *combined)
     combined->alone = stack[0].alone;
 }
 
-/// Along any way as good as along another; this one is along no face or edge that is likely.
+/// Counts crossings along a fixed direction, which is unlikely to lie in a face or edge. Every direction gives the
+/// same result.
 static bool hull_holds(const glint_geometry *geometry, const glint_prim *part, const double place[3])
 {
     static const double way[3] = { 0.36, 0.48, 0.8 };

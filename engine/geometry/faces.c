@@ -8,7 +8,7 @@ void glint_place_point(const glint_placing *place, const double p[3], double out
     else
         vec_copy(out, p);
     for (int c = 0; c < 3; c++)
-        out[c] += 0.0; // -0 and 0 are one place
+        out[c] += 0.0; // -0 and 0 are the same position
 }
 
 void glint_place_normal(const glint_placing *place, const double n[3], double out[3])
@@ -34,7 +34,7 @@ void glint_face_init(glint_face *face, const glint_placing *place, const double 
     face->places = 0;
 }
 
-/// Returns the magnitude of the terms when the map takes points from the shape's own space to the world.
+/// Returns the magnitude of the terms that map a point from the shape's own space to the world.
 static double moved_by(const glint_placing *place, int axis, const double own[3])
 {
     const double *row = place->map ? place->map->m[axis] : NULL;

@@ -1,4 +1,4 @@
-/// From the shapes of a scene to its primitives, with their materials and parts.
+/// Makes the primitives of a scene from its shapes, with their materials and parts.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Maps the normal of a corner for smooth shading. If the map does not preserve angles, normals keep their mapped lengths, in
-/// common units: interpolated normals are then the map of those interpolated in the mesh's own space.
+/// Maps the normal of a corner for smooth shading. If the map does not preserve angles, normals keep their mapped
+/// lengths, in common units: interpolated normals are then the map of normals interpolated in the mesh's own space.
 static void place_corner_normal(const glint_placing *place, const double n[3], double out[3])
 {
     double largest = 0;
@@ -43,7 +43,7 @@ static bool is_shared(const glint_shape *shape)
     return shape->mesh && (shape->desc.shading == GLINT_SHADING_FLAT || shape->desc.shading == GLINT_SHADING_GOURAUD);
 }
 
-/// How many sites a shape has each time it shows.
+/// Returns the number of shading points of one instance of a shape.
 static size_t count_shading_points(const glint_shape *shape)
 {
     if (!is_shared(shape))
@@ -51,7 +51,7 @@ static size_t count_shading_points(const glint_shape *shape)
     return shape->desc.shading == GLINT_SHADING_FLAT ? shape->mesh->face_count : shape->mesh->shading_point_count;
 }
 
-/// The site of corner j of triangle i, from the shape's first.
+/// Returns the shading point of corner j of triangle i, counted from the shape's first one.
 static uint32_t shading_point_of(const glint_shape *shape, size_t i, int j)
 {
     const glint_mesh *mesh = shape->mesh;
@@ -67,7 +67,7 @@ static void name_shading_point(glint_geometry *geometry, const glint_prim *prim,
         geometry->shading_point_prims[shading_point] = prim->id;
 }
 
-/// A triangle perpendicular to an axis shares its plane with others, first of all of its own mesh.
+/// Makes a triangle perpendicular to an axis share its plane with others, starting with its own mesh.
 static void share_face(glint_filler *f, glint_prim *prim, const glint_mesh *mesh, size_t i, const glint_placing *place)
 {
     double lower[3], upper[3], normal[3], own[3] = { 0, 0, 0 };
@@ -120,7 +120,7 @@ void glint_fill_solid(glint_filler *f, glint_prim *prim, const glint_shape_desc 
     geometry->table.tori = geometry->table.tori || desc->kind == GLINT_SHAPE_TORUS;
 }
 
-/// A ball stays a sphere where the map keeps angles.
+/// Adds a ball, which stays a sphere if the map preserves angles.
 static void add_ball(glint_filler *f, glint_prim *prim, const double center[3], double radius, const glint_placing *place)
 {
     double factor = 1, moved[3];
@@ -217,7 +217,7 @@ glint_status glint_fill_placing(const glint_filler *f, const glint_shape *shape,
     return GLINT_OK;
 }
 
-/// around: the map of the groups that the shape is in; NULL: the identity.
+/// Adds a shape. around: the map of the groups that contain it; NULL: the identity.
 static glint_status add_shape(glint_filler *f, glint_shape *shape, const glint_transform *around)
 {
     glint_transform map;
@@ -234,9 +234,10 @@ static glint_status add_shape(glint_filler *f, glint_shape *shape, const glint_t
     return status;
 }
 
-#define VISITS_MAX ((size_t)1 << 28) ///< shapes and groups, each as often as it shows
+#define VISITS_MAX ((size_t)1 << 28) ///< shapes and groups, each counted once per instance
 
-/// mapped: within a group that has a transform; within: a combined solid.
+/// Counts the primitives of a shape. mapped: it is in a group that has a transform; within: it is in a combined
+/// solid.
 static glint_status count_shape(glint_filler *f, const glint_shape *shape, bool mapped, bool within)
 {
     const bool group = glint_shape_has_children(shape) && (within || !glint_shape_combines(shape));
@@ -294,7 +295,8 @@ static bool allocate(glint_filler *f)
     const size_t members = f->members + f->hull_prims;
     geometry->member_count = (uint32_t)members;
     f->numbers = glint_alloc(f->materials, sizeof *f->numbers);
-    geometry->prims = glint_alloc_large(f->prims + members, sizeof *geometry->prims); // members join what is arranged
+    geometry->prims = glint_alloc_large(f->prims + members, sizeof *geometry->prims); // members are appended when the
+        // primitives are arranged
     geometry->members = members ? glint_alloc(members, sizeof *geometry->members) : NULL;
     geometry->hulls = f->hulls ? glint_alloc(f->hulls, sizeof *geometry->hulls) : NULL;
     geometry->combined = f->combined ? glint_alloc(f->combined, sizeof *geometry->combined) : NULL;
@@ -302,7 +304,7 @@ static bool allocate(glint_filler *f)
     geometry->parts = glint_alloc(f->parts + f->members + f->hulls, sizeof *geometry->parts);
     geometry->maps = f->maps ? glint_alloc(f->maps, sizeof *geometry->maps) : NULL;
     geometry->normals = f->smooth ? glint_alloc(f->smooth, sizeof *geometry->normals) : NULL;
-    f->solids += f->combined > 0; // the kernels look for either where there are solids
+    f->solids += f->combined > 0; // if there are no `solids`, kernels look neither for solids nor for combined solids
     geometry->solids = f->solids ? glint_alloc(f->solids, sizeof *geometry->solids) : NULL;
     geometry->faces = f->faces ? glint_alloc(f->faces, sizeof *geometry->faces) : NULL;
     geometry->corners = f->corners ? glint_alloc_large(f->corners, sizeof *geometry->corners) : NULL;

@@ -6,37 +6,39 @@
 
 typedef struct glint_filler {
     glint_geometry *geometry;
-    uint32_t *numbers; ///< of the materials of the shape at hand
+    uint32_t *numbers; ///< material indices of the current shape
     uint32_t object_count, id_count;
-    size_t members, combined; ///< parts of combined solids, and those
-    size_t hulls, hull_prims; ///< of those that are meshes, and their triangles
+    size_t members, combined; ///< number of parts of combined solids, and of combined solids
+    size_t hulls, hull_prims; ///< number of parts that are meshes, and of their triangles
     size_t prims, parts, smooth, shared, shading_points, solids, faces,
-        materials; ///< how many there are; materials: most of any shape
-    size_t maps; ///< of parts, at most
-    size_t corners, planes; ///< of triangles and boxes; of planes
+        materials; ///< numbers of each; materials: most of any shape
+    size_t maps; ///< maps of parts, at most
+    size_t corners, planes; ///< corners of triangles and boxes; rows of planes
     size_t visits, map_count;
     uint32_t corner_count, plane_count, normal_count, shared_count, solid_count, face_count, combined_count, hull_count, member_count, hull_prim_count;
-    int level_axis; ///< of the last triangle of the shape that is square to an axis; 3: none so far
-    double level; ///< where on it
+    int level_axis; ///< axis perpendicular to the shape's last triangle with such an axis; 3: none so far
+    double level; ///< the triangle's coordinate on it
     glint_error *error;
 } glint_filler;
 
-/// The number of the shape's material in `materials`, which grows as new ones appear.
+/// Writes the index of the shape's material in `materials`, and appends new ones.
 glint_status glint_fill_material(glint_list *materials, glint_material *material, uint32_t *out, glint_error *error);
-/// place: of the shape under all groups around it.
+/// Fills in a part. place: the shape's placement under all groups around it.
 void glint_fill_part(glint_filler *f, uint32_t part, glint_shape *shape, const glint_placing *place);
-/// The fields of a primitive that do not depend on its place.
+/// Fills in the fields of a primitive that do not depend on its position.
 void glint_fill_dress(glint_filler *f, glint_prim *prim, uint32_t part, uint32_t material, uint32_t medium, bool two_sided);
 void glint_fill_solid(glint_filler *f, glint_prim *prim, const glint_shape_desc *desc, const glint_placing *place);
-/// turned: its corners are taken the other way round: under a map that mirrors, its front stays its front.
+/// Fills in a triangle. turned: its corners are taken in reverse order, so that the front stays the front under a
+/// mirroring map.
 void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *shape, size_t i, const glint_placing *place, bool turned);
-/// around: the map of the groups that the shape is in; NULL: the identity. map: room for its own under that.
+/// Computes a shape's placement. around: the map of the groups that contain it; NULL: the identity. map: memory for
+/// the product.
 glint_status glint_fill_placing(const glint_filler *f, const glint_shape *shape, const glint_transform *around, glint_transform *map,
                                 glint_placing *place);
-/// fill_combined.c: a combined solid and its parts. around: as above.
+/// fill_combined.c: adds a combined solid and its parts. around: as above.
 glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glint_placing *place, const glint_transform *around);
 
-/// How many parts of a combined solid a shape other than a group counts as.
+/// Returns how many parts of a combined solid a shape counts as. Not for groups.
 static inline uint32_t glint_member_parts(const glint_shape *shape)
 {
     return shape->mesh ? GLINT_HULL_PARTS : shape->desc.kind == GLINT_SHAPE_TORUS ? 2 : 1;

@@ -1,4 +1,5 @@
-/// From combined solids to their primitives: one that rays meet, its parts, and the triangles of those that are meshes.
+/// Makes the primitives of combined solids: the primitive that rays intersect, its parts, and the triangles of parts
+/// that are meshes.
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/geometry/fill.h"
@@ -7,11 +8,11 @@
 typedef struct maker {
     glint_shape *shape; ///< the whole
     glint_combined *combined;
-    uint32_t nothings; ///< groups without anything in them
-    uint32_t medium; ///< number of its material
+    uint32_t nothings; ///< groups that are empty
+    uint32_t medium; ///< index of its material
 } maker;
 
-/// Finds the material for parts without one: the material of the whole, or of one of its parts.
+/// Returns the shape whose material applies to parts without one: the whole, or one of its parts.
 static const glint_shape *find_dress(const glint_shape *shape)
 {
     if (shape->dressed && shape->desc.kind != GLINT_SHAPE_GROUP)
@@ -31,7 +32,7 @@ static glint_status too_many_parts(const glint_filler *f, const maker *m)
     return glint_fail(f->error, GLINT_ERR_INVALID, "%s: at most %d parts expected", name, GLINT_PARTS_MAX);
 }
 
-/// A part without its place. order: see glint_prim.face.
+/// Adds a part without its position. order: see glint_prim.face.
 static glint_status start_member(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *place, const glint_shape *dress,
                                  bool turned, uint32_t order, glint_prim **out)
 {
@@ -54,7 +55,7 @@ static glint_status start_member(glint_filler *f, maker *m, glint_shape *shape, 
     return GLINT_OK;
 }
 
-/// A part is a solid or a plane, a ball too; half: 0, or of a torus 1 and 2.
+/// Adds a part that is a solid, ball or plane; half: 0, or 1 and 2 for a torus.
 static glint_status add_member(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *place, const glint_shape *dress,
                                bool turned, uint32_t half)
 {
@@ -71,7 +72,7 @@ static glint_status add_member(glint_filler *f, maker *m, glint_shape *shape, co
     return GLINT_OK;
 }
 
-/// The triangles of a mesh that is a part; numbers of their materials are in f->numbers.
+/// Adds the triangles of a part that is a mesh; the indices of their materials are in f->numbers.
 static void add_hull_triangles(glint_filler *f, const maker *m, glint_shape *shape, const glint_placing *place,
                                const glint_shape *dress, bool turned, glint_prim *box)
 {
@@ -98,7 +99,7 @@ static void add_hull_triangles(glint_filler *f, const maker *m, glint_shape *sha
     f->hull_prim_count += hull->count;
 }
 
-/// A closed mesh: parts that are one, and its triangles.
+/// Adds a closed mesh: several parts for one mesh, and its triangles.
 static glint_status add_hull(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *place, const glint_shape *dress,
                              bool turned)
 {
@@ -167,7 +168,7 @@ static glint_status add_to_whole(glint_filler *f, maker *m, glint_shape *shape, 
     return status;
 }
 
-/// around: as of add_shape.
+/// Adds a combined solid. around: as for add_shape.
 glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glint_placing *place,
                                  const glint_transform *around)
 {

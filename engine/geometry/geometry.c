@@ -7,14 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-// ---- What is equal ----
+// ---- Equal primitives ----
 
-#define PLACES 32u ///< primitives whose places are looked for together
+#define PLACES 32u ///< primitives that are looked up together
 
-/// A primitive by the hash of its place.
+/// A primitive in a hash table of positions.
 typedef struct place_slot {
     uint32_t number; ///< index + 1; 0: free
-    uint32_t tag; ///< bits of the hash that the slot does not tell
+    uint32_t tag; ///< bits of the hash that the slot's index does not contain
 } place_slot;
 
 static bool is_repeat(const glint_geometry *geometry, uint32_t i, uint32_t other)
@@ -22,10 +22,10 @@ static bool is_repeat(const glint_geometry *geometry, uint32_t i, uint32_t other
     double place[GLINT_PLACE_MAX], same[GLINT_PLACE_MAX];
     const size_t bytes = (size_t)glint_prim_place(geometry, &geometry->prims[i], place) * sizeof *place;
     glint_prim_place(geometry, &geometry->prims[other], same);
-    return memcmp(place, same, bytes) == 0; // the kind comes first: other counts differ there
+    return memcmp(place, same, bytes) == 0; // the kind comes first, so records of different lengths differ there
 }
 
-/// Marks those of `count` primitives that are bit-equal to an earlier one. Prefetches their slots first.
+/// Marks the primitives, `count` of them, that are bit-equal to an earlier one. Prefetches their slots first.
 static void mark_repeats(glint_geometry *geometry, uint32_t first, uint32_t count, place_slot *slots, size_t mask)
 {
     glint_key keys[PLACES];
@@ -33,7 +33,7 @@ static void mark_repeats(glint_geometry *geometry, uint32_t first, uint32_t coun
         double place[GLINT_PLACE_MAX];
         const glint_prim *prim = &geometry->prims[first + n];
         if (prim->kind == GLINT_PRIM_TRIANGLE)
-            continue; // has a rule for all triangles of its plane
+            continue; // a separate rule handles all triangles of a plane
         keys[n] = glint_key_add((glint_key) { 0 }, place, (size_t)glint_prim_place(geometry, prim, place) * sizeof *place);
         __builtin_prefetch(&slots[keys[n].low & mask]);
     }
@@ -51,7 +51,7 @@ static void mark_repeats(glint_geometry *geometry, uint32_t first, uint32_t coun
     }
 }
 
-/// Finds the primitives that are bit-equal to one before them.
+/// Finds the primitives that are bit-equal to an earlier one.
 static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
 {
     const uint32_t count = geometry->table.prim_count;
@@ -68,7 +68,7 @@ static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
     return GLINT_OK;
 }
 
-/// Computes the keys of the primitives' places and materials.
+/// Computes the keys of the primitives' positions and materials.
 static void make_keys(glint_geometry *geometry)
 {
     enum { CHUNK = 32 };
@@ -83,7 +83,7 @@ static void make_keys(glint_geometry *geometry)
             const bool triangle = prim->kind == GLINT_PRIM_TRIANGLE, flat = !triangle || prim->item == GLINT_MISS;
             const bool shading_points = triangle && prim->shading_points != GLINT_MISS;
             const uint32_t *part =
-                geometry->prim_part + prim->id; // where a mesh follows another, the places do not say it
+                geometry->prim_part + prim->id; // positions do not show where one mesh ends and the next one begins
             const bool other = triangle && i + n > 0 && prim[-1].kind == GLINT_PRIM_TRIANGLE && part[-1] != part[0];
             look[n][0] = prim->two_sided | (flat ? 0 : 2u) | (shading_points ? 4u : 0) | (other ? 8u : 0);
             look[n][1] = prim->material;
@@ -105,7 +105,7 @@ static void make_keys(glint_geometry *geometry)
             glint_key_add(geometry->look, geometry->shading_points, shared * sizeof *geometry->shading_points);
 }
 
-// ---- The index's frame ----
+// ---- The BVH's frame ----
 
 static int by_value(const void *a, const void *b)
 {
@@ -113,8 +113,8 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/// Around the middle of the primitives (the median, so that a single giant does not move it), in units of the largest
-/// length: floats lose least there.
+/// Chooses the BVH's frame: its origin is the median of the primitives, which a single giant does not move, and its
+/// unit is about the largest length. Floats lose the least precision there.
 static void choose_frame(glint_geometry *geometry)
 {
     enum { SAMPLES = 255 };
@@ -144,14 +144,14 @@ static void choose_frame(glint_geometry *geometry)
     }
     for (uint32_t i = 0; i < geometry->member_count; i++) {
         const glint_prim *member = &geometry->members[i];
-        const bool hull = member->kind == GLINT_PRIM_HULL; // whose box is that of all its triangles
+        const bool hull = member->kind == GLINT_PRIM_HULL; // its box contains all its triangles
         for (int k = hull ? 1 : 0; k < (hull ? 3 : 1); k++)
             table->extent = fmax(table->extent, vec_max_abs(glint_prim_has_corners(member) ? member->corner[k] : member->center));
     }
     table->scale = largest > 0 && isfinite(largest) ? power_of_two_scale(largest) : 1;
 }
 
-/// For segments to a light, marks primitives whose bounding sphere is much larger than themselves.
+/// Marks primitives whose bounding sphere is much larger than themselves, for segments to a light.
 static void keep_box(const glint_geometry *geometry, const glint_prim *prim)
 {
     glint_box box;
@@ -182,7 +182,7 @@ static glint_status index_create(glint_geometry *geometry, glint_error *error)
     for (uint32_t i = 0; i < count; i++) {
         glint_prim *prim = &geometry->prims[i];
         if (prim->filter_bound == GLINT_REPEATED)
-            continue; // the first of equal ones wins every tie and casts every shadow
+            continue; // the first of equal primitives wins every tie and casts every shadow
         prim->filter_bound = HUGE_VALF;
         if (glint_prim_bounded(prim)) {
             glint_prim_place_sphere(&geometry->table, prim);
@@ -210,7 +210,7 @@ static void index_release(glint_index *index)
     free(index);
 }
 
-/// Takes the next place of an order, triangles first. next: of those and of the others.
+/// Returns the next position in the order; triangles come first. next: the next position of triangles, and of others.
 static inline uint32_t take_place(const glint_geometry *geometry, uint32_t i, uint32_t next[2])
 {
     const glint_geometry_table *table = &geometry->table;
@@ -218,7 +218,7 @@ static inline uint32_t take_place(const glint_geometry *geometry, uint32_t i, ui
     return next[mixed && geometry->prims[i].kind != GLINT_PRIM_TRIANGLE]++;
 }
 
-/// Numbers the primitives in the order in which the tree's nodes name them, and has the nodes say so.
+/// Numbers the primitives in the order in which the tree's nodes refer to them, and updates the nodes.
 static void order_by_tree(const glint_geometry *geometry)
 {
     glint_index *index = geometry->index;
@@ -250,7 +250,7 @@ static glint_status make_order(const glint_geometry *geometry, glint_error *erro
     return GLINT_OK;
 }
 
-/// The order becomes the tree's, unless there has been need of one before, which the primitives are in then.
+/// Builds the BVH. The primitives get the tree's order, unless an earlier frame has already fixed another order.
 static glint_status index_build(glint_geometry *geometry, glint_pool *pool, glint_error *error)
 {
     glint_index *index = geometry->index;
@@ -327,7 +327,7 @@ glint_status glint_geometry_others(glint_geometry *geometry, glint_pool *pool, g
     return status;
 }
 
-// ---- The scene's ----
+// ---- The geometry of a scene ----
 
 glint_geometry *glint_geometry_retain(glint_geometry *geometry)
 {
@@ -387,10 +387,12 @@ static glint_status fill(glint_geometry *geometry, const glint_scene *scene, gli
 uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id)
 {
     const glint_part *part = &geometry->parts[geometry->prim_part[id]];
-    return part->first_object + (part->shape->mesh ? 0 : id - part->first_prim); // a part of a combined solid has one id
+    return part->first_object + (part->shape->mesh ? 0 : id - part->first_prim); // a part of a combined solid has one
+        // id
 }
 
-/// Every change of a shape gives it a number that no other state of any shape has.
+/// Returns a key of the states of all shapes: every change of a shape gives it a number that no other state of any
+/// shape has.
 static glint_key revision_of(const glint_scene *scene)
 {
     enum { CHUNK = 64 };

@@ -1,4 +1,4 @@
-/// Closed meshes that are parts of combined solids: what finds their triangles along a ray.
+/// Closed meshes that are parts of combined solids: the trees that find their triangles along a ray.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -6,11 +6,11 @@
 
 #include <stdlib.h>
 
-/// Boxes are wider by this share of the mesh: rounding takes a ray that begins as far off as 2^30 meshes for one that crosses what it
-/// passes by less, and a ray has to find all that it crosses.
+/// Boxes are widened by this fraction of the mesh's size. If a ray starts up to 2^30 mesh sizes away, rounding may
+/// turn a near miss into a crossing, and a ray must find all triangles that it crosses.
 #define HULL_SLACK 0x1p-20
 
-/// A tree that geometries share, as long as the mesh and the index's frame are where they were.
+/// A tree that geometries share as long as the positions of the mesh and the BVH's frame do not change.
 struct glint_hull_tree {
     atomic_size_t references;
     glint_key key;
@@ -45,7 +45,7 @@ static glint_key key_of(const glint_geometry *geometry, const glint_hull *hull)
     return key;
 }
 
-/// How much wider boxes of the hull are, in the index's frame.
+/// Returns by how much to widen the boxes of the hull, in the BVH's frame.
 static float slack_of(const glint_box *boxes, uint32_t count)
 {
     float widest = 0;
@@ -118,8 +118,8 @@ glint_status glint_geometry_hull_trees(glint_geometry *geometry, const glint_geo
     return GLINT_OK;
 }
 
-/// Seen along the ray the edges of all triangles are counted where they cross one half of one axis, each with the same numbers in
-/// both that it belongs to.
+/// Counts the edges that cross one half of one axis, as seen along the ray. An edge has the same numbers in both of
+/// its triangles.
 int glint_prim_crossing(const glint_prim *triangle, const double from[3], const double d[3])
 {
     int z = fabs(d[1]) > fabs(d[0]);

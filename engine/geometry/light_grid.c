@@ -1,4 +1,5 @@
-/// Makes the grids of lights: where a light sees each small sphere, and which cells of its view that covers.
+/// Makes the grids of lights: the position of each small sphere in the light's view, and the cells of the view that
+/// it covers.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -8,26 +9,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SMALLEST_COUNT 64 ///< of spheres; fewer are quicker tested one by one
-#define WIDEST 0.25 ///< bound of a sphere's radius, of its distance; least cosine to the light's axis
+#define SMALLEST_COUNT 64 ///< spheres; fewer are faster to test one by one
+#define WIDEST 0.25 ///< largest radius of a sphere relative to its distance; also the smallest cosine to the light's
+    ///< axis
 #define CELLS_A_RADIUS 3.0 ///< a cell's side, in mean radii
 #define COVERED_MAX 4.0 ///< a sphere's radius in cells; larger ones are tested one by one
-#define ENTRIES_MAX 4 ///< of each sphere, in the mean
-#define ENTRIES_LEAST 2 ///< cells so wide that there are fewer have too many spheres
-#define ENTRY_BYTES (4 * sizeof(uint32_t)) ///< of an entry and of a cell, of which there are no more
-#define COUNT_MAX 32767 ///< columns, rows
-#define SORTED_FROM 24 ///< entries of a cell, in the mean, from which their order pays
-#define SLICES 1024 ///< of depth, by which they are sorted
-#define PLACE_SLACK 0x1p-21 ///< what float rounding may move a place by, of 1 and the place
-#define STEP_SLACK 1.5 ///< steps that rounding may move an entry's place and a point's by, along both axes together
-#define CELL_SLACK 0x1p-21 ///< of the grid's width, what it may move them by besides
-#define FARTHEST 0x1p100 ///< of a sphere, in the index's units: differences of two are numbers, too
-#define NEAR_MOST ((1u << (32 - GLINT_GRID_RADIUS_BITS)) - 1) ///< of an entry
+#define ENTRIES_MAX 4 ///< entries per sphere on average, at most
+#define ENTRIES_LEAST 2 ///< entries per sphere; with fewer, cells are so wide that they hold too many spheres
+#define ENTRY_BYTES (4 * sizeof(uint32_t)) ///< bytes of an entry and a cell; there are at most as many cells as
+    ///< entries
+#define COUNT_MAX 32767 ///< most columns or rows
+#define SORTED_FROM 24 ///< entries per cell on average, from which sorting them pays
+#define SLICES 1024 ///< slices of depth for sorting
+#define PLACE_SLACK 0x1p-21 ///< shift of a position by float rounding, relative to 1 and to the position
+#define STEP_SLACK 1.5 ///< steps by which rounding may shift an entry's position and a point's, along both axes
+    ///< together
+#define CELL_SLACK 0x1p-21 ///< further shift, as a fraction of the grid's width
+#define FARTHEST 0x1p100 ///< largest distance of a sphere, in the BVH's units; differences of two are then finite,
+    ///< too
+#define NEAR_MOST ((1u << (32 - GLINT_GRID_RADIUS_BITS)) - 1) ///< largest `near` of an entry
 
 /// A small sphere as the light sees it.
 typedef struct seen_sphere {
-    float place[2], reach; ///< its middle, and how far from there a segment that meets it may be
-    float radius; ///< of its circle, by the light's place: see glint_light_grid
+    float place[2], reach; ///< its centre, and how far from there a segment that hits it may be
+    float radius; ///< radius of its circle in the light's view: see glint_light_grid
     float near; ///< w of its nearest point
     uint32_t id;
 } seen_sphere;
@@ -35,23 +40,23 @@ typedef struct seen_sphere {
 typedef struct grid_maker {
     const glint_geometry_table *table;
     glint_light_grid *grid;
-    seen_sphere *seen; ///< scratch, of as many as the table has primitives
-    uint32_t count; ///< of these
-    float least[2], most[2]; ///< places that they reach
+    seen_sphere *seen; ///< scratch, one for each primitive of the table
+    uint32_t count; ///< number of `seen`
+    float least[2], most[2]; ///< bounds of the positions that they cover
     float near, far; ///< least and largest `near`
     size_t room; ///< bytes that entries and cells may take
 } grid_maker;
 
 // ---- The light's view ----
 
-/// From the light to a bounding sphere's middle in the world, and how far it is.
+/// Computes the vector from the light to the centre of a bounding sphere in the world, and returns its length.
 static double way_to(const grid_maker *maker, const glint_prim *prim, double way[3])
 {
     vec_sub(way, prim->center, maker->grid->origin);
     return sqrt(vec_dot(way, way));
 }
 
-/// Whether a primitive is a sphere that looks small from the light.
+/// Returns whether a primitive is a sphere that looks small from the light.
 static bool is_small(const grid_maker *maker, const glint_prim *prim, double way[3])
 {
     if (prim->kind != GLINT_PRIM_SPHERE)
@@ -60,7 +65,8 @@ static bool is_small(const grid_maker *maker, const glint_prim *prim, double way
     return maker->grid->directional || radius < WIDEST * distance;
 }
 
-/// Sets the axes along the mean direction to small primitives. Returns false if there are too few, or if they are all around.
+/// Sets the axes along the mean direction to small primitives. Returns false if there are too few, or if they are all
+/// around.
 static bool aim(grid_maker *maker)
 {
     glint_light_grid *grid = maker->grid;
@@ -95,11 +101,11 @@ static bool aim(grid_maker *maker)
     return true;
 }
 
-/// Where the light sees a sphere. False: too far to the side.
+/// Computes the position of a sphere in the light's view. False: it is too far to the side.
 ///
-/// A segment at (u, v) has a distance from the middle whose square is at least w0^2 (du^2 + dv^2) / (1 + u^2 + v^2), so that one
-/// that meets the sphere has du^2 + dv^2 <= (r / w0)^2 (1 + u^2 + v^2). The root of the right side is at most the middle's and
-/// the distance from there together, which bounds that distance.
+/// The squared distance of a segment at (u, v) from the centre is at least w0^2 (du^2 + dv^2) / (1 + u^2 + v^2). A
+/// segment that hits the sphere therefore has du^2 + dv^2 <= (r / w0)^2 (1 + u^2 + v^2). The root of the right side
+/// is at most the root at the centre plus the distance from there, which bounds that distance.
 static bool see(const grid_maker *maker, const glint_prim *prim, uint32_t id, const double way[3], seen_sphere *out)
 {
     const glint_light_grid *grid = maker->grid;
@@ -121,7 +127,7 @@ static bool see(const grid_maker *maker, const glint_prim *prim, uint32_t id, co
     return r < 0.5 && distance < FARTHEST && isfinite(out->reach);
 }
 
-/// Notes a primitive that is in no cell; false: there are too many.
+/// Adds a primitive that is in no cell. Returns false if there are too many.
 static bool add_other(glint_light_grid *grid, uint32_t id)
 {
     if (grid->other_count == GLINT_GRID_OTHERS)
@@ -130,7 +136,7 @@ static bool add_other(glint_light_grid *grid, uint32_t id)
     return true;
 }
 
-/// All bounded primitives.
+/// Computes the positions of all bounded primitives.
 static bool see_all(grid_maker *maker)
 {
     const glint_geometry_table *table = maker->table;
@@ -191,10 +197,11 @@ static void bound_places(grid_maker *maker)
     }
 }
 
-/// x is finite. No fminf and fmaxf, which are calls.
+/// Clamps a finite x. fminf and fmaxf would be function calls.
 static inline uint32_t clamp(float x, float most) { return (uint32_t)(int32_t)(x < 0 ? 0 : x < most ? x : most); }
 
-/// First and last cell of a sphere along both axes, by the float arithmetic of the stage, which never falls.
+/// Computes the first and last cell of a sphere along both axes, by the float arithmetic of the stage, which is
+/// monotonic.
 static inline void cells_of(const glint_light_grid *grid, const seen_sphere *s, uint32_t first[2], uint32_t last[2])
 {
     for (int j = 0; j < 2; j++) {
@@ -204,7 +211,7 @@ static inline void cells_of(const glint_light_grid *grid, const seen_sphere *s, 
     }
 }
 
-/// How many entries cells of this side would have; above `limit`: at least so many.
+/// Returns the number of entries with cells of this side; if it is above `limit`, a number above `limit`.
 static uint64_t count_entries(grid_maker *maker, float side, uint64_t limit)
 {
     glint_light_grid *grid = maker->grid;
@@ -227,7 +234,7 @@ static uint64_t count_entries(grid_maker *maker, float side, uint64_t limit)
     return entries;
 }
 
-/// Chooses the least cells that are large enough, and returns their entries; 0: none are.
+/// Chooses the smallest cells that are large enough, and returns the number of entries; 0: none are.
 static uint64_t choose_cells(grid_maker *maker)
 {
     const uint64_t most = (uint64_t)ENTRIES_MAX * maker->count + 1024, fit = maker->room / ENTRY_BYTES;
@@ -251,7 +258,7 @@ static uint64_t choose_cells(grid_maker *maker)
 
 static size_t seen_bytes(const grid_maker *maker) { return maker->table->prim_count * sizeof *maker->seen; }
 
-/// Sorts the spheres by slices of depth, whose front becomes their `near`.
+/// Sorts the spheres by slices of depth; `near` becomes the front of the slice.
 static bool sort_by_depth(grid_maker *maker)
 {
     seen_sphere *sorted = glint_scratch_resize(NULL, 0, seen_bytes(maker));
@@ -286,24 +293,25 @@ typedef struct grid_entries {
     uint32_t *place, *size, *id;
 } grid_entries;
 
-/// The common part of a sphere's entries in all cells.
+/// Returns the part of a sphere's entries that is the same in all cells.
 static uint32_t size_of(const glint_light_grid *grid, const seen_sphere *s)
 {
     const double steps = GLINT_GRID_STEPS * (double)grid->cells;
     const double most = grid->count[0] > grid->count[1] ? grid->count[0] : grid->count[1];
     const double radius = (double)s->radius * steps + STEP_SLACK + CELL_SLACK * GLINT_GRID_STEPS * most;
-    const uint32_t near = clamp((s->near - grid->nearest) * grid->slices, NEAR_MOST); // as the stage has it of a point
+    const uint32_t near = clamp((s->near - grid->nearest) * grid->slices, NEAR_MOST); // the stage computes it in the
+        // same way for a point
     return near << GLINT_GRID_RADIUS_BITS | (uint32_t)(int32_t)(radius / GLINT_GRID_RADIUS + 1);
 }
 
-/// A sphere's place along an axis as seen from a cell.
+/// Returns a sphere's position along an axis, relative to a cell.
 static uint32_t step_of(const glint_light_grid *grid, const seen_sphere *s, int axis, uint32_t cell)
 {
     const double place = ((double)s->place[axis] - (double)grid->first[axis]) * (double)grid->cells - cell;
     return (uint32_t)(int32_t)((place + GLINT_GRID_ASIDE) * GLINT_GRID_STEPS + 0.5);
 }
 
-/// Puts a sphere where the `next` of each of its cells says.
+/// Writes a sphere to the position `next` of each of its cells.
 static void enter(const glint_light_grid *grid, const seen_sphere *s, const uint32_t first[2], const uint32_t last[2], uint32_t *next,
                   const grid_entries *entries)
 {
@@ -318,7 +326,7 @@ static void enter(const glint_light_grid *grid, const seen_sphere *s, const uint
         }
 }
 
-/// Counts each cell's spheres in `next`, or with `entries` puts each of them where its cell's `next` says.
+/// Counts each cell's spheres in `next`; with `entries`, writes each sphere to the position `next` of its cells.
 static void spread(const grid_maker *maker, uint32_t *next, const grid_entries *entries)
 {
     const glint_light_grid *grid = maker->grid;
@@ -334,7 +342,7 @@ static void spread(const grid_maker *maker, uint32_t *next, const grid_entries *
     }
 }
 
-/// Allocates the entries, with padding that the stage loads behind the last one, in one block that begins at `place`.
+/// Allocates the entries in one block that begins at `place`, with padding that the stage loads after the last one.
 static bool make_entries(glint_light_grid *grid, uint64_t count, grid_entries *out)
 {
     const size_t length = (size_t)count + GLINT_GROUP;
@@ -350,7 +358,7 @@ static bool make_entries(glint_light_grid *grid, uint64_t count, grid_entries *o
     return true;
 }
 
-/// Fills the cells. False: no memory.
+/// Fills the cells. Returns false when out of memory.
 static bool fill(grid_maker *maker, uint64_t count)
 {
     glint_light_grid *grid = maker->grid;
@@ -404,6 +412,6 @@ void glint_light_grid_destroy(glint_light_grid *grid)
     if (!grid)
         return;
     free((void *)(uintptr_t)grid->begin);
-    free((void *)(uintptr_t)grid->place); // with the following entries
+    free((void *)(uintptr_t)grid->place); // the other entries are in the same block
     free(grid);
 }

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#define GLINT_MEDIA_MAX 8 ///< one in the other; of more, the outermost are forgotten
+#define GLINT_MEDIA_MAX 8 ///< nested media; with more, the outermost are forgotten
 #define GLINT_NO_MEDIUM 0xffffffffu
 
 typedef struct glint_media {
@@ -34,7 +34,7 @@ static inline void glint_media_enter(glint_media *media, uint32_t material)
     media->material[media->count++] = material;
 }
 
-/// Leaves the innermost object of the material; nothing happens where there is none.
+/// Leaves the innermost object of the material; does nothing if there is none.
 static inline void glint_media_leave(glint_media *media, uint32_t material)
 {
     uint32_t i = media->count;
@@ -46,14 +46,14 @@ static inline void glint_media_leave(glint_media *media, uint32_t material)
     media->count--;
 }
 
-/// The medium that a path ended in at a surface: of the surface's own object where it is met from inside and no entry was noted
-/// the entry.
+/// Returns the medium of a path just before a surface. If the path hits an object from inside without having entered
+/// it, this is the object's own material.
 static inline uint32_t glint_media_before(const glint_media *media, uint32_t material, bool back)
 {
     return back && !glint_media_has(media, material) ? material : glint_media_top(media);
 }
 
-/// Goes through a surface.
+/// Crosses a surface.
 static inline void glint_media_cross(glint_media *media, uint32_t material, bool back)
 {
     if (back)

@@ -1,4 +1,4 @@
-/// One primitive: made from its description, with its bounds.
+/// Makes one primitive from its description, with its bounds.
 #include "engine/base/vec.h"
 #include "engine/geometry/prims.h"
 
@@ -9,7 +9,7 @@ void glint_sphere_init(glint_prim *prim, const double center[3], double radius)
 {
     prim->kind = GLINT_PRIM_SPHERE;
     for (int c = 0; c < 3; c++)
-        prim->center[c] = center[c] + 0.0; // -0 and 0 are one place
+        prim->center[c] = center[c] + 0.0; // -0 and 0 are the same position
     prim->radius = radius;
 }
 
@@ -34,7 +34,7 @@ static int copy_face(double *out, const glint_face *face)
     return 6;
 }
 
-/// A key over the places of all parts stands for them.
+/// Writes a key over the positions of all parts, which represents them.
 static int combined_place(const glint_geometry *geometry, const glint_combined *combined, double out[GLINT_PLACE_MAX])
 {
     glint_key key = glint_key_add((glint_key) { 0 }, combined->program, combined->length);
@@ -47,7 +47,7 @@ static int combined_place(const glint_geometry *geometry, const glint_combined *
     return 1 + (int)(sizeof key / sizeof *out);
 }
 
-/// A key over the places of a mesh's triangles stands for them.
+/// Writes a key over the positions of a mesh's triangles, which represents them.
 static int hull_place(const glint_geometry *geometry, const glint_prim *part, double out[GLINT_PLACE_MAX])
 {
     const glint_hull *hull = &geometry->hulls[part->item];
@@ -96,7 +96,7 @@ static void solid_bounds(const glint_solid *solid, const double center[3], doubl
 {
     for (int c = 0; c < 3; c++) {
         const double *m = solid->forward[c], round = sqrt(m[0] * m[0] + m[1] * m[1]);
-        double low = -round, high = round; // a disk, and the cross-section of the others
+        double low = -round, high = round; // for a disk, and the cross-section of the others
         if (solid->form == GLINT_FORM_BALL)
             high = sqrt(vec_dot(m, m));
         else if (solid->form == GLINT_FORM_BOX)
@@ -137,9 +137,9 @@ void glint_prim_bounds(const glint_solid *solids, const glint_prim *prim, double
     }
 }
 
-// ---- Solids: a unit shape, and the map that makes it the one described ----
+// ---- Solids: a unit shape, and the map to the described shape ----
 
-/// Two unit vectors across a unit one (Duff et al., JCGT 6(1) 2017).
+/// Computes two unit vectors perpendicular to a unit vector (Duff et al., JCGT 6(1) 2017).
 static void basis(const double n[3], double x[3], double y[3])
 {
     const double sign = copysign(1, n[2]), a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
@@ -147,7 +147,7 @@ static void basis(const double n[3], double x[3], double y[3])
     y[0] = b, y[1] = sign + n[1] * n[1] * a, y[2] = -n[1];
 }
 
-/// x and y across `along`, of length `radius`; z is `along`.
+/// Makes a map with x and y perpendicular to `along`, of length `radius`; z is `along`.
 static void round_map(double m[3][4], const double origin[3], const double along[3], double radius)
 {
     double n[3], x[3], y[3];
@@ -179,7 +179,7 @@ static glint_form form_of(const glint_shape_desc *desc)
     }
 }
 
-/// The map from the unit shape.
+/// Returns the map from the unit shape to the described one.
 static glint_transform unit_map(const glint_shape_desc *desc)
 {
     glint_transform map = glint_transform_identity();
@@ -210,7 +210,8 @@ static glint_transform unit_map(const glint_shape_desc *desc)
     return map;
 }
 
-/// Computes the magnitudes for rounding errors: of the faces, and of the curved side, which is near 1 in each direction of the unit shape.
+/// Computes the magnitudes for rounding errors: for the faces, and for the curved side, which is near 1 in each
+/// direction of the unit shape.
 static void bound_solid(const glint_prim *prim, const glint_placing *place, const glint_transform *unit,
                         glint_solid *solid, glint_face *faces)
 {
@@ -235,7 +236,7 @@ double glint_linear_scale(double m[3][3])
     return scale;
 }
 
-/// unit: its map from the unit shape, in its own space. faces: of it, not yet bounded.
+/// Makes a solid. unit: the map from the unit shape to its own space. faces: its faces, not bounded yet.
 static void solid_init(glint_prim *prim, glint_solid *solid, glint_form form, const glint_transform *unit,
                        const glint_placing *place, glint_face *faces)
 {

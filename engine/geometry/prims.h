@@ -6,14 +6,15 @@
 #include "engine/geometry/geometry.h"
 
 void glint_sphere_init(glint_prim *prim, const double center[3], double radius);
-/// room: for the plane's fields besides the place, as long as the primitive.
+/// Makes a plane. room: memory for the fields except the position, which must live as long as the primitive.
 void glint_plane_init(glint_prim *prim, double room[4], const double point[3], const double normal[3],
                       const glint_placing *place);
 /// Makes a sphere, box, disk, cylinder, cone or torus; faces: memory for its faces. Returns their number.
 int glint_solid_init(glint_prim *prim, glint_solid *solid, const glint_shape_desc *desc, const glint_placing *place,
                      glint_face *faces);
 
-/// Scales a map by a power of two, so that no product of two of its numbers overflows or is lost. Returns the factor.
+/// Scales a map by a power of two, so that no product of two of its numbers overflows or underflows. Returns the
+/// factor.
 double glint_linear_scale(double m[3][3]);
 
 #endif

@@ -1,4 +1,5 @@
-/// How small things may be, and how far from where rays begin: what the kernels square must stay a number.
+/// Limits of sizes, and of distances from where rays begin: the squares that kernels compute must not overflow or
+/// underflow.
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/geometry/geometry.h"
@@ -6,15 +7,15 @@
 #include <stdio.h>
 
 #define SIZE_LEAST 1e-150 ///< world units
-#define SIZE_MOST 1e150 ///< of a curved solid; a sphere is taken in units of its own
-#define AWAY_MOST 1e150 ///< sizes
+#define SIZE_MOST 1e150 ///< of a curved solid; a sphere is measured in its own units
+#define AWAY_MOST 1e150 ///< largest distance, in sizes
 
 typedef struct extents {
     double least, most; ///< of the widths that are squared
     double longest; ///< in any direction
 } extents;
 
-/// False: boxes, planes and triangles have heights, which are not squared.
+/// Computes the sizes that kernels square. False: boxes, planes and triangles use heights, which are not squared.
 static bool extents_of(const glint_geometry *geometry, const glint_prim *prim, extents *out)
 {
     *out = (extents) { prim->radius, 1, prim->radius };
@@ -31,14 +32,14 @@ static bool extents_of(const glint_geometry *geometry, const glint_prim *prim, e
     for (int i = 0; i < (flat || round ? 2 : 3); i++) {
         const double width = 1 / vec_max_abs(solid->inverse[i]);
         out->least = width >= out->least ? out->least : width; // NaN stays
-        out->most = flat ? 1 : fmax(out->most, width); // of where a disk is met alone squares are taken
+        out->most = flat ? 1 : fmax(out->most, width); // for a disk, only the position of the hit is squared
     }
     if (form == GLINT_FORM_TORUS)
         out->least *= solid->tube;
     return true;
 }
 
-/// "sphere #3", or "spheres 'sky': sphere 12".
+/// Writes "sphere #3", or "spheres 'sky': sphere 12".
 static void name_prim(const glint_geometry *geometry, const glint_prim *prim, char *out, size_t size)
 {
     const uint32_t number = geometry->prim_part[prim->id];
@@ -51,7 +52,7 @@ static void name_prim(const glint_geometry *geometry, const glint_prim *prim, ch
         snprintf(out, size, "%s", owner);
 }
 
-/// Primitive i, of those that rays meet and of the parts of combined solids after them.
+/// Returns primitive i; the primitives that rays hit come first, then the parts of combined solids.
 static const glint_prim *prim_at(const glint_geometry *geometry, uint32_t i)
 {
     const uint32_t count = geometry->table.prim_count;

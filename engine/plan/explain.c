@@ -171,7 +171,7 @@ static void materials(explainer *e, const char *effect, material_test *test)
     glint_list_free(&seen);
 }
 
-/// A program and its length. owner: "material 'floor'"
+/// Adds a line for a program and its length. owner: "material 'floor'"
 static void add_program(explainer *e, const glint_program *program, int field, const char *owner)
 {
     char effect[sizeof e->plan->lines->effect], caller[2 * GLINT_NAME_SIZE];
@@ -182,7 +182,7 @@ static void add_program(explainer *e, const glint_program *program, int field, c
     add_line(e, effect, caller);
 }
 
-/// Each program of a material, with its length.
+/// Adds a line for each program of a material, with its length.
 static void patterns(explainer *e)
 {
     const glint_plan_patterns *all = e->plan->patterns;

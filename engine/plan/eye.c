@@ -1,6 +1,5 @@
-/// Finds the transparent objects that contain the eye. Spheres, planes and solids have
-/// an inside. The eye is inside a mesh if a ray along the view leaves through more faces than it enters; for a closed
-/// mesh, this holds for any ray.
+/// Finds the transparent objects that contain the eye. Spheres, planes and solids have an inside. The eye is inside a
+/// mesh if a ray along the view leaves through more faces than it enters; for a closed mesh, this holds for any ray.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -18,7 +17,7 @@ typedef struct around {
     } in[GLINT_MEDIA_MAX];
 } around;
 
-/// The triangles of one part so far.
+/// Data collected from the triangles of one part.
 typedef struct hull {
     int exits; ///< exits minus entries
     uint32_t id, material; ///< the first triangle's
@@ -91,7 +90,8 @@ static void add_triangle(hull *part, const glint_plan *plan, const glint_prim *p
     part->exits += glint_prim_crossing(prim, plan->camera.eye, plan->camera.forward);
 }
 
-/// hulls: one per part, if there are triangles. A renderer may be arranging the primitives at the same time.
+/// Collects the media around the eye. hulls: one per part, if there are triangles. A renderer may be arranging the
+/// primitives at the same time.
 static void find_media(const glint_plan *plan, hull *hulls, around *eye)
 {
     const glint_geometry *geometry = plan->geometry;

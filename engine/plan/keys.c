@@ -1,6 +1,7 @@
-/// The keys of a plan: what each stage declares to read, hashed. A stage's key holds the keys of the stages before it,
-/// whose results it reads too. A new stage gets reuse from its declaration (plan/stage.h); tests/engine/test_reuse.c changes every field of
-/// every description and finds what a row forgets.
+/// The keys of a plan: hashes of the data that each stage declares to read. A stage's key includes the keys of the
+/// stages before it, because it also reads their results. A new stage gets reuse from its declaration (plan/stage.h).
+/// tests/engine/test_reuse.c changes every field of every description, and so detects inputs missing in a
+/// declaration.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/effects/light_groups/plan.h"
@@ -62,7 +63,8 @@ static glint_key highlights_key(const glint_plan *plan, glint_key key)
     return key;
 }
 
-/// Continues a key with the materials' programs for `fields` (one bit each), and the places of the shapes with these materials.
+/// Continues a key with the materials' programs for `fields` (one bit each), and the positions of the shapes with
+/// these materials.
 static glint_key programs_key(const glint_plan *plan, uint32_t fields, glint_key key)
 {
     for (uint32_t i = 0; plan->patterns && i < plan->material_count; i++)
@@ -78,7 +80,8 @@ static glint_key cut_outs_key(const glint_plan *plan, glint_key key)
     return programs_key(plan, 1u << GLINT_FIELD_OPACITY, key);
 }
 
-/// Continues a key with all programs of a material, and with the ambient light, which multiplies their results instead of the table.
+/// Continues a key with all programs of a material, and with the ambient light, which multiplies their results
+/// instead of the table.
 static glint_key own_programs_key(const glint_plan *plan, uint32_t i, glint_key key)
 {
     if (!plan->patterns)
@@ -207,7 +210,7 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         glint_plan_light *light = &plan->lights[i];
         light->key = light_place_key(light, light_base);
         light->place_key = glint_key_add(light->key, &light->shadows, sizeof light->shadows);
-        const uint32_t place = i % GLINT_LIGHT_CHUNK; // one call of shade adds up the samples of a lamp
+        const uint32_t place = i % GLINT_LIGHT_CHUNK; // one call of shade sums the samples of a light
         light->look_key = glint_key_add(light_color_key(light, light->place_key), &place, sizeof place);
     }
     plan->material_keys = glint_alloc(plan->material_count, sizeof *plan->material_keys);

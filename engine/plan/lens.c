@@ -1,8 +1,9 @@
 /// The camera's lens: the points where samples cross it.
 ///
-/// Sample k of the pixel in lane j of its group of 4 x 4 uses point j 2^b + k of one scrambled Sobol sequence, where 2^b is the
-/// number of samples or the next power of two. So the points of a pixel are evenly spread over the lens, and so are those of all 16
-/// pixels together. The order is scrambled as well, so that positions on the lens and in the pixel are independent.
+/// Sample k of the pixel in lane j of its group of 4 x 4 uses point j 2^b + k of one scrambled Sobol sequence, where
+/// 2^b is the number of samples or the next power of two. So the points of a pixel are evenly spread over the lens,
+/// and so are the points of all 16 pixels together. The order is scrambled as well, so that positions on the lens and
+/// in the pixel are independent.
 #include "engine/base/alloc.h"
 #include "engine/base/math.h"
 #include "engine/base/sequence.h"
@@ -13,9 +14,9 @@
 #include <math.h>
 
 #define PI 0x1.921fb54442d18p+1
-#define BEND_MAX 1e12 ///< radius of the lens over the distance of its focus
+#define BEND_MAX 1e12 ///< largest radius of the lens relative to its focus distance
 
-/// Maps squares around the middle to circles, preserving areas (P. Shirley, K. Chiu, "A Low Distortion Map Between
+/// Maps squares around the centre to circles, preserving areas (P. Shirley, K. Chiu, "A Low Distortion Map Between
 /// Disk and Square", 1997): with a = 2 u - 1, b = 2 v - 1, the larger of them is the radius.
 static void round_point(const double square[2], double out[2])
 {
@@ -27,7 +28,8 @@ static void round_point(const double square[2], double out[2])
     out[1] = radius * glint_sin(angle);
 }
 
-/// Maps the square to a polygon: u selects a triangle between the middle and a side; sqrt(the rest of u) goes from the middle to the side, v along it.
+/// Maps the square to a polygon: u selects a triangle between the centre and a side. The square root of the rest of u
+/// goes from the centre to the side, v along the side.
 static void polygon_point(const double square[2], uint32_t blades, double rotation, double out[2])
 {
     const double place = square[0] * blades, side = fmin(floor(place), blades - 1.0);
@@ -64,7 +66,7 @@ static glint_status find_focus(glint_plan_camera *camera, const glint_camera_des
                       point[0], point[1], point[2]);
 }
 
-/// Checks the numbers of the lens.
+/// Checks the fields of the lens.
 static glint_status check_size(const glint_plan *plan, glint_error *error)
 {
     const glint_plan_camera *camera = &plan->camera;

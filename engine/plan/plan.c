@@ -141,7 +141,8 @@ static void choose_stages(glint_plan *plan)
     list_steps(plan);
 }
 
-/// times: the plans of `shutter_times`, whose lights the frame takes; NULL: it has its own. `desc`: with its derivatives.
+/// Fills the plan. times: the plans of the shutter's times, whose lights the frame uses; NULL: its own lights. desc:
+/// includes the derivatives.
 static glint_status fill(glint_plan *plan, const glint_scene *scene, const glint_render_desc *desc,
                          glint_plan *const *times, glint_error *error)
 {
@@ -187,7 +188,7 @@ static glint_status take_overlays(glint_plan *plan, const glint_scene *scene, gl
     return glint_overlays_take(scene, (int)plan->desc.width, (int)plan->desc.height, &camera, &plan->overlays, error);
 }
 
-/// times: see `fill`. shutter_times: the number of times of the frame, or 0.
+/// Creates a plan. times: see `fill`. shutter_times: the number of times of the frame, or 0.
 static glint_status create(const glint_scene *scene, const glint_render_desc *desc, glint_plan *const *times,
                            uint32_t shutter_times, glint_plan **out, glint_error *error)
 {
@@ -236,7 +237,7 @@ glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc
     return create(scene, desc, NULL, 0, out, error);
 }
 
-/// Returns whether a time has derivatives that the frame does not have.
+/// Returns whether a time has derivatives that the frame lacks.
 static bool derives_more(const glint_plan *time, const glint_render_desc *frame)
 {
     bool more = false;
@@ -347,9 +348,10 @@ size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list)
     return plan->stage_count;
 }
 
-#define APRON 4 ///< width of the border around a region that its pixels depend on: compared pixels, and GLINT_REFINE_SPREAD more
+#define APRON 4 ///< width of the border around a region that its pixels depend on: compared pixels, and
+    ///< GLINT_REFINE_SPREAD more
 
-/// Along one axis: `of` pixels in tiles of `size`.
+/// Computes the tiles and pixels of a range along one axis of `of` pixels, in tiles of `size`.
 static void find_range(double from, double count, double of, int size, uint32_t *first, uint32_t *tiles, int *pixel,
                        int *pixels)
 {
@@ -414,7 +416,7 @@ glint_key glint_plan_picture_key(const glint_plan *plan, glint_stage_id stage)
 
 static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
 {
-    const int pass = desc->pass < GLINT_PASS_DERIVATIVE ? desc->pass : // any of these numbers
+    const int pass = desc->pass < GLINT_PASS_DERIVATIVE ? desc->pass : // derivatives share one number, and light passes
                          desc->pass < GLINT_PASS_LIGHT ? GLINT_PASS_DERIVATIVE : GLINT_PASS_LIGHT;
     const int options[] = { pass,                desc->tone.curve, desc->tone.transfer,
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
@@ -426,7 +428,7 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
         key = glint_overlays_key(plan->overlays, key);
     const bool outlined = desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline;
     if ((outlined || (pass < GLINT_PASS_COUNT && GLINT_CENTRE_PASSES >> pass & 1)) && glint_plan_casts_centres(plan))
-        key = glint_key_add_string(key, "centres"); // earlier versions stored these passes of the first sample
+        key = glint_key_add_string(key, "centres"); // earlier versions took these passes from the first sample
     const size_t derivative = (size_t)desc->pass - GLINT_PASS_DERIVATIVE;
     if (desc->pass >= GLINT_PASS_DERIVATIVE && plan->derivatives && derivative < plan->derivatives->count)
         key = glint_derivative_key(plan, derivative, key);

@@ -1,8 +1,8 @@
 /// A frame's plan: the tables that its stages read, the list of stages, and the key of each. Internal.
 ///
-///   plan.c            puts it together
-///   plan/stage.h      what a stage declares; core.c has the core's, effects/*/ the others
-///   plan/keys.c       what each stage reads, hashed
+///   plan.c            assembles the plan
+///   plan/stage.h      the declaration of a stage; core.c declares the core's stages, effects/*/ the others
+///   plan/keys.c       hashes of the data that each stage reads
 ///   geometry.c        the primitives, shared by the plans of one scene
 ///   plan/camera.c     the view
 ///   plan/lens.c       where samples cross the camera's lens
@@ -25,14 +25,16 @@ typedef struct glint_plan_camera {
     bool orthographic;
     double eye[3], forward[3]; ///< forward is unit
     double right[3], up[3]; ///< from a pixel's centre to its edge
-    double span[2]; ///< twice the way from the picture's left and upper edges to where `forward` is seen, pixels
+    double span[2]; ///< twice the distance from the picture's left and upper edges to the point where `forward` is
+        ///< seen, pixels
     double pixel_offset;
-    double aperture, focus; ///< of the lens; aperture 0: there is none, and the following fields are not read
+    double aperture, focus; ///< of the lens; aperture 0: there is no lens, and the following fields are not read
     uint32_t blades; ///< 0: it is round
     double blade_rotation;
 } glint_plan_camera;
 
-/// The points where the rays of one sample cross the lens, by the lane of their pixel: to the right and up, in world units.
+/// The points where the rays of one sample cross the lens, by the lane of their pixel: to the right and up, in world
+/// units.
 typedef struct glint_lens_points {
     double at[2][GLINT_GROUP];
 } glint_lens_points;
@@ -40,23 +42,25 @@ typedef struct glint_lens_points {
 /// A light, or one sample of an area light.
 typedef struct glint_plan_light {
     bool directional, shadows, attenuated;
-    bool joined; ///< a further sample of the area light before it
-    bool alike; ///< like the light before it for the stage `light`, except for its place; both without samples or a cone
+    bool joined; ///< another sample of the same area light as the light before it
+    bool alike; ///< for the stage `light`, differs from the light before it only in position; both without samples or
+        ///< a cone
     bool is_spot;
     glint_spot spot;
     uint32_t source; ///< index of the light in the scene
     uint32_t group; ///< its group among the frame's light passes; GLINT_NO_GROUP: none
-    const glint_light_sample *light_samples; ///< area light: the sample pattern of each turn, one after the other; otherwise NULL
-    const glint_light_sample *cap; ///< shadows by caps: the whole light; otherwise NULL
-    bool hard; ///< area light: one shadow ray to `position`, its middle, for all samples
+    const glint_light_sample *light_samples; ///< area light: the sample pattern of each turn, one after another;
+        ///< otherwise NULL
+    const glint_light_sample *cap; ///< shadows by caps: describes the whole light; otherwise NULL
+    bool hard; ///< area light: one shadow ray to `position`, its centre, for all samples
     bool radiant_cap; ///< inside its radius, the light is as strong as on its surface
     uint32_t turn_count; ///< the samples of a pixel use the turns one after the other
     double position[3]; ///< directional: the unit vector towards the light; area: read where `hard`
     double scale; ///< see glint_light_args
     double coefficients[3];
     double diffuse[3], specular[3]; ///< colour times intensity
-    glint_key key; ///< of the data that `light` and `occlude` read for this light
-    glint_key place_key, look_key; ///< of these and whether it casts shadows; of the place and the colours
+    glint_key key; ///< hash of the data that `light` and `occlude` read for this light
+    glint_key place_key, look_key; ///< `key` and whether it casts shadows; place_key and the colours
 } glint_plan_light;
 
 /// An edge of a polygon: its first corner, and the unit vector perpendicular to it.
@@ -68,27 +72,28 @@ typedef struct glint_plan_edge {
 typedef struct glint_plan_visible_light {
     bool ball; ///< otherwise flat
     bool one_sided; ///< flat: shines to the side of the normal
-    double center[3], radius; ///< of a ball around it; for a disk or sphere its own
+    double center[3], radius; ///< bounding ball; for a disk or sphere, its own
     double normal[3]; ///< flat: unit
     const glint_plan_edge *edges; ///< polygon
     size_t edge_count; ///< 0: a disk
-    double shown[3]; ///< pi times its radiance, as all light in the film
+    double shown[3]; ///< pi times its radiance, like all light in the film
     uint32_t group; ///< as for a light
 } glint_plan_visible_light;
 
 /// A background computed by a program.
 typedef struct glint_plan_environment {
     glint_program *program; ///< owned reference
-    glint_program *uv; ///< maps p, a direction, to its position in a picture of all directions; NULL: `program` does not read it
+    glint_program *uv; ///< maps p, a direction, to its position in a picture of all directions; NULL: `program` does
+        ///< not read it
     uint32_t row_count; ///< the largest number of rows that one of them needs
     double pixel; ///< the angle of a pixel; 0: rays are parallel
-    double most; ///< bound of its result
+    double most; ///< upper bound of its result
 } glint_plan_environment;
 
 /// Mirror, transmission and absorption of a material.
 typedef struct glint_bounce_material {
     double mirror[3], transmission[3], absorption[3], ior;
-    double clear; ///< the share that goes straight on; 0 if a program gives it
+    double clear; ///< share of the light that goes straight on; 0 if a program computes it
     bool fresnel, mirrors, transmits; ///< in some channel
     bool clears; ///< true if the material is translucent
 } glint_bounce_material;
@@ -99,7 +104,7 @@ static inline bool glint_sends_on(const glint_bounce_material *m) { return m->mi
 /// Indirect light; all 0: there is none.
 typedef struct glint_plan_indirect {
     uint32_t samples, bounces;
-    uint32_t *light_rows; ///< the first of plan->lights that belongs to each light, and one beyond
+    uint32_t *light_rows; ///< first row of each light in plan->lights, and one entry after the last
     uint32_t light_count;
     double (*rest)[3]; ///< one per material: the ambient light added where paths end
     double least; ///< a path ends when its weight falls below this share of its first weight
@@ -109,7 +114,8 @@ typedef struct glint_plan_indirect {
 
 #define GLINT_BOUNCE_DEPTH 31 ///< largest max_depth if a material's mirror + transmission is above 1
 #define GLINT_BOUNCE_SPLITS 16 ///< number of surfaces in a chain at which both rays are followed
-#define GLINT_BOUNCE_LOSS 0x1p-20 ///< limit, in linear light per sample, for the total of weak rays that are not followed
+#define GLINT_BOUNCE_LOSS 0x1p-20 ///< limit, in linear light per sample, for the total of weak rays that are not
+    ///< followed
 
 typedef struct glint_text_line {
     char effect[48];
@@ -119,24 +125,25 @@ typedef struct glint_text_line {
 struct glint_plan {
     glint_render_desc desc;
     uint32_t shutter_times; ///< light is the mean over this number of times; 0: one instant
-    struct glint_plan **times; ///< these times, each rendered separately, owned; NULL: only lights differ, and `lights` has them
+    struct glint_plan **times; ///< these times, each rendered separately, owned; NULL: only lights differ, and
+        ///< `lights` has them
     bool is_base; ///< this plan is the `base` of another one
     struct glint_plan *base; ///< adaptive sampling: the picture with one sample per pixel that it examines; NULL: off
     glint_plan_camera camera;
     glint_lens_points *lens; ///< one per sample; NULL: the camera has no lens
 
     glint_geometry *geometry;
-    glint_translucent *translucent; ///< beside the geometry's materials; NULL: none is translucent
+    glint_translucent *translucent; ///< one per material of the geometry; NULL: none is translucent
     glint_shade_material *materials; ///< in the order of the geometry
     uint32_t material_count;
     glint_plan_patterns *patterns; ///< the programs of materials; NULL: there are none
-    bool highlights; ///< some material and some light make a highlight, of the next two kinds
-    bool powers, facets; ///< Phong's and Blinn-Phong's; of microfacets
+    bool highlights; ///< some material and some light make a highlight, of the two kinds that follow
+    bool powers, facets; ///< highlights of Phong and Blinn-Phong; highlights of microfacets
     glint_plan_light *lights;
     glint_light_sample *light_samples; ///< of all area lights
     bool caps; ///< shapes and materials allow shadows by caps
-    uint32_t light_count, shadow_count; ///< of these, rows that cast shadows, and
-    uint32_t spared_count; ///< among those, rows that need no rays of their own
+    uint32_t light_count, shadow_count; ///< number of lights; rows that cast shadows
+    uint32_t spared_count; ///< rows that cast shadows but need no rays of their own
     double ambient[3], background[3]; ///< background is 0 if there is an environment
     glint_plan_environment *environment; ///< NULL: the background is plain
     struct {
@@ -159,10 +166,10 @@ struct glint_plan {
     glint_bounce_material *bouncing; ///< one per material; NULL: none needs secondary rays
     bool mirrors, transmits, clears, absorbs; ///< some material does; absorbs: one that transmits
     glint_plan_indirect indirect;
-    glint_media eye_media; ///< what the eye of a perspective camera is inside of
+    glint_media eye_media; ///< the media that contain the eye of a perspective camera
     bool tints; ///< some light casts shadows, and some material transmits or is translucent
     bool dims; ///< and some material absorbs transmitted light
-    double brightest; ///< bound of the light along any ray; may be infinite
+    double brightest; ///< upper bound of the light along any ray; may be infinite
 
     glint_overlays *overlays; ///< drawn over the finished picture; NULL: none
 
@@ -170,15 +177,16 @@ struct glint_plan {
     uint32_t steps[GLINT_TIME_COUNT]; ///< for each time of the walk, the stages with a step, one bit each
     uint32_t limits, admits; ///< the stages with these functions
     bool reads_normals; ///< some stage is likely to read normals
-    glint_key where; ///< of the geometry's places
+    glint_key where; ///< hash of the geometry's positions
     glint_key keys[GLINT_STAGE_COUNT];
     glint_key *material_keys, *matte_keys; ///< of each material; of the fields read where it has no highlight
     glint_key all_materials_key, all_lights_key, background_key;
     glint_key vertex_key; ///< of everything that the light of faces and vertices depends on
     glint_key output_key; ///< of the conversion to pixel values
-    glint_key setting_key; ///< of the view, and of lights' places and colours: if it changes, few pixels stay the same
+    glint_key setting_key; ///< hash of the view, and of the lights' positions and colours: if it changes, few pixels
+        ///< stay the same
     bool raster; ///< triangles are found by projecting them, not by casting
-    bool needs_index; ///< some stage traverses it
+    bool needs_index; ///< some stage traverses the BVH
     bool accumulate; ///< sums over samples or over chunks of lights are needed
     bool local; ///< light comes only from the stages shade, with one call per sample, and vertex
     bool together; ///< all samples of a tile are shaded together, without sums
@@ -197,7 +205,8 @@ static inline bool glint_plan_has_term(const glint_plan *plan, glint_term term)
            plan->runs[term == GLINT_TERM_INDIRECT ? GLINT_STAGE_INDIRECT : GLINT_STAGE_BOUNCE];
 }
 
-/// Returns the constant diffuse reflectance of a material; if a program computes it, 1 or the value without the program.
+/// Returns the constant diffuse reflectance of a material; if a program computes it, 1 or the value without the
+/// program.
 static inline const double *glint_plan_diffuse(const glint_plan *plan, uint32_t material)
 {
     return plan->patterns ? plan->patterns->of[material].desc.diffuse : plan->materials[material].diffuse;
@@ -214,10 +223,11 @@ static inline bool glint_plan_bumps(const glint_plan *plan) { return plan->patte
 /// Returns whether some surface has holes.
 static inline bool glint_plan_cuts(const glint_plan *plan) { return plan->patterns && plan->patterns->cut_outs; }
 
-/// Finds the kernels of an instruction set by name; NULL: by the environment variable GLINT_ISA, otherwise the best.
+/// Selects the kernels of an instruction set by name; NULL: by the environment variable GLINT_ISA, otherwise the
+/// best.
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error);
 
-/// The passes from which `outline` is computed.
+/// The passes that `outline` is computed from.
 #define GLINT_OUTLINE_READS (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID)
 
 /// The passes of the ray through the pixel's centre.
@@ -227,14 +237,16 @@ glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_e
 
 /// Returns whether a frame's plan and the plans of its times differ only in lights, and light adds up in the frame.
 bool glint_plan_adds_up(const glint_plan *plan, glint_plan *const *times, size_t count);
-/// Replaces a plan's lights by those of all times, each with its share. After shading.
+/// Replaces a plan's lights by the lights of all times, each with its share. Call after shading.
 glint_status glint_plan_take_lights(glint_plan *plan, glint_plan *const *times, size_t count, glint_error *error);
 void glint_plan_free_times(glint_plan **times, size_t count); ///< and the list; NULL: nothing
 
-/// Returns the tone curve of the pixel values that adaptive sampling compares. The base has these values only if necessary; otherwise they are estimated.
+/// Returns the tone curve of the pixel values that adaptive sampling compares. The base has these values only if
+/// necessary; otherwise they are estimated.
 glint_tone_desc glint_plan_compared(const glint_render_desc *desc);
 bool glint_plan_compares_codes(const glint_render_desc *desc);
-/// Returns the description of the base frame with one sample per pixel: the passes and pixel values of `desc`, or the pixel values that are compared.
+/// Returns the description of the base frame with one sample per pixel: the passes and pixel values of `desc`, or the
+/// pixel values that are compared.
 glint_render_desc glint_plan_base(const glint_render_desc *desc);
 
 /// The rendered part of a frame: a rectangle of tiles, and its pixels.
@@ -243,20 +255,20 @@ typedef struct glint_extent {
     int x, y, width, height; ///< pixels
 } glint_extent;
 
-/// Returns the whole frame; for a region, the tiles with a pixel in it or at most two away, because outlines and adaptive sampling
-/// look at neighbours.
+/// Returns the whole frame; for a region, the tiles with a pixel in it or at most two away, because outlines and
+/// adaptive sampling read neighbours.
 glint_extent glint_plan_extent(const glint_render_desc *desc);
 
 /// Computes the position of sample `k` in its pixel: 0 .. 1 across and down.
 void glint_plan_sample_offset(const glint_plan *plan, uint32_t k, double out[2]);
-/// Computes the position of a pixel's centre, likewise.
+/// Computes the position of a pixel's centre in the same units.
 void glint_plan_centre_offset(const glint_plan *plan, double out[2]);
-/// Returns whether the passes of the pixels' centres (GLINT_CENTRE_PASSES) need their own rays: the first sample is not there, or goes
-/// through a lens.
+/// Returns whether the passes of the pixels' centres (GLINT_CENTRE_PASSES) need their own rays: the first sample is
+/// not there, or goes through a lens.
 bool glint_plan_casts_centres(const glint_plan *plan);
 
 void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render);
-/// The same for overlays.
+/// Returns the camera for overlays.
 glint_overlays_camera glint_plan_camera_of_overlays(const glint_plan_camera *camera);
 /// Fills the lens, after the camera.
 glint_status glint_plan_find_lens(glint_plan *plan, const glint_camera_desc *desc, glint_error *error);
@@ -269,7 +281,7 @@ void glint_lens_point(const double square[2], uint32_t blades, double rotation, 
 glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glint_error *error);
 /// Marks similar lights, and counts those that cast shadows.
 void glint_plan_count_lights(glint_plan *plan);
-/// Fills one material's row. `light_ambient` is Ia.
+/// Fills one material's row. `ambient` is Ia.
 void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3]);
 
 /// Fills the environment.
@@ -277,9 +289,10 @@ glint_status glint_plan_find_environment(glint_plan *plan, const glint_scene_des
 void glint_plan_environment_free(glint_plan_environment *environment); ///< NULL: nothing
 /// Returns whether there may be indirect light or ambient occlusion.
 bool glint_plan_has_indirect(const glint_scene_desc *scene);
-/// Fills the tables of indirect light, after shading, and subtracts the part that it replaces from the materials' ambient light.
+/// Fills the tables of indirect light, after shading, and subtracts the part that it replaces from the materials'
+/// ambient light.
 glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
-/// Fills the tables of mirrors and transparent materials, after that.
+/// Fills the tables of mirrors and transparent materials, after the tables of indirect light.
 glint_status glint_plan_bounce(glint_plan *plan, glint_error *error);
 /// Continues a key with the transmission of a material.
 glint_key glint_transmission_key(const glint_bounce_material *m, glint_key key);
@@ -298,18 +311,19 @@ glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key k
 glint_status glint_plan_visible_lights(glint_plan *plan, const glint_scene *scene, glint_error *error);
 /// Returns whether a light is visible, and writes its brightness: pi times its radiance.
 ///
-/// With `radiance` L: pi L color. With `intensity` I: color I A(D), where A is its fall-off and D the radius of a disk of its area (for a
-/// sphere its own radius). So a light that falls off as 1/(c2 d^2) looks as bright as its distant illumination requires, I/(c2 area); a light
-/// that does not fall off looks as bright as a white surface that it illuminates.
+/// With `radiance` L: pi L color. With `intensity` I: color I A(D), where A is its fall-off and D the radius of a
+/// disk of its area (for a sphere its own radius). So a light that falls off as 1/(c2 d^2) looks as bright as its
+/// distant illumination requires, I/(c2 area); a light that does not fall off looks as bright as a white surface that
+/// it illuminates.
 bool glint_light_shows(const glint_light_desc *desc, double shown[3]);
 
 glint_status glint_plan_keys(glint_plan *plan, glint_error *error);
 /// Returns the key of the whole picture up to a stage, including all its times.
 glint_key glint_plan_picture_key(const glint_plan *plan, glint_stage_id stage);
 
-/// A plan's keys for other places of its surfaces: a copy that owns nothing.
+/// A copy of a plan with the keys for other positions of its surfaces. The copy owns nothing.
 typedef struct glint_plan_twin {
-    glint_plan plan; ///< all its keys, and those of its lights, differ
+    glint_plan plan; ///< all its keys differ, and the keys of its lights
 } glint_plan_twin;
 
 /// where: see glint_geometry. Returns false when out of memory. Must be freed in both cases.

@@ -8,9 +8,9 @@
 #include <float.h>
 
 #define PI 0x1.921fb54442d18p+1
-#define SAMPLES_MAX 0x1p27 ///< of all lights, for all turns
+#define SAMPLES_MAX 0x1p27 ///< most samples of all lights, over all turns
 
-/// Larger strengths are white in any film. Below this limit, products of two stay finite.
+/// Larger strengths are white in any picture. Products of two strengths below this limit stay finite.
 #define STRENGTH_MAX 1e150
 
 static bool is_black(const double c[3]) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
@@ -21,7 +21,7 @@ static void bounded(double out[3], const double color[3], double factor)
         out[c] = color[c] == 0 ? 0 : fmin(color[c] * factor, STRENGTH_MAX);
 }
 
-/// Phong and Blinn-Phong.
+/// Sets up the highlight of Phong or Blinn-Phong.
 static void power_init(glint_shade_material *out, const glint_material_desc *desc)
 {
     const bool blinn = desc->model == GLINT_MODEL_BLINN_PHONG;
@@ -32,7 +32,7 @@ static void power_init(glint_shade_material *out, const glint_material_desc *des
     out->highlight = blinn ? GLINT_HIGHLIGHT_BLINN : GLINT_HIGHLIGHT_PHONG;
     out->lobe = desc->normalized ? GLINT_LOBE_POWER_COSINE : GLINT_LOBE_POWER;
     out->shininess = (float)s;
-    // exp2's argument is half the logarithm of x times the shininess; a share of 1e-4 is far above all rounding
+    // exp2's argument is half the logarithm of x times the shininess; the margin of 1e-4 is far above all rounding
     out->least = (float)(glint_pow(2, 2 * GLINT_EXP2_LOWEST / s) * (1 - 1e-4));
     bounded(out->specular, desc->specular, norm);
 }
@@ -65,7 +65,7 @@ static void take_planes(glint_shade_material *out, glint_material_desc *d, bool 
     }
 }
 
-/// Phong and Blinn-Phong with an exponent computed by a program, together with the normalising factor.
+/// Sets up Phong and Blinn-Phong for an exponent computed by a program, together with the normalising factor.
 static void take_exponents(glint_shade_material *out, const glint_material_desc *d)
 {
     out->planes |= GLINT_PLANE_SHININESS;
@@ -144,9 +144,9 @@ static void spot_init(glint_plan_light *out, const glint_light_desc *desc)
     out->spot.exponent = (float)fmin(desc->exponent, FLT_MAX);
 }
 
-/// Returns the power of two that scales the largest distance from here to a bounded surface to about 1. Then no square of a
-/// distance overflows a float, and none above 2^-60 of it vanishes. Distances near 1 are not scaled, because
-/// the kernels skip a product by 1.
+/// Returns the power of two that scales the largest distance from here to a bounded surface to about 1. Then no
+/// square of a distance overflows a float, and none above 2^-60 of it underflows. Distances near 1 are not scaled,
+/// because the kernels skip a product by 1.
 static double distance_scale(const double position[3], const glint_geometry_table *geometry)
 {
     double away[3];
@@ -228,7 +228,7 @@ static void total_ambient(glint_plan *plan, const glint_scene *scene)
             scene->desc.has_depth_cue_color ? scene->desc.depth_cue_color : scene->desc.background, 1);
 }
 
-/// Fills the materials, and finds their kinds of highlight.
+/// Fills the materials, and determines their kinds of highlight.
 static glint_status make_materials(glint_plan *plan, bool *powers, bool *facets, glint_error *error)
 {
     const glint_list *list = &plan->geometry->materials;
@@ -265,8 +265,8 @@ static glint_status make_room(glint_plan *plan, const glint_scene *scene, glint_
     return plan->lights && plan->light_samples ? GLINT_OK : glint_fail_nomem(error);
 }
 
-/// Returns whether two lights differ only in their places, as far as the stage `light` reads them, and have no samples or
-/// cone.
+/// Returns whether two lights have no samples or cone, and differ only in position, as far as the stage `light` reads
+/// them.
 static bool is_alike(const glint_plan_light *a, const glint_plan_light *b)
 {
     const bool plain = !a->light_samples && !b->light_samples && !a->is_spot && !b->is_spot;
@@ -274,7 +274,7 @@ static bool is_alike(const glint_plan_light *a, const glint_plan_light *b)
            memcmp(a->coefficients, b->coefficients, sizeof a->coefficients) == 0;
 }
 
-/// Adds the rows of one light: one, or one per sample. Returns the number of patterns used from `lamps`.
+/// Adds the rows of one light: one, or one per sample. Returns the number of entries used from `light_samples`.
 static size_t add_light(glint_plan *plan, const glint_plan_light *common, const glint_light_desc *desc,
                         glint_light_sample *light_samples)
 {
@@ -311,7 +311,7 @@ void glint_plan_count_lights(glint_plan *plan)
     }
 }
 
-/// Caps are of spheres and planes, which let no light through, not even in part, and have no holes.
+/// Returns whether caps are possible: all shapes are spheres and planes, opaque everywhere and without holes.
 static bool allows_caps(const glint_plan *plan)
 {
     const glint_geometry_table *table = &plan->geometry->table;

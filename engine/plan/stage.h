@@ -1,7 +1,7 @@
 /// The declaration of a stage: when a frame needs it, what it reads, and its functions. Internal.
 ///
-/// The list of a plan's stages, `glint explain`, the keys, the cached results, and the times and counts of a frame follow from the table of
-/// these declarations, which effects/list.h lists. An effect's declaration is in its folder.
+/// The list of a plan's stages, `glint explain`, the keys, the cached results, and the times and counts of a frame
+/// follow from the table of these declarations, which effects/list.h lists. An effect's declaration is in its folder.
 #ifndef GLINT_STAGE_H
 #define GLINT_STAGE_H
 
@@ -19,8 +19,8 @@ struct glint_plan;
 /// Parts of the scene that several stages may read.
 typedef enum glint_scene_part {
     GLINT_PART_VIEW, ///< camera, picture size, samples
-    GLINT_PART_PLACES, ///< places of the surfaces
-    GLINT_PART_LOOKS, ///< material and sides of each surface
+    GLINT_PART_PLACES, ///< positions of the surfaces
+    GLINT_PART_LOOKS, ///< material and two-sidedness of each surface
     GLINT_PART_PATTERNS, ///< programs of materials, and the shapes' own spaces
     GLINT_PART_CUT_OUTS, ///< programs of holes, and materials that are invisible
     GLINT_PART_BUMPS, ///< programs that turn normals
@@ -48,7 +48,8 @@ struct glint_light_args;
 /// A part of the walk of a tile. walk: the state of the current sample; NULL where there is none.
 typedef void glint_stage_step(struct glint_tile *tile, const struct glint_tile_frame *frame, struct glint_sample_walk *walk);
 
-/// When the walk of a tile calls the steps of its stages. Stages that take the same time are called in the order of the list.
+/// When the walk of a tile calls the steps of its stages. Stages that take the same time are called in the order of
+/// the list.
 typedef enum glint_stage_time {
     GLINT_AT_CAST, ///< the nearest objects are known, for the tile's rays or for rays that left a surface
     GLINT_AT_SURFACE, ///< points and normals are known, likewise
@@ -67,15 +68,17 @@ typedef enum glint_stage_time {
 } glint_stage_time;
 
 typedef struct glint_stage {
-    const char *name; ///< in `glint explain`, --json and the statistics of a frame; NULL: part of another stage, not listed
+    const char *name; ///< in `glint explain`, --json and the statistics of a frame; NULL: part of another stage, not
+        ///< listed
     const char *doc; ///< the result in a few words, for `glint explain`
-    bool (*called)(const struct glint_plan *plan); ///< returns whether the frame needs the stage; the plan's tables are filled
+    bool (*called)(const struct glint_plan *plan); ///< returns whether the frame needs the stage; the plan's tables
+        ///< are filled
     uint64_t reads; ///< GLINT_READS and GLINT_READS_OWN: its inputs, besides the results of the stages before it
     glint_key (*own)(const struct glint_plan *plan,
-                     glint_key key); ///< continues a key with what only this stage reads; NULL: nothing
+                     glint_key key); ///< continues a key with data that only this stage reads; NULL: none
     bool aside; ///< the stages after it do not read its result, or read its inputs instead
     bool per_light; ///< it runs once for each light
-    bool walks; ///< it traverses the index
+    bool walks; ///< it traverses the BVH
     bool sums; ///< it adds light to the sums of a sample
     bool normals; ///< it is likely to read the normals of points
     bool remote; ///< it adds light, or slopes of light, beyond one call of `shade` per sample
@@ -83,14 +86,18 @@ typedef struct glint_stage {
     glint_stage_step *step[GLINT_TIME_COUNT]; ///< NULL: nothing to do at that time
     /// After the stage light: removes lanes from those above the light's horizon. NULL: none.
     void (*limit)(struct glint_tile *tile, const struct glint_plan *plan, const struct glint_light_args *args);
-    /// After the stage occlude, which read `lit`: adds lanes to `open`. middle: for the whole light, by its middle. NULL: none.
+    /// After the stage occlude, which read `lit`: adds lanes to `open`. middle: for the whole light, at its centre.
+    /// NULL: none.
     void (*admit)(struct glint_tile *tile, const struct glint_tile_frame *frame, const struct glint_plan_light *light, bool middle,
                   const uint16_t *lit, uint16_t *open);
-    /// Computes the normal of a surface that the stage shows where ray i hits nothing. NULL: the stage shows no surface.
+    /// Computes the normal of a surface that the stage shows where ray i hits nothing. NULL: the stage shows no
+    /// surface.
     void (*normal)(const struct glint_tile *tile, const struct glint_tile_frame *frame, uint32_t i, double normal[3]);
-    void *(*create)(const struct glint_plan *plan); ///< allocates the stage's memory for a worker; returns NULL when out of memory. No function: it needs none
+    void *(*create)(const struct glint_plan *plan); ///< allocates the stage's memory for a worker; returns NULL when
+        ///< out of memory. NULL: the stage needs no memory
     void (*destroy)(void *memory); ///< accepts NULL
-    bool (*fit)(void *memory, const struct glint_plan *plan); ///< grows the memory for a plan; returns false when out of memory. No function: its size is fixed
+    bool (*fit)(void *memory, const struct glint_plan *plan); ///< grows the memory for a plan; returns false when out
+        ///< of memory. NULL: its size is fixed
     bool sized; ///< its size depends on the plan: it is allocated for each frame
     bool shared; ///< rays that leave a surface use the memory of the tile
 } glint_stage;

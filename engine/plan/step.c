@@ -12,7 +12,7 @@ static double changed_lights(const glint_plan *plan, const glint_plan *before, b
     return count;
 }
 
-/// Shading again what has highlights, or all: half, where nothing but highlights of materials differs.
+/// Returns the work of shading again: 1, or a half if only highlights of materials differ.
 static double shade_work(const glint_plan *plan, const glint_plan *before)
 {
     bool matte = plan->material_count == before->material_count && plan->matte_keys && before->matte_keys, highlights = false;

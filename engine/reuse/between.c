@@ -1,5 +1,5 @@
-/// Tests balls against the volume of a tile's rays (a pyramid or bar), and against all segments from its points to a light: first by one cylinder
-/// around the segments, then by slabs around the hull of light and points.
+/// Tests balls against the volume of a tile's rays (a pyramid or bar), and against all segments from its points to a
+/// light: first by one cylinder around the segments, then by slabs around the hull of light and points.
 #include "engine/reuse/between.h"
 #include "engine/base/vec.h"
 
@@ -10,7 +10,7 @@ static double loosened(double radius, double distance) { return radius * (1 + 1e
 
 static double length_of(const double v[3]) { return sqrt(vec_dot(v, v)); }
 
-/// The sides of a tile: half pixels from where `forward` is seen, to the right (x) and up (y).
+/// Computes the sides of a tile in half pixels, relative to where `forward` is seen, to the right (x) and up (y).
 static void find_edges(const glint_plan *plan, uint32_t column, uint32_t row, double x[2], double y[2])
 {
     const double width = plan->desc.width, height = plan->desc.height;
@@ -23,12 +23,13 @@ static void find_edges(const glint_plan *plan, uint32_t column, uint32_t row, do
 
 // ---- The volume that a tile shows ----
 
-/// The planes around a tile's rays: inwards[k] . (place - eye) >= -offset[k] inside; length[k]: of inwards[k].
+/// The planes around a tile's rays. A point is inside if inwards[k] . (point - eye) >= -offset[k]; length[k] is the
+/// length of inwards[k].
 typedef struct sides {
     double inwards[4][3], length[4], offset[4];
 } sides;
 
-/// Computes the sides of the pyramid, or with parallel rays of the bar.
+/// Computes the sides of the pyramid, or of the bar if rays are parallel.
 static void find_sides(const glint_plan *plan, uint32_t column, uint32_t row, sides *out)
 {
     const glint_plan_camera *camera = &plan->camera;
@@ -49,7 +50,8 @@ static void find_sides(const glint_plan *plan, uint32_t column, uint32_t row, si
     }
 }
 
-/// Returns the largest distance of a lens's rays from the pinhole's rays near a ball, whose middle is at depth `along`.
+/// Returns the largest distance between a lens's rays and the pinhole's rays near a ball, whose centre is at depth
+/// `along`.
 static double beside(const glint_plan *plan, double along, double radius)
 {
     const glint_plan_camera *camera = &plan->camera;
@@ -83,8 +85,8 @@ bool glint_may_show(const glint_plan *plan, const glint_ball *balls, uint32_t co
 /// The emitting part of a light.
 typedef struct source {
     bool directional;
-    double to[3]; ///< the middle; for a directional light the direction
-    double radius; ///< of a ball around it
+    double to[3]; ///< the centre; for a directional light, the direction
+    double radius; ///< of a ball around the light
 } source;
 
 static source source_of(const glint_plan_light *light)
@@ -95,7 +97,8 @@ static source source_of(const glint_plan_light *light)
     return s;
 }
 
-/// Returns whether a ball's distance from the line between the middles of light and box exceeds the sum of all three radii.
+/// Returns whether a ball's distance from the line between the centres of light and box exceeds the sum of all three
+/// radii.
 static bool is_far_off(const source *light, const glint_point_box *box, const glint_ball *ball)
 {
     double from[3], half[3], line[3], way[3], across[3];
@@ -117,19 +120,21 @@ static bool is_far_off(const source *light, const glint_point_box *box, const gl
     return length_of(across) > loosened(ball->radius + wide, far);
 }
 
-/// The segments to a light from a body with eight corners: along each of these normals, all segments lie between two heights.
+/// The segments from a body with eight corners to a light: along each of these normals, all segments lie between two
+/// heights.
 typedef struct slabs {
     int count;
-    double origin[3]; ///< reference point of heights: the light's middle, or with parallel light a corner
-    double size; ///< distances of the corners from this origin, and of this origin from the world's
+    double origin[3]; ///< origin of the heights: the light's centre, or a corner if the light is parallel
+    double size; ///< distances of the corners from this origin, plus its distance from the world's origin
     double normal[18][3], length[18], low[18], high[18];
 } slabs;
 
-/// Return the corners of edge 0 .. 11 of a body: their numbers differ in one bit.
+/// Return the corners of edge 0 .. 11 of a body, whose indices differ in one bit.
 static int edge_begin(int edge) { return edge / 4 == 0 ? 2 * (edge % 4) : edge / 4 == 1 ? edge % 2 + edge % 4 / 2 * 4 : edge % 4; }
 static int edge_end(int edge) { return edge_begin(edge) + (1 << edge / 4); }
 
-/// Adds a slab. corner: relative to the origin. away: the light is parallel and the normal not perpendicular to it, so the slab is unbounded on one side.
+/// Adds a slab. corner: relative to the origin. away: the light is parallel and the normal not perpendicular to it,
+/// so that the slab is unbounded on one side.
 static void add_slab(slabs *s, double (*corner)[3], const source *light, const double normal[3], bool away)
 {
     const double length = length_of(normal), ahead = away ? vec_dot(normal, light->to) : 0;
@@ -145,7 +150,7 @@ static void add_slab(slabs *s, double (*corner)[3], const source *light, const d
     s->high[s->count++] = ahead > 0 ? HUGE_VAL : high;
 }
 
-/// Finds the slabs of the body's faces, and of its edges with the light.
+/// Computes the slabs of the body's faces, and of its edges with the light.
 static void find_slabs(slabs *s, double (*corner)[3], const source *light)
 {
     s->count = 0;
@@ -173,7 +178,8 @@ static void find_slabs(slabs *s, double (*corner)[3], const source *light)
     }
 }
 
-/// Returns whether a ball is clear of all segments, because it lies outside one slab. A normal of length 0 excludes nothing.
+/// Returns whether a ball is outside one slab and therefore clear of all segments. A normal of length 0 excludes
+/// nothing.
 static bool is_clear_of(const slabs *s, const glint_ball *ball)
 {
     double way[3];
@@ -194,8 +200,8 @@ static void find_box_corners(const glint_point_box *box, double corner[8][3])
             corner[k][c] = (k >> c & 1 ? box->upper : box->lower)[c];
 }
 
-/// Computes the corners of the part of a tile's pyramid or bar at the depths of the box. It is much smaller than the box if
-/// the box is deep and oblique to the axes.
+/// Computes the corners of the part of a tile's pyramid or bar at the depths of the box. It is much smaller than the
+/// box if the box is deep and oblique to the axes.
 static void find_beam_corners(const glint_plan *plan, const glint_point_box *box, uint32_t column, uint32_t row,
                               double corner[8][3])
 {
@@ -222,7 +228,8 @@ bool glint_may_shade(const glint_plan *plan, const glint_plan_light *light, cons
 {
     const source from = source_of(light);
     const bool has_points = box->lower[0] <= box->upper[0] && box->lower[1] <= box->upper[1] && box->lower[2] <= box->upper[2];
-    const int bodies = plan->lens || (from.directional && from.radius > 0) ? 1 : 2; // rays of a lens leave the tile's pyramid
+    const int bodies = plan->lens || (from.directional && from.radius > 0) ? 1 : 2; // rays of a lens leave the tile's
+        // pyramid
     slabs around[2];
     bool found = false;
     for (uint32_t i = 0; i < count; i++) {

@@ -1,7 +1,8 @@
-/// Tests whether a changed primitive may show in a tile, or lie between the tile's points and a light. Internal.
+/// Tests whether a changed primitive may be visible in a tile, or lie between the tile's points and a light.
+/// Internal.
 ///
-/// Every answer is conservative: a ball reported outside is outside by more than the rounding of the kernels, of these tests and
-/// of the balls themselves.
+/// Every answer is conservative: a ball reported outside is outside by more than the rounding of the kernels, of
+/// these tests and of the balls themselves.
 #ifndef GLINT_BETWEEN_H
 #define GLINT_BETWEEN_H
 
@@ -12,7 +13,7 @@ typedef struct glint_ball {
     double center[3], radius;
 } glint_ball;
 
-/// Returns whether one of the balls may show in a tile.
+/// Returns whether one of the balls may be visible in a tile.
 bool glint_may_show(const glint_plan *plan, const glint_ball *balls, uint32_t count, uint32_t column, uint32_t row);
 
 /// Returns whether one of the balls may lie between a light and the tile's points, which are in `box`.

@@ -1,6 +1,6 @@
-/// Keeps results after a change of geometry: if a few primitives have moved, come or gone, a tile in which none of them
-/// shows, before or after, keeps its hits, and a light keeps its shadows in a tile if none of them crosses the segments to the
-/// tile's points. Such results get the new plan's keys before the frame begins.
+/// Retains results after a change of geometry. If a few primitives have moved, appeared or disappeared, a tile that
+/// shows none of them, before or after, retains its hits, and a light retains its shadows in a tile if none of them
+/// crosses the segments to the tile's points. Such results get the new plan's keys before the frame begins.
 #include "engine/base/vec.h"
 #include "engine/reuse/between.h"
 #include "engine/reuse/reuse.h"
@@ -9,15 +9,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CARRY_PRIMS 16384u ///< in larger scenes, changes are not searched for some frames after too many
-#define CARRY_AT_ONCE 131072u ///< in larger scenes, the first frame does not record places, which a single picture would not use
-#define CARRY_CHANGES 64 ///< with more changes, nothing is kept
-#define CARRY_PAUSE_MAX 16 ///< frames
+#define CARRY_PRIMS 16384u ///< in larger scenes, after too many changes, some frames do not search for changes
+#define CARRY_AT_ONCE 131072u ///< in larger scenes, the first frame does not record positions, because a single
+    ///< picture would not use them
+#define CARRY_CHANGES 64 ///< with more changes, no results are retained
+#define CARRY_PAUSE_MAX 16 ///< longest pause, in frames
 
 typedef struct carry {
     glint_reuse *reuse;
     const glint_plan *plan;
-    const glint_plan *before; ///< the same plan with the places of the last frame, for its keys
+    const glint_plan *before; ///< the same plan with the positions of the last frame, for its keys
     glint_ball balls[2 * CARRY_CHANGES]; ///< around all changed primitives, before and after
     uint32_t ball_count;
     const uint32_t *moved_to; ///< the new index of each primitive of the last frame; NULL: unchanged
@@ -27,7 +28,7 @@ typedef struct carry {
 
 // ---- Changes ----
 
-/// Finds the place of every primitive, by id. NULL: out of memory.
+/// Returns the position of every primitive, by id. NULL: out of memory.
 static glint_cached_place *find_places(const glint_geometry *geometry, uint32_t count)
 {
     glint_cached_place *places = malloc((count + 1) * sizeof *places);
@@ -158,14 +159,15 @@ static void carry_all(const carry *c)
     const uint32_t across = (reuse->width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     for (size_t i = 0; i < reuse->tile_count; i++)
         carry_tile(c, i, (uint32_t)(i % across), (uint32_t)(i / across));
-    reuse->cast = c->plan->keys[GLINT_STAGE_CAST]; // unchanged places may be cached from now on
+    reuse->cast = c->plan->keys[GLINT_STAGE_CAST]; // unchanged positions may be cached from now on
     renew(&reuse->pattern, c->before->keys[GLINT_STAGE_PATTERN], c->plan->keys[GLINT_STAGE_PATTERN]);
     renew(&reuse->view, c->before->keys[GLINT_STAGE_VIEW], c->plan->keys[GLINT_STAGE_VIEW]);
     for (uint32_t i = 0; i < reuse->light_count; i++)
         renew(&reuse->light[i], c->before->lights[i].key, c->plan->lights[i].key);
 }
 
-/// Finds the new index of each primitive of the last frame. Returns false when out of memory. *moved_to is NULL if none has moved.
+/// Computes the new index of each primitive of the last frame. Returns false when out of memory. *moved_to is NULL if
+/// none moved.
 static bool find_moves(const glint_cached_place *was, const glint_cached_place *is, uint32_t count, uint32_t **moved_to)
 {
     bool same = true;
@@ -178,7 +180,7 @@ static bool find_moves(const glint_cached_place *was, const glint_cached_place *
     return same || *moved_to;
 }
 
-/// Carries results over a change. Returns false if there are too many changes.
+/// Retains results across a change. Returns false if there are too many changes.
 static bool carry_changes(carry *c, const glint_cached_place *is, uint32_t count)
 {
     const glint_cached_place *was = c->reuse->places;
@@ -199,7 +201,8 @@ static bool carry_changes(carry *c, const glint_cached_place *is, uint32_t count
     return true;
 }
 
-/// Returns whether to record the places of this frame: with many primitives, not in every frame if most of them move.
+/// Returns whether to record the positions of this frame: with many primitives, not in every frame if most of them
+/// move.
 static bool is_worth_finding(glint_reuse *reuse, uint32_t count)
 {
     if (count * sizeof(glint_cached_place) >= reuse->budget / 64)
@@ -212,7 +215,7 @@ static bool is_worth_finding(glint_reuse *reuse, uint32_t count)
     return false;
 }
 
-/// After a frame with many changes: waits twice as long as the last time.
+/// After a frame with many changes, doubles the pause.
 static void wait_longer(glint_reuse *reuse)
 {
     reuse->carry_pause = reuse->carry_pause ? reuse->carry_pause * 2 : 1;
@@ -225,7 +228,7 @@ void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *
 {
     const glint_geometry *geometry = plan->geometry;
     const uint32_t count = geometry->id_count, lights = plan->light_count;
-    const bool plain = reuse->plain == geometry->index->plain; // otherwise the same places may have another order
+    const bool plain = reuse->plain == geometry->index->plain; // otherwise the same positions may have another order
     if (!reuse->on || (plain && glint_key_equal(reuse->where, geometry->where)))
         return;
     carry c = { .reuse = reuse, .plan = plan, .images = images, .image_count = image_count };

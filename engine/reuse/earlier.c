@@ -1,6 +1,7 @@
-/// Results of frames before the last. The keys of the last frames are remembered; a key that comes back is a sign that others will,
-/// so its results are cached from then on, and set aside instead of overwritten when the key changes. Whole tiles are set
-/// aside where the hits' key changes (cameras in turn), else single lights (a lamp that goes around).
+/// Caches results of frames before the last. The keys of recent frames are remembered. If a key recurs, others
+/// probably will, too. Its results are then cached from now on, and set aside instead of overwritten when the key
+/// changes. Whole tiles are set aside if the hits' key changes (alternating cameras), otherwise single lights (a lamp
+/// moving in a circle).
 ///
 /// All results of one kind take the same time and memory, so the least recently used one is evicted.
 #include "engine/reuse/reuse.h"
@@ -13,7 +14,8 @@
 
 static const glint_key none = { 0 };
 
-/// Results that are set aside may take half of the budget that whole pictures leave.
+/// Returns how many results can be set aside, at most `most`: they may take half of the budget that whole pictures
+/// leave.
 static size_t room_for(const glint_reuse *reuse, size_t bytes, size_t most)
 {
     const size_t fits = (reuse->budget - reuse->pictures) / 2 / bytes;
@@ -38,7 +40,7 @@ static size_t light_bytes(const glint_reuse *reuse)
     return reuse->tile_count * (sizeof(glint_cached_light) + 3 * samples * sizeof(float) + samples / 4);
 }
 
-/// The set whose row has the key, or with the key of nothing one to overwrite; `sets` of them are in use. -1: none.
+/// Returns the set whose row has the key; for an all-zero key, a set to overwrite. `sets` sets are in use. -1: none.
 static int find_set(const glint_earlier *e, int sets, uint32_t row, glint_key key)
 {
     int oldest = -1;
@@ -61,7 +63,7 @@ static bool make_set(glint_reuse *reuse, glint_earlier_set *set)
     return set->lights != NULL;
 }
 
-/// Exchanges one light of all tiles with a set's. False: no memory.
+/// Exchanges the results of one light in all tiles with a set's results. Returns false when out of memory.
 static bool exchange_light(glint_reuse *reuse, int s, uint32_t row)
 {
     glint_earlier_set *set = &reuse->earlier->sets[s];
@@ -93,7 +95,7 @@ static bool find_light(glint_reuse *reuse, uint32_t row, glint_key key)
     return again;
 }
 
-/// Drops results of only some pixels, chosen by adaptive sampling: their keys do not distinguish them.
+/// Drops results that cover only the pixels chosen by adaptive sampling: their keys do not distinguish the pixels.
 static void forget_lights(glint_reuse *reuse)
 {
     for (int s = 0; s < GLINT_EARLIER_MAX; s++) {
@@ -106,8 +108,8 @@ static void forget_lights(glint_reuse *reuse)
     memset(reuse->light_recurs, 0, sizeof reuse->light_recurs);
 }
 
-/// Returns whether the results of a light are dear enough for their memory. The samples of an area light, a row each, have the
-/// occluders that may matter looked for once: the more of them, the less each costs.
+/// Returns whether the results of a light are expensive enough to be worth their memory. The samples of an area
+/// light, a row each, share one search for occluders: the more samples, the cheaper each is.
 static bool is_dear(const glint_plan *plan, uint32_t row)
 {
     size_t rows = 0;

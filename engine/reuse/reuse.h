@@ -1,15 +1,16 @@
 /// The cache of a renderer, so that a frame runs only the stages whose inputs changed. Internal.
 ///
-/// Every stage has a key of exactly what it reads (plan/keys.c). A result is cached per tile from the second frame on that
-/// has its key, in the last frame or in one of some frames before: a stage that differs in every frame is not worth the memory
-/// traffic. A cached result is used if its key equals the plan's, so a frame with reuse has the bits of one without.
+/// Every stage has a key of exactly the data that it reads (plan/keys.c). The result of a stage is cached per tile
+/// once its key occurs again, in the last frame or in one of the frames before: a stage that differs in every frame
+/// is not worth the memory traffic. A cached result is used if its key equals the plan's, so a frame with reuse has
+/// the same bits as a frame without.
 ///
-/// A tile as a whole has a key, too, of everything its pixels depend on: the materials that it shows and the lights that reach
-/// it, and no others; without the highlight of a material if none is visible. If this is the key of the last frame, the
-/// pixels are copied from the last picture.
+/// Each tile also has a key of everything its pixels depend on: only the materials that it shows and the lights that
+/// reach it, without the highlight of a material if none is visible. If this key equals the key of the last frame,
+/// the pixels are copied from the last picture.
 ///
-/// Keys of stages after the geometry include all of it. If little of the geometry has changed, reuse/carry.c finds results that
-/// cannot have changed, and gives them the new keys.
+/// Keys of stages after the geometry include all geometry. If little of it has changed, reuse/carry.c finds results
+/// that cannot have changed, and gives them the new keys.
 #ifndef GLINT_REUSE_H
 #define GLINT_REUSE_H
 
@@ -21,17 +22,17 @@
 
 #define GLINT_CACHED_LIGHTS 64 ///< largest number of lights whose results may be cached
 
-/// The results of one light in a tile, all its samples one after the other. NULL: not cached.
+/// The results of one light in a tile, for all its samples, one after another. NULL arrays are not cached.
 typedef struct glint_cached_light {
     glint_key light, occlude; ///< of the arrays' contents; all zero: empty
     float *cosine, *attenuation, *log2_specular; ///< in one block, cosine first
     uint16_t *lit;
     float cached_brightest; ///< the largest log2_specular there
-    uint16_t *open; ///< its own block: lit lanes that the light reaches
-    float *visible; ///< its own block: visible share with caps, with the attenuation
+    uint16_t *open; ///< a separate block: lanes above the horizon that the light reaches
+    float *visible; ///< a separate block: visible share with caps, with the attenuation
     glint_key facet; ///< of the following arrays
-    float *sine2, *schlick; ///< a block of their own, sine2 first
-    glint_key place; ///< the light's place and shadows when the following was computed; all zero: never
+    float *sine2, *schlick; ///< a separate block, sine2 first
+    glint_key place; ///< the light's position and shadows when the following was computed; all zero: never
     bool reaches; ///< the light reaches some lane
     float brightest; ///< the largest log2_specular of lit lanes, in shadow or not
 } glint_cached_light;
@@ -46,28 +47,28 @@ typedef struct glint_cached_tile {
     uint32_t *prim;
     uint16_t *hits;
     glint_key view;
-    float *facing; ///< its own block
+    float *facing; ///< a separate block
     glint_key pattern;
-    float *planes; ///< its own block: the plan's planes for each sample, one after the other
-    glint_key split; ///< of the results of the programs' first parts:
-    void *values; ///< its own block: glint_splits_bytes for each sample
+    float *planes; ///< a separate block: the plan's planes for each sample, one after another
+    glint_key split; ///< key of the results of the programs' first parts:
+    void *values; ///< a separate block: glint_splits_bytes for each sample
     size_t value_bytes;
     glint_cached_light *lights;
     // contents of the tile's pixels, as far as known
-    glint_key seen; ///< the surfaces' key when this was found; all zero: never
+    glint_key seen; ///< the surfaces' key when this was determined; all zero: never
     uint32_t shown[GLINT_SHOWN_MAX], shown_count; ///< materials; more than GLINT_SHOWN_MAX: all of them
     uint32_t only; ///< the primitive of all hits; GLINT_MISS: several or none
-    glint_key boxed; ///< the surfaces' key when `box` was found; all zero: never
+    glint_key boxed; ///< the surfaces' key when `box` was computed; all zero: never
     glint_point_box box; ///< of the points of all samples
     bool background; ///< some sample hits nothing
     bool shading_points; ///< some sample has the light of a face or of vertices outside the tile
     uint64_t clipped, nonfinite; ///< pixels, when the tile was last run
 } glint_cached_tile;
 
-/// The place of a primitive in the last frame.
+/// The position of a primitive in the last frame.
 typedef struct glint_cached_place {
-    glint_key key; ///< of its place
-    double center[3], radius; ///< a ball around it; an infinite radius: it is unbounded
+    glint_key key; ///< hash of its position
+    double center[3], radius; ///< bounding ball; infinite radius: unbounded
     uint32_t at; ///< index in the geometry's table; GLINT_MISS: it was equal to another primitive
 } glint_cached_place;
 
@@ -82,14 +83,14 @@ typedef struct glint_recent {
 
 /// Lights of all tiles as they were in an earlier frame.
 typedef struct glint_earlier_set {
-    glint_cached_light *lights; ///< owned: tile after tile; NULL: not made yet
+    glint_cached_light *lights; ///< owned: tile after tile; NULL: not allocated yet
     glint_key held[GLINT_CACHED_LIGHTS]; ///< keys of the contents; all zero: unused
     uint64_t used[GLINT_CACHED_LIGHTS]; ///< when it was set aside
 } glint_earlier_set;
 
 /// All tiles as they were in an earlier frame.
 typedef struct glint_earlier_tiles {
-    glint_cached_tile *tiles; ///< owned; NULL: not made yet
+    glint_cached_tile *tiles; ///< owned; NULL: not allocated yet
     glint_key cast, light[GLINT_CACHED_LIGHTS]; ///< as in glint_reuse
     bool light_recurs[GLINT_CACHED_LIGHTS];
     uint64_t used; ///< when they were set aside
@@ -114,7 +115,7 @@ typedef struct glint_reuse {
     size_t free_bytes;
     uint32_t width, height, samples, plane_count; ///< the layout of the cached arrays
     size_t real_size;
-    bool plain; ///< order of the primitives whose places are stored
+    bool plain; ///< order of the primitives whose positions are stored
     glint_cached_tile *tiles;
     size_t tile_count;
     uint32_t light_count; ///< slots in each tile
@@ -122,10 +123,11 @@ typedef struct glint_reuse {
     bool cast_recurs, light_recurs[GLINT_CACHED_LIGHTS]; ///< an earlier frame had the same key
     glint_earlier *earlier; ///< owned; NULL: nothing
     glint_splits splits;
-    glint_key where; ///< of the places of the last frame's surfaces
-    glint_cached_place *places; ///< the places, by id; owned; NULL: there were too many
+    glint_key where; ///< hash of the positions of the last frame's surfaces
+    glint_cached_place *places; ///< the positions, by id; owned; NULL: there were too many
     uint32_t place_count;
-    uint32_t carry_wait, carry_pause; ///< number of coming frames that do not record places; length of the last such pause
+    uint32_t carry_wait, carry_pause; ///< number of coming frames that do not record positions; length of the last
+        ///< such pause
     double scale; ///< of the geometry's table
     // results with a key seen before, which this frame caches
     bool keep_cast, keep_pattern, keep_view, keep_light[GLINT_CACHED_LIGHTS];
@@ -142,29 +144,30 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
 bool glint_reuse_reserve(glint_reuse *reuse, size_t bytes);
 void glint_reuse_unreserve(glint_reuse *reuse, size_t bytes);
 
-/// reuse/carry.c, before glint_reuse_begin: if a few primitives have moved since the last frame, gives the new plan's keys
-/// to results that cannot have changed, in the tiles and in the `film` of pictures of their size (NULL entries are
-/// skipped). The geometry must be arranged.
+/// reuse/carry.c, before glint_reuse_begin: if a few primitives have moved since the last frame, gives the new plan's
+/// keys to results that cannot have changed, in the tiles and in the `film` of pictures of their size (NULL entries
+/// are skipped). The geometry must be arranged.
 void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *const *images, uint32_t image_count);
 
 /// Returns whether a key is among the last `size` ones (at most GLINT_EARLIER_MAX), and adds it to them.
 bool glint_recent_has(glint_recent *recent, size_t size, glint_key key);
 
-/// reuse/earlier.c, for glint_reuse_begin: finds tiles with the frame's hits among earlier frames, with their lights' keys.
-/// Returns whether hits are cached.
+/// reuse/earlier.c, for glint_reuse_begin: finds tiles with the frame's hits among earlier frames, with their lights'
+/// keys. Returns whether hits are cached.
 bool glint_earlier_tiles_found(glint_reuse *reuse, glint_key key);
-/// The same for each light: fills in its key and whether it is cached.
+/// Does the same for each light: fills in its key and whether it is cached.
 void glint_earlier_lights(glint_reuse *reuse, const glint_plan *plan);
 void glint_earlier_clear(glint_reuse *reuse);
 
-/// Returns whether the tile's pixels may depend on surfaces that the tile does not hit: through mirrors, transparent surfaces, indirect
-/// light, or light computed at points outside the tile.
+/// Returns whether the tile's pixels may depend on surfaces that its primary rays do not hit: through mirrors,
+/// transparent surfaces, indirect light, or light computed at points outside the tile.
 bool glint_reuse_shows_more(const glint_cached_tile *tile, const glint_plan *plan);
 
 /// Returns the key of a tile's pixels; all zero if the tile's contents are not known for this plan's surfaces.
 glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_cached_tile *tile, const glint_plan *plan);
 
-/// Allocate blocks for a tile at first use, within the budget. Return false if there is no memory. Any worker, but only one per tile.
+/// Allocate blocks for a tile at first use, within the budget. Return false if there is no memory. Any worker may
+/// call them, but only one per tile.
 bool glint_reuse_hold_cast(glint_reuse *reuse, glint_cached_tile *tile);
 bool glint_reuse_hold_light(glint_reuse *reuse, glint_cached_light *light);
 bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_cached_light *light, bool caps);

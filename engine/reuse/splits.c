@@ -37,7 +37,7 @@ static glint_key like_of(const glint_plan_pattern *own, int field)
     return program ? glint_key_add(program->structure, parts, sizeof parts) : none;
 }
 
-/// Begins with a program that differs from the last frame's. Returns false when out of memory.
+/// Records a program that differs from the last frame's. Returns false when out of memory.
 static bool begin_field(glint_split_field *f, const glint_program *program, glint_key like)
 {
     clear_field(f);
@@ -108,8 +108,8 @@ static bool split(glint_split_material *m, const glint_plan_pattern *own, uint32
     return true;
 }
 
-/// The same when numbers change for the first time. If caching for all numbers that ever changed does not pay, splits for those that
-/// have just changed.
+/// Does the same when numbers change for the first time. If caching for all numbers that ever changed does not pay,
+/// splits for the numbers that have just changed.
 static bool split_again(glint_split_material *m, const glint_plan_pattern *own, uint32_t saved)
 {
     for (int field = 0; field < GLINT_FIELD_PLANES; field++)
@@ -125,7 +125,8 @@ static bool split_again(glint_split_material *m, const glint_plan_pattern *own, 
     return split(m, own, saved);
 }
 
-/// Compares a material's programs with the last frame's, and splits them by their changes. Returns false when out of memory.
+/// Compares a material's programs with the last frame's, and splits them by their changes. Returns false when out of
+/// memory.
 static bool follow(glint_split_material *m, const glint_plan_pattern *own, uint32_t saved)
 {
     bool more = false, other = false;

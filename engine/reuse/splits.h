@@ -1,5 +1,6 @@
-/// Splits the programs of materials in a sequence of frames in which some of their numbers change: see engine/program/split.h. The
-/// results of the first parts are cached for each sample, so that only the second parts run again. Internal.
+/// Splits the programs of materials in a sequence of frames in which some of their numbers change: see
+/// engine/program/split.h. The results of the first parts are cached for each sample, so that only the second parts
+/// run again. Internal.
 #ifndef GLINT_REUSE_SPLITS_H
 #define GLINT_REUSE_SPLITS_H
 
@@ -10,10 +11,11 @@
 typedef struct glint_split_field {
     glint_key like; ///< of the program and its inputs, except for its numbers; all zero: no program
     uint32_t number_count;
-    double *numbers; ///< owned: those of the last frame
-    bool *changed, *now; ///< owned: numbers that have ever changed; numbers that have just changed
+    double *numbers; ///< owned: the numbers in the last frame
+    bool *changed, *now; ///< owned: numbers that have ever changed; numbers that changed in this frame
     glint_split *split; ///< owned; NULL: none of its numbers changes
-    uint32_t place[GLINT_PROGRAM_OUTPUTS_MAX]; ///< positions of the cached values, among the numbers or booleans of a sample
+    uint32_t place[GLINT_PROGRAM_OUTPUTS_MAX]; ///< positions of the cached values, among the numbers or booleans of a
+        ///< sample
 } glint_split_field;
 
 typedef struct glint_split_material {
