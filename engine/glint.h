@@ -161,13 +161,13 @@ typedef enum glint_op {
     GLINT_OP_CELL, ///< operands x, y, z: distances to the nearest and the second-nearest feature point. Each unit
         ///< cube has one such point (S. Worley, "A Cellular Texture Basis Function", SIGGRAPH 1996): 2 results
     GLINT_OP_HASH, ///< operands x, y, z: a number in [0, 1), independent of the numbers at other x, y, z
-    GLINT_OP_PARITY, ///< operands x, y, z: (floor(x) + floor(y) + floor(z)) % 2, for numbers of any size: a
-        ///< checkerboard
+    /// Operands x, y, z: (floor(x) + floor(y) + floor(z)) % 2, for numbers of any size: a checkerboard
+    GLINT_OP_PARITY,
     // made by the builder and by differentiation, and textures: not for glint_builder_op
     GLINT_OP_MULMUL, ///< (a b) c
     GLINT_OP_DOT, ///< (a b + c d) + e f
-    GLINT_OP_NOISE_SLOPE, ///< operands x, y, z, k: derivatives of NOISE (k = 0) or of result k of NOISE3 (1 .. 3): 3
-        ///< results
+    /// Operands x, y, z, k: derivatives of NOISE (k = 0) or of result k of NOISE3 (1 .. 3): 3 results
+    GLINT_OP_NOISE_SLOPE,
     GLINT_OP_CELL_SLOPE, ///< derivatives of CELL's first and second results: 6 results
     GLINT_OP_TEXEL, ///< glint_builder_texel: 4 results
     GLINT_OP_TEXEL_SLOPE, ///< derivatives of TEXEL's results with respect to u, and to v: 8 results
@@ -283,8 +283,8 @@ typedef enum glint_wrap {
 } glint_wrap;
 /// How the colour between texels is computed.
 typedef enum glint_filter {
-    GLINT_FILTER_BILINEAR, ///< interpolates four texels of a mipmap level, which is the picture halved as often as
-        ///< the footprint requires
+    /// Interpolates four texels of a mipmap level, which is the picture halved as often as the footprint requires
+    GLINT_FILTER_BILINEAR,
     GLINT_FILTER_NEAREST ///< takes the texel at u, v of the full-size picture
 } glint_filter;
 
@@ -353,8 +353,8 @@ typedef struct glint_object_field {
     size_t program_offset; ///< of the glint_program * that replaces the value unless it is NULL; 0: there is none
     unsigned takes; ///< what may replace a number: bits GLINT_TAKES_...
     bool required; ///< an object cannot be made without it
-    const char *const *names; ///< GLINT_TYPE_CHOICE: names of the values, from 0, ending with NULL;
-        ///< GLINT_TYPE_OBJECT: the kind
+    /// GLINT_TYPE_CHOICE: names of the values, from 0, ending with NULL; GLINT_TYPE_OBJECT: the kind
+    const char *const *names;
     const struct glint_object_field *parts; ///< GLINT_TYPE_TABLE: ends with a row without a name
     double low, high; ///< smallest and largest number allowed, for each component; angles in radians
     const char *expected; ///< the allowed values, in words, for messages: "number >= 0"
@@ -449,16 +449,16 @@ typedef struct glint_material_desc {
     /// max(mirror, 1) of its light
     double transmission[3];
     double ior; ///< refractive index inside, > 0; default 1.5. Outside it is 1, or the index of the enclosing object
-    bool fresnel; ///< multiplies `mirror` by a dielectric's Fresnel reflectance R, `transmission` by 1 - R; default
-        ///< false
+    /// Multiplies `mirror` by a dielectric's Fresnel reflectance R, `transmission` by 1 - R; default false
+    bool fresnel;
     double absorption[3]; ///< absorption coefficient inside, per world unit, >= 0; default 0: light is multiplied by
         ///< exp(-absorption distance)
     /// Energy-conserving normalisation. phong: S = (s + 2)/2 (r.v)^s (n.l) (E. Lafortune and Y. Willems 1994);
     /// blinn_phong: S = (s + 2)(s + 4)/(8 (2^(-s/2) + s)) (n.h)^s (n.l) (F. Giesen, "Phong and Blinn-Phong
     /// normalization factors", 2009). Both are reciprocal. Other models ignore it
     bool normalized;
-    bool matched; ///< blinn_phong: the exponent is 4 s, which gives the highlight closest to Phong's. Other models
-        ///< ignore it
+    /// blinn_phong: the exponent is 4 s, which gives the highlight closest to Phong's. Other models ignore it
+    bool matched;
     // cook_torrance:
     double roughness; ///< 0 .. 1, default 0.3; below 1e-9 it counts as 1e-9: a highlight narrower than any pixel
     glint_distribution distribution; ///< default GGX
@@ -558,8 +558,8 @@ typedef struct glint_light_desc {
     bool two_sided; ///< polygon: shines on both sides; default false
     double samples; ///< area lights: shadow rays for each sample of a pixel; whole number, 1 .. 65536; default 16
     bool has_radiance; ///< area lights: `radiance` gives the strength; `intensity` must then be 1
-    char group[GLINT_NAME_SIZE]; ///< name of the light pass that collects this group's lights; "": the light's own
-        ///< name
+    /// Name of the light pass that collects this group's lights; "": the light's own name
+    char group[GLINT_NAME_SIZE];
     /// >= 0: the light adds kd times the integral of radiance cos cos' / distance^2 over its surface. With
     /// `intensity` it adds the mean over its surface of point lights
     double radiance;
@@ -592,10 +592,10 @@ typedef struct glint_camera_desc {
     glint_projection projection; ///< default GLINT_PERSPECTIVE
     double eye[3]; ///< world units, finite; default {0, 0, 10}
     bool has_direction; ///< true: looks along `direction`; false: looks at the point `at`
-    double at[3], direction[3]; ///< finite; `at` differs from `eye`, `direction` is not zero; defaults: the origin,
-        ///< {0, 0, -1}
-    double up[3]; ///< default {0,1,0}; not zero. If parallel to the view, the world axis least aligned with the view
-        ///< replaces it
+    /// finite; `at` differs from `eye`, `direction` is not zero; defaults: the origin, {0, 0, -1}
+    double at[3], direction[3];
+    /// Default {0,1,0}; not zero. If parallel to the view, the world axis least aligned with the view replaces it
+    double up[3];
     double fov_y_rad; ///< vertical field of view of a perspective camera, in (0, pi); default 40 degrees
     /// Focal lengths of a perspective camera in pixels, horizontal and vertical, > 0, instead of `fov_y_rad`. 0, the
     /// default: not given; `fy` 0: same as `fx`
@@ -619,12 +619,12 @@ typedef struct glint_camera_desc {
     /// aperture |1 - d / focus| at that depth. An orthographic camera has a lens for each ray. Many samples make the
     /// blur smooth.
     double aperture;
-    double focus; ///< distance of the plane of focus along the view, > 0; default 0: given by `focus_point`, or else
-        ///< by `at`
+    /// Distance of the plane of focus along the view, > 0; default 0: given by `focus_point`, or else by `at`
+    double focus;
     bool has_focus_point; ///< true: the plane of focus goes through `focus_point`; `focus` must be 0
     double focus_point[3]; ///< finite, in front of the eye
-    double blades; ///< 0: a round lens, the default; 3 .. 64, whole: a regular polygon inscribed in that circle, a
-        ///< corner up
+    /// 0: a round lens, the default; 3 .. 64, whole: a regular polygon inscribed in that circle, a corner up
+    double blades;
     double blade_rotation_rad; ///< turns the polygon, counter-clockwise as seen by the eye; default 0
     char name[GLINT_NAME_SIZE]; ///< for messages; "": none
 } glint_camera_desc;
@@ -711,11 +711,11 @@ typedef struct glint_shape_desc {
     /// Retained by the shape. NULL: a material with default fields; for a part of a combined solid, the solid's
     /// material; for the solid, the material of its first part that has one. A group has none
     glint_material *material;
-    glint_transform transform; ///< from the shape's own space to its group or the world; default identity; must be
-        ///< invertible
+    /// From the shape's own space to its group or the world; default identity; must be invertible
+    glint_transform transform;
     bool two_sided; ///< default true: the normal is turned to the viewer; false: back faces get ambient light only
-    double center[3], radius; ///< sphere, disk (also radius of cylinder and cone, center of torus): finite, radius >
-        ///< 0; see glint_scene_cast
+    /// Sphere, disk (also radius of cylinder and cone, center of torus): finite, radius > 0; see glint_scene_cast
+    double center[3], radius;
     double point[3], normal[3]; ///< plane (and disk: normal): finite, normal not zero, need not be unit
     double min[3], max[3]; ///< box: finite, min < max; default -1, 1
     double base[3], top[3]; ///< cylinder, cone: the centres of its ends, which differ; the cone's top is its apex
@@ -783,8 +783,8 @@ typedef struct glint_spheres_desc {
     bool is_float; ///< true: `data` is binary32, false: binary64; native byte order
     glint_material *const *materials; ///< retained; NULL entries are not allowed
     size_t material_count; ///< 0: one material with default fields
-    const uint32_t *material_index; ///< material of each sphere: `count` numbers < material_count, copied; NULL: all
-        ///< are 0
+    /// Material of each sphere: `count` numbers < material_count, copied; NULL: all are 0
+    const uint32_t *material_index;
     bool two_sided; ///< default true: the normal is turned to the viewer
     char name[GLINT_NAME_SIZE]; ///< for messages; "": none
 } glint_spheres_desc;
@@ -792,8 +792,8 @@ typedef struct glint_spheres_desc {
 /// Makes spheres. A message names the first invalid sphere, counted from 1: "data: sphere 12: radius > 0 expected,
 /// got -1".
 glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **out, glint_error *error);
-size_t glint_spheres_count(const glint_shape *shape); ///< number of spheres; of triangles for a mesh; 1 for other
-    ///< shapes
+/// Number of spheres; of triangles for a mesh; 1 for other shapes
+size_t glint_spheres_count(const glint_shape *shape);
 
 /// Polygons with shared vertices. A face of more than three corners is cut into triangles: as a fan from its first
 /// corner, or by ear clipping if the fan would leave the polygon. The front is the side from which corners run
@@ -818,16 +818,16 @@ typedef struct glint_mesh_desc {
     /// Phong and gouraud without normals: the normals of the faces around a vertex are averaged, weighted by area
     glint_shading shading;
     glint_material *material; ///< retained; NULL: `materials`, those of the file, or one with default fields
-    glint_material *const *materials; ///< materials of individual faces: retained, instead of `material`; no NULL
-        ///< entries
+    /// Materials of individual faces: retained, instead of `material`; no NULL entries
+    glint_material *const *materials;
     size_t material_count; ///< 0: all faces have `material`
-    const uint32_t *material_index; ///< material of each face: face_count numbers < material_count, copied; NULL: all
-        ///< are 0
+    /// Material of each face: face_count numbers < material_count, copied; NULL: all are 0
+    const uint32_t *material_index;
     glint_transform transform; ///< default identity
     bool two_sided;
     char name[GLINT_NAME_SIZE];
-    void (*reads)(void *context, const char *path); ///< glint_mesh_load: called before a file is opened; NULL: not
-        ///< called
+    /// glint_mesh_load: called before a file is opened; NULL: not called
+    void (*reads)(void *context, const char *path);
     /// glint_mesh_load: called when something in the file is ignored; the message names the file; NULL: not called
     void (*warns)(void *context, const char *message);
     void *context; ///< passed to both functions
@@ -934,20 +934,20 @@ typedef struct glint_overlay_desc {
     /// label {0, 0}, colour bar {1, 0.5}, axes {0, 1}
     double at[2];
     bool has_position; ///< true: `position` is used instead of `at`
-    double position[2]; ///< upper left corner, in pixels from the picture's upper left corner; finite, may lie
-        ///< outside
+    /// Upper left corner, in pixels from the picture's upper left corner; finite, may lie outside
+    double position[2];
     bool has_size; ///< false: a 36th of the picture's height in pixels, at least 10
     double size; ///< size of the letters, points, 1 .. 10000
     bool has_margin; ///< false: half of `size`
     double margin; ///< distance to the picture's border, points, 0 .. 10000
-    double color[3]; ///< colour of letters and lines, linear RGB, finite, >= 0; above 1 counts as 1; default 1. Not
-        ///< tone-mapped
+    /// Colour of letters and lines, linear RGB, finite, >= 0; above 1 counts as 1; default 1. Not tone-mapped
+    double color[3];
     bool has_background; ///< false: no rectangle is drawn behind it
     double background[3]; ///< colour of a rectangle behind it; linear RGB as `color`
     double opacity; ///< of the background, 0 .. 1; default 1
     bool has_length; ///< false: colour bar 10 times `size`, axes 2.5 times
-    double length; ///< colour bar: length of the bar; axes: length of an axis parallel to the picture; points, 1 ..
-        ///< 10000
+    /// Colour bar: length of the bar; axes: length of an axis parallel to the picture; points, 1 .. 10000
+    double length;
     glint_colormap map; ///< colour bar
     bool has_colors; ///< true: the colour bar shows `colors` instead of `map`
     uint32_t colors[256]; ///< from low to high, 8-bit sRGB 0xRRGGBB
@@ -961,8 +961,8 @@ typedef struct glint_overlay_desc {
     /// the left, the others below. A direction that the eye looks along has no such edge and no axis; from inside the
     /// box there are none. Then has_position, has_margin, has_length and has_background must be false
     bool has_box;
-    double box[2][3]; ///< lowest and highest corner in the world; finite; one or two sides may be 0 and then have no
-        ///< axis
+    /// Lowest and highest corner in the world; finite; one or two sides may be 0 and then have no axis
+    double box[2][3];
     /// With has_box: the box is an oblique cell at box[0] with the edge vectors `sides`; box[1] is not read
     bool has_sides;
     double sides[3][3]; ///< finite; one may be 0 and then has no axis, the others span a plane
@@ -1010,8 +1010,8 @@ typedef struct glint_scene_desc {
     bool has_depth_cue_color; ///< false: `background` is the colour; it must not be a pattern
     double depth_cue_color[3]; ///< finite, >= 0
     double depth_cue_near, depth_cue_far; ///< finite, 0 <= near < far; default 0, 1
-    bool has_indirect; ///< false: `ambient` replaces all light that surfaces receive from each other and from the
-        ///< background
+    /// false: `ambient` replaces all light that surfaces receive from each other and from the background
+    bool has_indirect;
     /// Indirect light paths from each visible point, in cosine-weighted directions. Their mean light times kd is the
     /// indirect light. Whole number, 1 .. 65536.
     double indirect_samples;
@@ -1094,8 +1094,8 @@ typedef enum glint_visibility {
 
 /// The values stored for a pixel, as linear float32. Light is the mean over the samples.
 typedef enum glint_pass {
-    GLINT_PASS_BEAUTY, ///< (((((background + ambient) + diffuse) + specular) + indirect) + mirror) + transmission, in
-        ///< float32
+    /// (((((background + ambient) + diffuse) + specular) + indirect) + mirror) + transmission, in float32
+    GLINT_PASS_BEAUTY,
     GLINT_PASS_BACKGROUND, ///< light of samples that hit nothing, and the colour of the depth cue
     GLINT_PASS_AMBIENT, ///< ambient terms
     GLINT_PASS_DIFFUSE, ///< diffuse terms of all lights
@@ -1139,8 +1139,8 @@ typedef enum glint_rounding { GLINT_ROUND_NEAREST, GLINT_ROUND_TRUNCATE } glint_
 typedef enum glint_tone_curve {
     GLINT_TONE_CLAMP, ///< min(x, 1)
     GLINT_TONE_REINHARD, ///< x / (1 + x): Reinhard, Stark, Shirley and Ferwerda 2002, equation 3. Nothing is clipped
-    GLINT_TONE_FILMIC ///< h(2 x) / h(11.2), where h is Hable's curve of "Uncharted 2" (Filmic Games, 2010): white
-        ///< from 5.6 on
+    /// h(2 x) / h(11.2), where h is Hable's curve of "Uncharted 2" (Filmic Games, 2010): white from 5.6 on
+    GLINT_TONE_FILMIC
 } glint_tone_curve;
 
 #define GLINT_EXPOSURE_MAX 32 ///< stops, in both directions
@@ -1226,8 +1226,8 @@ typedef struct glint_render_desc {
     /// alpha. The background is also left out behind glass and translucent surfaces: see GLINT_PASS_ALPHA. Mirrored
     /// and totally reflected rays show the scene's background. If beauty is stored, so is GLINT_PASS_ALPHA
     bool alpha;
-    glint_outline_color outline; ///< drawn only in files: planes and pixel values do not have it; the pass is stored.
-        ///< Default none
+    /// Drawn only in files: planes and pixel values do not have it; the pass is stored. Default none
+    glint_outline_color outline;
     glint_tone_desc tone;
     /// x, y, width and height, in pixels, of the part of the frame to render. Its pixels are identical to the same
     /// pixels of the whole frame; the image has the size of the part. Whole numbers within the frame; all 0
@@ -1338,8 +1338,8 @@ typedef struct glint_image glint_image;
 /// The fields of a renderer.
 typedef struct glint_renderer_desc {
     int threads; ///< 1 .. 1024 worker threads; 0 (default): one per processor available to the process
-    const char *isa; ///< "ref", "generic" (also "sse2"), "avx2", "avx512"; NULL: the variable GLINT_ISA, else the
-        ///< best
+    /// "ref", "generic" (also "sse2"), "avx2", "avx512"; NULL: the variable GLINT_ISA, else the best
+    const char *isa;
     bool time_stages; ///< measure the time of each stage on each tile (costs a few per cent)
     bool count_work; ///< count the work for the statistics (costs some per cent)
     bool no_reuse; ///< cache nothing between frames; the pictures are the same
@@ -1384,8 +1384,8 @@ typedef enum glint_odd_kind { GLINT_ODD_NAN, GLINT_ODD_NEGATIVE, GLINT_ODD_HUGE,
 /// How often a frame's patterns gave such a result, and where.
 typedef struct glint_odd {
     uint64_t count; ///< number of points; for the background, of directions
-    const char *field; ///< field of one such result: static string, "diffuse"; "background" of the scene; NULL: there
-        ///< is none
+    /// Field of one such result: static string, "diffuse"; "background" of the scene; NULL: there is none
+    const char *field;
     char material[GLINT_NAME_SIZE]; ///< name of the material; may be empty
     double point[3]; ///< position in the world; for the background, the direction
 } glint_odd;
@@ -1403,8 +1403,8 @@ typedef struct glint_frame_stats {
     glint_ray_counts rays; ///< rays cast; reused stages cast none
     glint_work work; ///< 0 unless the renderer counts work; reused results cost none
     uint64_t refined; ///< pixels that took all samples with `adaptive`; else 0
-    uint64_t pixels; ///< pixels rendered; for a region, all pixels of the tiles that it touches. `clipped` and
-        ///< `nonfinite` count these
+    /// Pixels rendered; for a region, all pixels of the tiles that it touches. `clipped` and `nonfinite` count these
+    uint64_t pixels;
     uint64_t clipped; ///< pixels with a channel above 1; 0 without pixel values
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without pixel values
     uint64_t shifted; ///< pixels within a soft shadow, or next to an edge of a shape or shadow that a derivative's
@@ -1707,11 +1707,11 @@ typedef struct glint_sheet_desc {
     size_t cell_count; ///< >= 1
     int columns; ///< >= 1
     const char *title, *across, *down; ///< titles of the sheet, of its columns, of its rows; NULL: none
-    size_t difference; ///< number of the cell, from 1, that each row is compared with in an extra row below it; 0: no
-        ///< such rows
+    /// Number of the cell, from 1, that each row is compared with in an extra row below it; 0: no such rows
+    size_t difference;
     double gain; ///< factor applied to the differences; > 0
-    double size; ///< size of labels, in points of dpi / 72 pixels, 0 .. 10000; 0: 13 pixels, or 26 below pictures at
-        ///< least 900 wide
+    /// Size of labels, in points of dpi / 72 pixels, 0 .. 10000; 0: 13 pixels, or 26 below pictures at least 900 wide
+    double size;
     double dpi; ///< pixels per inch for printing, 0 .. 1e6; 0: not set, and a point is a pixel
     bool transparent; ///< transparent paper; pictures are drawn as on white
     /// A colour bar for all pictures, to their right, or below them if horizontal; NULL: none. It uses the fields of
@@ -1735,8 +1735,8 @@ typedef struct glint_apng_desc {
     bool alpha; ///< frames are RGBA
     glint_transfer transfer; ///< encoding of the pixel values of all frames
     uint32_t frame_count; ///< 1 .. 2^30
-    double fps; ///< frames per second, 1/65535 .. 65535; a frame's duration is the ratio of two 16-bit numbers
-        ///< nearest to 1/fps
+    /// Frames per second, 1/65535 .. 65535; a frame's duration is the ratio of two 16-bit numbers nearest to 1/fps
+    double fps;
     uint32_t plays; ///< 0: for ever
     glint_encode encode; ///< how frames are compressed
 } glint_apng_desc;

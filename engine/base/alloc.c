@@ -49,8 +49,8 @@ void *glint_alloc_large(size_t count, size_t size)
     const size_t whole = whole_bytes(count, size, LARGE_PAGE);
     void *memory = whole ? aligned_alloc(LARGE_PAGE, whole) : NULL;
     if (memory)
-        want_large_pages(memory, bytes + LARGE_PAGE / 2); // includes the last page if it is at least half full; stays
-            // within `whole`
+        // includes the last page if it is at least half full; stays within `whole`
+        want_large_pages(memory, bytes + LARGE_PAGE / 2);
     return memory;
 }
 
@@ -86,8 +86,8 @@ void glint_scratch_drop(void *memory, size_t bytes, size_t from, size_t to)
     const long page = sysconf(_SC_PAGESIZE);
     if (bytes < PAGED_FROM || page <= 0)
         return;
-    const size_t first = (from + (size_t)page - 1) / (size_t)page, last = to / (size_t)page; // whole pages inside the
-        // range
+    // whole pages inside the range
+    const size_t first = (from + (size_t)page - 1) / (size_t)page, last = to / (size_t)page;
     if (first < last)
         madvise((char *)memory + first * (size_t)page, (last - first) * (size_t)page, MADV_DONTNEED);
 #else

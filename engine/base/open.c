@@ -51,8 +51,8 @@ glint_status glint_open_file(const char *path, int *file, uint64_t *size, glint_
     struct stat info;
     int opened;
     do
-        opened = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK); // O_NONBLOCK: does not wait for a pipe's
-            // writer
+        // O_NONBLOCK: does not wait for a pipe's writer
+        opened = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
     while (opened < 0 && errno == EINTR);
     if (opened < 0)
         return glint_file_fail(error, path, errno);

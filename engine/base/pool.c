@@ -23,8 +23,8 @@ struct glint_pool {
     pthread_mutex_t mutex; ///< protects all fields below; the job does not change while workers are busy
     pthread_cond_t work, done;
     unsigned long round; ///< counts the calls of glint_pool_run
-    int busy; ///< threads working on this round's items; glint_pool_run does not wait for threads that find no items
-        ///< left
+    /// Threads working on this round's items; glint_pool_run does not wait for threads that find no items left
+    int busy;
     bool stop;
     size_t count;
     glint_pool_item *item;

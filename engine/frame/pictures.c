@@ -85,8 +85,8 @@ static void set_aside(glint_renderer *renderer, const glint_picture *last, int s
     if (!place)
         return;
     *place = *last;
-    place->worth = renderer->picture_floor + last->cost; // the floor may have risen to the worth of the last dropped
-        // picture
+    // the floor may have risen to the worth of the last dropped picture
+    place->worth = renderer->picture_floor + last->cost;
     glint_image_retain(place->image);
     glint_reuse_unreserve(&renderer->reuse, bytes); // the spare image's memory was reserved already
     glint_image_release(renderer->spare[spare]);

@@ -49,8 +49,8 @@ static void cast_lane(const glint_stages *stages, const glint_geometry_table *ge
 /// triangle if the part is a mesh.
 static size_t part_number(const glint_geometry *geometry, uint32_t whole, uint32_t id)
 {
-    const uint32_t count = geometry->hull_count ? geometry->hulls[0].first : geometry->member_count; // triangles come
-        // after
+    // triangles come after
+    const uint32_t count = geometry->hull_count ? geometry->hulls[0].first : geometry->member_count;
     size_t parts = 0;
     for (uint32_t i = 0; i < count; i++) {
         const glint_prim *member = &geometry->members[i];

@@ -46,8 +46,8 @@ typedef struct glint_chunk {
 typedef struct piece {
     bounds center[2]; ///< of the records that go to the lower and to the upper part
     uint32_t begin, count; ///< in the set
-    uint32_t wrong, wrong_before; ///< number of records in the wrong part, in this piece and in the part's pieces
-        ///< before it
+    /// Number of records in the wrong part, in this piece and in the part's pieces before it
+    uint32_t wrong, wrong_before;
 } piece;
 
 typedef struct split_work {

@@ -26,8 +26,8 @@ typedef struct glint_record_set {
 /// upper part, and so on, so that their order does not depend on the number of workers.
 typedef struct glint_records {
     glint_record *all; ///< owned
-    uint32_t *wrong; ///< owned; scratch of splits, of the same length: the records of a piece that are in the wrong
-        ///< part
+    /// owned; scratch of splits, of the same length: the records of a piece that are in the wrong part
+    uint32_t *wrong;
     uint32_t count;
     struct glint_chunk *chunks; ///< owned; scratch of splits by several workers
     glint_pool *pool; ///< borrowed, may be NULL

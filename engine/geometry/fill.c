@@ -295,8 +295,8 @@ static bool allocate(glint_filler *f)
     const size_t members = f->members + f->hull_prims;
     geometry->member_count = (uint32_t)members;
     f->numbers = glint_alloc(f->materials, sizeof *f->numbers);
-    geometry->prims = glint_alloc_large(f->prims + members, sizeof *geometry->prims); // members are appended when the
-        // primitives are arranged
+    // members are appended when the primitives are arranged
+    geometry->prims = glint_alloc_large(f->prims + members, sizeof *geometry->prims);
     geometry->members = members ? glint_alloc(members, sizeof *geometry->members) : NULL;
     geometry->hulls = f->hulls ? glint_alloc(f->hulls, sizeof *geometry->hulls) : NULL;
     geometry->combined = f->combined ? glint_alloc(f->combined, sizeof *geometry->combined) : NULL;

@@ -387,8 +387,8 @@ static glint_status fill(glint_geometry *geometry, const glint_scene *scene, gli
 uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id)
 {
     const glint_part *part = &geometry->parts[geometry->prim_part[id]];
-    return part->first_object + (part->shape->mesh ? 0 : id - part->first_prim); // a part of a combined solid has one
-        // id
+    // a part of a combined solid has one id
+    return part->first_object + (part->shape->mesh ? 0 : id - part->first_prim);
 }
 
 /// Returns a key of the states of all shapes: every change of a shape gives it a number that no other state of any

@@ -26,8 +26,8 @@ typedef struct glint_index {
 /// A shape's run of primitives; one for each instance of the shape.
 typedef struct glint_part {
     glint_shape *shape; ///< owned by the scene
-    const glint_shape *dress; ///< the shape whose materials it uses: itself, except for parts of combined solids
-        ///< without a material
+    /// The shape whose materials it uses: itself, except for parts of combined solids without a material
+    const glint_shape *dress;
     glint_shape *whole; ///< part of a combined solid: the object of the scene that contains it; otherwise NULL
     uint32_t first_prim, first_object; ///< ids of its first primitive and of its first object, from 0
     const glint_transform *map; ///< map of the shape under all its groups, owned by the geometry; NULL: the identity

@@ -10,23 +10,23 @@
 #include <string.h>
 
 #define SMALLEST_COUNT 64 ///< spheres; fewer are faster to test one by one
-#define WIDEST 0.25 ///< largest radius of a sphere relative to its distance; also the smallest cosine to the light's
-    ///< axis
+/// Largest radius of a sphere relative to its distance; also the smallest cosine to the light's axis
+#define WIDEST 0.25
 #define CELLS_A_RADIUS 3.0 ///< a cell's side, in mean radii
 #define COVERED_MAX 4.0 ///< a sphere's radius in cells; larger ones are tested one by one
 #define ENTRIES_MAX 4 ///< entries per sphere on average, at most
 #define ENTRIES_LEAST 2 ///< entries per sphere; with fewer, cells are so wide that they hold too many spheres
-#define ENTRY_BYTES (4 * sizeof(uint32_t)) ///< bytes of an entry and a cell; there are at most as many cells as
-    ///< entries
+/// Bytes of an entry and a cell; there are at most as many cells as entries
+#define ENTRY_BYTES (4 * sizeof(uint32_t))
 #define COUNT_MAX 32767 ///< most columns or rows
 #define SORTED_FROM 24 ///< entries per cell on average, from which sorting them pays
 #define SLICES 1024 ///< slices of depth for sorting
 #define PLACE_SLACK 0x1p-21 ///< shift of a position by float rounding, relative to 1 and to the position
-#define STEP_SLACK 1.5 ///< steps by which rounding may shift an entry's position and a point's, along both axes
-    ///< together
+/// Steps by which rounding may shift an entry's position and a point's, along both axes together
+#define STEP_SLACK 1.5
 #define CELL_SLACK 0x1p-21 ///< further shift, as a fraction of the grid's width
-#define FARTHEST 0x1p100 ///< largest distance of a sphere, in the BVH's units; differences of two are then finite,
-    ///< too
+/// Largest distance of a sphere, in the BVH's units; differences of two are then finite, too
+#define FARTHEST 0x1p100
 #define NEAR_MOST ((1u << (32 - GLINT_GRID_RADIUS_BITS)) - 1) ///< largest `near` of an entry
 
 /// A small sphere as the light sees it.
@@ -299,8 +299,8 @@ static uint32_t size_of(const glint_light_grid *grid, const seen_sphere *s)
     const double steps = GLINT_GRID_STEPS * (double)grid->cells;
     const double most = grid->count[0] > grid->count[1] ? grid->count[0] : grid->count[1];
     const double radius = (double)s->radius * steps + STEP_SLACK + CELL_SLACK * GLINT_GRID_STEPS * most;
-    const uint32_t near = clamp((s->near - grid->nearest) * grid->slices, NEAR_MOST); // the stage computes it in the
-        // same way for a point
+    // the stage computes it in the same way for a point
+    const uint32_t near = clamp((s->near - grid->nearest) * grid->slices, NEAR_MOST);
     return near << GLINT_GRID_RADIUS_BITS | (uint32_t)(int32_t)(radius / GLINT_GRID_RADIUS + 1);
 }
 

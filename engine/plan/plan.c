@@ -348,8 +348,8 @@ size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list)
     return plan->stage_count;
 }
 
-#define APRON 4 ///< width of the border around a region that its pixels depend on: compared pixels, and
-    ///< GLINT_REFINE_SPREAD more
+/// Width of the border around a region that its pixels depend on: compared pixels, and GLINT_REFINE_SPREAD more
+#define APRON 4
 
 /// Computes the tiles and pixels of a range along one axis of `of` pixels, in tiles of `size`.
 static void find_range(double from, double count, double of, int size, uint32_t *first, uint32_t *tiles, int *pixel,

@@ -25,8 +25,8 @@ typedef struct glint_plan_camera {
     bool orthographic;
     double eye[3], forward[3]; ///< forward is unit
     double right[3], up[3]; ///< from a pixel's centre to its edge
-    double span[2]; ///< twice the distance from the picture's left and upper edges to the point where `forward` is
-        ///< seen, pixels
+    /// Twice the distance from the picture's left and upper edges to the point where `forward` is seen, pixels
+    double span[2];
     double pixel_offset;
     double aperture, focus; ///< of the lens; aperture 0: there is no lens, and the following fields are not read
     uint32_t blades; ///< 0: it is round
@@ -43,14 +43,14 @@ typedef struct glint_lens_points {
 typedef struct glint_plan_light {
     bool directional, shadows, attenuated;
     bool joined; ///< another sample of the same area light as the light before it
-    bool alike; ///< for the stage `light`, differs from the light before it only in position; both without samples or
-        ///< a cone
+    /// For the stage `light`, differs from the light before it only in position; both without samples or a cone
+    bool alike;
     bool is_spot;
     glint_spot spot;
     uint32_t source; ///< index of the light in the scene
     uint32_t group; ///< its group among the frame's light passes; GLINT_NO_GROUP: none
-    const glint_light_sample *light_samples; ///< area light: the sample pattern of each turn, one after another;
-        ///< otherwise NULL
+    /// Area light: the sample pattern of each turn, one after another; otherwise NULL
+    const glint_light_sample *light_samples;
     const glint_light_sample *cap; ///< shadows by caps: describes the whole light; otherwise NULL
     bool hard; ///< area light: one shadow ray to `position`, its centre, for all samples
     bool radiant_cap; ///< inside its radius, the light is as strong as on its surface
@@ -83,8 +83,8 @@ typedef struct glint_plan_visible_light {
 /// A background computed by a program.
 typedef struct glint_plan_environment {
     glint_program *program; ///< owned reference
-    glint_program *uv; ///< maps p, a direction, to its position in a picture of all directions; NULL: `program` does
-        ///< not read it
+    /// Maps p, a direction, to its position in a picture of all directions; NULL: `program` does not read it
+    glint_program *uv;
     uint32_t row_count; ///< the largest number of rows that one of them needs
     double pixel; ///< the angle of a pixel; 0: rays are parallel
     double most; ///< upper bound of its result
@@ -114,8 +114,8 @@ typedef struct glint_plan_indirect {
 
 #define GLINT_BOUNCE_DEPTH 31 ///< largest max_depth if a material's mirror + transmission is above 1
 #define GLINT_BOUNCE_SPLITS 16 ///< number of surfaces in a chain at which both rays are followed
-#define GLINT_BOUNCE_LOSS 0x1p-20 ///< limit, in linear light per sample, for the total of weak rays that are not
-    ///< followed
+/// Limit, in linear light per sample, for the total of weak rays that are not followed
+#define GLINT_BOUNCE_LOSS 0x1p-20
 
 typedef struct glint_text_line {
     char effect[48];
@@ -125,8 +125,8 @@ typedef struct glint_text_line {
 struct glint_plan {
     glint_render_desc desc;
     uint32_t shutter_times; ///< light is the mean over this number of times; 0: one instant
-    struct glint_plan **times; ///< these times, each rendered separately, owned; NULL: only lights differ, and
-        ///< `lights` has them
+    /// These times, each rendered separately, owned; NULL: only lights differ, and `lights` has them
+    struct glint_plan **times;
     bool is_base; ///< this plan is the `base` of another one
     struct glint_plan *base; ///< adaptive sampling: the picture with one sample per pixel that it examines; NULL: off
     glint_plan_camera camera;
@@ -183,8 +183,8 @@ struct glint_plan {
     glint_key all_materials_key, all_lights_key, background_key;
     glint_key vertex_key; ///< of everything that the light of faces and vertices depends on
     glint_key output_key; ///< of the conversion to pixel values
-    glint_key setting_key; ///< hash of the view, and of the lights' positions and colours: if it changes, few pixels
-        ///< stay the same
+    /// Hash of the view, and of the lights' positions and colours: if it changes, few pixels stay the same
+    glint_key setting_key;
     bool raster; ///< triangles are found by projecting them, not by casting
     bool needs_index; ///< some stage traverses the BVH
     bool accumulate; ///< sums over samples or over chunks of lights are needed

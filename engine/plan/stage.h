@@ -68,11 +68,11 @@ typedef enum glint_stage_time {
 } glint_stage_time;
 
 typedef struct glint_stage {
-    const char *name; ///< in `glint explain`, --json and the statistics of a frame; NULL: part of another stage, not
-        ///< listed
+    /// In `glint explain`, --json and the statistics of a frame; NULL: part of another stage, not listed
+    const char *name;
     const char *doc; ///< the result in a few words, for `glint explain`
-    bool (*called)(const struct glint_plan *plan); ///< returns whether the frame needs the stage; the plan's tables
-        ///< are filled
+    /// Returns whether the frame needs the stage; the plan's tables are filled
+    bool (*called)(const struct glint_plan *plan);
     uint64_t reads; ///< GLINT_READS and GLINT_READS_OWN: its inputs, besides the results of the stages before it
     glint_key (*own)(const struct glint_plan *plan,
                      glint_key key); ///< continues a key with data that only this stage reads; NULL: none

@@ -228,8 +228,8 @@ bool glint_may_shade(const glint_plan *plan, const glint_plan_light *light, cons
 {
     const source from = source_of(light);
     const bool has_points = box->lower[0] <= box->upper[0] && box->lower[1] <= box->upper[1] && box->lower[2] <= box->upper[2];
-    const int bodies = plan->lens || (from.directional && from.radius > 0) ? 1 : 2; // rays of a lens leave the tile's
-        // pyramid
+    // rays of a lens leave the tile's pyramid
+    const int bodies = plan->lens || (from.directional && from.radius > 0) ? 1 : 2;
     slabs around[2];
     bool found = false;
     for (uint32_t i = 0; i < count; i++) {

@@ -126,8 +126,8 @@ typedef struct glint_reuse {
     glint_key where; ///< hash of the positions of the last frame's surfaces
     glint_cached_place *places; ///< the positions, by id; owned; NULL: there were too many
     uint32_t place_count;
-    uint32_t carry_wait, carry_pause; ///< number of coming frames that do not record positions; length of the last
-        ///< such pause
+    /// Number of coming frames that do not record positions; length of the last such pause
+    uint32_t carry_wait, carry_pause;
     double scale; ///< of the geometry's table
     // results with a key seen before, which this frame caches
     bool keep_cast, keep_pattern, keep_view, keep_light[GLINT_CACHED_LIGHTS];

@@ -14,8 +14,8 @@ typedef struct glint_split_field {
     double *numbers; ///< owned: the numbers in the last frame
     bool *changed, *now; ///< owned: numbers that have ever changed; numbers that changed in this frame
     glint_split *split; ///< owned; NULL: none of its numbers changes
-    uint32_t place[GLINT_PROGRAM_OUTPUTS_MAX]; ///< positions of the cached values, among the numbers or booleans of a
-        ///< sample
+    /// Positions of the cached values, among the numbers or booleans of a sample
+    uint32_t place[GLINT_PROGRAM_OUTPUTS_MAX];
 } glint_split_field;
 
 typedef struct glint_split_material {

@@ -150,8 +150,8 @@ static glint_status check_area(const glint_light_desc *desc, glint_error *error)
             glint_fail(error, GLINT_ERR_INVALID,
                        "attenuation: {1, 0, 0} expected beside a radiance and shadow = caps, got {%.9g, %.9g, %.9g}",
                        a[0], a[1], a[2]);
-    if (!status && desc->kind != GLINT_LIGHT_POLYGON && desc->has_radiance && desc->radius > 0) // the radius is
-        // squared
+    // the radius is squared
+    if (!status && desc->kind != GLINT_LIGHT_POLYGON && desc->has_radiance && desc->radius > 0)
         status = glint_check_range("radius", desc->radius, 1e-150, 1e150,
                                    "0 or a number 1e-150 .. 1e150 beside a radiance", error);
     if (!status && desc->kind == GLINT_LIGHT_POLYGON)

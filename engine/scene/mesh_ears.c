@@ -114,8 +114,8 @@ static void select_nth(const corner *corners, uint32_t *order, uint32_t count, u
 {
     uint32_t low = 0, high = count - 1;
     while (low < high) {
-        const uint32_t any = low + (low * 2654435761u + high * 40503u) % (high - low); // pseudo-random, so that no
-            // order of corners is a worst case
+        // pseudo-random, so that no order of corners is a worst case
+        const uint32_t any = low + (low * 2654435761u + high * 40503u) % (high - low);
         const double pivot = corners[order[any]].at[axis];
         uint32_t i = low, j = high;
         for (;; i++, j--) {

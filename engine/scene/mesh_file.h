@@ -122,8 +122,8 @@ typedef struct glint_mesh_reader {
     glint_mesh_array colors; ///< 8-bit sRGB red, green and blue of each vertex or face; empty: none
     bool colors_of_faces; ///< `colors` belong to faces, not to vertices
     glint_mesh_array
-        numbers_of_colors; ///< red, green and blue as numbers, for vertices or faces, up to the last one that has
-            ///< them
+        /// Red, green and blue as numbers, for vertices or faces, up to the last one that has them
+        numbers_of_colors;
     struct {
         size_t index, line;
     } far[GLINT_MESH_OF_COUNT]; ///< .obj: the largest index that was not defined yet, from 0, and its line; 0: none
