@@ -560,8 +560,8 @@ typedef struct glint_light_desc {
     bool has_radiance; ///< area lights: `radiance` gives the strength; `intensity` must then be 1
     /// Name of the light pass that collects this group's lights; "": the light's own name
     char group[GLINT_NAME_SIZE];
-    /// >= 0: the light adds kd times the integral of radiance cos cos' / distance^2 over its surface. With
-    /// `intensity` it adds the mean over its surface of point lights
+    /// >= 0: the light adds kd times the integral of radiance cos cos' / distance^2 over its surface. With `intensity`,
+    /// it adds the mean light of point lights spread over its surface
     double radiance;
     char name[GLINT_NAME_SIZE];
 } glint_light_desc;
@@ -1357,8 +1357,8 @@ void glint_renderer_destroy(glint_renderer *renderer);
 const char *glint_renderer_isa(const glint_renderer *renderer);
 /// Returns the number of workers, including the calling thread.
 int glint_renderer_threads(const glint_renderer *renderer);
-/// Makes the current or next glint_render return GLINT_ERR_CANCELLED, at the latest after the current tile.
-/// Async-signal-safe.
+/// Cancels: the current glint_render, and all later ones of this renderer, return GLINT_ERR_CANCELLED, at the latest
+/// after the current tile. Async-signal-safe.
 void glint_renderer_cancel(glint_renderer *renderer);
 /// Returns the finished share of the current frame, 0 .. 1. Any thread.
 double glint_renderer_progress(const glint_renderer *renderer);
@@ -1367,7 +1367,7 @@ double glint_renderer_progress(const glint_renderer *renderer);
 
 /// Work counters of a frame. Unlike times, they are free of noise.
 typedef struct glint_work {
-    uint64_t tests; ///< exact tests of a ray against a primitive, after BVH and filters
+    uint64_t tests; ///< ray-primitive tests: pairs that the BVH and the filters could not rule out
     uint64_t light_samples; ///< pairs of a point and a light, or a sample of an area light, evaluated
     uint64_t powers; ///< highlights computed (powers of a cosine)
     uint64_t sites; ///< sides of faces and vertices that were lit, for flat and gouraud shading

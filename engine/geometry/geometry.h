@@ -104,7 +104,7 @@ glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *sc
 /// geometry/sizes.c: refuses shapes that are too small or too large for the squares that the kernels compute. Fills
 /// `thinnest`.
 glint_status glint_geometry_check_sizes(glint_geometry *geometry, glint_error *error);
-/// Refuses shapes that are too small for rays from a place to hit them. who: the place, for the message.
+/// Refuses shapes that are too small for rays from a point to hit them. who: the point, for the message.
 glint_status glint_geometry_check_reach(const glint_geometry *geometry, const char *who, const double from[3],
                                         glint_error *error);
 /// Writes all numbers that define a primitive's position, and returns how many they are.

@@ -142,7 +142,7 @@ struct glint_plan {
     glint_plan_light *lights;
     glint_light_sample *light_samples; ///< of all area lights
     bool caps; ///< shapes and materials allow shadows by caps
-    uint32_t light_count, shadow_count; ///< number of lights; rows that cast shadows
+    uint32_t light_count, shadow_count; ///< number of rows in `lights`; rows of these that cast shadows
     uint32_t spared_count; ///< rows that cast shadows but need no rays of their own
     double ambient[3], background[3]; ///< background is 0 if there is an environment
     glint_plan_environment *environment; ///< NULL: the background is plain

@@ -28,7 +28,7 @@ typedef struct glint_ears {
 void glint_ears_free(glint_ears *ears);
 
 /// Cuts off the first corner that can be cut, repeatedly. *whole says whether the whole polygon was cut; a polygon
-/// that crosses itself may leave a rest. Takes n log n steps for most polygons.
+/// that crosses itself may not be. Takes n log n steps for most polygons.
 glint_status glint_ears_cut(glint_ears *ears, const glint_polygon *polygon, bool *whole, glint_error *error);
 
 #endif
