@@ -108,9 +108,9 @@ typedef enum glint_input {
     GLINT_INPUT_COUNT ///< how many there are
 } glint_input;
 
-/// Operations. `true` is 1 and `false` is 0; as a condition, every number except 0 is true. min and max are a < b ? a
-/// : b and a > b ? a : b. Operations under "exact" are IEEE 754 operations, rounded once. The others are composed of
-/// these in the order written here, unless stated otherwise.
+/// Operations. `true` is 1 and `false` is 0; as a condition, every number except 0 is true. min and max are
+/// a < b ? a : b and a > b ? a : b. Operations under "exact" are IEEE 754 operations, rounded once. The others are
+/// composed of these in the order written here, unless stated otherwise.
 typedef enum glint_op {
     // exact
     GLINT_OP_ADD, ///< a + b
@@ -205,9 +205,9 @@ glint_status glint_builder_create(glint_program_kind kind, glint_builder **out, 
 void glint_builder_destroy(glint_builder *builder);
 /// Makes a number: any double. Numbers with the same bits are the same value.
 glint_status glint_builder_number(glint_builder *builder, double number, glint_value *out, glint_error *error);
-/// Makes a number that depends on parameters: slopes[k] is its derivative with respect to parameter k, 0 <= k <
-/// `count`. Programs use the number itself; glint_program_tangent uses the slopes. GLINT_ERR_INVALID for more than
-/// GLINT_PARAMETERS_MAX slopes.
+/// Makes a number that depends on parameters: slopes[k] is its derivative with respect to parameter k,
+/// 0 <= k < `count`. Programs use the number itself; glint_program_tangent uses the slopes. GLINT_ERR_INVALID for
+/// more than GLINT_PARAMETERS_MAX slopes.
 glint_status glint_builder_parameter(glint_builder *builder, double number, const double *slopes, size_t count,
                                      glint_value *out, glint_error *error);
 /// Makes an input. GLINT_ERR_INVALID for a shader input in a pattern.
@@ -279,7 +279,7 @@ char *glint_program_listing(const glint_program *program);
 typedef enum glint_wrap {
     GLINT_WRAP_REPEAT, ///< the picture repeats
     GLINT_WRAP_CLAMP, ///< the border texels continue
-    GLINT_WRAP_AROUND ///< repeats in u, continues the border in v: for a picture around a ball, or of all directions
+    GLINT_WRAP_AROUND ///< repeats in u, continues the border in v: for a picture around a ball, or a panorama
 } glint_wrap;
 /// How the colour between texels is computed.
 typedef enum glint_filter {
@@ -411,8 +411,8 @@ typedef enum glint_opacity_mode {
         ///< elsewhere it is opaque. Objects behind a hole look as they do without the surface
     /// The light that the surface gives, including mirrored, refracted and indirect light, is multiplied by the
     /// opacity o. Eye, mirror, glass and indirect rays also continue straight on with weight 1 - o, and shadow rays
-    /// pass with weight 1 - o. Each surface counts: a ray through a closed ball crosses two surfaces and keeps (1 -
-    /// o)^2.
+    /// pass with weight 1 - o. Each surface counts: a ray through a closed ball crosses two surfaces and keeps
+    /// (1 - o)^2.
     GLINT_OPACITY_BLEND
 } glint_opacity_mode;
 
@@ -592,7 +592,7 @@ typedef struct glint_camera_desc {
     glint_projection projection; ///< default GLINT_PERSPECTIVE
     double eye[3]; ///< world units, finite; default {0, 0, 10}
     bool has_direction; ///< true: looks along `direction`; false: looks at the point `at`
-    /// finite; `at` differs from `eye`, `direction` is not zero; defaults: the origin, {0, 0, -1}
+    /// Finite; `at` differs from `eye`, `direction` is not zero; defaults: the origin, {0, 0, -1}
     double at[3], direction[3];
     /// Default {0,1,0}; not zero. If parallel to the view, the world axis least aligned with the view replaces it
     double up[3];
@@ -611,13 +611,12 @@ typedef struct glint_camera_desc {
     /// Time that the shutter is open, as a fraction of the time between frames, 0 .. 1; default 0, an instant. Used
     /// by callers that plan a frame for several times, see glint_plan_create_exposed
     double shutter;
-    double shutter_times; ///< number of times at which the scene is planned while the shutter is open, 1 ..
-        ///< GLINT_SHUTTER_TIMES_MAX; default 8
+    double shutter_times; ///< number of times at which the scene is planned while the shutter is open,
+        ///< 1 .. GLINT_SHUTTER_TIMES_MAX; default 8
     /// Radius of the lens, world units, >= 0; default 0: a pinhole, which shows everything sharp. Each sample starts
     /// at a point of the lens, in the plane through the eye perpendicular to the view, and passes through the point
-    /// where the pinhole's ray crosses the plane of focus. A point at depth d is blurred over a disk of diameter 2
-    /// aperture |1 - d / focus| at that depth. An orthographic camera has a lens for each ray. Many samples make the
-    /// blur smooth.
+    /// where the pinhole's ray crosses the plane of focus. At depth d, a point is blurred over a disk of diameter
+    /// 2 aperture |1 - d / focus|. An orthographic camera has a lens for each ray. Many samples make the blur smooth.
     double aperture;
     /// Distance of the plane of focus along the view, > 0; default 0: given by `focus_point`, or else by `at`
     double focus;
@@ -722,8 +721,8 @@ typedef struct glint_shape_desc {
     bool capped; ///< cylinder: closed at both ends; cone: closed at its base; default true. False: the side only,
         ///< visible from inside too. It then has no inside: rays refract as at a solid without end
     double axis[3]; ///< torus: not zero, need not be unit; default {0, 1, 0}
-    double major, minor; ///< torus: radius of the circle along the middle of the tube, and radius of the tube; 0 <
-        ///< minor < major, so that the tube does not intersect itself; default 1, 0.25
+    double major, minor; ///< torus: radius of the circle along the middle of the tube, and radius of the tube;
+        ///< 0 < minor < major, so that the tube does not intersect itself; default 1, 0.25
     glint_shading shading; ///< mesh
     char name[GLINT_NAME_SIZE];
 } glint_shape_desc;
@@ -817,7 +816,7 @@ typedef struct glint_mesh_desc {
     bool has_shading; ///< false: phong if there are normals, otherwise faceted
     /// Phong and gouraud without normals: the normals of the faces around a vertex are averaged, weighted by area
     glint_shading shading;
-    glint_material *material; ///< retained; NULL: `materials`, those of the file, or one with default fields
+    glint_material *material; ///< retained; NULL: `materials`, the file's materials, or one with default fields
     /// Materials of individual faces: retained, instead of `material`; no NULL entries
     glint_material *const *materials;
     size_t material_count; ///< 0: all faces have `material`
@@ -1284,8 +1283,8 @@ glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc
 /// Returns the description for each point in time of a frame with an open shutter: the passes that can be averaged,
 /// no pixel values.
 glint_render_desc glint_shutter_desc(const glint_render_desc *frame);
-/// Plans a frame with an open shutter. `times` are `count` plans of the scene at different times, 1 ..
-/// GLINT_SHUTTER_TIMES_MAX, made with glint_shutter_desc(desc). Light and alpha are the mean over the times.
+/// Plans a frame with an open shutter. `times` are `count` plans of the scene at different times,
+/// 1 .. GLINT_SHUTTER_TIMES_MAX, made with glint_shutter_desc(desc). Light and alpha are the mean over the times.
 /// Everything else comes from `scene` as it is now: the plan's effects and stages, and depth, normal, object_id,
 /// albedo, outline and refined. If only lights differ, each such light is replaced by one light per time with its
 /// share of the strength. A derivative of the frame is the mean of the derivatives of the same name at the times; a
@@ -1308,8 +1307,8 @@ const char *glint_plan_light_pass(const glint_plan *plan, size_t index);
 size_t glint_plan_effects(const glint_plan *plan, const glint_effect **list);
 size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list);
 /// Returns the expected rays. Primary rays are exact. Shadow rays are an upper bound, as if every sample hit a
-/// surface facing every light that casts shadows; those of mirrored, refracted and indirect rays and of transparent
-/// objects are not included. mirror, refraction and indirect are 0 or the first generation.
+/// surface facing every light that casts shadows; they exclude the shadow rays of mirrored, refracted and indirect
+/// rays and of transparent objects. mirror, refraction and indirect are 0 or the first generation.
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan);
 /// Estimates the work of rendering `plan` right after `before`, from their keys. Each stage whose key differs counts
 /// 1. The stages `light` and `occlude` count 1 for each light or light sample that differs; `shade` counts a half if
@@ -1370,7 +1369,7 @@ typedef struct glint_work {
     uint64_t tests; ///< ray-primitive tests: pairs that the BVH and the filters could not rule out
     uint64_t light_samples; ///< pairs of a point and a light, or a sample of an area light, evaluated
     uint64_t powers; ///< highlights computed (powers of a cosine)
-    uint64_t sites; ///< sides of faces and vertices that were lit, for flat and gouraud shading
+    uint64_t sites; ///< sides of faces and vertices whose light was computed, for flat and gouraud shading
     uint64_t lights_seen; ///< rays that end on a visible light
     uint64_t patterns; ///< points at which a material's programs were run
     uint64_t environment; ///< rays that left the scene, for which the background's program was run
@@ -1678,7 +1677,7 @@ const char *glint_picture_text(const glint_picture *picture, const char *keyword
 /// values are rounded, and transparent pixels are blended over a grey of `backdrop`, 0 .. 255. Needs the pixels.
 void glint_picture_row(const glint_picture *picture, int y, int backdrop, uint8_t *rgb);
 /// Writes row `y` as 3 * width numbers of linear light. sRGB values are decoded, linear values are divided by the
-/// largest value, grey becomes RGB, alpha is dropped. Needs the pixels.
+/// largest possible value, grey becomes RGB, alpha is dropped. Needs the pixels.
 void glint_picture_light(const glint_picture *picture, int y, float *rgb);
 
 /// A finished part of a picture.
@@ -1721,8 +1720,8 @@ typedef struct glint_sheet_desc {
 } glint_sheet_desc;
 
 /// Draws finished pictures in rows, with labels, as one 8-bit PNG: dark text on white. If a picture is missing or
-/// differs in size from the first, the error names it and the file is unchanged. A row of differences holds |cell -
-/// chosen cell| times `gain`, in 8-bit sRGB values.
+/// differs in size from the first, the error names it and the file is unchanged. A row of differences holds `gain` times
+/// |cell - chosen cell|, in 8-bit sRGB values.
 glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error);
 
 /// An animated PNG being written.

@@ -252,8 +252,8 @@ static double exp_of_sum(sum2 x)
     return times_power(y.high, e);
 }
 
-/// Returns log x as a sum, relative error below 2^-74; x finite, > 0. x = 2^e m; c near 1/m from the table; m c = 1 +
-/// f.
+/// Returns log x as a sum, relative error below 2^-74; x finite, > 0. x = 2^e m; c is near 1/m, from the table; m
+/// c = 1 + f.
 static sum2 log_to_sum(double x)
 {
     int e = 0;

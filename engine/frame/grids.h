@@ -20,8 +20,8 @@ typedef struct glint_grids {
 } glint_grids;
 
 /// Makes the grids of a frame's lights that cast shadows and have no samples, and sets them in `frame`. Drops grids
-/// that are not needed. A grid is made if it pays in the tiles of this or the next frames, and if it takes at most 1
-/// / GLINT_TILE_GRIDS of the cache budget. A refined frame has the grids of its base. Initialise the structure with
+/// that are not needed. A grid is made if it pays in the tiles of this or the next frames, and if it takes at most
+/// 1 / GLINT_TILE_GRIDS of the cache budget. A refined frame has the grids of its base. Initialise the structure with
 /// zeros.
 glint_status glint_grids_begin(glint_grids *grids, glint_tile_frame *frame, const glint_extent *extent, int threads,
                                glint_error *error);

@@ -29,8 +29,8 @@ uint32_t glint_light_sample_turns(const glint_light_desc *desc, double pixel_sam
 /// is even for any N. (a, b) comes from a (0,2) sequence and differs for the 16 pixels of a block and for each turn.
 /// Means over blocks and over the samples of a pixel therefore use even sets, too. The square is mapped to the
 /// surface with areas in proportion. For a sphere with radiance it is mapped to the cone in which a point sees the
-/// sphere, with solid angles in proportion. An even N then gives pairs: ((k + a) / (N/2), frac(k g + b)) and ((k + 1
-/// - a) / (N/2), the same + 1/2).
+/// sphere, with solid angles in proportion. An even N then gives pairs: ((k + a) / (N/2), frac(k g + b)) and
+/// ((k + 1 - a) / (N/2), the same + 1/2).
 void glint_light_sample_fill(const glint_light_desc *desc, uint32_t turns, double seed, glint_light_sample *out);
 
 #endif
