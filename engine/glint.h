@@ -1720,8 +1720,8 @@ typedef struct glint_sheet_desc {
 } glint_sheet_desc;
 
 /// Draws finished pictures in rows, with labels, as one 8-bit PNG: dark text on white. If a picture is missing or
-/// differs in size from the first, the error names it and the file is unchanged. A row of differences holds `gain` times
-/// |cell - chosen cell|, in 8-bit sRGB values.
+/// differs in size from the first, the error names it and the file is unchanged. A row of differences holds `gain`
+/// times |cell - chosen cell|, in 8-bit sRGB values.
 glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error);
 
 /// An animated PNG being written.
