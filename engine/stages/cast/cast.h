@@ -1,5 +1,5 @@
-// cast: the nearest hit of each ray from the eye. The tile walks the index once, nearest boxes first, and tests what it
-// finds group by group. Contract: stages.h.
+// cast: the nearest hit of each ray from the eye. The whole tile traverses the index once, nearest boxes first. Each
+// primitive that it reaches is tested group by group. Contract: stages.h.
 #ifndef GLINT_CAST_CAST_H
 #define GLINT_CAST_CAST_H
 
@@ -14,7 +14,7 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// The only candidate of a group: what it does not hit, nothing does. `sphere` is a constant.
+/// Casts the only candidate of a group: rays that miss it hit nothing. `sphere` is a constant.
 INNER void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candidate, const bool sphere, int x, int y,
                          unsigned near)
 {
@@ -49,7 +49,7 @@ INNER void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candida
     args->hits[g] = (uint16_t)hits;
 }
 
-/// Groups that a sphere fills and that are inside the image: no pixel needs a test of its own.
+/// Casts groups inside the image that a sphere fills: no pixel needs its own test.
 static void R(cast_filled)(const R(tile_cast) * tile, const R(candidate) * candidate, uint64_t groups)
 {
     const glint_cast_args *args = tile->args;
@@ -92,7 +92,7 @@ static inline void R(clear_groups)(R(tile_cast) * tile, uint64_t groups)
     }
 }
 
-/// A group whose pixels decide, and the candidates that it may show.
+/// Casts a group whose pixels need their own tests, against the candidates that it may show.
 INNER void R(cast_mixed)(R(tile_cast) * tile, const R(candidate) *const *candidates, int count, const uint64_t may[],
                          const uint64_t sure[], int slot)
 {
@@ -124,7 +124,7 @@ INNER void R(cast_mixed)(R(tile_cast) * tile, const R(candidate) *const *candida
         R(finish_group)(tile->args, g);
 }
 
-/// Groups that have a ray; *whole: those that have one in every lane.
+/// Returns the groups that have a ray; *whole: those with a ray in every lane.
 static inline uint64_t R(live_groups)(const R(tile_cast) * tile, uint64_t *whole)
 {
     uint64_t live = 0;
@@ -147,7 +147,7 @@ static inline uint64_t R(live_groups)(const R(tile_cast) * tile, uint64_t *whole
     return live;
 }
 
-/// Every group and the first candidates.
+/// Casts the first candidates to every group.
 static void R(cast_first)(R(tile_cast) * tile, const R(candidate) *const *candidates, int count, uint64_t may[])
 {
     const uint64_t all = R(all_groups)(tile);
@@ -180,8 +180,8 @@ static void R(cast_first)(R(tile_cast) * tile, const R(candidate) *const *candid
     }
 }
 
-/// Looks into the root: its primitives become candidates, its nodes go on the stack, the nearest on top. Returns how many
-/// candidates. may: the groups of each one's box.
+/// Opens the root: its primitives become candidates, its nodes go on the stack, the nearest on top. Returns the
+/// number of candidates. may: the groups that each one's box may show in.
 static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, uint64_t may[], screen_entry *stack,
                         int *height)
 {
@@ -217,7 +217,7 @@ INNER void R(cast_prims_as)(R(tile_cast) * tile, const bool gathered, R(cast_lea
         R(cast_triangles)(tile, gathered, leaf, node, seen, triangles);
 }
 
-/// The same of pixels that lie anywhere.
+/// The same for pixels at any position.
 static __attribute__((noinline)) void R(cast_prims_to_pixels)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node,
                                                               const node_on_screen *seen, unsigned mask)
 {
@@ -271,7 +271,7 @@ static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
         R(cast_prims)(tile, &leaf, waiting, &seen[!turn], waiting_prims);
 }
 
-/// Makes candidates of the planes from number *next on that are ahead, as many as there is room for.
+/// Makes candidates of the planes ahead of the camera, from number *next on, at most `room` of them.
 static int R(open_planes)(R(tile_cast) * tile, uint32_t *next, R(candidate) * candidates, int room)
 {
     const glint_geometry_table *geometry = tile->args->geometry;

@@ -1,7 +1,7 @@
-// combined: solids made of others by union, intersection and difference. Each part of one gives the stretch of a ray that is
-// inside of it; where a stretch ends, and there alone, the whole may begin or end: it does where the program says so of what holds
-// before and of what holds after, of all parts at that one t. Parts whose faces are in one plane have bit-equal ends there, so that
-// they change at once. Contract: stages.h, cast.
+// combined: solids made of others by union, intersection and difference. For each part, a ray has an interval inside
+// of it. The whole can only begin or end at an end of such an interval. It does if the program's result just before
+// the end differs from the result just after it, with all parts evaluated at that one t. Parts whose faces are in one
+// plane have bit-equal ends there, so that they change together. Contract: stages.h, cast.
 #ifndef GLINT_CAST_COMBINED_H
 #define GLINT_CAST_COMBINED_H
 
@@ -14,18 +14,18 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// Where rays are inside each part, from t[0] to t[1]; t[0] = inf: nowhere.
+/// The intervals in which rays are inside each part, from t[0] to t[1]; t[0] = inf: none.
 typedef struct R(stretches) {
     vr t[2][GLINT_PARTS_MAX];
-    uint32_t triangle[2][GLINT_PARTS_MAX][VR]; ///< of meshes: by which they come in and go out
+    uint32_t triangle[2][GLINT_PARTS_MAX][VR]; ///< for meshes: the triangles through which the rays enter and leave
     vr known; ///< end of the known intervals: a mesh may have more
-    uint64_t live; ///< parts that have some, and are of the program
-    uint32_t length; ///< of the program; 0: these rays meet nothing
-    const uint8_t *program; ///< the whole's, or what these rays leave of it, in `own`
+    uint64_t live; ///< parts of the program that have an interval
+    uint32_t length; ///< of the program; 0: these rays hit nothing
+    const uint8_t *program; ///< the program of the whole, or its simplification for these rays, in `own`
     uint8_t own[2 * GLINT_PARTS_MAX];
 } R(stretches);
 
-/// The half-space behind a plane.
+/// Computes the interval in the half-space behind a plane.
 static void R(stretch_behind)(const glint_prim *plane, const vr o[3], const vr d[3], vr t[2])
 {
     vr f[3];
@@ -58,7 +58,8 @@ static bool R(stretch_within)(const glint_geometry_table *table, const glint_pri
     return true;
 }
 
-/// Lanes of `own` start on the part; where they go into it they are inside up to its other side, else nowhere.
+/// Corrects the intervals of the lanes in `own`, which start on the part: rays that go into it are inside up to its
+/// other side, others are nowhere inside.
 static void R(stretch_from)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
                             unsigned own, unsigned into, vr t[2])
 {
@@ -75,7 +76,7 @@ static void R(stretch_from)(const glint_geometry_table *table, const glint_prim 
     t[1] = r_select(on, r_select(in, out, r_set(-HUGE_VAL)), t[1]);
 }
 
-/// One of the two stretches that rays may be inside of a torus; own, into: as above. Returns whether any is.
+/// Computes one of the at most two intervals inside a torus; own, into: as above. Returns whether any ray has it.
 static bool R(stretch_of_torus)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
                                 unsigned own, unsigned into, vr t[2])
 {
@@ -90,7 +91,7 @@ static bool R(stretch_of_torus)(const glint_geometry_table *table, const glint_p
     return rm_bits(r_lt(r_set(0), t[1])) != 0;
 }
 
-/// Lanes of a vector whose entries are `wanted`.
+/// Returns the lanes of a vector whose entries are `wanted`.
 static inline unsigned R(vector_lanes)(const uint32_t *list, uint32_t wanted)
 {
     unsigned lanes = 0;
@@ -102,7 +103,7 @@ static inline unsigned R(vector_lanes)(const uint32_t *list, uint32_t wanted)
 /// Makes the program for a vector of rays: the program of the whole without parts that none of the rays enters. Often few parts remain.
 static void R(leave_parts)(const glint_combined *whole, uint64_t live, R(stretches) * s)
 {
-    uint32_t begin[GLINT_PARTS_MAX]; // of the code of each set so far; such that has none is empty
+    uint32_t begin[GLINT_PARTS_MAX]; // where the code of each set so far begins; a set without code is empty
     uint32_t top = 0, n = 0;
     for (uint32_t k = 0; k < whole->length; k++) {
         const uint8_t p = whole->program[k];
@@ -126,7 +127,7 @@ static void R(leave_parts)(const glint_combined *whole, uint64_t live, R(stretch
             s->live |= (uint64_t)1 << s->own[k];
 }
 
-/// The same, where it is known at once: of all parts, and of one.
+/// Does the same, with shortcuts for all parts and for one part.
 static inline void R(make_program)(const glint_combined *whole, uint64_t live, R(stretches) * s)
 {
     if (live && live == whole->all) {
@@ -145,14 +146,15 @@ static inline void R(make_program)(const glint_combined *whole, uint64_t live, R
     s->own[0] = (uint8_t)(live ? __builtin_ctzll(live) : 0);
 }
 
-/// A vector of rays before a combined solid.
+/// A vector of rays that are tested against a combined solid.
 typedef struct R(whole_rays) {
     const vr *o, *d;
-    const uint32_t *on; ///< the primitive that each starts on; NULL: on none
-    unsigned inward, lanes; ///< those that go into it there; those that are wanted
+    const uint32_t *on; ///< the primitive that each ray starts on; NULL: none
+    unsigned inward, lanes; ///< lanes that go into that primitive; lanes that are wanted
 } R(whole_rays);
 
-/// Finds the intervals of a mesh, which uses the parts from j on. from: intervals up to here are done; 0: none. Returns the rays that have some.
+/// Computes the intervals of a mesh, which uses the parts from j on. from: intervals up to here are done; 0: none.
+/// Returns the parts that have an interval.
 static uint64_t R(stretches_of_hull)(const glint_geometry_table *table, const glint_prim *part, uint32_t j,
                                      const R(whole_rays) * w, unsigned lanes, vr from, R(stretches) * s)
 {
@@ -170,7 +172,7 @@ static uint64_t R(stretches_of_hull)(const glint_geometry_table *table, const gl
     return (uint64_t)R(hull_stretches)(&rays, lanes, into, first, t, triangle, &s->known) << j;
 }
 
-/// Whether rays start on parts of it.
+/// Returns whether any ray starts on one of the parts.
 static inline bool R(starts_on)(const uint32_t *on, uint32_t first, uint32_t count)
 {
     bool starts = false;
@@ -179,8 +181,8 @@ static inline bool R(starts_on)(const uint32_t *on, uint32_t first, uint32_t cou
     return starts;
 }
 
-/// Finds the intervals of a part that has several, or whose rays start on some part (`starts`); of the other rays, `lanes` are needed.
-/// Returns whether any ray is in it.
+/// Computes the intervals of a part that can have several, or if rays start on some part (`starts`). Of the other
+/// rays, only `lanes` are needed. Returns whether any ray is inside the part.
 static __attribute__((noinline)) bool R(stretch_of_part)(const glint_geometry_table *table, const glint_prim *part, uint32_t index,
                                                          const R(whole_rays) * w, unsigned lanes, bool starts, vr t[2])
 {
@@ -199,7 +201,7 @@ static __attribute__((noinline)) bool R(stretch_of_part)(const glint_geometry_ta
     return any || (own & into);
 }
 
-/// lanes: the unfinished ones of w->lanes; from: see above.
+/// Computes the intervals of all parts. lanes: the unfinished ones of w->lanes; from: see above.
 static void R(find_stretches)(const glint_geometry_table *table, const glint_combined *whole, const R(whole_rays) * w,
                               unsigned lanes, vr from, R(stretches) * s)
 {
@@ -233,8 +235,8 @@ static void R(find_stretches)(const glint_geometry_table *table, const glint_com
 
 /// The state of one set next to positions on rays.
 typedef struct R(change) {
-    rm before, after; ///< the ray is in it
-    vr part; ///< whose surface the change is, where there is one
+    rm before, after; ///< whether the ray is inside
+    vr part; ///< the part on whose surface the change is, if there is one
 } R(change);
 
 static inline rm R(unlike)(rm a, rm b) { return rm_or(rm_andnot(a, b), rm_andnot(b, a)); }
@@ -246,7 +248,8 @@ INNER rm R(combine_masks)(uint8_t operation, rm a, rm b)
     return operation == GLINT_COMBINE_INTERSECTION ? rm_and(a, b) : rm_andnot(a, b);
 }
 
-/// The change explains itself by the first of the two sets that changes as their combination does.
+/// Combines two sets. The part of the result is that of the first set that changes in the same direction as the
+/// result.
 INNER void R(combine)(uint8_t operation, R(change) * a, const R(change) * b, const bool parts)
 {
     const rm before = R(combine_masks)(operation, a->before, b->before);
@@ -257,7 +260,7 @@ INNER void R(combine)(uint8_t operation, R(change) * a, const R(change) * b, con
     a->after = after;
 }
 
-/// parts, a constant: change->part is wanted.
+/// Returns the change of the whole at t. parts, a constant: change->part is wanted.
 INNER R(change) R(change_at)(const R(stretches) * s, vr t, const bool parts)
 {
     R(change) stack[GLINT_PARTS_MAX];
@@ -279,27 +282,27 @@ INNER R(change) R(change_at)(const R(stretches) * s, vr t, const bool parts)
     return stack[0];
 }
 
-/// Where one part alone does, which rays are in from `in` to `out`.
+/// Returns the first change of a single part beyond `from`, for rays that are inside of it from `in` to `out`.
 INNER vr R(first_end)(vr in, vr out, vr from)
 {
     const vr none = r_set(HUGE_VAL), end = r_select(r_lt(from, in), in, r_select(r_lt(from, out), out, none));
     return r_select(r_lt(in, out), end, none);
 }
 
-/// Rays that are in a stretch right before t, and right after it.
+/// Returns the rays that are inside an interval just before t, and just after it.
 INNER rm R(in_before)(const vr stretch[2], vr t) { return rm_and(r_lt(stretch[0], t), r_le(t, stretch[1])); }
 
 INNER rm R(in_after)(const vr stretch[2], vr t) { return rm_and(r_le(stretch[0], t), r_lt(t, stretch[1])); }
 
-/// The nearer of *best and an end of a stretch beyond `from` where `mask` is as `is` says.
+/// Updates *best by an end of an interval beyond `from` if it is nearer and `mask` equals `is`.
 INNER void R(nearer_end)(vr t, vr from, rm ends, rm mask, const bool is, vr *best)
 {
     const rm ahead = rm_and(r_lt(from, t), ends);
     *best = r_min(r_select(is ? rm_and(ahead, mask) : rm_andnot(ahead, mask), t, r_set(HUGE_VAL)), *best);
 }
 
-/// Where a combination of two parts does; operation: a constant. Where a stretch begins or ends, the whole does by whether rays are in
-/// the other.
+/// Returns the first change of a combination of two parts; operation: a constant. At an end of one part's interval,
+/// the whole changes or not depending on whether the ray is inside the other part.
 INNER vr R(first_of_two)(const uint8_t operation, const vr a[2], const vr b[2], vr from)
 {
     const bool both = operation == GLINT_COMBINE_INTERSECTION, less = operation == GLINT_COMBINE_DIFFERENCE;
@@ -313,7 +316,8 @@ INNER vr R(first_of_two)(const uint8_t operation, const vr a[2], const vr b[2], 
     return best;
 }
 
-/// Whether a change at t of a combination of two is the second's: the first does not change as their combination does.
+/// Returns whether a change at t of a combination of two belongs to the second part, because the first does not
+/// change in the same direction.
 static inline rm R(is_of_second)(const R(stretches) * s, vr t)
 {
     const uint8_t *p = s->program;
@@ -323,7 +327,7 @@ static inline rm R(is_of_second)(const R(stretches) * s, vr t)
                  R(unlike)(after, R(combine_masks)(p[2], after, R(in_after)(b, t))));
 }
 
-/// Where a program of more does.
+/// Returns the first change of a program with more parts.
 static vr R(first_of_many)(const R(stretches) * s, vr from)
 {
     vr best = r_set(HUGE_VAL);
@@ -339,7 +343,7 @@ static vr R(first_of_many)(const R(stretches) * s, vr from)
     return best;
 }
 
-/// Where the whole changes first beyond `from`; inf: nowhere.
+/// Returns t of the first change of the whole beyond `from`; inf: none.
 static inline vr R(first_change)(const R(stretches) * s, vr from)
 {
     const uint8_t *p = s->program;
@@ -356,8 +360,9 @@ static inline vr R(first_change)(const R(stretches) * s, vr from)
                                               : R(first_of_two)(GLINT_COMBINE_DIFFERENCE, a, b, from);
 }
 
-/// Where the whole changes first for the rays of `lanes`, and which of these it does for; `s` is told of there. Call it again for
-/// the others, with the *from that it leaves, as long as there are some: returns those.
+/// Computes the first change of the whole for the rays of `lanes`, into `s`, `t` and `hit`. Returns the rays that
+/// need further intervals. The caller repeats the call for them, with the *from that this call stored, until none is
+/// left.
 static unsigned R(next_change)(const glint_geometry_table *table, const glint_combined *whole, const R(whole_rays) * w,
                                unsigned lanes, vr *from, R(stretches) * s, vr *t, unsigned *hit)
 {
@@ -365,11 +370,12 @@ static unsigned R(next_change)(const glint_geometry_table *table, const glint_co
     *t = R(first_change)(s, *from);
     const unsigned told = rm_bits(rm_or(r_lt(*t, s->known), r_eq(s->known, r_set(HUGE_VAL))));
     *hit = rm_bits(r_lt(*t, r_set(HUGE_VAL))) & lanes & told;
-    *from = s->known * r_set(GLINT_REAL == 64 ? 1 - 0x1p-53 : 1 - 0x1p-24); // the number before it, normal as it is
+    *from = s->known * r_set(GLINT_REAL == 64 ? 1 - 0x1p-53 : 1 - 0x1p-24); // the largest number below it; it is a
+        // normal number
     return lanes & ~told;
 }
 
-/// Stores hits of part j; for a mesh those of its triangles.
+/// Stores hits of part j; for a mesh, hits of its triangles.
 static void R(keep_part)(const glint_cast_args *args, const glint_combined *whole, const R(stretches) * s, uint32_t j,
                          size_t at, rm mine, vr t)
 {
@@ -387,8 +393,8 @@ static void R(keep_part)(const glint_cast_args *args, const glint_combined *whol
     }
 }
 
-/// Decides the whole for a vector of rays, from lane `at` of the call on, and keeps the nearest: a part of it. Returns whether any hit
-/// was kept.
+/// Decides the whole for a vector of rays, from lane `at` of the call on, and stores the nearest hit, as a hit of a
+/// part. Returns whether any hit was stored.
 static __attribute__((noinline)) bool R(cast_combined)(const glint_cast_args *args, const glint_combined *whole, size_t at, const R(whole_rays) * w)
 {
     R(stretches) s;
@@ -439,7 +445,7 @@ static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const
     return any;
 }
 
-/// The same of the eye's rays in group (x, y) of a tile.
+/// Does the same for the eye's rays in group (x, y) of a tile.
 static __attribute__((noinline)) bool R(cast_combined_pixels)(const glint_cast_args *args, const glint_prim *prim, int x, int y,
                                                               size_t at, unsigned near)
 {

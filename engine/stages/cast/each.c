@@ -1,4 +1,4 @@
-// Hits of single rays that have nothing in common.
+// Hits of individual rays, which need not be coherent.
 #include "engine/stages/cast/parallel.h"
 #include "engine/stages/cast/rays.h"
 #include "engine/stages/cast/together.h"

@@ -1,14 +1,14 @@
-// face: the planes of flat surfaces. What was described in one plane has one face's numbers, so that all of it is met at the
-// same t and the first defined wins; and what starts on a face is at height 0. Contract: stages.h.
+// face: the planes of flat surfaces. Faces described in one plane share one face's numbers, so that all of them are
+// hit at the same t, and the first one defined wins. A ray that starts on a face is at height 0. Contract: stages.h.
 #ifndef GLINT_CAST_FACE_H
 #define GLINT_CAST_FACE_H
 
 #include "engine/stages/simd/real.h"
 
-/// Returns 0 for a value that rounding may have made of 0.
+/// Returns x, or 0 if |x| is within the rounding error of 0.
 static inline vr R(unless_within)(vr x, vr bound) { return r_select(r_le(r_max(x, -x), bound), r_set(0), x); }
 
-/// The height of a place over a face.
+/// Returns the height of a point over a face.
 static inline vr R(face_height)(const glint_face *face, const vr place[3])
 {
     const vr n[3] = { r_set(face->normal[0]), r_set(face->normal[1]), r_set(face->normal[2]) };
@@ -22,7 +22,7 @@ static inline vr R(face_height)(const glint_face *face, const vr place[3])
     return R(unless_within)(DOT(n, q), r_set(GLINT_ON_FACE) * r_set(face->places));
 }
 
-/// A pair of parallel faces that are square to axis k, a constant.
+/// Computes the same as over_slab for a pair of parallel faces that are perpendicular to axis k, a constant.
 INNER vr R(over_level_slab)(const glint_face *low, const int k, const vr *place, const vr d[3], vr height[2])
 {
     const vr n = r_set(low->normal[k]);
@@ -31,8 +31,8 @@ INNER vr R(over_level_slab)(const glint_face *low, const int k, const vr *place,
     return n * d[k];
 }
 
-/// How fast rays rise over a pair of faces, low[0] and low[1], which have one normal; and the heights of their start, `place`,
-/// over them. place: NULL: these are not wanted.
+/// Returns how fast rays rise over the faces low[0] and low[1], which have the same normal. Also computes the heights
+/// of their origin, `place`, over both. place: NULL: no heights are wanted.
 INNER vr R(over_slab)(const glint_face *low, const vr *place, const vr d[3], vr height[2])
 {
     if (low->axis < 3)
@@ -48,10 +48,10 @@ INNER vr R(over_slab)(const glint_face *low, const vr *place, const vr d[3], vr 
     return DOT(n, d);
 }
 
-/// The same of one face, for callers that need no more.
+/// Does the same for one face, without heights.
 static inline vr R(face_rise)(const glint_face *face, const vr d[3]) { return R(over_slab)(face, NULL, d, NULL); }
 
-/// Where rays meet the plane.
+/// Returns t where rays hit the plane.
 static inline vr R(face_way)(const glint_face *face, const vr o[3], const vr d[3])
 {
     return -R(face_height)(face, o) / R(face_rise)(face, d);

@@ -1,6 +1,6 @@
-// groups: of the groups of a tile, those that something may show in, by its cells and how deep it is; and of their lanes, those that
-// come near it. All groups are tested before the first is decided, and nothing branches on what a test gives: such branches are
-// mispredicted, which costs more than the tests. Contract: stages.h, cast.
+// groups: the groups of a tile that a primitive may show in, by its cells and depth, and the lanes of these groups
+// that come near it. All groups are tested before the first is decided, without branches on test results: such
+// branches are often mispredicted, which costs more than the tests. Contract: stages.h, cast.
 #ifndef GLINT_CAST_GROUPS_H
 #define GLINT_CAST_GROUPS_H
 
@@ -9,20 +9,21 @@
 #include "engine/stages/index/screen.h"
 #include "engine/stages/simd/real.h"
 
-/// One of these groups. Where pixels lie anywhere, all are in one column.
+/// One group of a tile. If pixels can lie anywhere, all groups are in one column.
 typedef struct R(tile_group) {
     int x, y, g; ///< column, row, number
-    const float *s, *t; ///< places of its rays
+    const float *s, *t; ///< screen positions of its rays
 } R(tile_group);
 
-/// Lanes of a group that come near something.
+/// Lanes of a group that come near a primitive.
 typedef struct R(near_group) {
     uint16_t lanes;
     uint8_t x, y;
 } R(near_group);
 
-/// Groups that lie in some of the cells, where something as far away as `near` still matters there: a bit each, that of cover.h or, of
-/// pixels that lie anywhere, that of its number. gathered, a constant here and below: they do.
+/// Returns the groups that lie in some of the cells and whose hits may be beyond `near`. There is one bit per group,
+/// numbered as in cover.h or, for gathered pixels, by the group's index. gathered, a constant here and below: the
+/// pixels can lie anywhere.
 INNER uint64_t R(groups_behind)(const R(tile_cast) * tile, const bool gathered, screen_cells cells, float near)
 {
     const unsigned columns = bit_range(first_column(cells), last_column(cells));
@@ -37,7 +38,7 @@ INNER uint64_t R(groups_behind)(const R(tile_cast) * tile, const bool gathered, 
     return groups;
 }
 
-/// The group of the lowest bit.
+/// Returns the group of the lowest bit.
 INNER R(tile_group) R(lowest_group)(const R(tile_cast) * tile, const bool gathered, uint64_t groups)
 {
     const int place = __builtin_ctzll(groups), x = gathered ? 0 : place % COVER_ACROSS,
@@ -46,20 +47,20 @@ INNER R(tile_group) R(lowest_group)(const R(tile_cast) * tile, const bool gather
                              gathered ? tile->pixels->t[y] : tile->t[y] };
 }
 
-/// Lanes that have met nothing before `near`.
+/// Returns the lanes that have no hit before `near`.
 INNER unsigned R(open_lanes)(const R(tile_cast) * tile, const R(tile_group) * at, int i, float near)
 {
     return fm_bits(f_le(f_set(near), f_load(tile->depth[at->g] + i)));
 }
 
-/// Notes lanes where there are any. Returns how many groups are noted.
+/// Appends a group with its lanes, if there are any. Returns the number of groups.
 INNER int R(note_near)(const R(tile_group) * at, unsigned lanes, R(near_group) * groups, int count)
 {
     groups[count] = (R(near_group)) { (uint16_t)lanes, (uint8_t)at->x, (uint8_t)at->y };
     return count + (lanes != 0);
 }
 
-/// Notes how deep a group's hits are.
+/// Updates the farthest hit of a group.
 INNER void R(note_group)(R(tile_cast) * tile, const bool gathered, R(near_group) group)
 {
     if (gathered)

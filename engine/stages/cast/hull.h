@@ -1,7 +1,8 @@
-// hull: where rays are inside of a closed mesh that is a part of a combined solid. A place is inside where the rest of the ray goes
-// out through the triangles more often than in. Each ray goes through one of those that share an edge or corner, or through
-// none, so that this holds whatever it passes: it is taken for one beside, on the side to which the two axes across the
-// direction's largest component point, the second of them before the first. Contract: stages.h, cast.
+// hull: the intervals of rays inside a closed mesh that is a part of a combined solid. A point is inside if the rest
+// of the ray leaves the mesh more often than it enters. This holds at edges and corners, too, because each ray
+// crosses exactly one of the triangles that share an edge or corner, or none: it is treated as if shifted along the
+// two axes perpendicular to the direction's largest component, along the second axis infinitely more than along the
+// first. Contract: stages.h, cast.
 #ifndef GLINT_CAST_HULL_H
 #define GLINT_CAST_HULL_H
 
@@ -12,26 +13,27 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define HULL_KEPT 16 ///< places of a ray that are held at a time
+#define HULL_KEPT 16 ///< crossings of a ray that are stored at a time
 
-/// Where one ray goes through triangles ahead of where it starts, nearest first.
+/// The crossings of one ray with triangles, ahead of its origin, nearest first.
 typedef struct R(crossings) {
-    int count, sum; ///< sum: how often it goes out less how often in, all of it
+    int count, sum; ///< sum: number of exits minus entries over all crossings
     real t[HULL_KEPT];
-    int way[HULL_KEPT]; ///< out less in at that place
-    uint32_t triangle[HULL_KEPT][2]; ///< the first there that it goes in through, out through; GLINT_MISS: none
-    uint32_t begun[2]; ///< likewise of those that it starts on
-    real lost; ///< the nearest place that had no room; inf: there is none
+    int way[HULL_KEPT]; ///< exits minus entries at that t
+    uint32_t triangle[HULL_KEPT][2]; ///< the first triangle there through which the ray enters, leaves; GLINT_MISS:
+        ///< none
+    uint32_t begun[2]; ///< likewise, for triangles that the ray starts on
+    real lost; ///< the nearest crossing that could not be stored; inf: none
 } R(crossings);
 
-/// A vector of rays before one mesh.
+/// A vector of rays that are tested against one mesh.
 typedef struct R(hull_rays) {
     const glint_geometry_table *table;
     const glint_prim *part;
     const vr *o, *d;
-    const uint32_t *on; ///< the primitive that each starts on; NULL: none
+    const uint32_t *on; ///< the primitive that each ray starts on; NULL: none
     vr turned[3]; ///< the direction, its largest component last
-    rm y, z; ///< which that is; neither: x
+    rm y, z; ///< lanes whose largest component is y, z; x in the other lanes
     _Alignas(64) real origin[3][VR];
     _Alignas(64) real from[VR]; ///< crossings up to here are done
     ray_view view[VR];
@@ -70,7 +72,7 @@ static void R(begin_hull_rays)(R(hull_rays) * rays, vr from)
     }
 }
 
-/// Notes the first of the triangles at one place that are gone through one way.
+/// Stores a triangle if it is the first one defined at its t with this direction of crossing.
 static inline void R(note_triangle)(uint32_t found[2], int way, uint32_t index)
 {
     if (index < found[way > 0])
@@ -108,7 +110,7 @@ static inline bool R(starts_on_hull)(const R(hull_rays) * rays, int i)
     return rays->on && rays->on[i] != GLINT_MISS && rays->on[i] - (rays->table->prim_count + hull->first) < hull->count;
 }
 
-/// Notes where the rays of `out` and `in` go through the triangle.
+/// Stores the crossings of the rays of `out` and `in` with the triangle.
 static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out, unsigned in, vr way)
 {
     const glint_prim *prim = &rays->table->prims[index];
@@ -118,7 +120,8 @@ static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out,
     for (unsigned left = out | in; left; left &= left - 1) {
         const int i = __builtin_ctz(left), turns = out >> i & 1 ? 1 : -1;
         const bool on_surface = rays->on && rays->on[i] != GLINT_MISS, on_hull = R(starts_on_hull)(rays, i);
-        bool begun = t[i] == 0; // of a plane that triangles share; at an edge, where rays may start, rounding has a part in it
+        bool begun = t[i] == 0; // only exact for planes that triangles share; at an edge, where rays may start,
+            // rounding decides
         if (rays->on && rays->on[i] == index)
             continue;
         if ((!prim->face || on_hull) && t[i] <= near && -near <= t[i]) {
@@ -135,7 +138,7 @@ static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out,
     }
 }
 
-/// Decides one triangle for the rays of `lanes`.
+/// Tests one triangle for the rays of `lanes`.
 static void R(cross_triangle)(R(hull_rays) * rays, uint32_t index, unsigned lanes)
 {
     const glint_prim *prim = &rays->table->prims[index];
@@ -176,7 +179,7 @@ static void R(cross_triangle)(R(hull_rays) * rays, uint32_t index, unsigned lane
     R(note_crossings)(rays, index, rays->part->turned ? against : with, rays->part->turned ? with : against, t);
 }
 
-/// Finds all triangles that the rays of `lanes` go through.
+/// Finds all triangles that the rays of `lanes` cross.
 static void R(walk_hull)(R(hull_rays) * rays, const glint_hull *hull, unsigned lanes)
 {
     struct {
@@ -214,7 +217,8 @@ typedef struct R(ray_within) {
     real known; ///< end of the known intervals
 } R(ray_within);
 
-/// A ray that starts on the mesh goes into it or not, and what is ahead may tell another: then it goes out, or in, where it starts.
+/// Makes the crossings of a ray that starts on the mesh agree with whether it goes inside: if the crossings ahead
+/// disagree, adds an exit or entry at its origin.
 static int R(agree_at_start)(R(crossings) * of, uint32_t on, bool inside)
 {
     const int way = (inside ? 1 : 0) - of->sum;
@@ -225,7 +229,7 @@ static int R(agree_at_start)(R(crossings) * of, uint32_t on, bool inside)
     return inside;
 }
 
-/// left: how often it goes out yet, less how often in.
+/// Computes the intervals. left: remaining exits minus entries.
 static void R(find_within)(const R(crossings) * of, int left, R(ray_within) * in)
 {
     in->count = 0;
@@ -248,9 +252,9 @@ static void R(find_within)(const R(crossings) * of, int left, R(ray_within) * in
         in->t[1][in->count++] = (real)HUGE_VAL;
 }
 
-/// Finds where the rays of `lanes` are inside of a mesh, GLINT_HULL_PARTS stretches at a time: `t` and `triangle` are those of its
-/// parts, *known: up to where. into: lanes that go into the mesh where they start on it. first: nothing has been dealt with before.
-/// Returns which of the parts have some, a bit each.
+/// Computes the intervals of the rays of `lanes` inside a mesh, GLINT_HULL_PARTS at a time. `t` and `triangle` are
+/// those of the mesh's parts; *known: up to where the intervals are complete. into: lanes that go into the mesh if
+/// they start on it. first: this is the first call for these rays. Returns the parts with an interval, one bit each.
 static unsigned R(hull_stretches)(R(hull_rays) * rays, unsigned lanes, unsigned into, bool first, vr *const t[2],
                                   uint32_t (*const triangle[2])[VR], vr *known)
 {

@@ -1,5 +1,6 @@
-// cast_leaf: the triangles of a node against the groups of a tile. Float says which rays may pass between which edges; these
-// pairs of triangle and ray are decided a vector at a time, each lane with a triangle of its own. Contract: stages.h, cast.
+// cast_leaf: the triangles of a node against the groups of a tile. A float test selects the rays that may pass
+// between the edges. These pairs of triangle and ray are decided a vector at a time, with a different triangle in
+// each lane. Contract: stages.h, cast.
 #ifndef GLINT_CAST_LEAF_H
 #define GLINT_CAST_LEAF_H
 
@@ -18,24 +19,24 @@
 
 #define GLINT_PAIRS (4 * GLINT_GROUP)
 
-/// The triangles of one node, and pairs that are to be decided.
+/// The triangles of one node, and the pairs that are still to be decided.
 typedef struct R(cast_leaf) {
-    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< of each slot's triangle
-    _Alignas(64) real origin[3][GLINT_PAIRS]; ///< there: where the ray starts
+    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< of the triangle in each slot
+    _Alignas(64) real origin[3][GLINT_PAIRS]; ///< the ray's origin, for each pair
     _Alignas(64) real direction[3][GLINT_PAIRS], t[GLINT_PAIRS];
     _Alignas(64) uint32_t slot[GLINT_PAIRS];
-    _Alignas(64) uint32_t at[GLINT_PAIRS]; ///< the ray
+    _Alignas(64) uint32_t at[GLINT_PAIRS]; ///< the ray, for each pair
     int count;
     const glint_node *node;
     unsigned faced; ///< slots whose triangle shares its plane with others
     leaf_on_screen shown;
-    _Alignas(64) uint32_t pixels[GLINT_NODE_WIDTH]; ///< of the tile, see screen_cells
+    _Alignas(64) uint32_t pixels[GLINT_NODE_WIDTH]; ///< of the tile that each triangle may show in, see screen_cells
     R(near_group) group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< groups that triangles may show in
-    uint8_t slot_of_group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< the triangle's
+    uint8_t slot_of_group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< the slot of the triangle
     int groups;
 } R(cast_leaf);
 
-/// Loads the corners of triangles. Lanes of other slots keep what they had.
+/// Loads the corners of triangles. Lanes of other slots are unchanged.
 static inline void R(load_node_corners)(const glint_geometry_table *geometry, const glint_node *node, unsigned mask,
                                         real to[3][3][GLINT_NODE_WIDTH])
 {
@@ -54,7 +55,7 @@ static inline void R(begin_leaf)(R(cast_leaf) * leaf)
     leaf->faced = 0;
 }
 
-/// Loads the corners. Lanes without a triangle keep what they had.
+/// Loads the corners. Lanes without a triangle are unchanged.
 static inline void R(load_leaf)(const glint_cast_args *args, unsigned mask, R(cast_leaf) * leaf)
 {
     const glint_geometry_table *geometry = args->geometry;
@@ -72,8 +73,8 @@ static inline void R(load_leaf)(const glint_cast_args *args, unsigned mask, R(ca
         }
 }
 
-/// Which pixels of the tile each triangle may show in: seen edge-on, wherever its box does. Returns the slots of `mask` that
-/// show in any.
+/// Computes the pixels of the tile that each triangle may show in; for a triangle seen edge-on, the pixels of its
+/// box. Returns the slots of `mask` that show in any pixel.
 static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_screen *seen, unsigned mask,
                                   R(cast_leaf) * leaf)
 {
@@ -98,7 +99,7 @@ static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_scree
     }
     for (unsigned left = edge_on; left; left &= left - 1) {
         const int slot = __builtin_ctz(left);
-        leaf->pixels[slot] = 4 * seen->cells[slot] + 0x03000300; // from the first of four to the last of them
+        leaf->pixels[slot] = 4 * seen->cells[slot] + 0x03000300; // from the first of four pixels to the last of them
     }
     return mask | edge_on;
 }
@@ -123,14 +124,15 @@ static inline bool R(cells_of_triangle)(const R(tile_cast) * tile, const R(cast_
     return true;
 }
 
-/// Where the ray of a pair starts. own, a constant here and below: not at the eye but where it says.
+/// Computes the origin of the ray of a pair. own, a constant here and below: each ray has its own origin; otherwise
+/// all start at the eye.
 INNER void R(start_of_pair)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n, real place[3])
 {
     for (int k = 0; k < 3; k++)
         place[k] = own ? leaf->origin[k][n] : (real)tile->args->camera->eye[k];
 }
 
-/// Whether the ray of a pair starts in the plane of a triangle.
+/// Returns whether the ray of a pair starts in the plane of a triangle.
 INNER bool R(begins_in_plane)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n,
                               const glint_prim *prim)
 {
@@ -140,8 +142,8 @@ INNER bool R(begins_in_plane)(const R(tile_cast) * tile, const R(cast_leaf) * le
     return R(is_in_plane)(&flat, place, false);
 }
 
-/// The hits of pairs from i on. Triangles that share their planes with others are decided anew; `through`: lanes whose rays pass
-/// between the edges.
+/// Corrects the hits of pairs from i on. Triangles that share their planes with others are decided again; `through`:
+/// lanes whose rays pass between the edges.
 INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, bool own, int i, unsigned through,
                                unsigned hits)
 {
@@ -162,7 +164,8 @@ INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, b
     return hits;
 }
 
-/// Stores hits that are nearer than all before. near: beyond it no ray starts in the triangle's plane.
+/// Stores hits that are nearer than all previous ones. near: for hits beyond it, no ray starts in the triangle's
+/// plane.
 INNER void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n, real near, uint64_t *moved)
 {
     const glint_cast_args *args = tile->args;
@@ -178,12 +181,12 @@ INNER void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own
         return;
     *best = t;
     *best_id = id;
-    __builtin_prefetch(&prims[id]); // for surface: its corners alone have been read so far
+    __builtin_prefetch(&prims[id]); // for surface: only its corners have been read so far
     tile->depth[at / GLINT_GROUP][at % GLINT_GROUP] = (float)(t * (real)args->geometry->scale) * (1 + 0x1p-22f);
     *moved |= (uint64_t)1 << at / GLINT_GROUP;
 }
 
-/// The corners of VR pairs from their rays' starts, in units of the table.
+/// Computes the corners of VR pairs relative to their rays' origins, in units of the table.
 INNER void R(corners_of_pairs)(const R(cast_leaf) * leaf, bool own, const double eye[3], int i, vr scale, vr p[3][3])
 {
     for (int k = 0; k < 3; k++) {
@@ -267,7 +270,7 @@ static inline void R(add_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, int sl
         R(decide_pairs)(tile, leaf);
 }
 
-/// The same of group g, whose rays have their own starts.
+/// Does the same for group g, whose rays have their own origins.
 static inline void R(add_own_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, int slot, uint32_t g, unsigned lanes)
 {
     const glint_cast_args *args = tile->args;
@@ -286,7 +289,7 @@ static inline void R(add_own_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, in
         R(decide_own_pairs)(tile, leaf);
 }
 
-/// Finds, of some groups, those with rays that may meet the triangle in a slot, and these rays.
+/// Finds the groups of `left` with rays that may hit the triangle in a slot, and these rays.
 INNER void R(find_groups_of_triangle)(const R(tile_cast) * tile, const bool gathered, R(cast_leaf) * leaf, int slot, uint64_t left)
 {
     const float near = leaf->shown.near[slot];
@@ -304,7 +307,7 @@ INNER void R(find_groups_of_triangle)(const R(tile_cast) * tile, const bool gath
     leaf->groups = n;
 }
 
-/// The groups that the triangle in a slot may show in.
+/// Returns the groups that the triangle in a slot may show in.
 INNER uint64_t R(groups_of_triangle)(const R(tile_cast) * tile, const bool gathered, const R(cast_leaf) * leaf,
                                      const node_on_screen *seen, int slot)
 {
@@ -342,7 +345,7 @@ INNER void R(cast_triangles)(R(tile_cast) * tile, const bool gathered, R(cast_le
 
 // ---- Rays that start on a lens ----
 
-/// Loads the corners. Lanes without a triangle keep what they had.
+/// Loads the corners. Lanes without a triangle are unchanged.
 static void R(load_lens_leaf)(const R(tile_cast) * tile, unsigned mask, R(cast_leaf) * leaf, leaf_through_lens *out)
 {
     const glint_cast_args *args = tile->args;
@@ -350,7 +353,7 @@ static void R(load_lens_leaf)(const R(tile_cast) * tile, unsigned mask, R(cast_l
     show_through_lens(&leaf->shown, &tile->view, &tile->lens->seen, GLINT_REAL == 32, out);
 }
 
-/// Finds the rays that may meet the triangle in a slot.
+/// Finds the rays that may hit the triangle in a slot.
 static void R(cast_lens_triangle)(R(tile_cast) * tile, R(cast_leaf) * leaf, const leaf_through_lens *shown,
                                   const node_on_screen *seen, int slot)
 {

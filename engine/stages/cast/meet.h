@@ -1,4 +1,5 @@
-// meet: a ray and a surface. A float test over a group rejects; the decision is real. Contract: stages.h, cast.
+// meet: the intersection of a ray and a surface. A float test rejects for a whole group; the decision is in `real`.
+// Contract: stages.h, cast.
 #ifndef GLINT_CAST_MEET_H
 #define GLINT_CAST_MEET_H
 
@@ -51,8 +52,8 @@ INNER vr R(discriminant_afar)(const vr f[3], const vr d[3], vr ar2)
     return ar2 - ((x * x + y * y) + z * z);
 }
 
-/// The better of two discriminants: from within the sphere's width b^2 - a c, from afar a r^2 - |f x d|^2 (Haines,
-/// Gunther, Akenine-Moller, Ray Tracing Gems ch. 7, gives the second; neither alone is accurate everywhere).
+/// Returns the more accurate of two discriminants: within the sphere's width b^2 - a c, from further away a r^2 - |f
+/// x d|^2. Haines, Gunther, Akenine-Moller, Ray Tracing Gems ch. 7, gives the second; neither is accurate everywhere.
 INNER vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
 {
     vr bb = b * b, ar2 = a * r2;
@@ -60,12 +61,13 @@ INNER vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
     if (!rm_bits(near))
         return R(discriminant_afar)(f, d, ar2);
     vr inner = bb - a * c;
-    if (rm_bits(near) == (1u << VR) - 1) // a ground seen from above it: the cross product is not needed
+    if (rm_bits(near) == (1u << VR) - 1) // for example, a ground sphere seen from above: the cross product is not
+        // needed
         return inner;
     return r_select(near, inner, R(discriminant_afar)(f, d, ar2));
 }
 
-/// A sphere or, a lane each, several.
+/// Intersects one sphere, or a different one in each lane.
 INNER rm R(meet_ball)(const vr f[3], const vr d[3], vr a, vr c, vr r2, vr scale, vr *t)
 {
     const vr zero = r_set(0);
@@ -87,17 +89,17 @@ INNER rm R(meet_plane)(const vr d[3], vr a, vr h, const glint_prim *prim, vr *t)
     return rm_and(r_le(r_set(GLINT_PARALLEL) * a, nd * nd), r_lt(r_set(0), *t));
 }
 
-// ---- The filter of rays that have their own origins ----
+// ---- The filter for rays with their own origins ----
 
-/// Which lanes of a group come near the sphere, `f` from its centre to the ray's origin: the distance of the ray is
-/// |f x d| / |d|. Written so that NaN and infinity keep the lane.
+/// Returns the lanes of a group that come near the sphere. `f`: from its centre to the ray's origin; the distance of
+/// the ray is |f x d| / |d|. Written so that lanes with NaN and infinity stay.
 static inline unsigned R(near_lanes)(const vf f[3], const vf d[3], vf limit2)
 {
     vf x[3] = { f[1] * d[2] - f[2] * d[1], f[2] * d[0] - f[0] * d[2], f[0] * d[1] - f[1] * d[0] };
     return ~fm_bits(f_lt(limit2 * DOT(d, d), DOT(x, x))) & ((1u << VF) - 1);
 }
 
-/// Points of a group in the index's frame.
+/// Transforms points of a group into the index's frame.
 static inline void R(index_frame)(const void *const point[3], size_t at, const glint_geometry_table *geometry,
                                   float (*local)[GLINT_GROUP])
 {
@@ -110,20 +112,20 @@ static inline void R(index_frame)(const void *const point[3], size_t at, const g
     }
 }
 
-/// A group of rays as filter and walk see them.
+/// A group of rays, as filter and traversal need it.
 typedef struct R(ray_group) {
     const float (*local)[GLINT_GROUP]; ///< origins, in the index's frame
     _Alignas(64) float direction[3][GLINT_GROUP];
-    _Alignas(64) float bound[GLINT_GROUP]; ///< what the rounding of `local` may add to a distance
-    const float *origin[3]; ///< --precision float: the origins themselves
+    _Alignas(64) float bound[GLINT_GROUP]; ///< bound of the error that the rounding of `local` adds to a distance
+    const float *origin[3]; ///< --precision float: the unchanged origins
 } R(ray_group);
 
-/// Fills all but `direction`. `local`: of these origins, by index_frame.
+/// Sets everything except `direction`. `local`: these origins, by index_frame.
 static inline void R(set_origins)(const void *const point[3], size_t at, const float (*local)[GLINT_GROUP],
                                   R(ray_group) * rays)
 {
     rays->local = local;
-    for (int i = 0; i < GLINT_GROUP; i += VF) // by the sum of the components, which is larger than the length
+    for (int i = 0; i < GLINT_GROUP; i += VF) // the sum of the components bounds the length
         f_store(rays->bound + i,
                 f_set(GLINT_FILTER_SLACK) * ((f_abs(f_load(rays->local[0] + i)) + f_abs(f_load(rays->local[1] + i))) +
                                              f_abs(f_load(rays->local[2] + i))));
@@ -131,14 +133,15 @@ static inline void R(set_origins)(const void *const point[3], size_t at, const f
         rays->origin[k] = (const float *)point[k] + (GLINT_REAL == 32 ? at : 0);
 }
 
-/// From the sphere's centre to the rays' origins, and how near a ray may pass without being kept.
+/// Computes f, from the sphere's centre to the rays' origins. Returns the distance within which a ray is not
+/// rejected.
 static inline vf R(filter_offset)(const R(ray_group) * rays, int i, const glint_prim *prim, vf f[3])
 {
 #if GLINT_REAL == 64
     for (int k = 0; k < 3; k++)
         f[k] = f_load(rays->local[k] + i) - f_set(prim->filter_center[k]);
     return f_set(prim->filter_bound) + f_load(rays->bound + i);
-#else // where float decides, the filter must see what it sees: the same f, with all its error
+#else // if float decides, the filter must use the same f as the decision, with its full error
     for (int k = 0; k < 3; k++)
         f[k] = f_load(rays->origin[k] + i);
     if (prim->kind != GLINT_PRIM_SPHERE)
@@ -150,7 +153,7 @@ static inline vf R(filter_offset)(const R(ray_group) * rays, int i, const glint_
 #endif
 }
 
-/// Lanes of the group that pass near the primitive.
+/// Returns the lanes of the group that pass near the primitive.
 static unsigned R(near_rays)(const R(ray_group) * rays, const glint_prim *prim)
 {
     unsigned near = 0;
@@ -164,8 +167,8 @@ static unsigned R(near_rays)(const R(ray_group) * rays, const glint_prim *prim)
     return near;
 }
 
-/// Lanes of the group that may enter a box ahead, from `lower` to `upper` in the index's frame; inverse: of the directions. What these
-/// are off counts by how far along the ray the box is.
+/// Returns the lanes of the group that may enter a box ahead, from `lower` to `upper` in the index's frame; inverse:
+/// of the directions. The error of the inverse is relative to the distance of the box along the ray.
 static unsigned R(rays_to_box)(const R(ray_group) * rays, float (*inverse)[GLINT_GROUP], const float lower[3],
                                const float upper[3])
 {
@@ -179,7 +182,7 @@ static unsigned R(rays_to_box)(const R(ray_group) * rays, float (*inverse)[GLINT
         for (int k = 0; k < 3; k++) {
             const vf from = f_load(rays->local[k] + i), over = f_load(inverse[k] + i);
             const vf x = ((f_set(lower[k]) - from) - bound) * over, y = ((f_set(upper[k]) - from) + bound) * over;
-            enter = f_max(f_min(x, y), enter); // NaN, 0 times infinity, is on the border: either answer will do
+            enter = f_max(f_min(x, y), enter); // NaN, from 0 times infinity, is on the border: either answer is right
             leave = f_min(f_max(x, y), leave);
         }
         inside |= (~fm_bits(f_lt(leave * f_set(1 + WALK_SLACK), enter)) & ((1u << VF) - 1)) << i;
@@ -189,7 +192,8 @@ static unsigned R(rays_to_box)(const R(ray_group) * rays, float (*inverse)[GLINT
 
 // ---- The decision ----
 
-/// Of equal hits the one defined first stays; t = inf, where float overflows, is a miss's own and no hit. Returns the lanes of `tied` in which that is `id`.
+/// Returns the lanes of `tied` in which `id` is defined before the current hit. At t = inf (after float overflow)
+/// there is no hit to tie with: it stays a miss.
 static unsigned R(wins_tie)(const glint_prim *prims, uint32_t id, const uint32_t *best, unsigned tied)
 {
     unsigned wins = 0;
@@ -207,7 +211,8 @@ INNER void R(keep_nearest)(const glint_cast_args *args, size_t at, uint32_t id, 
     real *best_t = (real *)args->t + at;
     uint32_t *best_id = args->prim + at;
     const vr old_t = r_load(best_t);
-    const rm tie = rm_and(rm_and(hit, r_eq(t, old_t)), r_lt(t, r_set(HUGE_VAL))); // at infinity there is no hit to tie
+    const rm tie = rm_and(rm_and(hit, r_eq(t, old_t)), r_lt(t, r_set(HUGE_VAL))); // at infinity there is no current hit
+        // to tie with
     hit = rm_and(hit, r_lt(t, old_t));
     if (rm_bits(tie))
         hit = rm_or(hit, rm_from_bits(R(wins_tie)(args->geometry->prims, id, best_id, rm_bits(tie))));
@@ -215,7 +220,7 @@ INNER void R(keep_nearest)(const glint_cast_args *args, size_t at, uint32_t id, 
     r_put_index(best_id, hit, id);
 }
 
-/// From the ray's origin to the primitive: f of a sphere, scaled; of a plane, not.
+/// Computes f, from the primitive to the ray's origin: scaled for a sphere, unscaled for a plane.
 static inline void R(offset)(const vr origin[3], const glint_prim *prim, vr f[3])
 {
     for (int k = 0; k < 3; k++) {
@@ -225,7 +230,8 @@ static inline void R(offset)(const vr origin[3], const glint_prim *prim, vr f[3]
     }
 }
 
-/// The constants of a primitive for all rays from one origin: f, and c of a sphere or the height over a plane.
+/// Returns the constant of a primitive for all rays from one origin: c for a sphere, the height of the origin over a
+/// plane.
 static inline vr R(offset_constant)(const vr f[3], const glint_prim *prim)
 {
     if (prim->kind == GLINT_PRIM_SPHERE)
@@ -234,7 +240,8 @@ static inline vr R(offset_constant)(const vr f[3], const glint_prim *prim)
     return DOT(n, f);
 }
 
-/// The same of a point of some surface, which rounding has moved: of a plane, 0 on it as far as that lets us know.
+/// Does the same for an origin on some surface, which rounding has moved: the height over a plane is 0 if it is
+/// within that error.
 static inline vr R(point_constant)(const vr f[3], const glint_prim *prim)
 {
     const vr c = R(offset_constant)(f, prim);
@@ -253,7 +260,7 @@ INNER rm R(meet)(const vr f[3], vr c, const vr d[3], const glint_prim *prim, vr 
     return R(meet_plane)(d, a, c, prim, t);
 }
 
-/// Starts a group: nothing hit; and nothing that could be nearer where no pixel is.
+/// Starts a group: t is +inf in active lanes, and -inf in the others, where nothing is nearer.
 static inline void R(start_group)(const glint_cast_args *args, uint32_t g)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -265,7 +272,7 @@ static inline void R(start_group)(const glint_cast_args *args, uint32_t g)
         i_store(args->prim + at + i, i_set(GLINT_MISS));
 }
 
-/// Writes the group's hit mask, and makes lanes outside the image misses like all others.
+/// Writes the group's hit mask. Lanes outside the image become ordinary misses.
 static inline void R(finish_group)(const glint_cast_args *args, uint32_t g)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -277,7 +284,7 @@ static inline void R(finish_group)(const glint_cast_args *args, uint32_t g)
     }
 }
 
-/// The farthest hit of a group in the index's units, rounded up; infinite while a ray has none.
+/// Returns the farthest hit of a group in the index's units, rounded up; infinite while a ray has no hit.
 static inline float R(farthest)(const glint_cast_args *args, size_t at)
 {
     _Alignas(64) real t[GLINT_GROUP];

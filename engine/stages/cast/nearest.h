@@ -1,6 +1,7 @@
-// nearest: rays of their own origins against spheres. Float finds for each ray the sphere that it may enter first, and how far it
-// goes before it may enter another; double decides the first, a lane each, for as many rays as a vector has. Only a ray that
-// misses it, or meets it beyond where another begins, is decided against all. Contract: stages.h, cast.
+// nearest: rays with their own origins against spheres. A float pass finds, for each ray, the sphere that it may
+// enter first, and the distance before which it cannot enter another. Then double decides the first sphere, one pair
+// per lane, for a full vector of rays. A ray is only tested against all spheres if it misses the first one, or hits
+// it beyond that distance. Contract: stages.h, cast.
 #ifndef GLINT_CAST_NEAREST_H
 #define GLINT_CAST_NEAREST_H
 
@@ -8,31 +9,32 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define GLINT_FEW 32 ///< primitives of a scene that are tested without its index
+#define GLINT_FEW 32 ///< primitives of a scene up to which it is tested without its index
 #define GLINT_RAY_PAIRS 64
 
-/// What float arithmetic on a ray and a sphere may add to a length, of the lengths it came from: origin, centre and direction are
-/// a rounding off each, differences and products six more, quotient and square root three.
+/// Bound of the float error of a distance between a ray and a sphere, relative to the lengths that it is computed
+/// from: one rounding each for origin, centre and direction, six for differences and products, three for quotient and
+/// square root.
 #define NEAREST_SLACK 0x1p-20f
 
-/// Rays whose first hit float has found, and the decisions that remain.
+/// Rays whose first candidate is known from the float pass, and the decisions that remain.
 typedef struct R(ray_pairs) {
     _Alignas(64) real origin[3][GLINT_RAY_PAIRS], direction[3][GLINT_RAY_PAIRS];
     _Alignas(64) real center[3][GLINT_RAY_PAIRS], scale[GLINT_RAY_PAIRS];
     _Alignas(64) real r2[GLINT_RAY_PAIRS], r2_low[GLINT_RAY_PAIRS];
-    float next[GLINT_RAY_PAIRS]; ///< up to here the ray enters no other sphere, in the index's units
+    float next[GLINT_RAY_PAIRS]; ///< the distance before which the ray enters no other sphere, in the index's units
     uint32_t ray[GLINT_RAY_PAIRS], prim[GLINT_RAY_PAIRS];
     int count;
-    uint16_t undecided[GLINT_TILE_GROUPS]; ///< rays that are to be decided against all
+    uint16_t undecided[GLINT_TILE_GROUPS]; ///< rays that must be decided against all primitives
 } R(ray_pairs);
 
-/// A hit at t in the index's units, rounded up.
+/// Returns the distance of a hit at t in the index's units, rounded up.
 static inline float R(reach_in_index)(const glint_cast_args *args, real t)
 {
     return (float)(t * (real)args->geometry->scale) * (1 + 0x1p-22f);
 }
 
-/// Keeps the hit of one ray where it is the nearest so far.
+/// Stores the hit of one ray if it is the nearest so far.
 static inline void R(keep_ray)(const glint_cast_args *args, uint32_t ray, uint32_t id, real t)
 {
     const glint_prim *prims = args->geometry->prims;
@@ -101,7 +103,7 @@ static inline void R(add_pair)(const glint_cast_args *args, R(ray_pairs) * pairs
 typedef struct R(float_rays) {
     vf origin[3], direction[3], bound;
     vf length, per_a; ///< |d|, 1 / |d|^2
-    fm usual; ///< neither so far off nor of such a direction that float over- or underflows below
+    fm usual; ///< origin and direction in the range in which float neither overflows nor underflows below
 } R(float_rays);
 
 INNER void R(load_float_rays)(const R(ray_group) * rays, int i, R(float_rays) * out)
@@ -117,8 +119,8 @@ INNER void R(load_float_rays)(const R(ray_group) * rays, int i, R(float_rays) * 
     out->usual = fm_and(fm_and(f_lt(f_set(0x1p-40f), a), f_lt(a, f_set(0x1p40f))), f_lt(out->bound, f_set(1)));
 }
 
-/// The lanes that may enter a sphere, or are in it, and where there are any, how far all go before: infinitely in the others. In the
-/// index's units.
+/// Returns the lanes that may enter a sphere, or start inside of it. If there are any, *way gets the least distance
+/// before entry, infinite in the other lanes, in the index's units.
 INNER fm R(way_to_ball)(const R(float_rays) * rays, const glint_prim *prim, vf *way)
 {
     vf f[3];
@@ -144,13 +146,13 @@ typedef struct R(first_met) {
     unsigned usual;
 } R(first_met);
 
-/// The first sphere of `list` that each ray may enter, and the way to the second.
+/// Finds the first sphere of `list` that each ray may enter, and the distance to the second.
 static inline void R(find_first)(const glint_cast_args *args, const R(ray_group) * rays, size_t at,
                                  const uint32_t *list, int count, R(first_met) * out)
 {
     const uint32_t common = args->leaving && lanes_equal(args->leaving + at, args->leaving[at]) == 0xffff
                                 ? args->leaving[at]
-                                : GLINT_MISS; // what all of them leave
+                                : GLINT_MISS; // the primitive that all of them leave
     out->usual = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         R(float_rays) lanes;
@@ -173,7 +175,7 @@ static inline void R(find_first)(const glint_cast_args *args, const R(ray_group)
     }
 }
 
-/// The spheres of a scene of few primitives against a group.
+/// Tests the spheres of a small scene against a group.
 static inline void R(cast_spheres)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays,
                                    const uint32_t *list, int count, R(ray_pairs) * pairs)
 {
@@ -189,13 +191,13 @@ static inline void R(cast_spheres)(const glint_cast_args *args, uint32_t g, cons
     }
 }
 
-// ---- Rays on their way through the index ----
+// ---- Single rays in the index ----
 
 /// Further data of a group's rays for traversal.
 typedef struct R(lone_rays) {
     _Alignas(64) float inverse[3][GLINT_GROUP], length[GLINT_GROUP],
-        per_a[GLINT_GROUP]; ///< of d: 1 / d, |d|, 1 / |d|^2
-    unsigned usual; ///< others are not for float
+        per_a[GLINT_GROUP]; ///< for d: 1 / d, |d|, 1 / |d|^2
+    unsigned usual; ///< the other lanes are out of float's range
 } R(lone_rays);
 
 static inline void R(load_lone_rays)(const R(ray_group) * rays, R(lone_rays) * out)
@@ -214,10 +216,10 @@ static inline void R(load_lone_rays)(const R(ray_group) * rays, R(lone_rays) * o
 
 /// The possible first hits of a group's rays so far, in the index's units.
 typedef struct R(first_balls) {
-    _Alignas(64) float far[GLINT_GROUP]; ///< hits are not beyond it
+    _Alignas(64) float far[GLINT_GROUP]; ///< upper bound of hits
     float way[2][GLINT_GROUP],
-        next[GLINT_GROUP]; ///< ways to the first two spheres that each may enter, and to the third
-    uint32_t prim[2][GLINT_GROUP]; ///< these; GLINT_MISS: none
+        next[GLINT_GROUP]; ///< distances to the first two spheres that each ray may enter, and to the third
+    uint32_t prim[2][GLINT_GROUP]; ///< the first two spheres; GLINT_MISS: none
 } R(first_balls);
 
 static inline void R(begin_balls)(const glint_cast_args *args, size_t at, R(first_balls) * first)
@@ -234,7 +236,7 @@ static inline void R(begin_balls)(const glint_cast_args *args, size_t at, R(firs
     }
 }
 
-/// Keeps what lies beyond `far` from being looked at by a ray.
+/// Stops the search of a ray beyond `far`.
 static inline void R(look_no_further)(R(first_balls) * first, int lane, float far)
 {
     first->far[lane] = smaller(first->far[lane], far);
@@ -243,8 +245,8 @@ static inline void R(look_no_further)(R(first_balls) * first, int lane, float fa
 /// One ray.
 typedef struct R(lone_ray) {
     float origin[3], direction[3], inverse[3], length, per_a;
-    float enter[3], leave[3]; ///< the origin, moved by its rounding to where boxes begin earlier and end later
-    int first[3]; ///< where in a node, in floats, the sides of boxes are by which it may enter
+    float enter[3], leave[3]; ///< the origin, moved by its rounding error so that boxes begin earlier and end later
+    int first[3]; ///< offsets in a node, in floats, of the box sides by which the ray may enter
     int last[3]; ///< and by which it may leave
     uint32_t leaving;
 } R(lone_ray);
@@ -269,8 +271,8 @@ static inline void R(load_lone_ray)(const glint_cast_args *args, size_t at, cons
     }
 }
 
-/// Which boxes the ray may enter before `far`, and where it enters each. As boxes_on_ray: what is rounded besides the origin is
-/// a share of the way.
+/// Returns the boxes that the ray may enter before `far`, and computes where it enters each. As in boxes_on_ray, all
+/// rounding errors except the origin's are relative to the distance.
 static inline unsigned R(boxes_of_lone_ray)(const glint_node *node, const R(lone_ray) * ray, float far,
                                             float depth[GLINT_NODE_WIDTH])
 {
@@ -280,8 +282,9 @@ static inline unsigned R(boxes_of_lone_ray)(const glint_node *node, const R(lone
         for (int k = 0; k < 3; k++) {
             const float *first = (const float *)node + ray->first[k], *last = (const float *)node + ray->last[k];
             const vf inverse = f_set(ray->inverse[k]);
-            enter = f_max((f_load(first + i) - f_set(ray->enter[k])) * inverse, enter); // NaN, 0 times infinity, keeps
-            leave = f_min((f_load(last + i) - f_set(ray->leave[k])) * inverse, leave); // what there was
+            enter = f_max((f_load(first + i) - f_set(ray->enter[k])) * inverse, enter); // NaN, from 0 times infinity,
+                // keeps
+            leave = f_min((f_load(last + i) - f_set(ray->leave[k])) * inverse, leave); // the previous value
         }
         f_store(depth + i, enter);
         inside |= fm_bits(f_le(enter, leave * f_set(1 + WALK_SLACK))) << i;
@@ -289,14 +292,14 @@ static inline unsigned R(boxes_of_lone_ray)(const glint_node *node, const R(lone
     return inside;
 }
 
-/// Ways to the spheres of a node, a slot each.
+/// Distances to the spheres of a node, one per slot.
 typedef struct R(balls_on_ray) {
-    _Alignas(64) float way[GLINT_NODE_WIDTH]; ///< the ray enters not before
-    _Alignas(64) float sure[GLINT_NODE_WIDTH]; ///< it enters for certain before; infinite: it may miss
+    _Alignas(64) float way[GLINT_NODE_WIDTH]; ///< lower bound of the entry
+    _Alignas(64) float sure[GLINT_NODE_WIDTH]; ///< upper bound of the entry; infinite: the ray may miss
 } R(balls_on_ray);
 
-/// What a box of a node says of the sphere that fills it: from its centre to the ray's origin, and between what bounds rounding
-/// leaves the radius.
+/// The sphere that fills each box of a node: from its centre to the ray's origin, and bounds of its radius after
+/// rounding.
 typedef struct R(boxed_balls) {
     vf f[3], least, most, margin;
 } R(boxed_balls);
@@ -317,7 +320,7 @@ INNER R(boxed_balls) R(balls_in_boxes)(const glint_node *node, const R(lone_ray)
     return out;
 }
 
-/// Returns the slots whose spheres the ray may enter before `far`, or begins in.
+/// Returns the slots whose spheres the ray may enter before `far`, or starts inside of.
 static inline unsigned R(meet_balls)(const glint_node *node, const R(lone_ray) * ray, float far, R(balls_on_ray) * out)
 {
     const vf d[3] = { f_set(ray->direction[0]), f_set(ray->direction[1]), f_set(ray->direction[2]) };
@@ -347,7 +350,7 @@ static inline unsigned R(meet_balls)(const glint_node *node, const R(lone_ray) *
     return may;
 }
 
-/// Notes a sphere that a ray may enter.
+/// Records a sphere that a ray may enter.
 static inline void R(note_ball)(R(first_balls) * first, int lane, uint32_t id, float way, float sure)
 {
     if (way < first->way[0][lane]) {
@@ -366,7 +369,7 @@ static inline void R(note_ball)(R(first_balls) * first, int lane, uint32_t id, f
     R(look_no_further)(first, lane, sure);
 }
 
-/// Notes the spheres of a node in the slots of `mask`.
+/// Records the spheres of a node in the slots of `mask`.
 static inline void R(note_balls)(const glint_node *node, unsigned mask, const R(lone_ray) * ray, int lane,
                                  R(first_balls) * first)
 {
@@ -379,7 +382,7 @@ static inline void R(note_balls)(const glint_node *node, unsigned mask, const R(
     }
 }
 
-/// The remaining decisions of a group.
+/// Queues the remaining decisions of a group.
 static inline void R(pair_first)(const glint_cast_args *args, size_t at, unsigned lanes, const R(first_balls) * first,
                                  R(ray_pairs) * pairs)
 {

@@ -1,5 +1,5 @@
-// cast_parallel: the nearest hit of the rays of a tile of an orthographic camera, or of one with a lens, which walk the index
-// together as those of one eye do (cast.h). Contract: stages.h.
+// cast_parallel: the nearest hit of the rays of a tile, for orthographic cameras and cameras with a lens. The rays
+// traverse the index together, as rays from one eye do (cast.h). Contract: stages.h.
 #ifndef GLINT_CAST_PARALLEL_H
 #define GLINT_CAST_PARALLEL_H
 
@@ -11,7 +11,8 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// The tile's rays: the screen lies across them, and its places are theirs wherever they are.
+/// Aims the screen of the tile's parallel rays: it is perpendicular to them, and the position of a ray on it is the
+/// same at every depth.
 static void R(aim_parallel_screen)(const glint_camera_args *camera, const glint_geometry_table *geometry,
                                    screen_view *view)
 {
@@ -29,7 +30,7 @@ static void R(aim_parallel_screen)(const glint_camera_args *camera, const glint_
     finish_screen(view);
 }
 
-/// The lens as the screen shows it. Directions lose up to `bend` across the view: their stretch grows.
+/// Prepares the lens for the screen. Directions change by up to `bend` across the view, so their spread grows.
 static void R(aim_lens)(const glint_cast_args *args, screen_view *view, R(tile_lens) * out)
 {
     const glint_camera_args *camera = args->camera;
@@ -70,7 +71,7 @@ static inline bool R(lens_sees_plane)(const R(tile_cast) * tile, const glint_pri
     return camera->orthographic || R(plane_ahead)(camera, &tile->view, prim);
 }
 
-/// The rays and the planes: what all of the tile has behind it is known before the walk.
+/// Tests the rays against the planes, so that a depth limit for the tile is known before the traversal.
 static void R(cast_planes)(R(tile_cast) * tile, uint32_t g)
 {
     const glint_geometry_table *geometry = tile->args->geometry;

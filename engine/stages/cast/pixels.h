@@ -1,6 +1,6 @@
-// pixels: what rays of a camera meet whose pixels are given one by one, as adaptive sampling gathers them. Where primitives are few,
-// each is tested against every ray; else the rays walk the index together as those of a tile do, over a screen of smaller cells, each
-// of which knows the groups that have a ray in it. Contract: stages.h.
+// pixels: hits of a camera's rays for pixels given one by one, as adaptive sampling gathers them. With few
+// primitives, each is tested against every ray. With many, the rays traverse the index together like those of a tile,
+// over a screen of smaller cells. Each cell knows the groups that have a ray in it. Contract: stages.h.
 #ifndef GLINT_CAST_PIXELS_H
 #define GLINT_CAST_PIXELS_H
 
@@ -13,7 +13,7 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// Decides a sphere for all lanes of a group of pixels wherever they are.
+/// Decides a sphere for all lanes of a group of pixels at any position.
 INNER void R(decide_ball)(const glint_cast_args *args, const R(candidate) * ball, uint32_t g)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -32,11 +32,11 @@ INNER void R(decide_ball)(const glint_cast_args *args, const R(candidate) * ball
     }
 }
 
-// ---- Of few primitives ----
+// ---- Few primitives ----
 
-#define PIXEL_CANDIDATES 16 ///< more are not tested against every ray
+#define PIXEL_CANDIDATES 16 ///< maximum number of primitives that are tested against every ray
 
-/// Decides a candidate for all rays of pixels wherever they are.
+/// Decides a candidate for all rays of pixels at any position.
 static void R(cast_to_pixels)(R(tile_cast) * tile, const R(candidate) * candidate)
 {
     const glint_cast_args *args = tile->args;
@@ -63,11 +63,11 @@ static void R(cast_few_to_pixels)(const glint_cast_args *args, const R(cast_view
         R(finish_group)(args, g);
 }
 
-// ---- Of many primitives ----
+// ---- Many primitives ----
 
 _Static_assert(SCREEN_ACROSS == 1 << 4, "place_pixels makes numbers of cells of it");
 
-/// Where the rays of a group are. Lanes without one have the cell of another.
+/// Computes the screen positions of the rays of a group. Lanes without a ray get the cell of another lane.
 static void R(place_pixels)(const R(tile_cast) * tile, uint32_t g)
 {
     const glint_camera_args *camera = tile->args->camera;
@@ -89,7 +89,7 @@ static void R(place_pixels)(const R(tile_cast) * tile, uint32_t g)
         (&pixels->in_cell[0][0])[pixels->cell[g][__builtin_ctz(turns)]] |= (uint64_t)1 << g;
 }
 
-/// The planes, and whatever else has no end.
+/// Tests the planes and all other unbounded primitives.
 static void R(cast_planes_to_pixels)(R(tile_cast) * tile)
 {
     const R(pixel_groups) *pixels = tile->pixels;
@@ -109,14 +109,14 @@ static void R(cast_planes_to_pixels)(R(tile_cast) * tile)
         }
 }
 
-/// The screen: cells for all pixels from the first to the last.
+/// Aims the screen, with cells for all pixels from the first to the last.
 static void R(aim_pixels)(const glint_cast_args *args, const glint_camera_args *around, R(tile_cast) * tile)
 {
     glint_cast_args whole = *args;
     whole.camera = around;
     R(aim_tile)(&whole, tile);
     tile->args = args;
-    tile->across = 1; // a group a row, in arrays
+    tile->across = 1; // one group per row, in arrays
     tile->scaled = tile->deep = true;
     for (int j = 0; j < 2; j++) {
         const double first = j ? around->y0 : around->x0, end = args->camera->end[j];
@@ -154,7 +154,7 @@ static void R(cast_many_to_pixels)(const glint_cast_args *args, const glint_came
         R(finish_group)(args, g);
 }
 
-// ---- Of any number ----
+// ---- Any number ----
 
 /// Casts for pixels at any position.
 static void R(cast_pixels)(const glint_cast_args *args)

@@ -1,5 +1,5 @@
-// scan: the nearest triangle of each ray of a tile, from a list of those that its pixels may show: three edges, linear over
-// the picture, reject; the decision is that of cast. Contract: stages.h.
+// scan: the nearest triangle of each ray of a tile, from a list of those that its pixels may show. Three edge
+// functions, linear over the picture, reject pixels; the decision is that of cast. Contract: stages.h.
 #ifndef GLINT_CAST_RASTER_H
 #define GLINT_CAST_RASTER_H
 
@@ -13,7 +13,7 @@
 static const _Alignas(64) float raster_s[GLINT_GROUP] = { 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6 };
 static const _Alignas(64) float raster_t[GLINT_GROUP] = { 0, 0, 0, 0, -2, -2, -2, -2, -4, -4, -4, -4, -6, -6, -6, -6 };
 
-/// The pixels of group (x, y) within the entry's box.
+/// Returns the pixels of group (x, y) within the entry's box.
 static inline unsigned raster_box(const glint_raster_entry *entry, int x, int y)
 {
     const int left = entry->x0 - 4 * x, right = entry->x1 - 4 * x, top = entry->y0 - 4 * y, bottom = entry->y1 - 4 * y;
@@ -38,11 +38,11 @@ typedef struct R(raster_triangle) {
     bool filtered;
     real corner[3][3]; ///< from the eye, in units of the table
     float base[3], along_s[3], along_t[3],
-        limit; ///< edges, from the tile's first pixel; inside where none is below -limit
+        limit; ///< edge functions, relative to the tile's first pixel; a pixel is inside if none is below -limit
 } R(raster_triangle);
 
-/// The edges of a triangle as linear functions of the pixel: p from the eye. Returns on which side its corners run, 0 where
-/// that is not certain.
+/// Computes the edge functions of a triangle as linear functions of the pixel. p: the corners relative to the eye.
+/// Returns the orientation of its corners, 0 if it is uncertain.
 static int R(raster_edges)(const glint_camera_args *camera, double p[3][3], double base[3], double along_s[3],
                            double along_t[3], double rounding, double limit[3])
 {
@@ -105,7 +105,7 @@ static void R(make_raster_filter)(const R(raster_tile) * tile, R(raster_triangle
     triangle->filtered = side != 0 && triangle->limit < FLT_MAX;
 }
 
-/// The pixels of group (x, y) that the edges do not rule out.
+/// Returns the pixels of group (x, y) that the edges do not reject.
 static inline unsigned R(raster_inside)(const R(raster_triangle) * triangle, int x, int y)
 {
     const vf limit = f_set(-triangle->limit);

@@ -1,6 +1,7 @@
-// cast_rays: the nearest hit of rays that start anywhere. In small scenes groups meet all primitives, else the rays of a group walk
-// the index together while they go the same way (together.h), and each on its own from there; those of a tile of an orthographic
-// camera, or of one with a lens, walk it as one (parallel.h). Contract: stages.h.
+// cast_rays: the nearest hit of rays with any origins. In small scenes groups are tested against all primitives.
+// Otherwise the rays of a group traverse the index together while they are coherent (together.h), and then each on
+// its own. The rays of a tile of an orthographic camera, or of one with a lens, traverse it as one beam (parallel.h).
+// Contract: stages.h.
 #ifndef GLINT_CAST_RAYS_H
 #define GLINT_CAST_RAYS_H
 
@@ -15,8 +16,8 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// Where rays that go in through a sphere or solid come out of it: surely somewhere, for it is convex; of a form without an
-/// inside, perhaps by the other side.
+/// Computes t where rays that enter a sphere or solid leave it. They always do, because it is convex. For a form
+/// without an inside, they may hit its other side.
 static inline rm R(way_out)(const glint_geometry_table *table, const glint_prim *prim, const vr o[3], const vr d[3],
                             vr *t)
 {
@@ -39,7 +40,7 @@ static inline rm R(way_out)(const glint_geometry_table *table, const glint_prim 
     return all;
 }
 
-/// Where rays that leave a torus meet it again; inward: those that go in, which surely do.
+/// Computes t where rays that leave a torus hit it again; inward: rays that go inside, which always do.
 static inline rm R(way_back)(const glint_solid *solid, const glint_prim *prim, const vr o[3], const vr d[3],
                              unsigned inward, vr *t)
 {
@@ -60,7 +61,8 @@ static inline bool R(has_inside)(const glint_geometry_table *table, uint32_t id)
            (prim->kind == GLINT_PRIM_SOLID && table->solids[prim->item].form != GLINT_FORM_DISK);
 }
 
-/// The rays of a group that may meet what they start on: those that begin inside of it, and all that leave a torus.
+/// Tests the rays of a group that may hit the primitive that they start on: rays that start inside of it, and all
+/// rays that leave a torus.
 static inline void R(cast_on_own)(const glint_cast_args *args, uint32_t g)
 {
     const glint_geometry_table *table = args->geometry;
@@ -150,7 +152,8 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
         R(decide_rays)(args, g, id, near);
 }
 
-/// Walks the index with one ray; what it may meet is tested against its whole group, whose rays are often alike.
+/// Traverses the index with one ray. Primitives that it may hit are tested against its whole group, whose rays are
+/// often similar.
 static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays, int lane)
 {
     const glint_geometry_table *geometry = args->geometry;
@@ -182,15 +185,15 @@ static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_gro
 }
 
 
-#define LENS_BEAM 8 ///< radius over focus, above which the rays of a tile have little in common
+#define LENS_BEAM 8 ///< radius over focus distance, above which the rays of a tile are not coherent
 
-/// Whether the rays walk the index as one.
+/// Returns whether the rays traverse the index as one beam.
 static inline bool R(is_beam)(const glint_camera_args *camera)
 {
     return camera && !(camera->lens && camera->lens->radius * camera->lens->per_focus > LENS_BEAM);
 }
 
-/// A group's rays as filter and walk see them. local: room for their origins.
+/// Prepares a group's rays for filter and traversal. local: memory for their origins.
 static inline void R(make_ray_group)(const glint_cast_args *args, uint32_t g, float local[3][GLINT_GROUP],
                                      R(ray_group) * rays)
 {
@@ -201,7 +204,8 @@ static inline void R(make_ray_group)(const glint_cast_args *args, uint32_t g, fl
         R(narrow)((const real *)args->direction[k] + at, rays->direction[k]);
 }
 
-/// Starts a group with the hits found without the index: of primitives that contain the origins, and of unbounded ones. Returns false without rays.
+/// Starts a group with the hits found without the index: on primitives that contain the origins, and on unbounded
+/// ones. Returns false if there are no rays.
 static inline bool R(begin_rays)(const glint_cast_args *args, uint32_t g, float local[3][GLINT_GROUP],
                                  R(ray_group) * rays)
 {
@@ -245,7 +249,7 @@ static inline void R(list_few)(const glint_geometry_table *geometry, R(few_prims
     }
 }
 
-/// The rays that float alone did not decide.
+/// Decides the rays that float could not decide.
 static void R(decide_rest)(const glint_cast_args *args, uint32_t g, const R(few_prims) * few, unsigned lanes)
 {
     _Alignas(64) float local[3][GLINT_GROUP];

@@ -1,7 +1,8 @@
-// rounds: rays that go every way among triangles and solids. The rays of a group walk the index in rounds, a node each; the triangles
-// that they come upon are decided in double, a vector of pairs of ray and triangle at a time, each lane with its own of both. Lanes
-// that may come under the rules of shared edges are left to decide_rays. So are solids, for all rays at once that come upon one in the
-// same round. Where there are spheres alone, nothing is decided on the way, and rays walk one after the other. Contract: stages.h, cast.
+// rounds: incoherent rays among triangles and solids. The rays of a group traverse the index in rounds, one node each
+// per round. The triangles that they reach are decided in double, a vector of pairs of ray and triangle at a time,
+// with a different pair in each lane. Lanes that may be subject to the rules of shared edges are left to decide_rays.
+// A solid is decided for all rays that reach it in the same round. If there are only spheres, nothing is decided
+// during traversal, and rays are traversed one after the other. Contract: stages.h, cast.
 #ifndef GLINT_CAST_ROUNDS_H
 #define GLINT_CAST_ROUNDS_H
 
@@ -16,38 +17,39 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define GLINT_ROUND_PAIRS 96 ///< of a round, a multiple of any VR
-#define GLINT_ROUND_SOLIDS 64 ///< of a round
-#define GLINT_LEFT_NODES 48 ///< at most, that a group leaves to each of its rays, see together.h
+#define GLINT_ROUND_PAIRS 96 ///< per round, a multiple of any VR
+#define GLINT_ROUND_SOLIDS 64 ///< per round
+#define GLINT_LEFT_NODES 48 ///< maximum number of nodes that a group leaves to each of its rays, see together.h
 
-/// The rays of a group as triangles see them: components in the cyclic order that has the direction's largest last, see
-/// edges_along. With that every lane of a vector has one order, and the bits are those of its own.
+/// The rays of a group in triangle space: components in the cyclic order that puts the direction's largest component
+/// last, see edges_along. Every lane then has the same order of operations, and the bits are those of the lane's own
+/// order.
 typedef struct R(turned_rays) {
     _Alignas(64) real origin[3][GLINT_GROUP], direction[3][GLINT_GROUP];
-    uint8_t axis[GLINT_GROUP]; ///< of the world, that the last is along
+    uint8_t axis[GLINT_GROUP]; ///< axis of the world of the last component
 } R(turned_rays);
 
-/// The nodes that a ray is still to look into, and where it enters them.
+/// The nodes that a ray has yet to visit, and where it enters them.
 typedef struct R(node_stack) {
     int height;
-    uint32_t node[WALK_STACK + GLINT_NODE_WIDTH + GLINT_LEFT_NODES]; ///< with room for the entries behind the packed
+    uint32_t node[WALK_STACK + GLINT_NODE_WIDTH + GLINT_LEFT_NODES]; ///< with space for the entries behind the packed
     float depth[WALK_STACK + GLINT_NODE_WIDTH + GLINT_LEFT_NODES];
 } R(node_stack);
 
 typedef struct R(rounds) {
     R(turned_rays) turned;
     _Alignas(64) uint32_t lane[GLINT_ROUND_PAIRS], prim[GLINT_ROUND_PAIRS]; ///< the pairs
-    _Alignas(64) real corner[3][3][GLINT_ROUND_PAIRS]; ///< of each one's triangle, turned as its ray is
+    _Alignas(64) real corner[3][3][GLINT_ROUND_PAIRS]; ///< of the triangle of each pair, turned like its ray
     int count;
-    uint32_t solid[GLINT_ROUND_SOLIDS]; ///< primitives that are neither triangles nor spheres
-    uint32_t rays[GLINT_ROUND_SOLIDS]; ///< which came upon each, a bit a lane
+    uint32_t solid[GLINT_ROUND_SOLIDS]; ///< primitives other than triangles and spheres
+    uint32_t rays[GLINT_ROUND_SOLIDS]; ///< rays that reached each solid, one bit per lane
     int solids;
     R(first_balls) first;
     R(lone_ray) ray[GLINT_GROUP];
     R(node_stack) stack[GLINT_GROUP];
 } R(rounds);
 
-/// The lanes of `lanes`; others keep what they had.
+/// Turns the rays of `lanes`; other lanes are unchanged.
 static inline void R(turn_rays)(const glint_cast_args *args, size_t at, unsigned lanes, R(turned_rays) * out)
 {
     for (; lanes; lanes &= lanes - 1) {
@@ -67,7 +69,7 @@ static inline void R(turn_rays)(const glint_cast_args *args, size_t at, unsigned
     }
 }
 
-/// Corners of all pairs. Behind the last, to the end of its vector, are pairs of which nothing is read.
+/// Loads the corners of all pairs. The last vector is filled with pairs whose results are not read.
 static inline void R(load_round)(const glint_geometry_table *geometry, R(rounds) * rounds)
 {
     for (int n = 0; n < rounds->count; n++) {
@@ -86,8 +88,8 @@ static inline void R(load_round)(const glint_geometry_table *geometry, R(rounds)
     }
 }
 
-/// Lanes whose rays begin off the triangle's plane for certain. As in meet_shared_edge, whose bound is twice what rounding makes of
-/// a height: the order of its terms, which is another here, is within that.
+/// Returns the lanes whose rays certainly start off the triangle's plane. The bound of meet_shared_edge applies: it
+/// is twice the rounding error of a height, which covers the different order of terms here.
 static inline unsigned R(begins_off_plane)(const glint_geometry_table *table, vr corner[3][3], const vr o[3])
 {
     const vr scale = r_set(table->scale), far = r_set((real)(2 * GLINT_POINT_SLACK * table->extent));
@@ -108,13 +110,13 @@ static inline unsigned R(begins_off_plane)(const glint_geometry_table *table, vr
 
 /// The results of VR pairs of ray and triangle, one bit each.
 typedef struct R(round_lanes) {
-    _Alignas(64) real t[VR]; ///< ways to the planes of the corners
-    unsigned at; ///< the line is at the triangle, give or take what the ray's beginning is off by: others do not meet
-    unsigned plain; ///< of them, those that pass it for certain, and begin off its plane for certain
-    unsigned off; ///< all that begin so
+    _Alignas(64) real t[VR]; ///< distances to the planes of the corners
+    unsigned at; ///< the line passes the triangle, within the error of the ray's origin; other lanes do not hit it
+    unsigned plain; ///< lanes of `at` that certainly pass through the triangle and certainly start off its plane
+    unsigned off; ///< all lanes that certainly start off the plane
 } R(round_lanes);
 
-/// The pairs from number i on.
+/// Tests the pairs from number i on.
 INNER void R(meet_round)(const glint_geometry_table *table, const R(rounds) * rounds, int i, R(round_lanes) * out)
 {
     const R(turned_rays) *turned = &rounds->turned;
@@ -136,12 +138,12 @@ INNER void R(meet_round)(const glint_geometry_table *table, const R(rounds) * ro
     const rm sure = rm_or(r_lt(zero, r_min(r_min(e[0], e[1]), e[2])), r_lt(r_max(r_max(e[0], e[1]), e[2]), zero));
     out->off = R(begins_off_plane)(table, corner, o);
     out->plain = out->at & out->off & rm_bits(sure);
-    if (!table->faces) // what is behind is missed
+    if (!table->faces) // hits behind the origin are misses
         out->at &= rm_bits(r_lt(zero, way)) | ~out->off;
     r_store(out->t, way);
 }
 
-/// Where a ray comes to the plane that a triangle shares with others.
+/// Returns t where a ray hits the plane that a triangle shares with others.
 static inline real R(way_to_face)(const glint_cast_args *args, const glint_face *face, size_t ray)
 {
     vr o[3], d[3];
@@ -152,8 +154,8 @@ static inline real R(way_to_face)(const glint_cast_args *args, const glint_face 
     return R(first_lane)(R(face_way)(face, o, d));
 }
 
-/// Decides the pairs, and brings nearer what the rays may meet. A ray that begins off the plane for certain neither leaves the
-/// triangle by a shared edge nor begins on it, if the way there is not short.
+/// Decides the pairs, and lowers the upper bounds of hits. Unless the distance is short, a ray that certainly starts
+/// off the plane neither leaves the triangle by a shared edge nor starts on it.
 static __attribute__((noinline)) void R(decide_triangles)(const glint_cast_args *args, uint32_t g, R(rounds) * rounds)
 {
     const glint_geometry_table *table = args->geometry;
@@ -201,7 +203,7 @@ static __attribute__((noinline)) void R(decide_solids)(const glint_cast_args *ar
     rounds->solids = 0;
 }
 
-/// Notes that a ray came upon a solid. There is room.
+/// Records that a ray reached a solid. The caller checks that there is space.
 static inline void R(add_solid)(R(rounds) * rounds, uint32_t id, int lane)
 {
     int n = 0;
@@ -215,7 +217,7 @@ static inline void R(add_solid)(R(rounds) * rounds, uint32_t id, int lane)
     rounds->rays[n] |= 1u << lane;
 }
 
-/// Tests the primitives other than triangles in the slots of `mask`; spheres are noted, see pair_first.
+/// Tests the primitives other than triangles in the slots of `mask`. Spheres are recorded, see pair_first.
 static inline void R(meet_others)(const glint_geometry_table *geometry, const glint_node *node, unsigned mask, int lane,
                                   R(rounds) * rounds)
 {
@@ -235,7 +237,7 @@ static inline void R(meet_others)(const glint_geometry_table *geometry, const gl
 static inline unsigned R(add_to_round)(const glint_geometry_table *geometry, const glint_node *node, unsigned mask,
                                        int lane, R(rounds) * rounds)
 {
-    const uint32_t leaving = rounds->ray[lane].leaving; // is not met: see cast_on_own
+    const uint32_t leaving = rounds->ray[lane].leaving; // the primitive that the ray leaves is not hit: see cast_on_own
     unsigned others = 0;
     int n = rounds->count;
 #ifdef GLINT_PACKS
@@ -261,13 +263,13 @@ static inline unsigned R(add_to_round)(const glint_geometry_table *geometry, con
     return others;
 }
 
-/// Puts the nodes in the slots of `mask` on a ray's stack, the nearest on top.
+/// Pushes the nodes in the slots of `mask` on a ray's stack, the nearest on top.
 static inline void R(push_nodes)(const glint_node *node, const float depth[GLINT_NODE_WIDTH], unsigned mask,
                                  R(node_stack) * stack)
 {
     int n = stack->height;
 #ifdef GLINT_PACKS
-    // without a branch, also where there is none: the entries above the top are not read
+    // without a branch, even if there is no node: the entries above the top are not read
     const vf own = f_select(fm_from_bits(mask), f_load(depth), f_set(HUGE_VALF));
     const float nearest = f_min_all(own);
     const unsigned first = mask & fm_bits(f_eq(own, f_set(nearest))), top = first & -first;
@@ -287,7 +289,7 @@ static inline void R(push_nodes)(const glint_node *node, const float depth[GLINT
     stack->height = n;
 }
 
-/// One ray goes on to the next node. Returns whether there was any.
+/// Advances one ray to its next node. Returns whether there was one.
 static inline bool R(step)(const glint_cast_args *args, int lane, R(rounds) * rounds)
 {
     const float far = rounds->first.far[lane];
@@ -311,7 +313,7 @@ static inline bool R(step)(const glint_cast_args *args, int lane, R(rounds) * ro
     return true;
 }
 
-/// The rays in `lanes` walk on from the nodes of their stacks.
+/// Traverses the index with the rays in `lanes`, from the nodes of their stacks.
 static __attribute__((noinline)) void R(walk_in_rounds)(const glint_cast_args *args, uint32_t g,
                                                         const R(ray_group) * rays, unsigned lanes, R(rounds) * rounds)
 {

@@ -1,4 +1,4 @@
-// The eye's hits of triangles, by scan conversion.
+// The eye's hits on triangles, by scan conversion.
 #include "engine/stages/cast/raster.h"
 
 #if GLINT_WITH_RASTER

@@ -1,5 +1,6 @@
-// beside: rays that leave a triangle by an edge or corner, and the triangles that they share it with. Rounding puts the
-// ray's beginning to either side of those; what they have to do with the ray is decided by how the two lie. Contract: stages.h.
+// beside: rays that leave a triangle by an edge or corner, and the triangles that share it. Rounding puts the ray's
+// origin on either side of those triangles. The relative position of the two triangles decides whether the ray hits
+// them. Contract: stages.h.
 #ifndef GLINT_CAST_SHARED_EDGE_H
 #define GLINT_CAST_SHARED_EDGE_H
 
@@ -57,7 +58,8 @@ static inline real R(size_of_all)(const real v[3])
     return most;
 }
 
-/// Whether a place is in the triangle's plane as far as rounding lets us know; of a point of some surface, its own included.
+/// Returns whether a point is in the triangle's plane within rounding. on_surface: the point is on some surface, and
+/// has the rounding error of such points.
 static inline bool R(is_in_plane)(const R(flat) * flat, const real place[3], bool on_surface)
 {
     real rounding;
@@ -70,7 +72,8 @@ static inline real R(near_shared_edge)(const glint_geometry_table *table)
     return (real)(GLINT_NEAR_SHARED_EDGE * table->extent);
 }
 
-/// A triangle is not met where the ray begins. o: of the rays of `hit`; leaving: what they begin on, or NULL.
+/// Removes hits where a ray starts on the triangle. o: origins of the rays of `hit`; leaving: the primitives that
+/// they start on, or NULL.
 static inline rm R(unless_begun_on)(const glint_geometry_table *table, const glint_prim *prim, const uint32_t *leaving,
                                     const vr o[3], rm hit, vr t)
 {
@@ -92,7 +95,8 @@ static inline rm R(unless_begun_on)(const glint_geometry_table *table, const gli
     return rm_andnot(hit, rm_from_bits(on));
 }
 
-/// Whether a corner of the triangle is for certain on the side of the plane that `way` points to; the corners too are rounded.
+/// Returns whether a corner of the other triangle is certainly on the side of the plane that `way` points to. The
+/// corners are rounded, too.
 static inline bool R(reaches)(const R(flat) * flat, real way, const R(flat) * other)
 {
     for (int j = 0; j < 3; j++) {
@@ -119,8 +123,8 @@ static inline real R(point_slack_of)(const R(flat) * flat, const real o[3])
     return (real)GLINT_POINT_SLACK * ((f + g) + p);
 }
 
-/// Whether the ray is at the triangle after `way`, give or take what its beginning is off by: on one side of all edges, and
-/// within its bounds; seen edge-on, all edges are near.
+/// Returns whether the ray is at the triangle at t = `way`, within the error of its origin: on the same side of all
+/// edges, and within its bounds. For a triangle seen edge-on, all edges are near.
 static inline bool R(passes_near)(const R(flat) * flat, const real o[3], const real d[3], real way, real slack,
                                   double scale)
 {
@@ -149,8 +153,9 @@ static inline bool R(passes_near)(const R(flat) * flat, const real o[3], const r
            1;
 }
 
-/// Whether a ray that starts on `from`, and after `way` is in the planes of both at once as far as rounding lets us know, goes
-/// through `other`: it reaches to the side that the ray goes to, and the ray leaves the side of it that `from` is on.
+/// For a ray that starts on `from` and at t = `way` is within rounding in both planes, returns whether it passes
+/// through `other`: `other` extends to the side that the ray goes to, and the ray leaves the side of `other` that
+/// `from` is on.
 static inline bool R(goes_through)(const R(flat) * from, const R(flat) * other, const real o[3], const real d[3],
                                    real way, real slack, double scale)
 {
@@ -158,29 +163,30 @@ static inline bool R(goes_through)(const R(flat) * from, const R(flat) * other, 
            R(passes_near)(other, o, d, way, slack, scale);
 }
 
-/// Whether a ray is in the plane of `from`, on which it starts, still or only as far as rounding lets us know, when it comes to
-/// another plane after `way`: rays that rise slowly may begin on the wrong side of `from` and get by its edge there.
+/// Returns whether a ray that starts on `from` is still in its plane, within rounding, when it hits another plane at
+/// t = `way`. Rays at a grazing angle may start on the wrong side of `from` and pass an edge there.
 static inline bool R(is_still_on)(const R(flat) * from, const real d[3], real slack, real way)
 {
     return way * R(size_of)(DOT(from->m, d)) <= R(spread_of)(from) * slack;
 }
 
-/// Lanes whose lines are at the triangle, give or take what their beginning is off by.
+/// Returns the lanes whose lines pass the triangle, within the error of their origins.
 static inline unsigned R(at_triangle)(const glint_geometry_table *table, const R(seen_edges) * edges)
 {
-    // above every `loose`: the sizes it is made of are at most 12 extents
+    // above every `loose`: the sizes that it is computed from are at most 12 extents
     const vr move = R(abs)(edges->dz) * r_set((real)(13 * GLINT_POINT_SLACK * table->extent * table->scale));
     return rm_bits(R(within)(edges, move * (edges->reach + r_set(2) * move)));
 }
 
-/// Those of them that may come to it.
+/// Returns the lanes of at_triangle that may reach it.
 static inline unsigned R(may_be_near)(const glint_geometry_table *table, const R(seen_edges) * edges, vr t)
 {
     return R(at_triangle)(table, edges) & rm_bits(r_lt(r_set(0), t));
 }
 
-/// Decides anew for the lanes that are in the plane of the triangle which they leave and of this one at once, and for those that
-/// get by this one's edge. `at`: the first lane of the vector; `own`: those that leave this one; `edges`: with reach.
+/// Decides again the lanes that are in the plane of the triangle which they leave and in the plane of this one, and
+/// the lanes that pass near this one's edge. `at`: the first lane of the vector; `own`: lanes that leave this
+/// triangle; `edges`: with reach.
 static inline rm R(meet_shared_edge)(const glint_cast_args *args, size_t at, unsigned own, const vr o[3],
                                      const R(flat) * flat, const R(seen_edges) * edges, rm hit, vr *t)
 {
@@ -188,7 +194,7 @@ static inline rm R(meet_shared_edge)(const glint_cast_args *args, size_t at, uns
     const real *const m = flat->m;
     const real spread = R(spread_of)(flat);
     const real far = (real)(2 * GLINT_POINT_SLACK * table->extent);
-    // above every bound: points, corners and differences of them are at most 2 extents
+    // above every bound: points, corners and their differences are at most 2 extents
     const real most = far * (5 * spread + 2 * ((flat->size[0] + flat->size[1]) + flat->size[2]));
     vr q[3];
     for (int k = 0; k < 3; k++)
@@ -200,7 +206,7 @@ static inline rm R(meet_shared_edge)(const glint_cast_args *args, size_t at, uns
     unsigned begins = 0, anew = 0, through = 0;
     const unsigned by_edge = R(may_be_near)(table, edges, *t) & ~rm_bits(hit);
     unsigned left = (~rm_bits(r_lt(r_set(most), R(abs)(h))) | rm_bits(soon) | by_edge) & ~own & ((1u << VR) - 1);
-    left &= (unsigned)args->active[at / GLINT_GROUP] >> at % GLINT_GROUP; // others leave anything
+    left &= (unsigned)args->active[at / GLINT_GROUP] >> at % GLINT_GROUP; // `leaving` is undefined in other lanes
     if (left)
         r_store(way, *t);
     for (; left; left &= left - 1) {

@@ -1,4 +1,5 @@
-// slot: a primitive in a slot of a node, no triangle, against the groups of a tile that it may show in. Contract: stages.h, cast.
+// slot: a primitive in a slot of a node, other than a triangle, against the groups of a tile that it may show in.
+// Contract: stages.h, cast.
 #ifndef GLINT_CAST_SLOT_H
 #define GLINT_CAST_SLOT_H
 
@@ -10,7 +11,7 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// Finds the groups that come near it. Returns how many. Constants: rods, it may be longer than wide.
+/// Finds the groups that come near the primitive. Returns their number. Constants: rods: it may be longer than wide.
 INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, const glint_node *node,
                               const node_on_screen *seen, int slot, const bool rods, R(near_group) * out)
 {
@@ -46,11 +47,11 @@ INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, co
 
 /// VR lanes of a group that a sphere comes near.
 typedef struct R(near_part) {
-    uint16_t at; ///< the first of them, in the tile
-    uint16_t across, down; ///< where the parts of their directions are, see group_directions
+    uint16_t at; ///< the first lane, in the tile
+    uint16_t across, down; ///< offsets of the two parts of their directions, see group_directions
 } R(near_part);
 
-/// Finds the parts of groups that have lanes. Returns how many.
+/// Lists the vectors of the groups that have lanes. Returns their number.
 INNER int R(find_near_parts)(const R(tile_cast) * tile, const R(near_group) * groups, int count, R(near_part) * out)
 {
     int parts = 0;
@@ -64,7 +65,7 @@ INNER int R(find_near_parts)(const R(tile_cast) * tile, const R(near_group) * gr
     return parts;
 }
 
-/// Decides it for rays from one eye.
+/// Decides the sphere for rays from one eye.
 INNER void R(decide_ball_of_eye)(const glint_cast_args *args, uint32_t id, const R(near_part) * parts, int count)
 {
     R(candidate) ball;
@@ -82,7 +83,7 @@ INNER void R(decide_ball_of_eye)(const glint_cast_args *args, uint32_t id, const
     }
 }
 
-/// Decides it for parallel rays.
+/// Decides the sphere for parallel rays.
 INNER void R(decide_ball_of_parallels)(const glint_cast_args *args, uint32_t id, const R(near_part) * parts, int count)
 {
     const glint_prim *prim = &args->geometry->prims[id];
@@ -104,7 +105,7 @@ INNER void R(decide_ball_of_parallels)(const glint_cast_args *args, uint32_t id,
     }
 }
 
-/// Casts a sphere to rays that do not start on a lens.
+/// Casts a sphere, for rays that do not start on a lens.
 INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
                         int slot)
 {
@@ -125,9 +126,9 @@ INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_no
     }
 }
 
-// ---- Anything else, and spheres through a lens ----
+// ---- Other primitives, and spheres through a lens ----
 
-/// Casts anything but a triangle.
+/// Casts any primitive except a triangle.
 INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
                          int slot)
 {
@@ -148,7 +149,7 @@ INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_n
     }
 }
 
-/// Casts the rays of the slot.
+/// Casts the primitive in the slot.
 INNER void R(cast_slot)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
                         int slot)
 {

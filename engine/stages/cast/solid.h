@@ -1,6 +1,6 @@
-// solid: what cast, surface and occlude need of affine images of the unit ball, cube, cylinder, cone and disk, and of a
-// cylinder's and a cone's side alone; those of the torus, which is not convex, are in torus.h. The ray is taken to where the
-// shape is the unit one; its t stays. Contract: stages.h.
+// solid: affine images of the unit ball, cube, cylinder, cone and disk, and of the open sides of cylinder and cone,
+// for cast, surface and occlude. The torus, which is not convex, is in torus.h. The ray is transformed to the space
+// of the unit shape; its t stays the same. Contract: stages.h.
 #ifndef GLINT_CAST_SOLID_H
 #define GLINT_CAST_SOLID_H
 
@@ -10,13 +10,14 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// Where a ray goes into a solid and where it leaves.
+/// The points where a ray enters and leaves a solid.
 typedef struct R(span) {
     vr t[2];
     rm hit;
-    rm second; ///< t[1] is where the ray leaves: of an open form, through the side
-    rm flat[2]; ///< by way of a face of a slab, not of the curved side
-    vr face[2]; ///< which: 1 + its axis where the shape is the unit one, below 0 the one whose outward normal points down it
+    rm second; ///< t[1] is a hit: for an open form, through the side
+    rm flat[2]; ///< whether each end is on a face of a slab, not on the curved side
+    vr face[2]; ///< the face: 1 + its axis in the space of the unit shape, negative if its outward normal points down
+        ///< that axis
 } R(span);
 
 static inline void R(to_unit)(const glint_solid *solid, const vr v[3], vr out[3])
@@ -26,7 +27,7 @@ static inline void R(to_unit)(const glint_solid *solid, const vr v[3], vr out[3]
                  r_set(solid->inverse[k][2]) * v[2];
 }
 
-/// From the solid's centre to a point, where the shape is the unit one.
+/// Computes the offset from the solid's centre to a point, in the space of the unit shape.
 static inline void R(unit_offset)(const glint_solid *solid, const glint_prim *prim, const vr point[3], vr out[3])
 {
     const vr away[3] = { point[0] - r_set(prim->center[0]), point[1] - r_set(prim->center[1]),
@@ -36,9 +37,9 @@ static inline void R(unit_offset)(const glint_solid *solid, const glint_prim *pr
 
 /// The constants of a solid that depend on the rays' origins.
 typedef struct R(solid_start) {
-    vr f[3]; ///< from the centre, where the shape is the unit one; of a box nothing
-    const vr *place; ///< where they start
-    const real *height; ///< over the faces, of rays that start at one place; NULL: they are found as slabs are cut
+    vr f[3]; ///< from the centre, in the space of the unit shape; unused for a box
+    const vr *place; ///< the rays' origins
+    const real *height; ///< over the faces, for rays with one origin; NULL: computed when slabs are cut
 } R(solid_start);
 
 static inline void R(start_at)(const glint_solid *solid, const glint_prim *prim, const vr place[3],
@@ -57,7 +58,7 @@ static inline real R(first_lane)(vr x)
     return lanes[0];
 }
 
-/// The same of rays that all start at the eye, of a box too: what solid_start holds, in numbers.
+/// Computes the same data as numbers, for rays that all start at the eye, also for a box.
 static void R(start_at_eye)(const glint_solid *solid, const glint_prim *prim, const double eye[3], real f[3],
                             real height[6])
 {
@@ -70,8 +71,8 @@ static void R(start_at_eye)(const glint_solid *solid, const glint_prim *prim, co
         height[i] = R(first_lane)(R(face_height)(&solid->faces[i], place));
 }
 
-/// Cuts the span down to the part between a pair of faces; `axis`: of the unit shape. flats: span->flat is wanted; faces, a constant:
-/// so is span->face.
+/// Clips the span to a pair of faces; `axis`: of the unit shape. flats: span->flat is wanted; faces, a constant:
+/// span->face is wanted, too.
 INNER void R(cut_by_slab)(R(span) * span, const glint_solid *solid, const R(solid_start) * start, const vr d[3], int slab,
                           int axis, const bool flats, const bool faces)
 {
@@ -99,14 +100,14 @@ INNER void R(cut_by_slab)(R(span) * span, const glint_solid *solid, const R(soli
     span->t[1] = r_min(leave, span->t[1]);
 }
 
-/// Whether no ray can hit the rest of the span.
+/// Returns whether no ray can hit the rest of the span.
 INNER bool R(is_spent)(R(span) * span)
 {
     span->hit = rm_and(span->hit, rm_and(r_le(span->t[0], span->t[1]), r_lt(r_set(0), span->t[1])));
     return rm_bits(span->hit) == 0;
 }
 
-/// Cuts a cylinder's or cone's span by its ends.
+/// Clips the span of a cylinder or cone to its ends.
 INNER void R(cut_by_ends)(R(span) * span, const glint_solid *solid, const R(solid_start) * start, const vr d[3],
                           const bool faces, const bool whole)
 {
@@ -114,7 +115,7 @@ INNER void R(cut_by_ends)(R(span) * span, const glint_solid *solid, const R(soli
         R(cut_by_slab)(span, solid, start, d, 0, 2, faces || is_open(solid), faces);
 }
 
-/// Both ends of the span are the one place where rays meet a disk.
+/// Sets both ends of the span to the point where rays hit a disk.
 INNER void R(cut_by_disk)(R(span) * span, const glint_solid *solid, const R(solid_start) * start, const vr d[3],
                           const vr e[3])
 {
@@ -127,10 +128,11 @@ INNER void R(cut_by_disk)(R(span) * span, const glint_solid *solid, const R(soli
     span->hit = r_le(x * x + y * y, r_set(1));
 }
 
-/// a t^2 - 2 b t + c <= 0 and what its roots are made of: of b >= 0 the far one is q / a, the other c / q; else the other way round.
+/// The inequality a t^2 - 2 b t + c <= 0 and its roots: for b >= 0 the far root is q / a, the other c / q; otherwise
+/// the other way round.
 typedef struct R(quadratic) {
     vr a, b, c, disc, s, q;
-    rm ahead, along; ///< b >= 0; along the axis of a cylinder: all of it or nothing
+    rm ahead, along; ///< b >= 0; parallel to the axis of a cylinder: fully inside or outside
 } R(quadratic);
 
 /// Computes the roots for a sphere (three axes) or cylinder (two). places: of the solid.
@@ -160,17 +162,18 @@ INNER void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball,
 {
     const R(quadratic) round = R(quadratic_of)(f, e, ball, places);
     const vr far = round.q / round.a, other = round.c / round.q, zero = r_set(0);
-    // in order though they were rounded: a solid seen from afar may be thinner than that
+    // in order despite rounding: a solid seen from far away may be thinner than the rounding error
     span->t[0] = r_select(round.along, r_set(-HUGE_VAL), r_min(far, other));
     span->t[1] = r_select(round.along, r_set(HUGE_VAL), r_max(far, other));
     span->hit = rm_or(rm_and(round.along, r_le(round.c, zero)), rm_andnot(r_le(zero, round.disc), round.along));
 }
 
-/// x^2 + y^2 <= z^2 on the side of z >= 0, the apex at the origin.
+/// Clips the span to the cone x^2 + y^2 <= z^2, z >= 0, with the apex at the origin.
 ///
-/// What is taken here are differences of squares, and where those of the start are far greater than those of any hit, too little
-/// is left: from afar, and where a ray passes the apex at about a third of how far from it it starts, or less, down the side of
-/// either half. Such rays are begun anew where they are nearest to the apex; but not what starts on the side.
+/// The coefficients are differences of squares. If the squares of the origin are far greater than those of any hit,
+/// too few digits are left: for rays from far away, and for rays down the side of either half that pass the apex at
+/// no more than about a third of their origin's distance from it. Such rays restart at the point nearest to the apex,
+/// except for rays that start on the side.
 INNER void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3], double places)
 {
     const vr zero = r_set(0), toward = DOT(from, e), e2 = DOT(e, e), away2 = DOT(from, from);
@@ -188,10 +191,11 @@ INNER void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3], double p
     const vr s = r_sqrt(r_max(disc, zero));
     const rm ahead = r_le(zero, b), steep = r_lt(a, zero), level = rm_andnot(r_le(a, zero), steep);
     const vr q = r_select(ahead, b + s, b - s);
-    const vr far = q / a, other = r_select(r_eq(q, zero), far, c / q); // through the apex both are 0
+    const vr far = q / a, other = r_select(r_eq(q, zero), far, c / q); // through the apex, both are 0
     const vr low = r_min(far, other), high = r_max(far, other), single = c / (r_set(2) * b);
     const rm up = r_lt(zero, e[2]);
-    // steeper than the side: one end is within the other half of the double cone; along the side: there is but one, of either
+    // steeper than the side: one end is on the other half of the double cone; parallel to the side: there is only
+    // one, on either half
     const rm ours = rm_or(rm_and(up, r_lt(zero, b)), rm_andnot(r_lt(b, zero), up));
     const vr end = r_select(level, single, r_select(up, high, low));
     const rm open = rm_or(steep, level);
@@ -200,7 +204,7 @@ INNER void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3], double p
     span->hit = rm_or(rm_or(steep, rm_and(level, ours)), rm_andnot(r_le(zero, disc), level));
 }
 
-/// Takes the faces of a cylinder or cone away: what went through one meets the side once or not at all.
+/// Removes the faces of a cylinder or cone: rays that passed through a face hit the side once or not at all.
 INNER void R(open_ends)(R(span) * span)
 {
     const rm none = rm_from_bits(0);
@@ -212,8 +216,8 @@ INNER void R(open_ends)(R(span) * span)
     span->flat[0] = span->flat[1] = none;
 }
 
-/// The span of rays that start at `start` along d, in the world, and e, where the shape is the unit one; a box has no use for e.
-/// faces, whole: constants. Not whole: where no ray meets the solid ahead, the span but for `hit` is of no use.
+/// Computes the span of rays from `start` along d in the world, and e in the space of the unit shape; a box does not
+/// need e. faces, whole: constants. Not whole: if no ray hits the solid ahead, only `hit` is defined.
 INNER R(span) R(span_of)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], const vr e[3],
                          const bool faces, const bool whole)
 {
@@ -276,7 +280,7 @@ static rm R(meet_solid)(const glint_solid *solid, const R(solid_start) * start, 
     return rm_and(span.hit, r_lt(r_set(0), *t));
 }
 
-/// Brings a point next to the curved side onto it; g: the outward normal there.
+/// Projects a point next to the curved side onto it; g: the outward normal there.
 static inline void R(onto_side)(uint32_t form, vr k[3], vr g[3])
 {
     const vr round = k[0] * k[0] + k[1] * k[1];
@@ -297,7 +301,7 @@ static inline void R(onto_side)(uint32_t form, vr k[3], vr g[3])
     g[2] = cone ? r_set(-1) : r_set(0);
 }
 
-/// Puts points that are on a face along two axes of the world exactly there. face: of the unit shape, where `flat`.
+/// Sets the exact coordinate for points on a face along two axes of the world. face: of the unit shape, where `flat`.
 static inline void R(onto_plane)(const glint_solid *solid, rm flat, const vr face[3], vr p[3])
 {
     const int slabs = glint_slab_count(solid->form);
@@ -313,8 +317,8 @@ static inline void R(onto_plane)(const glint_solid *solid, rm flat, const vr fac
     }
 }
 
-/// Brings a point next to the unit shape's surface onto it. which: the face, as in span; flat: it is one. g: the outward normal
-/// there; face: the number of the face.
+/// Projects a point next to the unit shape's surface onto it. which: the face, as in span; flat: it is on a face. g:
+/// the outward normal there; face: the number of the face.
 INNER void R(onto_unit)(uint32_t form, vr which, rm flat, vr k[3], vr g[3], vr face[3])
 {
     const bool round = form != GLINT_FORM_BOX && form != GLINT_FORM_DISK;
@@ -332,11 +336,11 @@ INNER void R(onto_unit)(uint32_t form, vr which, rm flat, vr k[3], vr g[3], vr f
     }
     if (form == GLINT_FORM_DISK)
         k[2] = r_set(0);
-    else if (form == GLINT_FORM_CONE) // which has its apex at 0
+    else if (form == GLINT_FORM_CONE) // its apex is at 0
         k[2] = r_select(rm_and(flat, r_lt(g[2], r_set(0))), r_set(0), k[2]);
 }
 
-/// The outward normal, of length 1, where the unit shape's is g.
+/// Computes the unit outward normal, from the normal g of the unit shape.
 INNER void R(normal_of)(const glint_solid *solid, const vr g[3], vr n[3])
 {
     for (int c = 0; c < 3; c++)
@@ -347,7 +351,7 @@ INNER void R(normal_of)(const glint_solid *solid, const vr g[3], vr n[3])
         n[c] = n[c] / length;
 }
 
-/// Where rays that start at `start` meet the solid, and the unit normal there.
+/// Computes the points where rays that start at `start` hit the solid, and the unit normals there.
 static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, const R(solid_start) * start,
                              const vr d[3], vr t, vr n[3], vr p[3])
 {
@@ -373,8 +377,9 @@ static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, c
     R(normal_of)(solid, g, n);
 }
 
-/// Whether the surface is crossed by segments from `point` along d, which end at 1 / scale; directional: nowhere. In lanes
-/// of `own` they begin on it, within: what they can meet is the other side of an open form.
+/// Returns the lanes whose segments from `point` along d cross the surface. Segments end at 1 / scale; directional:
+/// never. Segments in lanes of `own` start on the solid and go inside, so they can only hit the other side of an open
+/// form.
 static rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, const vr point[3], const vr d[3],
                                  double scale, bool directional, rm own)
 {

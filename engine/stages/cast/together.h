@@ -1,7 +1,7 @@
-// together: the rays of a group walk the index together for as long as that is less work than each on its own: where they go about the
-// same way, as what a flat mirror or a small part of a lens sends on. A node is first asked what of it any of them may come to, then
-// each of that which of them. Nodes that few of them come to, or of which more children are in question than there are rays, are left to
-// each of those (rounds.h). Contract: stages.h, cast.
+// together: traverses the index with a whole group of rays while they stay coherent, for example after reflection in
+// a flat mirror, or from a small part of a lens. Each node is tested twice: first against the bounds of the whole
+// group, then each surviving child against every ray. A node is left to the rays one by one (rounds.h) if few rays
+// reach it, or if more children than rays survive. Contract: stages.h, cast.
 #ifndef GLINT_CAST_TOGETHER_H
 #define GLINT_CAST_TOGETHER_H
 
@@ -13,37 +13,39 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define GLINT_FEW_LANES 3 ///< rays; so many or fewer walk each on its own
+#define GLINT_FEW_LANES 3 ///< up to this number of rays, each is traversed on its own
 
-/// Bounds of the tests of boxes_of_lone_ray for all rays of a group. Along an axis with both signs of direction, there is no bound.
+/// Bounds of the tests of boxes_of_lone_ray over all rays of a group. There is no bound along an axis with both signs
+/// of direction.
 typedef struct R(common_way) {
     float enter[3], leave[3]; ///< subtracted from the sides by which rays enter and leave
-    float gentle[3], steep[3]; ///< inverse directions with the least and the largest magnitude; the largest may be infinite
-    int first[3], last[3]; ///< where these sides are in a node, in floats
+    float gentle[3], steep[3]; ///< inverse directions with the smallest and the largest magnitude; the largest may be
+        ///< infinite
+    int first[3], last[3]; ///< offsets of these sides in a node, in floats
 } R(common_way);
 
-/// A node that rays of a group are still to look into.
+/// A node that rays of a group have yet to visit.
 typedef struct R(common_node) {
-    _Alignas(64) float depth[GLINT_GROUP]; ///< where each enters it
+    _Alignas(64) float depth[GLINT_GROUP]; ///< where each ray enters it
     uint32_t node;
     unsigned lanes;
 } R(common_node);
 
-/// The rays of a group on their walk.
+/// The rays of a group during traversal.
 typedef struct R(common_walk) {
-    _Alignas(64) float enter[3][GLINT_GROUP], leave[3][GLINT_GROUP]; ///< as of R(lone_ray)
+    _Alignas(64) float enter[3][GLINT_GROUP], leave[3][GLINT_GROUP]; ///< as in R(lone_ray)
     const R(ray_group) * rays;
     const R(lone_rays) * lone;
-    unsigned back[3]; ///< which go down along each axis
-    const uint32_t *leaving; ///< NULL: nothing
+    unsigned back[3]; ///< the rays with a negative direction along each axis
+    const uint32_t *leaving; ///< NULL: no ray starts on a primitive
     R(common_way) way;
     int height;
     R(common_node) stack[WALK_STACK];
 } R(common_walk);
 
-// ---- Bounds of all ----
+// ---- Bounds of the group ----
 
-/// The least and the largest of the numbers in `lanes`, of which there are some.
+/// Computes the minimum and maximum of the numbers in `lanes`, which are not empty.
 static inline void R(range_in)(const float x[GLINT_GROUP], unsigned lanes, float *least, float *most)
 {
     vf low = f_set(HUGE_VALF), high = f_set(-HUGE_VALF);
@@ -81,8 +83,8 @@ static inline void R(find_common_way)(const R(common_walk) * walk, unsigned lane
     }
 }
 
-/// Which boxes some ray may enter before `far`; depth: no ray enters a box before that. Rounding keeps the order of numbers, so each
-/// product bounds the products of all rays, with the same rounding.
+/// Returns the boxes that some ray may enter before `far`; depth: lower bound of the entry over all rays. Rounding is
+/// monotonic, so each product bounds the products of all rays after rounding.
 static inline unsigned R(boxes_on_way)(const glint_node *node, const R(common_way) * way, float far,
                                        float depth[GLINT_NODE_WIDTH])
 {
@@ -93,7 +95,8 @@ static inline unsigned R(boxes_on_way)(const glint_node *node, const R(common_wa
             const float *first = (const float *)node + way->first[k], *last = (const float *)node + way->last[k];
             const vf gentle = f_set(way->gentle[k]), steep = f_set(way->steep[k]);
             const vf x = f_load(first + i) - f_set(way->enter[k]), y = f_load(last + i) - f_set(way->leave[k]);
-            enter = f_max(f_min(x * gentle, x * steep), enter); // NaN, 0 times infinity, of the second keeps what there was
+            enter = f_max(f_min(x * gentle, x * steep), enter); // NaN, from 0 times infinity, as the second operand
+                // keeps the previous value
             leave = f_min(f_max(y * gentle, y * steep), leave);
         }
         f_store(depth + i, enter);
@@ -102,9 +105,10 @@ static inline unsigned R(boxes_on_way)(const glint_node *node, const R(common_wa
     return inside;
 }
 
-// ---- Which of the rays ----
+// ---- Single rays of the group ----
 
-/// The rays that may enter the box in a slot of a node before their `far`, and where: as boxes_of_lone_ray.
+/// Returns the rays that may enter the box in a slot of a node before their `far`, and computes where: like
+/// boxes_of_lone_ray.
 static inline unsigned R(rays_in_slot)(const glint_node *node, int slot, const R(common_walk) * walk,
                                        const R(first_balls) * first, float depth[GLINT_GROUP])
 {
@@ -124,7 +128,8 @@ static inline unsigned R(rays_in_slot)(const glint_node *node, int slot, const R
     return inside;
 }
 
-/// Records the sphere in a slot of a node for those of `lanes` that may enter it or begin in it, like meet_balls and note_ball.
+/// Records the sphere in a slot of a node for the rays of `lanes` that may enter it or start inside of it, like
+/// meet_balls and note_ball.
 static inline void R(note_ball_of_group)(const glint_node *node, int slot, const R(common_walk) * walk, unsigned lanes,
                                          R(first_balls) * first)
 {
@@ -188,7 +193,7 @@ static inline void R(add_lanes_to_round)(const R(common_walk) * walk, uint32_t i
     rounds->count = n;
 }
 
-// ---- The walk ----
+// ---- Traversal ----
 
 /// Tests the rays in `lanes` against the primitive in a slot of a node.
 static inline void R(meet_slot)(const glint_cast_args *args, uint32_t g, const glint_node *node, int slot,
@@ -212,7 +217,7 @@ static inline void R(meet_slot)(const glint_cast_args *args, uint32_t g, const g
     }
 }
 
-/// Leaves a node to each of the rays that come to it. False: some has no room.
+/// Pushes a node on the stacks of the rays that reach it. Returns false if some stack is full.
 static inline bool R(leave_to_each)(const R(common_node) * entry, unsigned lanes, R(rounds) * rounds)
 {
     for (unsigned left = lanes; left; left &= left - 1)
@@ -227,7 +232,7 @@ static inline bool R(leave_to_each)(const R(common_node) * entry, unsigned lanes
     return true;
 }
 
-/// The rays go on to the next node. Returns whether there was any.
+/// Advances the rays to the next node. Returns whether there was one.
 static inline bool R(step_together)(const glint_cast_args *args, uint32_t g, R(common_walk) * walk, R(rounds) * rounds)
 {
     _Alignas(64) float depth[GLINT_NODE_WIDTH];
@@ -290,7 +295,7 @@ static inline void R(begin_together)(const glint_cast_args *args, size_t at, con
         f_store(walk->stack[0].depth + i, f_set(0));
 }
 
-/// The nearest remaining node is on top.
+/// Reverses the stack, so that the nearest remaining node is on top.
 static inline void R(turn_stack)(R(node_stack) * stack)
 {
     for (int i = 0, j = stack->height - 1; i < j; i++, j--) {
@@ -303,7 +308,7 @@ static inline void R(turn_stack)(R(node_stack) * stack)
     }
 }
 
-/// Walks the index with the rays of a group in `lanes`.
+/// Traverses the index with the rays of a group in `lanes`.
 static __attribute__((noinline)) void R(walk_rays)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays,
                                                    const R(lone_rays) * lone, unsigned lanes, R(ray_pairs) * pairs)
 {

@@ -1,12 +1,13 @@
-// torus: what cast, surface and occlude need of an image of the unit torus, which is not convex: a ray hits it up to four
-// times, and may meet again what it leaves. What is found along a line, and why so: ref/torus.h. Contract: stages.h.
+// torus: an image of the unit torus for cast, surface and occlude. It is not convex: a ray hits it up to four times,
+// and may hit again the torus that it leaves. ref/torus.h explains the method. Contract: stages.h.
 #ifndef GLINT_CAST_TORUS_H
 #define GLINT_CAST_TORUS_H
 
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
 
-/// Where places are to the torus: below 0 inside. *beyond: what the quartic has besides as a factor, above 0.
+/// Returns the position of points relative to the torus: below 0 inside. *beyond: the remaining factor of the
+/// quartic, above 0.
 INNER vr R(torus_gap)(const vr k[3], vr tube2, vr *beyond)
 {
     const vr one = r_set(1), round = r_sqrt(k[0] * k[0] + k[1] * k[1]), near = round - one, far = round + one;
@@ -15,21 +16,23 @@ INNER vr R(torus_gap)(const vr k[3], vr tube2, vr *beyond)
     return (near * near + level) - tube2;
 }
 
-/// Lines through a torus, from the place nearest to its middle on. The stretches between turns fall and rise, 0 .. 3.
+/// Lines through a torus, parametrised from the point nearest to its centre. The quartic falls and rises in turn in
+/// the stretches 0 .. 3 between its turning points.
 typedef struct R(torus_line) {
     vr tube, tube2;
     vr p[3], u[3];
     vr from, per, length, begin; ///< t = from + s per, per = 1 / length; s of t = 0
-    vr reach; ///< beyond -reach .. reach there is nothing
+    vr reach; ///< there are no roots beyond -reach .. reach
     vr bend, lean;
-    rm near; ///< lines that come near the torus; for others, only this and the fields above are defined
-    vr turn[3], gap[3], beyond[3]; ///< in order; where there is but one the others are at infinity, outside
+    rm near; ///< lines that come near the torus; other lines only have this and the fields above
+    vr turn[3], gap[3], beyond[3]; ///< in order; if there is only one turning point, the others are at infinity,
+        ///< outside
     vr begin_gap;
-    rm on, inward; ///< rays that begin on the surface; of these, that go in
-    rm past[3]; ///< turns that are behind where rays begin
+    rm on, inward; ///< rays that start on the surface; those of them that go inside
+    rm past[3]; ///< turning points behind the rays' origins
 } R(torus_line);
 
-/// Rays that leave the torus: which do, and which of them go inwards.
+/// Rays that leave the torus: which lanes do, and which of these go inwards.
 typedef struct R(torus_start) {
     rm leaves, inward;
 } R(torus_start);
@@ -40,7 +43,7 @@ static inline R(torus_start) R(torus_afresh)(void)
     return (R(torus_start)) { none, none };
 }
 
-/// Of each line the largest x with x^3 + bend x = |lean|.
+/// Returns the largest x with x^3 + bend x = |lean|, for each line.
 INNER vr R(last_turn)(const R(torus_line) * l)
 {
     const vr three = r_set(3), zero = r_set(0), bend = l->bend, lean = R(abs)(l->lean), r = r_sqrt(r_max(-bend, zero));
@@ -56,7 +59,7 @@ INNER vr R(last_turn)(const R(torus_line) * l)
     return x;
 }
 
-/// last: of last_turn.
+/// Computes the turning points. last: the result of last_turn.
 static inline void R(find_turns)(R(torus_line) * l, vr last)
 {
     const vr zero = r_set(0), never = r_set(HUGE_VAL);
@@ -75,7 +78,7 @@ static inline void R(find_turns)(R(torus_line) * l, vr last)
     }
 }
 
-/// Where rays begin: on which stretch, and on the surface or not.
+/// Finds the stretch in which rays start, and whether they start on the surface.
 static inline void R(begin_on_torus)(R(torus_line) * l, const glint_solid *solid, const vr f[3], const vr e[3],
                                      R(torus_start) start)
 {
@@ -99,15 +102,16 @@ static inline void R(begin_on_torus)(R(torus_line) * l, const glint_solid *solid
     l->past[0] = rm_or(rm_andnot(l->past[0], l->on), rm_or(outward, later_in));
     l->past[1] = rm_or(rm_andnot(l->past[1], l->on), rm_or(later_out, later_in));
     l->past[2] = rm_or(rm_andnot(l->past[2], l->on), later_out);
-    // on this side of the surface, whatever rounding made of the next turn
+    // on this side of the surface, however rounding has moved the next turning point
     const rm next[3] = { rm_andnot(l->inward, later_in), rm_andnot(outward, later_out), later_in };
     l->gap[0] = r_select(rm_and(next[0], r_lt(zero, l->gap[0])), zero, l->gap[0]);
     l->gap[1] = r_select(rm_and(next[1], r_le(l->gap[1], zero)), one, l->gap[1]);
     l->gap[2] = r_select(rm_and(next[2], r_lt(zero, l->gap[2])), zero, l->gap[2]);
 }
 
-/// Lines that may come near the tube: of others, what is as high as it is within the ring's hole, or nowhere within reach. How far
-/// from its axis a line is grows towards both ends. Written so that NaN keeps the line.
+/// Returns the lines that may come near the tube. Other lines stay as high as the tube within the ring's hole, or
+/// never come within reach. The distance of a line from its axis grows towards both ends. Written so that lines with
+/// NaN stay.
 INNER rm R(passes_tube)(const R(torus_line) * l, vr within)
 {
     const vr one = r_set(1), wide = l->tube * r_set(1.01) + (within + r_set(1024 * GLINT_ON_FACE)), hole = one - wide;
@@ -122,7 +126,7 @@ INNER rm R(passes_tube)(const R(torus_line) * l, vr within)
     return rm_andnot(rm_from_bits((1u << VR) - 1), out);
 }
 
-/// Finds the roots of rays from f along e, in the space of the unit torus, up to `near`.
+/// Prepares the roots of rays from f along e, in the space of the unit torus, up to `near`.
 static inline void R(aim_at_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start,
                                    R(torus_line) * l)
 {
@@ -159,7 +163,7 @@ static void R(along_torus)(const glint_solid *solid, const vr f[3], const vr e[3
     R(begin_on_torus)(l, solid, f, e, start);
 }
 
-/// Rays that leave the torus, do not go in, and surely never meet it again.
+/// Returns the rays that leave the torus, do not go inside, and certainly never hit it again.
 static inline rm R(leaves_torus)(const vr f[3], const vr e[3], R(torus_start) start)
 {
     const rm outward = rm_andnot(start.leaves, start.inward);
@@ -170,7 +174,7 @@ static inline rm R(leaves_torus)(const vr f[3], const vr e[3], R(torus_start) st
     return rm_and(outward, rm_and(r_le(one, round), r_le(r_set(0), rise)));
 }
 
-/// Lines that have a root in a stretch.
+/// Returns the lines that have a root in a stretch.
 static inline rm R(torus_crosses)(const R(torus_line) * l, int stretch)
 {
     const vr zero = r_set(0);
@@ -181,7 +185,7 @@ static inline rm R(torus_crosses)(const R(torus_line) * l, int stretch)
                                           : second);
 }
 
-/// Rays that begin on a stretch, not on the surface.
+/// Returns the rays that start within a stretch, not on the surface.
 static inline rm R(begins_in)(const R(torus_line) * l, int stretch)
 {
     const rm all = rm_from_bits((1u << VR) - 1);
@@ -189,7 +193,7 @@ static inline rm R(begins_in)(const R(torus_line) * l, int stretch)
     return rm_andnot(stretch == 3 ? from : rm_andnot(from, l->past[stretch]), l->on);
 }
 
-/// Rays that have a root of a stretch ahead, where there is one.
+/// For stretches with a root, returns the rays whose root is ahead.
 static inline rm R(torus_ahead)(const R(torus_line) * l, int stretch)
 {
     const vr zero = r_set(0);
@@ -201,7 +205,7 @@ static inline rm R(torus_ahead)(const R(torus_line) * l, int stretch)
 
 /// A stretch of each line.
 typedef struct R(torus_stretch) {
-    vr low, high, middle; ///< its ends; the least turn, which is one of them
+    vr low, high, middle; ///< its ends; the lowest turning point, which is one of the ends
     vr gap; ///< Q there
     rm rising;
 } R(torus_stretch);
@@ -219,7 +223,7 @@ static inline R(torus_stretch) R(stretch_at)(const R(torus_line) * l, int stretc
     return out;
 }
 
-/// One step nearer to the roots at s; wanted: lanes that are not there yet.
+/// Makes one step towards the roots at s; wanted: lanes that have not converged.
 INNER void R(step_to_root)(const R(torus_line) * l, R(torus_stretch) * at, vr *s, unsigned *wanted)
 {
     const vr zero = r_set(0), half = r_set(0.5), x = *s;
@@ -257,7 +261,7 @@ static vr R(torus_root)(const R(torus_line) * l, R(torus_stretch) * at, rm hit)
     return r_select(rm_and(hit, r_lt(zero, found)), found, r_set(GLINT_LEAST_WAY));
 }
 
-/// The stretch of each line on which the first root ahead is. Returns the lanes that have one.
+/// Finds the stretch of each line with the first root ahead. Returns the lanes that have one.
 static rm R(first_ahead)(const R(torus_line) * l, R(torus_stretch) * at)
 {
     rm hit = rm_from_bits(0);
@@ -277,7 +281,8 @@ static rm R(first_ahead)(const R(torus_line) * l, R(torus_stretch) * at)
     return hit;
 }
 
-/// Where rays meet the torus first. Returns those that do. Rays that leave it and go in meet it surely.
+/// Computes the first hits of rays with the torus. Returns the rays that hit it. Rays that leave it and go inside
+/// always hit it.
 static rm R(meet_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr *t)
 {
     R(torus_line) l;
@@ -288,11 +293,13 @@ static rm R(meet_torus)(const glint_solid *solid, const vr f[3], const vr e[3], 
     return rm_or(hit, rm_and(start.leaves, start.inward));
 }
 
-/// Where rays are inside: from ends[0] to ends[1], and from ends[2] to ends[3] or, where they do not come out between, from the
-/// first root to the last; an end of -inf: there is no such stretch, or the ray begins in it.
+/// Computes the intervals inside: ends[0] to ends[1], and ends[2] to ends[3]. If a ray does not come out in between,
+/// there is one interval, from the first root to the last. -inf: there is no such interval, or the ray starts inside
+/// of it.
 static void R(torus_ends)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr ends[4])
 {
-    R(torus_line) l = { .near = rm_from_bits(0) }; // without a line near the tube all else is left as it is here
+    R(torus_line) l = { .near = rm_from_bits(0) }; // if no line comes near the tube, the other fields stay as they are
+        // here
     R(along_torus)(solid, f, e, start, &l);
     const vr zero = r_set(0), none = r_set(-HUGE_VAL);
     for (int stretch = 0; stretch < 4; stretch++) {
@@ -308,7 +315,7 @@ static void R(torus_ends)(const glint_solid *solid, const vr f[3], const vr e[3]
     ends[3] = r_select(rm_andnot(rm_and(start.leaves, start.inward), out), r_set(GLINT_LEAST_WAY), ends[3]);
 }
 
-/// Brings points next to the surface onto it; g: the outward normal there.
+/// Projects points next to the surface onto it; g: the outward normal there.
 static inline void R(onto_torus)(double radius, vr k[3], vr g[3])
 {
     const vr zero = r_set(0), one = r_set(1), tube = r_set(radius), round = r_sqrt(k[0] * k[0] + k[1] * k[1]);
@@ -326,7 +333,8 @@ static inline void R(onto_torus)(double radius, vr k[3], vr g[3])
     g[2] = up;
 }
 
-/// Which segments from f on cross the surface before they end at t = end, inside or not. l: the line of along_torus.
+/// Returns the segments from f that cross the surface before they end at t = end, inside or outside. l: the line by
+/// along_torus.
 static rm R(torus_parts)(const R(torus_line) * l, const vr f[3], const vr e[3], vr end, rm end_inside,
                          R(torus_start) start)
 {

@@ -1,5 +1,5 @@
-// triangle: what cast, surface and occlude need of one. Which side of a ray an edge passes on is decided from the corners
-// as seen along that ray, the same for all triangles that share them. Contract: stages.h.
+// triangle: triangles for cast, surface and occlude. The side of an edge that a ray passes on is decided from the
+// corners as seen along the ray. It is the same for all triangles that share these corners. Contract: stages.h.
 #ifndef GLINT_CAST_TRIANGLE_H
 #define GLINT_CAST_TRIANGLE_H
 
@@ -8,15 +8,15 @@
 
 /// A triangle in the space of a ray.
 typedef struct R(seen_edges) {
-    vr e[3]; ///< weights of the corners, up to a common factor
+    vr e[3]; ///< unnormalised weights of the corners
     vr dz; ///< the direction's largest component
     vr depth; ///< weighted sum of the corners along that axis
-    vr reach; ///< sum of the absolute values of the terms of e; written on request
+    vr reach; ///< sum of the absolute values of the terms of e; only written if wanted
 } R(seen_edges);
 
 static inline vr R(abs)(vr x) { return r_max(x, -x); }
 
-/// `z`: the axis of the direction's largest component.
+/// Computes the edge functions. `z`: the axis of the direction's largest component.
 static inline R(seen_edges) R(edges_along)(vr p[3][3], const vr d[3], int z, bool want_reach)
 {
     const int x = (z + 1) % 3, y = (z + 2) % 3;
@@ -48,7 +48,8 @@ static inline R(seen_edges) R(select_edges)(rm mask, const R(seen_edges) * a, co
     return out;
 }
 
-/// p: the corners from where the rays start. Rays of a group nearly always have one axis.
+/// Computes the edge functions. p: the corners relative to the rays' origins. All rays of a group nearly always have
+/// the same axis.
 INNER R(seen_edges) R(see_edges)(vr p[3][3], const vr d[3], bool want_reach)
 {
     const vr ax = R(abs)(d[0]), ay = R(abs)(d[1]), az = R(abs)(d[2]);
@@ -75,7 +76,7 @@ INNER R(seen_edges) R(see_edges)(vr p[3][3], const vr d[3], bool want_reach)
 
 static inline vr R(det)(const R(seen_edges) * edges) { return (edges->e[0] + edges->e[1]) + edges->e[2]; }
 
-/// Whether the ray passes all edges on one side, edges included, give or take `reach`.
+/// Returns whether the ray passes all edges on one side, or on them, within `reach`.
 static inline rm R(within)(const R(seen_edges) * edges, vr reach)
 {
     const vr *e = edges->e;
@@ -105,8 +106,8 @@ static rm R(between_corners)(vr p[3][3], const vr d[3], vr reach)
     return between;
 }
 
-/// Whether the ray goes through the triangle or its edges. An edge of 0 may be one that rounding has taken the sign of:
-/// seen edge-on, a triangle has such edges all along its plane, and only the corners tell where it ends.
+/// Returns whether the ray passes through the triangle or its edges. An edge function of 0 may have lost its sign by
+/// rounding. A triangle seen edge-on has such edge functions all along its plane, and only the corners bound it.
 static inline rm R(passes)(const R(seen_edges) * edges, vr p[3][3], const vr d[3])
 {
     const vr *e = edges->e, zero = r_set(0);
@@ -117,14 +118,14 @@ static inline rm R(passes)(const R(seen_edges) * edges, vr p[3][3], const vr d[3
     return rm_and(inside, rm_or(sure, R(between_corners)(p, d, zero)));
 }
 
-/// The face of a triangle that shares its plane with others; else NULL.
+/// Returns the face of a triangle that shares its plane with others, otherwise NULL.
 static inline const glint_face *R(face_of)(const glint_geometry_table *table, const glint_prim *prim)
 {
     return prim->face ? &table->faces[prim->face - 1] : NULL;
 }
 
-/// A triangle as the ray sees it; p: the corners from the ray's origin, in units of the table. face: NULL, or what it shares
-/// its plane with.
+/// Intersects a triangle in the space of the ray; p: the corners relative to the ray's origin, in units of the table.
+/// face: of its shared plane, or NULL.
 static inline rm R(meet_seen)(const R(seen_edges) * edges, vr p[3][3], const vr o[3], const vr d[3], vr scale,
                               const glint_face *face, vr *t)
 {
@@ -135,14 +136,14 @@ static inline rm R(meet_seen)(const R(seen_edges) * edges, vr p[3][3], const vr 
     return rm_and(R(passes)(edges, p, d), r_lt(r_set(0), *t));
 }
 
-/// The same from its corners only.
+/// Does the same from the corners only.
 static inline rm R(meet_triangle)(vr p[3][3], const vr o[3], const vr d[3], vr scale, const glint_face *face, vr *t)
 {
     const R(seen_edges) edges = R(see_edges)(p, d, false);
     return R(meet_seen)(&edges, p, o, d, scale, face, t);
 }
 
-/// A triangle's corners, in every lane.
+/// Copies a triangle's corners into every lane.
 static inline void R(corners_of)(const glint_prim *prim, vr corner[3][3])
 {
     for (int j = 0; j < 3; j++)
@@ -150,7 +151,7 @@ static inline void R(corners_of)(const glint_prim *prim, vr corner[3][3])
             corner[j][k] = r_set(prim->corner[j][k]);
 }
 
-/// Corners from a place.
+/// Computes corners relative to a point.
 static inline void R(corners_seen)(vr corner[3][3], const vr from[3], double scale, vr p[3][3])
 {
     for (int j = 0; j < 3; j++)
@@ -158,7 +159,7 @@ static inline void R(corners_seen)(vr corner[3][3], const vr from[3], double sca
             p[j][k] = (corner[j][k] - from[k]) * r_set(scale);
 }
 
-/// A triangle's corners from a place.
+/// Computes a triangle's corners relative to a point.
 static inline void R(corners_from)(const vr from[3], const glint_prim *prim, double scale, vr p[3][3])
 {
     vr corner[3][3];
@@ -168,7 +169,7 @@ static inline void R(corners_from)(const vr from[3], const glint_prim *prim, dou
 
 // ---- Surface ----
 
-/// A triangle's unit normal, to the side from which its corners run counter-clockwise.
+/// Computes a triangle's unit normal, on the side from which its corners run counter-clockwise.
 static inline void R(triangle_normal)(const glint_prim *prim, double scale, double n[3])
 {
     double f[3], g[3];
@@ -222,11 +223,11 @@ static inline void R(smooth_normal)(vr corner[3][3], const vr w[3], const vr fla
 /// A triangle's plane.
 typedef struct R(triangle_plane) {
     vr m[3]; ///< normal, not unit
-    vr light; ///< on which side the light is
-    vr size[3]; ///< what m was made of, absolute
+    vr light; ///< the side that the light is on
+    vr size[3]; ///< sum of the absolute values of the terms of m
 } R(triangle_plane);
 
-/// light: position, or direction towards it.
+/// Computes a triangle's plane. light: position, or direction towards it.
 static inline R(triangle_plane) R(plane_of)(vr corner[3][3], double scale, const vr light[3], bool directional)
 {
     R(triangle_plane) plane;
@@ -248,8 +249,8 @@ static inline R(triangle_plane) R(plane_of)(vr corner[3][3], double scale, const
     return plane;
 }
 
-/// Whether the triangle stands between the light and points that lie in its plane: they touch it, and the light is on
-/// the other side than the viewer, from whom `ray` came.
+/// Returns whether the triangle separates the light from points in its plane: the points touch it, and the light is
+/// on the side away from the viewer, from whom `ray` came.
 static inline rm R(parts_from_light)(vr p[3][3], const vr d[3], const R(seen_edges) * edges,
                                      const R(triangle_plane) * plane, vr slack, double scale, const vr ray[3])
 {
@@ -267,15 +268,15 @@ static inline rm R(parts_from_light)(vr p[3][3], const vr d[3], const R(seen_edg
     rm parts = rm_and(other_side, R(within)(edges, reach));
     if (!rm_bits(parts))
         return parts;
-    parts = rm_and(parts, R(between_corners)(p, d, move)); // with the light in this plane, all edges are within reach
-    for (int k = 0; k < 3; k++) { // and the triangle may be behind
+    parts = rm_and(parts, R(between_corners)(p, d, move)); // if the light is in this plane, all edges are within reach
+    for (int k = 0; k < 3; k++) { // the triangle may also be behind the point
         const vr low = r_min(r_min(p[0][k], p[1][k]), p[2][k]), high = r_max(r_max(p[0][k], p[1][k]), p[2][k]);
         parts = rm_and(parts, rm_and(r_le(low, loose), r_le(-loose, high)));
     }
     return parts;
 }
 
-/// Segments from points of another surface.
+/// Tests segments from points of another surface.
 static inline rm R(triangle_blocks)(vr corner[3][3], double scale, const vr point[3], const vr d[3], vr slack,
                                     const R(triangle_plane) * plane, const vr ray[3])
 {

@@ -1,6 +1,7 @@
-/// The contract of the stages of derivatives: values and slopes of sixteen points, all in double. Begin with stages.h.
+/// The contract of the stages of derivatives: values and slopes of sixteen points, all in double. Begin with
+/// stages.h.
 ///
-/// A slope that is 0 is not worked with, and adds nothing: a slope may be 0 of either sign.
+///  Terms with a slope of 0 are skipped. The sign of a zero slope is not defined.
 #ifndef GLINT_CONTRACT_DERIVATIVE_H
 #define GLINT_CONTRACT_DERIVATIVE_H
 
@@ -9,34 +10,36 @@
 
 /// A material, as glint_shade_material has it.
 typedef struct glint_derivative_material {
-    uint32_t varies; ///< 0: nothing of it has a slope
-    uint32_t highlight, lobe; ///< glint_highlight, glint_lobe; of a material without a highlight that gets one, too
+    uint32_t varies; ///< 0: no field has a slope
+    uint32_t highlight, lobe; ///< glint_highlight, glint_lobe; also set for a material that gets its highlight from a
+        ///< plane or a derivative
     uint32_t unused; ///< 0: no padding
     glint_dual diffuse[3], specular[3], grazing[3], ambient[3], shininess, alpha;
 } glint_derivative_material;
 
-/// A light of the scene, or what its samples have in common.
+/// A light of the scene, or the fields that all samples of an area light share.
 typedef struct glint_derivative_light {
     uint32_t varies;
-    uint32_t moves; ///< its shadows do
+    uint32_t moves; ///< its shadows move
     uint32_t turns; ///< `position` or `axis` has a slope
-    uint32_t shines; ///< another number has
+    uint32_t shines; ///< another field has a slope
     uint32_t directional, is_spot;
     uint32_t attenuated; ///< by distance
     uint32_t unused; ///< 0: no padding
-    glint_dual position[3]; ///< directional: the unit vector towards it; of an area light the slope is that of its samples
+    glint_dual position[3]; ///< directional: the unit vector towards the light; area light: the slope is shared by all
+        ///< samples
     glint_dual coefficients[3], diffuse[3], specular[3];
     glint_dual axis[3], outer, inverse, exponent; ///< of a spot, see glint_spot
 } glint_derivative_light;
 
-/// A surface that moves; slopes, in the world.
+/// A moving surface: slopes in world space.
 typedef struct glint_derivative_part {
     uint32_t moves;
     uint32_t unused; ///< 0: no padding
     double place[3]; ///< of a sphere's centre or a plane's point
-    double growth; ///< of a sphere's radius, in shares of it
+    double growth; ///< of a sphere's radius, relative to the radius
     double normal[3]; ///< of a plane's unit normal
-    double pivot[3]; ///< around which a plane turns: no slope
+    double pivot[3]; ///< the fixed point around which a plane turns
 } glint_derivative_part;
 
 /// The eye and its lens; slopes.
@@ -44,24 +47,24 @@ typedef struct glint_derivative_view {
     uint32_t moves;
     uint32_t unused; ///< 0: no padding
     double eye[3], forward[3], right[3], up[3]; ///< as in glint_plan_camera
-    double lens[2][3]; ///< of the unit axes of the lens, to the right and up; without a lens 0, and so the next
-    double wider; ///< of the aperture, in shares of it
-    double nearer; ///< of one over the distance of its focus
+    double lens[2][3]; ///< of the unit axes of the lens, right and up; like the next two, 0 without a lens
+    double wider; ///< of the aperture, relative to the aperture
+    double nearer; ///< of one over the focus distance
 } glint_derivative_view;
 
 /// Points of a group: sixteen doubles each.
 typedef struct glint_derivative_points {
     const double *point[3];
-    const double *normal[3]; ///< unit, turned to the eye
-    const double *eye[3]; ///< unit, towards it
-    const double *slope[3][3]; ///< of the three; slope[0][0] NULL: all are 0
+    const double *normal[3]; ///< unit, turned towards the eye
+    const double *eye[3]; ///< unit, towards the eye
+    const double *slope[3][3]; ///< of point, normal and eye; slope[0][0] NULL: all slopes are 0
 } glint_derivative_points;
 
-/// The results of a material's programs for a group, in addition to the numbers of glint_derivative_material.
+/// The results of a material's programs for a group. They modify the fields of glint_derivative_material.
 enum {
-    GLINT_DERIVED_DIFFUSE, ///< three, by which the material's are multiplied; and so of the next
+    GLINT_DERIVED_DIFFUSE, ///< three factors of the material's value, like the next field
     GLINT_DERIVED_SPECULAR = 3,
-    GLINT_DERIVED_SHININESS = 6, ///< in the place of the material's, and so the next
+    GLINT_DERIVED_SHININESS = 6, ///< replaces the material's value, like the next fields
     GLINT_DERIVED_ALPHA,
     GLINT_DERIVED_COUNT
 };
@@ -71,64 +74,66 @@ typedef struct glint_derivative_planes {
     const double *slope[GLINT_DERIVED_COUNT]; ///< NULL: 0
 } glint_derivative_planes;
 
-/// A light as a group sees it, or one sample of it.
+/// A light as seen from a group, or one sample of it.
 typedef struct glint_derivative_source {
     const double *position[3]; ///< directional: the unit vector towards it
-    const double *normal[3]; ///< of its surface; read of radiant ones
-    const double *weight; ///< share of it that reaches the point; NULL: 1
-    const double *tint[3], *tint_slope[3]; ///< transmitted share of its colours; tint[0] NULL: all
-    bool radiant; ///< with cos' / distance^2
-    bool both; ///< radiant: to both sides
+    const double *normal[3]; ///< of the light's surface; only read for radiant lights
+    const double *weight; ///< the share of the light that reaches the point; NULL: 1
+    const double *tint[3], *tint_slope[3]; ///< the transmitted share of each colour; tint[0] NULL: 1
+    bool radiant; ///< with the factor cos' / distance^2
+    bool both; ///< radiant: emits to both sides
 } glint_derivative_source;
 
-/// How a light comes to points: the unit way to it, what of its colour arrives, and how far it is, as the inputs from
-/// GLINT_INPUT_L_X on.
+/// The light that arrives at points: unit direction to the light, arriving colour and distance, in the order of the
+/// inputs from GLINT_INPUT_L_X on.
 #define GLINT_ARRIVAL_COUNT 7
 typedef struct glint_arrival_args {
     const glint_derivative_light *light;
     const glint_derivative_points *points;
     const glint_derivative_source *source;
-    double *value[GLINT_ARRIVAL_COUNT], *slope[GLINT_ARRIVAL_COUNT]; ///< out: of every lane; NULL: not wanted
+    double *value[GLINT_ARRIVAL_COUNT], *slope[GLINT_ARRIVAL_COUNT]; ///< out, in every lane; NULL: not wanted
 } glint_arrival_args;
 
-/// Unit vectors against the directions of a group's rays.
+/// Unit vectors opposite to the directions of a group's rays.
 typedef struct glint_eyes_args {
     const double *direction; ///< three rows of sixteen
-    const double *more; ///< added to these; NULL: nothing
+    const double *more; ///< added to `direction`; NULL: nothing
     double *eye[3]; ///< out
 } glint_eyes_args;
 
-/// The camera that some hits are seen by, as one derivative changes it.
+/// The camera that sees the hits, as one derivative changes it.
 typedef struct glint_bend_camera {
     double eye[3], forward[3], right[3], up[3];
-    double turn[3][3]; ///< how fast a way from the eye turns, of a pinhole: rows, by that way
-    double near; ///< one over the distance of its lens' focus; without a lens 0
+    double turn[3][3]; ///< for a pinhole: the rate of rotation of a direction from the eye, as rows of a matrix that is
+        ///< multiplied by it
+    double near; ///< one over the focus distance; 0 without a lens
     bool orthographic;
 } glint_bend_camera;
 
-/// How fast hits on one sphere or plane move that an eye sees; they stay on their rays and their surface.
+/// Computes how fast visible hits on one sphere or plane move. They stay on their rays and on their surface.
 typedef struct glint_bend_args {
     const glint_derivative_points *points;
     const glint_prim *prim; ///< a sphere or a plane
-    const glint_derivative_part *part; ///< how that moves
-    const glint_derivative_view *view; ///< how the eye does
+    const glint_derivative_part *part; ///< how the primitive moves
+    const glint_derivative_view *view; ///< how the eye moves
     const glint_bend_camera *camera;
-    /// A sample's place in the picture, in pixels' halves from the middle, to the right and up; NULL: seen from a point
+    /// The position of a sample in the picture, in half pixels from the centre, right and up; NULL: seen from a
+    /// point.
     const double *place[2];
-    const double *shift[3], *shift_slope[3]; ///< its place on the lens
-    double *slope[3][3]; ///< out: of points, of normals, of eyes; in every lane
+    const double *shift[3], *shift_slope[3]; ///< the position of the sample on the lens
+    double *slope[3][3]; ///< out, in every lane: slopes of points, normals and eye vectors
 } glint_bend_args;
 
-/// Adds how fast what a light leaves on some lanes changes, which show one material.
+/// Adds the derivative of the light that lanes of one material reflect.
 typedef struct glint_slope_args {
     const glint_derivative_light *light;
     const glint_derivative_material *material;
     const glint_derivative_planes *planes; ///< results of programs; NULL: none
     const glint_derivative_points *points;
     const glint_derivative_source *source;
-    unsigned lanes; ///< a bit each
+    unsigned lanes; ///< one bit per lane
     double *sum[3]; ///< in and out: slopes
-    double *whole[3]; ///< in and out: what the light leaves; whole[0] NULL: not wanted
+    double *whole[3]; ///< in and out: the reflected light; whole[0] NULL: not wanted
 } glint_slope_args;
 
 #endif

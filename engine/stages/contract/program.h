@@ -6,22 +6,23 @@
 #include "engine/base/math.h" // operations and inputs are those of glint.h
 #include "engine/stages/contract/hits.h"
 
-#define GLINT_PROGRAM_GROUPS 16 ///< groups at a time
-#define GLINT_PROGRAM_LANES 256 ///< a row: one double a lane, 2 KB
-#define GLINT_CODE_OUTPUTS_MAX 96 ///< of gradients; stored programs have at most GLINT_PROGRAM_OUTPUTS_MAX
-#define GLINT_CODE_INPUTS (2 * GLINT_INPUT_COUNT) ///< each, and from GLINT_INPUT_COUNT on the slope of each
-#define GLINT_NUMBER_LANES 16 ///< how often a number stands in memory: a group
+#define GLINT_PROGRAM_GROUPS 16 ///< maximum groups per call
+#define GLINT_PROGRAM_LANES 256 ///< lanes per row: one double per lane, 2 KB
+#define GLINT_CODE_OUTPUTS_MAX 96 ///< for gradients; stored programs have at most GLINT_PROGRAM_OUTPUTS_MAX
+#define GLINT_CODE_INPUTS (2 * GLINT_INPUT_COUNT) ///< each input, and from GLINT_INPUT_COUNT on the slope of each
+#define GLINT_NUMBER_LANES 16 ///< copies of a number in memory: one per lane of a group
 
-// Where an operand is, and where a result goes.
-#define GLINT_ROW_INPUT 256u ///< + one of GLINT_CODE_INPUTS; below it: the rows of a program's own
+// Where an operand is read, and a result stored.
+#define GLINT_ROW_INPUT 256u ///< + one of GLINT_CODE_INPUTS; below it: the program's own rows
 #define GLINT_ROW_NUMBER 512u ///< + index into the numbers
 
 typedef struct glint_instruction { ///< no padding: its bytes are hashed
     uint16_t op; ///< glint_op
-    uint16_t texture; ///< index into the textures; 0 where the operation has none
-    uint8_t operands, results; ///< how many the operation has
-    uint16_t in[GLINT_OPERANDS_MAX]; ///< beyond the operation's operands 0
-    uint16_t out[GLINT_RESULTS_MAX]; ///< rows of the program's own, also of results that are not read; beyond them 0
+    uint16_t texture; ///< index into the textures; 0 if the operation has none
+    uint8_t operands, results; ///< their number, by the operation
+    uint16_t in[GLINT_OPERANDS_MAX]; ///< unused elements are 0
+    uint16_t out[GLINT_RESULTS_MAX]; ///< the program's own rows, also for results that are not read; unused elements
+        ///< are 0
 } glint_instruction;
 
 /// A picture at one size. Texels are red, green, blue, alpha, linear, row by row from the top.
@@ -31,7 +32,7 @@ typedef struct glint_texture_level {
 } glint_texture_level;
 
 typedef struct glint_texture_table {
-    const glint_texture_level *levels; ///< each half the size of the one before, rounded up; the last is one texel
+    const glint_texture_level *levels; ///< each half the size of the one before, rounded up; the last has one texel
     uint32_t level_count;
     glint_wrap wrap;
     glint_filter filter;
@@ -49,8 +50,8 @@ typedef struct glint_program_code {
 
 #define GLINT_REFLECTANCE_MAX 0x1p100
 
-/// The instruction that makes output k by a choice between two reflectances: number[0] where what it chooses by is 0, else
-/// number[1]. NULL: it is made in another way.
+/// Returns the instruction that computes output k as a choice between two reflectances: number[0] if its condition is
+/// 0, otherwise number[1]. NULL: the output is computed in another way.
 static inline const glint_instruction *glint_find_choice(const glint_program_code *code, uint32_t k, float number[2])
 {
     const glint_instruction *at = code->instructions + code->length;
@@ -72,52 +73,58 @@ static inline const glint_instruction *glint_find_choice(const glint_program_cod
 
 /// Sums of products of a program's outputs with other numbers.
 typedef struct glint_program_sums {
-    const double *by[GLINT_CODE_OUTPUTS_MAX]; ///< what an output is multiplied by, 16 numbers a group; NULL: it is in no sum
-    uint8_t sum_of[GLINT_CODE_OUTPUTS_MAX]; ///< in which sum it is
-    double *sum[3]; ///< in and out, 16 numbers a group: the products are added one after another; of lanes not wanted anything
+    const double *by[GLINT_CODE_OUTPUTS_MAX]; ///< the factor of an output, 16 numbers per group; NULL: the output is in
+        ///< no sum
+    uint8_t sum_of[GLINT_CODE_OUTPUTS_MAX]; ///< the index of its sum
+    double *sum[3]; ///< in and out, 16 numbers per group: the products are added one after another; undefined in lanes
+        ///< that are not wanted
 } glint_program_sums;
 
 typedef struct glint_program_args {
     const glint_program_code *code;
     uint32_t group_count; ///< 1 .. GLINT_PROGRAM_GROUPS
-    const uint16_t *wanted; ///< a bit a lane; elsewhere nothing is stored
-    const double *input[GLINT_CODE_INPUTS]; ///< those that the program reads: 16 numbers a group
-    uint64_t same; ///< a bit an input: it is one number, which stands there GLINT_NUMBER_LANES times
+    const uint16_t *wanted; ///< one bit per lane; nothing is stored elsewhere
+    const double *input[GLINT_CODE_INPUTS]; ///< those that the program reads: 16 numbers per group
+    uint64_t same; ///< one bit per input: all its values are one number, stored GLINT_NUMBER_LANES times
     double *rows; ///< scratch: row_count * GLINT_PROGRAM_LANES
-    const uint32_t *groups; ///< where each group is stored in the arrays below; NULL: 0, 1, 2 ...
-    const glint_program_sums *sums; ///< where a factor is 0 nothing is added, whatever the output is
+    const uint32_t *groups; ///< the position of each group in the arrays below; NULL: 0, 1, 2 ...
+    const glint_program_sums *sums; ///< if a factor is 0, nothing is added, whatever the output is
     uint32_t sums_count;
-    bool sums_alone; ///< no output is stored below
-    double *result[GLINT_PROGRAM_OUTPUTS_MAX]; ///< out: the outputs as they are; NULL: not wanted
+    bool sums_alone; ///< no output is stored in the arrays below
+    double *result[GLINT_PROGRAM_OUTPUTS_MAX]; ///< out: the unchanged outputs; NULL: not wanted
     /// out: the outputs as reflectances, v > 0 ? min(v, 2^100) : 0 in double, then rounded to float; NULL: not wanted
     float *plane[GLINT_PROGRAM_OUTPUTS_MAX];
-    double *total[GLINT_PROGRAM_OUTPUTS_MAX]; ///< in and out: share times what a plane would get is added; NULL: not wanted
-    const float *share; ///< 16 numbers a group, in the order of `wanted`; NULL: 1
-    /// in and out: share times the first three outputs is added, in lanes where all of them are finite; added[0] NULL: not wanted
+    double *total[GLINT_PROGRAM_OUTPUTS_MAX]; ///< in and out: share times the value of the plane is added; NULL: not
+        ///< wanted
+    const float *share; ///< 16 numbers per group, in the order of `wanted`; NULL: 1
+    /// in and out: share times the first three outputs is added, in lanes where all three are finite; added[0] NULL:
+    /// not wanted
     double *added[3];
-    /// out, a bit a wanted lane: an output stored as a plane is NaN, below 0 or above 2^100, or one that is added is not finite;
-    /// NULL: not wanted, where nothing is added
+    /// out, one bit per wanted lane: an output stored as a plane is NaN, below 0 or above 2^100, or an added one is
+    /// not finite; NULL: not wanted, and nothing is added
     uint16_t *odd;
 } glint_program_args;
 
-/// Ways and distances: length = sqrt(length2(d)) and unit = d / length, where d = to - from, or the way back along a camera's ray.
+/// Directions and distances: length = sqrt(length2(d)) and unit = d / length, where d = to - from, or the direction
+/// from a hit back to the camera.
 typedef struct glint_unit_args {
     uint32_t group_count;
-    const glint_camera_args *camera; ///< perspective, of doubles: d = -(across + down) of `groups`; NULL: of to and from
+    const glint_camera_args *camera; ///< perspective, in double: d = -(across + down) of `groups`; NULL: from `to` and
+        ///< `from`
     const uint32_t *groups; ///< as in the camera's arguments
-    const double *to[3]; ///< 16 numbers a group
-    const double *place; ///< x, y, z that are `to` of every lane; NULL: not one place
-    const double *from[3]; ///< 16 numbers a group; NULL: d = to
-    double *unit[3]; ///< out; may be in the place of `to` or `from`
+    const double *to[3]; ///< 16 numbers per group
+    const double *place; ///< x, y, z: `to` of every lane; NULL: `to` is an array
+    const double *from[3]; ///< 16 numbers per group; NULL: d = to
+    double *unit[3]; ///< out; may be the memory of `to` or `from`
     double *length; ///< out; NULL: not wanted
 } glint_unit_args;
 
-/// Reflectances that are one of two numbers.
+/// Reflectances that are each one of two numbers.
 typedef struct glint_choose_args {
     uint32_t group_count;
-    const uint32_t *groups; ///< where each is in `truths` and `plane`
-    const uint16_t *wanted; ///< a bit a lane; elsewhere nothing is stored
-    const uint16_t *truths; ///< a bit a lane: which of the numbers
+    const uint32_t *groups; ///< the position of each group in `truths` and `plane`
+    const uint16_t *wanted; ///< one bit per lane; nothing is stored elsewhere
+    const uint16_t *truths; ///< one bit per lane: which of the two numbers
     float number[2];
     float *plane; ///< out
 } glint_choose_args;

@@ -1,4 +1,5 @@
-/// The contract of the stages: what all of them share, and the tables that they look up. Begin with stages.h.
+/// The contract of the stages: definitions that all of them share, and the tables that they read. Begin with
+/// stages.h.
 #ifndef GLINT_CONTRACT_TABLES_H
 #define GLINT_CONTRACT_TABLES_H
 
@@ -17,11 +18,12 @@
 #define GLINT_TILE_GROUPS (GLINT_TILE_WIDTH * GLINT_TILE_HEIGHT / GLINT_GROUP)
 #define GLINT_TILE_SAMPLES (GLINT_TILE_WIDTH * GLINT_TILE_HEIGHT)
 #define GLINT_MISS 0xffffffffu ///< in `prim`: nothing hit
-#define GLINT_FILTER_SLACK (16 * 0x1p-24f) ///< what float rounding may add to a distance, of the lengths it came from
-#define GLINT_GRID_OTHERS 12 ///< what a light's grid leaves to be tested one by one, at most
-#define GLINT_LIGHT_CHUNK 16 ///< lights, or samples of one light, that one call of a stage takes at most
+#define GLINT_FILTER_SLACK (16 * 0x1p-24f) ///< bound of the float rounding error of a distance, relative to the lengths
+    ///< that it was computed from
+#define GLINT_GRID_OTHERS 12 ///< maximum number of primitives that a light's grid leaves to be tested one by one
+#define GLINT_LIGHT_CHUNK 16 ///< maximum number of lights, or of samples of one light, per call of a stage
 
-// ---- Tables: what the kernels look up, made by plan.c ------------------------------------------------------------
+// ---- Tables that the kernels read, made by plan.c ----------------------------------------------------------------
 
 typedef enum glint_prim_kind {
     GLINT_PRIM_SPHERE,
@@ -32,40 +34,44 @@ typedef enum glint_prim_kind {
     GLINT_PRIM_HULL = GLINT_KIND(GLINT_WITH_COMBINED, 5) ///< a closed mesh, as a part of a combined solid
 } glint_prim_kind;
 
-/// One surface, as far as no ray is concerned: a line of the cache, of which the filter reads the first half.
+/// One surface, without data of any ray. It fills one cache line; the filter only reads the first half.
 typedef struct glint_prim {
     _Alignas(64) uint16_t kind;
-    uint8_t two_sided; ///< 0: seen from behind it gets ambient light only
-    uint8_t turned; ///< 1: a part that is taken away: the outside of it is the inside of the whole
-    uint32_t id; ///< its number in order of definition, from 0
+    uint8_t two_sided; ///< 0: seen from behind, it only gets ambient light
+    uint8_t turned; ///< 1: a subtracted part: its outside is the inside of the whole
+    uint32_t id; ///< number in order of definition, from 0
     uint32_t material; ///< index in the material table
-    float filter_center[3]; ///< of a sphere around it: (center - reference) * scale, in the index's frame
-    float filter_bound; ///< >= its radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf; triangle:
-                        ///< of its box, where the box has on each side 13 GLINT_POINT_SLACK_DOUBLE extent scale besides
-    uint32_t medium; ///< index in the material table: the medium entered through it; for a part: of its whole
+    float filter_center[3]; ///< of a bounding sphere: (center - reference) * scale, in the index's frame
+    float filter_bound; ///< >= the sphere's radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units;
+                        ///< plane: +inf; triangle: the sphere encloses its bounding box, enlarged on each side by 13
+                        ///< GLINT_POINT_SLACK_DOUBLE extent scale
+    uint32_t medium; ///< index in the material table: the medium that a ray enters through it; for a part: the medium
+        ///< of the whole
     union {
-        double center[3]; ///< sphere, solid: centre; plane: a point of it
+        double center[3]; ///< sphere, solid: centre; plane: a point on it
         struct {
-            double (*corner)[3]; ///< triangle: three; combined, hull: the middle of its box, the box's lower and its upper corner, -inf
-                ///< and inf where it has no end
-            uint32_t shading_points; ///< triangle: index in sites, GLINT_MISS: its light is computed for each sample
+            double (*corner)[3]; ///< triangle: its three corners; combined, hull: centre, lower and upper corner of the
+                ///< bounding box, -inf and inf where it is unbounded
+            uint32_t shading_points; ///< triangle: index in shading_points; GLINT_MISS: its light is computed for each
+                ///< sample
         };
     };
     union {
         double radius; ///< sphere, world units
-        double *normal; ///< plane: unit; behind it, in normal[3], 2 (|normal| . |center|), above 0; 0: it is along two axes, and
-            ///< heights are exact
+        double *normal; ///< plane: unit; followed, in normal[3], by 2 (|normal| . |center|), above 0; 0: the plane is
+            ///< along two axes, and heights are exact
         struct {
-            uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it has its own; solid: index in solids;
-                ///< combined: index in combined; hull: index in hulls
-            uint32_t face; ///< of a combined solid's parts: 1 and 2: a torus, by the first and by the second stretch that a ray is inside
-                ///< of it, two parts that follow each other; 1 .. GLINT_HULL_PARTS: a closed mesh, likewise; 0: any other solid.
-                ///< Triangle: 1 + index in faces, of the plane it shares with others; 0: it has its own
+            uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: flat, with the face's normal; solid:
+                ///< index in solids; combined: index in combined; hull: index in hulls
+            uint32_t face; ///< parts of a combined solid: 1 and 2: a torus, by the first and the second interval of a
+                ///< ray inside of it, as two consecutive parts; 1 .. GLINT_HULL_PARTS: a closed mesh, likewise; 0: any
+                ///< other solid. Triangle: 1 + index in faces, of the plane that it shares with others; 0: it has its
+                ///< own plane
         };
     };
 } glint_prim;
 
-/// A sphere's unit is a power of two: its radius times this is in [1, 2). radius: a normal number.
+/// Returns the scale of a sphere's unit, a power of two: the radius times this is in [1, 2). radius: a normal number.
 static inline double glint_sphere_scale(const glint_prim *prim)
 {
     uint64_t bits;
@@ -77,14 +83,14 @@ static inline double glint_sphere_scale(const glint_prim *prim)
     return scale;
 }
 
-/// (radius scale)^2, rounded.
+/// Returns (radius scale)^2, rounded.
 static inline double glint_sphere_r2(const glint_prim *prim)
 {
     const double r = prim->radius * glint_sphere_scale(prim);
     return r * r;
 }
 
-/// The rounding error of the number above.
+/// Returns the rounding error of glint_sphere_r2.
 static inline double glint_sphere_r2_low(const glint_prim *prim)
 {
     const double r = prim->radius * glint_sphere_scale(prim);
@@ -92,22 +98,22 @@ static inline double glint_sphere_r2_low(const glint_prim *prim)
     return __builtin_fma(r, r, -(r * r));
 #else
     const double wide = (0x1p27 + 1) * r, upper = wide - (wide - r);
-    const double lower = r - upper; // Veltkamp's halves, of which products are exact, as Dekker has it
+    const double lower = r - upper; // Veltkamp's split: products of the halves are exact, as in Dekker's product
     return ((upper * upper - r * r) + 2 * (upper * lower)) + lower * lower;
 #endif
 }
 
 #define GLINT_NODE_WIDTH 16
-#define GLINT_NODE_PRIM 0x80000000u ///< in `child`: the rest is the index of a primitive, not of a node
-#define GLINT_BVH_DEPTH 32 ///< nodes on the longest path from the root
+#define GLINT_NODE_PRIM 0x80000000u ///< in `child`: the other bits are the index of a primitive instead of a node
+#define GLINT_BVH_DEPTH 32 ///< maximum number of nodes on a path from the root
 
-/// Sixteen boxes of the spatial index, a lane each. An empty slot has lower = +inf, upper = -inf.
+/// Sixteen boxes of the spatial index, one per lane. An empty slot has lower = +inf, upper = -inf.
 typedef struct glint_node {
     float lower[3][GLINT_NODE_WIDTH], upper[3][GLINT_NODE_WIDTH];
     uint32_t child[GLINT_NODE_WIDTH];
 } glint_node;
 
-/// Normals at the corners of a triangle that is shaded smoothly, unit or as a map that keeps no angles leaves them.
+/// Normals at the corners of a smoothly shaded triangle: unit, or not, after a map that does not preserve angles.
 typedef struct glint_corner_normals {
     double normal[3][3];
 } glint_corner_normals;
@@ -125,84 +131,89 @@ typedef enum glint_form {
     GLINT_FORM_CYLINDER,
     GLINT_FORM_CONE,
     GLINT_FORM_DISK,
-    GLINT_FORM_TUBE, ///< only the side of a cylinder or cone, which has no inside
+    GLINT_FORM_TUBE, ///< only the side of a cylinder or cone, without an inside
     GLINT_FORM_FUNNEL,
     GLINT_FORM_TORUS
 } glint_form;
 
-/// The plane of a flat face. Whatever was described in one plane, along two axes of one map or by one place and normal, has
-/// the same numbers here, except for the sign of the normal: all of them are hit at the same t.
+/// The plane of a flat face. All faces described in one plane, along two axes of one map or with equal place and
+/// normal, have the same numbers here, except for the sign of the normal. So all of them are hit at the same t.
 typedef struct glint_face {
     double normal[3]; ///< unit
-    double at[3]; ///< a place of the plane
-    double places; ///< |normal| . (bound of |x| on the surface + |at|): what heights over it are made of
-    uint32_t axis; ///< of the world, which the normal is along; 3: none
+    double at[3]; ///< a point of the plane
+    double places; ///< |normal| . (bound of |x| on the surface + |at|): the magnitude of the terms of a height
+    uint32_t axis; ///< the axis of the world that the normal is along; 3: none
 } glint_face;
 
 /// The image of a unit shape under center + forward k.
 typedef struct glint_solid {
     double inverse[3][3], forward[3][3]; ///< rows
-    const glint_face *faces; ///< box: of low x, high x, low y, high y, low z, high z; cylinder, cone, disk and the open forms:
-        ///< of low z, high z (of a disk they are one); ball, torus: none. Normals point from low to high
+    const glint_face *faces; ///< box: of low x, high x, low y, high y, low z, high z; cylinder, cone, disk and the open
+        ///< forms: of low z, high z (the same for a disk); ball, torus: NULL. Normals point from low to high
     double places; ///< sphere, cylinder, cone: bound of the terms of x^2 + y^2 - 1 (or similar) for points on the side;
         ///< torus: bound of the terms of the distance from the circle in the middle of its tube
     double tube; ///< torus: radius of its tube where that circle's is 1, above 0 and below 1
-    float lower[3], upper[3]; ///< a box around it, in the index's frame and rounded outwards; of a part: not known
-    float axis[3], thick; ///< cylinder, cone and open forms that are longer than wide: the line through the centre along this, which is
-                          ///< unit but for rounding, is nowhere further off than `thick`, in the index's units; else that is infinite
+    float lower[3], upper[3]; ///< a bounding box in the index's frame, rounded outwards; undefined for a part
+    float axis[3], thick; ///< cylinder, cone and open forms that are longer than wide: no point is further than
+                          ///< `thick`, in the index's units, from the line through the centre along `axis`, which is
+                          ///< unit within rounding; otherwise `thick` is infinite
     uint32_t form;
 } glint_solid;
 
-#define GLINT_PARTS_MAX 64 ///< of a combined solid
-#define GLINT_HULL_PARTS 4 ///< of these a closed mesh is as many: the stretches of a ray within it that are held at a time
+#define GLINT_PARTS_MAX 64 ///< maximum number of parts of a combined solid
+#define GLINT_HULL_PARTS 4 ///< number of parts for one closed mesh: the intervals of a ray inside of it that are stored
+    ///< at a time
 
-/// Operations in the program of a combined solid, besides numbers of parts.
+/// Operations in the program of a combined solid; smaller numbers are parts.
 enum {
-    GLINT_COMBINE_UNION = GLINT_PARTS_MAX, ///< of the two sets before it, like the next two
+    GLINT_COMBINE_UNION = GLINT_PARTS_MAX, ///< of the two sets before it, like the next two operations
     GLINT_COMBINE_INTERSECTION,
-    GLINT_COMBINE_DIFFERENCE, ///< the second is taken away from the first
+    GLINT_COMBINE_DIFFERENCE, ///< the first set minus the second
     GLINT_COMBINE_NOTHING ///< an empty set
 };
 
-/// Solids and planes, the half-space that a plane's normal leaves, made one by a program in postfix. No ray meets its parts but by
-/// way of it; hits are theirs: they have numbers in prims, which are beyond those of what rays meet.
+/// Solids and planes (as the half-space behind the plane's normal) combined by a program in postfix. Rays only hit
+/// the parts through the combined solid. Hits are stored as hits of a part: its index in prims, which is beyond the
+/// primitives that rays hit directly.
 typedef struct glint_combined {
     uint32_t first; ///< prims[prim_count + first] is part 0
     uint32_t count; ///< of parts
     uint32_t length; ///< of the program
-    float lower[3], upper[3]; ///< a box around it, as of a solid
-    // sets of parts, a bit each:
-    uint64_t all; ///< every part, where the program has no empty set; else 0
-    uint64_t needs; ///< those without any of which the whole is nothing
-    uint64_t alone; ///< those that are the whole where all others are nothing
+    float lower[3], upper[3]; ///< a bounding box, as for a solid
+    // sets of parts, one bit each:
+    uint64_t all; ///< every part, if the program has no empty set; otherwise 0
+    uint64_t needs; ///< parts without any of which the whole is empty
+    uint64_t alone; ///< parts that are the whole if all other parts are empty
     uint8_t program[2 * GLINT_PARTS_MAX];
 } glint_combined;
 
-/// A closed mesh that is a part of a combined solid. Its triangles are prims[prim_count + first] and on, in the order of definition; they
-/// run counter-clockwise as seen from outside of the whole. Hits are theirs.
+/// A closed mesh that is a part of a combined solid. Its triangles are prims[prim_count + first] and the following,
+/// in order of definition. They run counter-clockwise as seen from outside of the whole. Hits are stored as hits of a
+/// triangle.
 typedef struct glint_hull {
     uint32_t first, count;
-    const glint_node *nodes; ///< a tree over them, in the index's frame; a slot's GLINT_NODE_PRIM child is a triangle's number from 0
+    const glint_node *nodes; ///< a tree over them, in the index's frame; a GLINT_NODE_PRIM child is the number of a
+        ///< triangle, from 0
 } glint_hull;
 
-/// How many pairs of faces there are.
+/// Returns the number of pairs of faces.
 static inline int glint_slab_count(uint32_t form)
 {
     return form == GLINT_FORM_BALL || form == GLINT_FORM_TORUS ? 0 : form == GLINT_FORM_BOX ? 3 : 1;
 }
 
-/// The axis that a vector lies along; 3: none.
+/// Returns the axis that a vector is along; 3: none.
 static inline int glint_axis_along(const double v[3])
 {
     const int x = v[0] != 0, y = v[1] != 0, z = v[2] != 0;
     return x + y + z != 1 ? 3 : x ? 0 : y ? 1 : 2;
 }
 
-/// Relative to the terms of a height: the bound of its rounding error. Points nearer to a face are on it.
+/// Bound of the rounding error of a height, relative to its terms. Points closer to a face count as on it.
 #define GLINT_ON_FACE_DOUBLE 0x1p-50
 #define GLINT_ON_FACE_FLOAT 0x1p-21
 
-/// The height of a place over a face; 0 on it as far as rounding lets us know.
+/// Returns the height of a point over a face; 0 if it is on the face within rounding.
 static inline double glint_face_height(const glint_face *face, const double place[3])
 {
     double q[3];
@@ -215,7 +226,7 @@ static inline double glint_face_height(const glint_face *face, const double plac
     return h <= on && -on <= h ? 0 : h;
 }
 
-/// Whether a place is inside, not on, the solid around `center`; no place is inside a disk, tube or funnel.
+/// Returns whether a point is inside of, not on, the solid around `center`; always false for a disk, tube or funnel.
 static inline bool glint_solid_holds(const glint_solid *solid, const double center[3], const double place[3])
 {
     double k[3];
@@ -243,25 +254,27 @@ static inline bool glint_solid_holds(const glint_solid *solid, const double cent
     }
 }
 
-/// The surfaces that rays hit (the first of bit-equal ones), and the index over the bounded ones. Its frame is (x - reference) * scale.
+/// The surfaces that rays hit (only the first of bit-equal ones), and the index over the bounded ones. The index's
+/// frame is (x - reference) * scale.
 typedef struct glint_geometry_table {
-    const glint_prim *prims; ///< triangles first, and those and the others in the order of the index, so that neighbours in space are
-        ///< neighbours in memory; after them the parts of combined solids and the triangles of those that are meshes, which are not counted
+    const glint_prim *prims; ///< triangles first, then the others, each in the order of the index, so that neighbours
+        ///< in space are neighbours in memory. After them, not counted: the parts of combined solids, and the triangles
+        ///< of parts that are meshes
     uint32_t prim_count, triangles; ///< triangles: of prims[0 .. triangles)
     const double (*corners)[3][3]; ///< of these
-    const glint_node *nodes; ///< nodes[0] is the root; NULL: nothing has an end
-    const uint32_t *unbounded; ///< the primitives that are not in the tree: planes
+    const glint_node *nodes; ///< nodes[0] is the root; NULL: no primitive is bounded
+    const uint32_t *unbounded; ///< the primitives that are not in the tree: planes, and combined solids without bounds
     uint32_t unbounded_count;
     double reference[3], scale; ///< scale is a power of two
     double extent; ///< bound of every coordinate and radius, world units
-    bool tori; ///< there are some
+    bool tori; ///< there are tori
     const glint_corner_normals *corner_normals;
-    const glint_solid *solids; ///< NULL: there are none, nor combined ones
+    const glint_solid *solids; ///< NULL: there are neither solids nor combined ones
     const glint_combined *combined;
-    const glint_hull *hulls; ///< NULL: there are none
+    const glint_hull *hulls; ///< NULL: none
     const glint_face *faces; ///< of triangles
     const glint_shading_points *shading_points;
-    uint32_t shading_point_count; ///< 0: all light is computed for each sample
+    uint32_t shading_point_count; ///< 0: all light is computed per sample
 } glint_geometry_table;
 
 /// The input of a material's specular term from the stages before shade.
@@ -269,7 +282,7 @@ typedef enum glint_highlight {
     GLINT_HIGHLIGHT_NONE,
     GLINT_HIGHLIGHT_PHONG,
     GLINT_HIGHLIGHT_BLINN,
-    GLINT_HIGHLIGHT_FACETS ///< of microfacets: the stages `view` and `facet`
+    GLINT_HIGHLIGHT_FACETS ///< with microfacets: from the stages `view` and `facet`
 } glint_highlight;
 
 /// The kind of highlight that shade computes from it.
@@ -280,27 +293,29 @@ typedef enum glint_lobe {
     GLINT_LOBE_BECKMANN
 } glint_lobe;
 
-/// The fields of a material that differ between samples, one bit each: they are read from planes, see glint_shade_planes.
+/// The fields of a material that differ between samples, one bit each. They are read from planes, see
+/// glint_shade_planes.
 enum {
     GLINT_PLANE_DIFFUSE = 1,
     GLINT_PLANE_AMBIENT = 2,
-    GLINT_PLANE_AMBIENT_IS_DIFFUSE = 4, ///< the plane of the diffuse reflectance is the ambient one's, too
+    GLINT_PLANE_AMBIENT_IS_DIFFUSE = 4, ///< the plane of the diffuse reflectance is also that of the ambient one
     GLINT_PLANE_SPECULAR = 8,
     GLINT_PLANE_SHININESS = 16,
     GLINT_PLANE_ALPHA = 32,
-    GLINT_PLANE_SHADED = 64 ///< what all lights make of it together is in planes, or in the sums already
+    GLINT_PLANE_SHADED = 64 ///< the light of all lights together is in planes, or in the sums already
 };
 
 typedef struct glint_shade_material {
     double diffuse[3], specular[3]; ///< for fields in planes: the factor of the plane
     double ambient[3]; ///< ka * Ia
     float shininess;
-    float least; ///< of (r.v)^2 or (n.h)^2: below it the highlight is 0 for certain; 0: wherever that is not known
-    uint32_t highlight; ///< glint_highlight: what its specular term is of
+    float least; ///< of (r.v)^2 or (n.h)^2: below it the highlight is certainly 0; 0: unknown
+    uint32_t highlight; ///< glint_highlight: the input of its specular term
     uint32_t lobe; ///< glint_lobe
-    float alpha; ///< width of the distribution of microfacets, 1e-18 .. 1
-    double grazing[3]; ///< of microfacets: `specular` is ks f0, this is ks (1 - f0); with a plane of ks, without the ks
-    uint32_t planes; ///< GLINT_PLANE_...; 0: all is here
+    float alpha; ///< width of the microfacet distribution, 1e-18 .. 1
+    double grazing[3]; ///< microfacets: `specular` is ks f0, this is ks (1 - f0); with a plane of ks, both are without
+        ///< the factor ks
+    uint32_t planes; ///< GLINT_PLANE_...; 0: all fields are here
 } glint_shade_material;
 
 #endif

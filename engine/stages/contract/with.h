@@ -1,6 +1,7 @@
-/// The parts of the kernels that `make bench-effects` leaves out, one a build (-DGLINT_WITH_MESH=0), to see that they
-/// cost nothing where no scene calls for them. Any other build has them all. A part is left out where its kernel goes into
-/// the table (simd/table.c), where its kind is told apart from others, or where its name below is tested.
+/// Compile-time switches for parts of the kernels. `make bench-effects` leaves out one part per build
+/// (-DGLINT_WITH_MESH=0) to check that the part costs nothing in scenes that do not need it. All other builds have
+/// all parts. A part is left out where its kernel enters the table (simd/table.c), where its kind is distinguished
+/// from others, or where its name below is tested.
 #ifndef GLINT_WITH_H
 #define GLINT_WITH_H
 
@@ -56,7 +57,8 @@
 #define GLINT_WITH_SAMPLES 1
 #endif
 
-/// The number of a kind: one that no 16-bit field holds where the kind is left out, so that no test for it is compiled.
+/// Returns the number of a kind. If the kind is left out, the number does not fit into a 16-bit field, so that no
+/// test for it is compiled.
 #define GLINT_KIND(with, number) ((with) ? (number) : 0x10000 + (number))
 
 #endif
