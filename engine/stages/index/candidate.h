@@ -1,5 +1,5 @@
-// candidate: a surface that some rays of a tile may hit, and what it is to all of them: their rays start at one eye, so
-// that filters are linear over the picture. Contract: stages.h, cast.
+// candidate: a surface that some rays of a tile may hit, with its constants for all of them. The rays start at one
+// eye, so that filters are linear over the picture. Contract: stages.h, cast.
 #ifndef GLINT_INDEX_CANDIDATE_H
 #define GLINT_INDEX_CANDIDATE_H
 
@@ -13,45 +13,48 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define GLINT_FIRST_CANDIDATES 24 ///< a node's worth and some planes
-#define GLINT_PIXEL_CELL 2 ///< pixels along a side of a cell, of pixels that are gathered
+#define GLINT_FIRST_CANDIDATES 24 ///< one node's primitives and some planes
+#define GLINT_PIXEL_CELL 2 ///< pixels along the side of a cell, for gathered pixels
 
 /// The lens that a tile's rays start on.
 typedef struct R(tile_lens) {
     lens_on_screen seen;
-    _Alignas(64) float across[2][GLINT_GROUP]; ///< where on it each lane's rays start, in units of place where k is 1
+    _Alignas(64) float across[2][GLINT_GROUP]; ///< where each lane's rays start on the lens, in screen units at k = 1
 } R(tile_lens);
 
 #define PIXEL_ROWS (GLINT_TILE_HEIGHT / GLINT_PIXEL_CELL)
 
-/// Groups whose pixels lie anywhere in a tile.
+/// Groups whose pixels can lie anywhere in a tile.
 typedef struct R(pixel_groups) {
-    _Alignas(64) float s[GLINT_TILE_GROUPS][GLINT_GROUP], t[GLINT_TILE_GROUPS][GLINT_GROUP]; ///< places of the rays
-    uint64_t in_cell[PIXEL_ROWS][SCREEN_ACROSS]; ///< groups with a ray in it, a bit each
-    _Alignas(64) uint32_t cell[GLINT_TILE_GROUPS][GLINT_GROUP]; ///< of each ray: SCREEN_ACROSS times the row, and the column
+    _Alignas(64) float s[GLINT_TILE_GROUPS][GLINT_GROUP], t[GLINT_TILE_GROUPS][GLINT_GROUP]; ///< screen positions of
+        ///< the rays
+    uint64_t in_cell[PIXEL_ROWS][SCREEN_ACROSS]; ///< groups with a ray in the cell, one bit each
+    _Alignas(64) uint32_t cell[GLINT_TILE_GROUPS][GLINT_GROUP]; ///< of each ray: SCREEN_ACROSS times its row, plus its
+        ///< column
     uint16_t turns[GLINT_TILE_GROUPS]; ///< lanes whose cell differs from the previous lane's, including the first
-    float far[GLINT_TILE_GROUPS]; ///< as of a tile's groups
+    float far[GLINT_TILE_GROUPS]; ///< as for the groups of a tile
 } R(pixel_groups);
 
-/// The tile's pixels in the form for the filter, and the hits so far.
+/// The tile's pixels as the filter needs them, and the hits so far.
 typedef struct R(tile_cast) {
     const glint_cast_args *args;
     screen_view view; ///< its cells are the groups
     int across, down;
     bool scaled; ///< the arrays below are filled
-    bool parallel; ///< the rays do not start at one eye but beside each other, or on a lens; they are in arrays
-    const R(tile_lens) * lens; ///< NULL: they do not start on one
-    bool deep; ///< more than the first candidates are in sight: worth knowing what hides what
+    bool parallel; ///< the rays do not start at one eye but are parallel, or start on a lens; they are in arrays
+    const R(tile_lens) * lens; ///< NULL: no lens
+    bool deep; ///< more candidates are in sight than the first ones, so that it pays to know which hides which
     R(pixel_groups) * pixels; ///< NULL: the groups' pixels lie in rows, and cells are groups
     float rr, uu; ///< squares of the lengths of right and up
-    float longest; ///< no direction is longer
-    float spread; ///< by how much the lengths within a group differ from that in its middle, at most
+    float longest; ///< maximum length of a direction
+    float spread; ///< maximum difference of the lengths of directions within a group from the length in its middle
     _Alignas(64) float s[GLINT_TILE_WIDTH / 4][GLINT_GROUP], t[GLINT_TILE_HEIGHT / 4][GLINT_GROUP];
     _Alignas(64) float ss[GLINT_TILE_WIDTH / 4][GLINT_GROUP], tt[GLINT_TILE_HEIGHT / 4][GLINT_GROUP];
     ///< |direction|^2 = ss + tt
-    // deep: depth of the hits, in the index's units and rounded up; infinite where there is none so far
+    // deep: depth of the hits, in the index's units and rounded up; infinite without a hit
     _Alignas(64) float depth[GLINT_TILE_GROUPS][GLINT_GROUP];
-    _Alignas(64) float far[GLINT_TILE_HEIGHT / GLINT_PIXEL_CELL][SCREEN_ACROSS]; ///< of each group, or cell, the farthest
+    _Alignas(64) float far[GLINT_TILE_HEIGHT / GLINT_PIXEL_CELL][SCREEN_ACROSS]; ///< maximum depth in each group, or
+        ///< cell
 } R(tile_cast);
 
 /// A primitive that some of the tile's rays may hit, with its constants for all of them.
@@ -61,23 +64,24 @@ typedef struct R(candidate) {
     real f[3], c; ///< see R(offset) and R(offset_constant)
     real scale, r2; ///< of a sphere
     float base[3], along_s[3],
-        along_t[3]; ///< the filter: linear in s and t are f x d of a sphere, e of a triangle, how
-    ///< fast a ray nears a plane
-    float limit; ///< sphere: square of how long f x d may be; triangle: how far below 0 e may be
+        along_t[3]; ///< the filter, linear in s and t: f x d for a sphere, e for a triangle, approach rate of a ray for
+    ///< a plane
+    float limit; ///< sphere: square of the maximum length of f x d; triangle: how far below 0 e may be
     union {
-        real corner[3][3]; ///< of a triangle, from the eye
+        real corner[3][3]; ///< of a triangle, relative to the eye
         real height[6]; ///< of a solid, see R(solid_start)
     };
-    // what cover.h knows of it
-    float outer, inner; ///< round: how long f x d may be; is where the ray hits for certain. < 0: nothing is certain
+    // data for cover.h
+    float outer, inner; ///< round: maximum length of f x d; length up to which rays certainly hit. < 0: nothing is
+        ///< certain
     float turn[2]; ///< round: lengths of along_s and along_t
-    float around; ///< round: how long what f x d changes by is, from the middle of a group to its corner
-    float ahead[3], sway; ///< sphere: of b; how much that changes
-    float power; ///< t of a hit is this divided by ... > 0; 0: nothing is known of it
-    bool distant; ///< sphere: where it is hit, the discriminant is that of afar
+    float around; ///< round: maximum length of the change of f x d from the middle of a group to its corner
+    float ahead[3], sway; ///< sphere: of b; how much b changes within a group
+    float power; ///< t of a hit is this divided by ... > 0; 0: unknown
+    bool distant; ///< sphere: where it is hit, the discriminant is the one for spheres far away
 } R(candidate);
 
-/// The tile's rays.
+/// Aims the screen along the tile's rays.
 static void R(aim_screen)(const glint_camera_args *camera, const glint_geometry_table *geometry, screen_view *view)
 {
     const uint32_t rows = (camera->group_count + camera->groups_across - 1) / camera->groups_across;
@@ -106,14 +110,14 @@ static void R(aim_screen)(const glint_camera_args *camera, const glint_geometry_
     view->inverse = 1;
     view->slack = view->corner_slack = R(walk_slack)(geometry);
     view->drift = 0;
-    view->margin = (float)(0.01 + 1e-5 * (wide[0] + wide[1])); // of half a pixel; far above the rounding
+    view->margin = (float)(0.01 + 1e-5 * (wide[0] + wide[1])); // half pixels; far above the rounding error
     view->far = HUGE_VALF;
     view->stretch = (float)(1.00001 * (1 + rr * wide[0] * wide[0] + uu * wide[1] * wide[1]));
     finish_screen(view);
 }
 
-/// Which way the corner rays run decides whether a ray between them, from the eye or the lens around it, can meet a plane; nothing
-/// is said of what else has no end.
+/// Returns whether a ray from the eye, or from the lens around it, can hit a plane, by the directions of the corner
+/// rays. Always true for other unbounded primitives.
 static inline bool R(plane_ahead)(const glint_camera_args *camera, const screen_view *view, const glint_prim *prim)
 {
     const double aside = camera->lens ? camera->lens->radius : 0, bend = aside > 0 ? aside * camera->lens->per_focus : 0;
@@ -164,7 +168,7 @@ static void R(scale_tile)(R(tile_cast) * tile)
     tile->scaled = true;
 }
 
-/// f, radius: of the sphere, or of one around the solid, in any unit.
+/// Makes the filter of a sphere. f, radius: of the sphere, or of a solid's bounding sphere, in any unit.
 static inline void R(make_filter)(const glint_camera_args *camera, const double f[3], double radius,
                                   R(candidate) * candidate)
 {
@@ -182,8 +186,8 @@ static inline void R(make_filter)(const glint_camera_args *camera, const double 
     candidate->limit = (float)(limit * limit * (1 + 1e-6));
 }
 
-/// A ray meets the triangle where it passes all edges on the side of `volume`, the corners seen from the eye; each is
-/// linear in s and t.
+/// Makes the filter of a triangle. A ray hits it if it passes all edges on the side of `volume`, with the corners
+/// relative to the eye. The edge functions are linear in s and t.
 static void R(make_triangle_filter)(const R(tile_cast) * tile, R(candidate) * candidate)
 {
     const glint_camera_args *camera = tile->args->camera;
@@ -216,7 +220,7 @@ static void R(make_triangle_filter)(const R(tile_cast) * tile, R(candidate) * ca
     candidate->limit = edge_on ? HUGE_VALF : (float)limit + FLT_MIN;
 }
 
-/// Tests the sphere around it. If float decides, nothing is rejected.
+/// Makes the filter of a solid's bounding sphere. If float decides, nothing is rejected.
 static inline void R(make_solid_filter)(const glint_cast_args *args, R(candidate) * candidate)
 {
     const glint_geometry_table *geometry = args->geometry;
@@ -229,7 +233,7 @@ static inline void R(make_solid_filter)(const glint_cast_args *args, R(candidate
         candidate->limit = HUGE_VALF;
 }
 
-/// A ray meets the plane where it comes nearer to it.
+/// Makes the filter of a plane: a ray hits it if it approaches it.
 static inline void R(make_plane_filter)(const R(tile_cast) * tile, R(candidate) * candidate)
 {
     const glint_camera_args *camera = tile->args->camera;
@@ -242,7 +246,7 @@ static inline void R(make_plane_filter)(const R(tile_cast) * tile, R(candidate) 
     candidate->limit = 1e-5f * tile->longest;
 }
 
-/// The data for the decision.
+/// Computes the data for the decision.
 static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candidate) * candidate)
 {
     const glint_prim *prim = candidate->prim = &args->geometry->prims[id];
@@ -272,7 +276,7 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
     candidate->c = R(first_lane)(R(offset_constant)(f, prim));
 }
 
-/// That, and the filter.
+/// Computes the data for decision and filter.
 static void R(make_candidate)(const R(tile_cast) * tile, uint32_t id, R(candidate) * candidate)
 {
     const glint_cast_args *args = tile->args;
@@ -290,7 +294,7 @@ static void R(make_candidate)(const R(tile_cast) * tile, uint32_t id, R(candidat
     }
 }
 
-/// Lanes that pass near the candidate, at places s and t; length2: |direction|^2.
+/// Returns the lanes that pass near the candidate, at screen positions s and t; length2: |direction|^2.
 INNER unsigned R(near_places)(const R(candidate) * candidate, vf s, vf t, vf length2)
 {
     vf v[3];
@@ -301,7 +305,7 @@ INNER unsigned R(near_places)(const R(candidate) * candidate, vf s, vf t, vf len
     return ~fm_bits(f_lt(f_set(candidate->limit) * length2, DOT(v, v))) & ((1u << VF) - 1);
 }
 
-/// Lanes of group (x, y) that pass near the candidate.
+/// Returns the lanes of group (x, y) that pass near the candidate.
 INNER unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y)
 {
     unsigned near = 0;
@@ -312,7 +316,7 @@ INNER unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * ca
     return near;
 }
 
-/// f: the candidate's, in every lane.
+/// Returns the lanes that hit the candidate. f: the candidate's, in every lane.
 INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * candidate, const vr f[3], const vr d[3],
                            vr *t)
 {
@@ -361,7 +365,7 @@ INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * cand
     return any;
 }
 
-/// Notes how deep the hits of a group are. Returns the farthest.
+/// Updates the maximum depth of a group's hits. Returns it.
 static inline float R(depth_of_group)(R(tile_cast) * tile, int g)
 {
     const real scale = (real)tile->args->geometry->scale;
@@ -374,13 +378,13 @@ static inline float R(depth_of_group)(R(tile_cast) * tile, int g)
     return group_highest(tile->depth[g]);
 }
 
-/// The same of group (x, y).
+/// Does the same for group (x, y).
 static inline void R(note_depth)(R(tile_cast) * tile, int x, int y)
 {
     tile->far[y][x] = R(depth_of_group)(tile, y * tile->across + x);
 }
 
-/// The same where the groups' pixels lie anywhere, whose farthest is known.
+/// Does the same for the cells of a group with pixels at any position; far: the group's maximum depth.
 static void R(note_cells)(R(tile_cast) * tile, int g, float far)
 {
     R(pixel_groups) *pixels = tile->pixels;
@@ -408,7 +412,7 @@ static void R(cast_candidates)(R(tile_cast) * tile, const R(candidate) * candida
             }
 }
 
-/// The tile's rays, as make_candidate and make_cover see them.
+/// Prepares the tile's rays for make_candidate and make_cover.
 static void R(aim_tile)(const glint_cast_args *args, R(tile_cast) * tile)
 {
     tile->args = args;
@@ -432,8 +436,8 @@ static void R(begin_tile)(const glint_cast_args *args, R(tile_cast) * tile)
             tile->far[y][x] = x < tile->across ? HUGE_VALF : -HUGE_VALF;
 }
 
-/// Lanes of a group that may meet a shape, by how far beside the eye's rays those of the lens are where they pass its middle, before
-/// what they have met. Its box begins at `near`.
+/// Returns the lanes of a group that may hit a shape before their current hits, by the distance between the lens rays
+/// and the eye's rays at the depth of the shape's middle. The shape's box begins at `near`.
 static inline unsigned R(lanes_through_lens)(const R(tile_cast) * tile, const shape_on_screen *shape, float middle,
                                              float near, int x, int y)
 {

@@ -1,6 +1,6 @@
-// cover: which groups of a tile a candidate may show in, which it fills, and where another hides it, by the ray through
-// the middle of each group: the group's others are near to it. Float and conservative, rounding and NaN included: what is
-// not certain here is left to the pixels. Contract: stages.h, cast.
+// cover: the groups of a tile that a candidate may show in, those that it fills, and those in which another candidate
+// hides it. Each group is tested by the ray through its middle, with bounds for its other rays. Float and
+// conservative, including rounding and NaN: uncertain cases are left to the pixels. Contract: stages.h, cast.
 #ifndef GLINT_INDEX_COVER_H
 #define GLINT_INDEX_COVER_H
 
@@ -10,11 +10,11 @@
 #include "engine/stages/simd/real.h"
 
 #define COVER_ACROSS (GLINT_TILE_WIDTH / 4) ///< bit COVER_ACROSS y + x of a set of groups is group (x, y)
-#define COVER_MARGIN 1e-4 ///< of certain decisions; far above the rounding of float and real
+#define COVER_MARGIN 1e-4 ///< for certain decisions; far above the rounding of float and real
 
 _Static_assert(COVER_ACROSS == 8, "groups_between repeats a row's bits a byte each");
 
-/// The groups from column `left` to `right` and from row `top` to `bottom`, all included, a bit each.
+/// Returns the groups from column `left` to `right` and from row `top` to `bottom`, inclusive, one bit each.
 static inline uint64_t R(groups_between)(int left, int right, int top, int bottom)
 {
     const uint64_t rows = ((uint64_t)2 << (COVER_ACROSS * bottom + COVER_ACROSS - 1)) - ((uint64_t)1 << COVER_ACROSS * top);
@@ -32,9 +32,9 @@ INNER bool R(is_round)(const R(candidate) * candidate)
     return kind == GLINT_PRIM_SPHERE || kind == GLINT_PRIM_SOLID || kind == GLINT_PRIM_COMBINED;
 }
 
-// ---- What a candidate is to groups ----
+// ---- A candidate in all groups ----
 
-/// Covers a sphere with the eye outside.
+/// Computes the cover of a sphere, with the eye outside.
 static inline void R(make_sphere_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
 {
     const glint_camera_args *camera = tile->args->camera;
@@ -53,7 +53,7 @@ static inline void R(make_sphere_cover)(const R(tile_cast) * tile, R(candidate) 
     candidate->power = (float)(c / glint_sphere_scale(prim));
 }
 
-/// After the filter. Nothing is certain of triangles and solids.
+/// Computes the cover of a candidate, after the filter. Nothing is certain for triangles and solids.
 static void R(make_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
 {
     const double c = candidate->c, height = fabs(c);
@@ -85,10 +85,10 @@ static void R(make_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
 
 /// VF groups of a tile.
 typedef struct R(patches) {
-    vf s, t, length; ///< place of the middle, and length of the direction there
+    vf s, t, length; ///< position of the middle, and length of the direction there
 } R(patches);
 
-/// From group i on, i a multiple of VF.
+/// Returns the groups from group i on, i a multiple of VF.
 INNER R(patches) R(patches_at)(const R(tile_cast) * tile, int i)
 {
     static const _Alignas(
@@ -110,14 +110,15 @@ INNER void R(filter_at)(const R(candidate) * candidate, const R(patches) * at, v
             (f_set(candidate->base[k]) + at->s * f_set(candidate->along_s[k])) + at->t * f_set(candidate->along_t[k]);
 }
 
-/// Computes the least and the largest value of an edge function within a group, from the value in the middle.
+/// Returns how much an edge function varies within a group, from the middle to a corner.
 INNER float R(edge_sway)(const R(candidate) * candidate, int j)
 {
     return 4 * (fabsf(candidate->along_s[j]) + fabsf(candidate->along_t[j]));
 }
 
-/// Groups whose rays all pass a round candidate within `inner`, where f x d is v in the middle. What |f x d|^2 - inner^2 |d|^2 is there
-/// changes by at most its slopes on the way to a corner, and by what it bends. Along a horizon both parts rise alike.
+/// Returns the groups in which all rays pass a round candidate within `inner`, where f x d is v in the middle. |f x
+/// d|^2 - inner^2 |d|^2 changes towards a corner by at most its slope and its curvature. Along a horizon both terms
+/// grow alike.
 INNER unsigned R(filled_groups)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at, const vf v[3])
 {
     const vf inner = f_set(candidate->inner), inner2 = inner * inner, around = f_set(candidate->around);
@@ -132,7 +133,7 @@ INNER unsigned R(filled_groups)(const R(tile_cast) * tile, const R(candidate) * 
     return fm_bits(fm_and(f_lt(f_set(0), inner), f_lt(most, f_set(0))));
 }
 
-/// Groups that the candidate may show in; *sure: those that it fills.
+/// Returns the groups that the candidate may show in; *sure: those that it fills.
 INNER unsigned R(cover_groups)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at,
                                unsigned *sure)
 {
@@ -150,7 +151,7 @@ INNER unsigned R(cover_groups)(const R(tile_cast) * tile, const R(candidate) * c
     const vf spread = f_set(tile->spread), around = f_set(candidate->around), off2 = DOT(v, v);
     const vf reach = f_set(candidate->outer) * (at->length + spread) + around;
     *sure = R(filled_groups)(tile, candidate, at, v);
-    if (*sure) { // in front, not behind
+    if (*sure) { // in front of the eye, not behind
         const vf b =
             (f_set(candidate->ahead[0]) + at->s * f_set(candidate->ahead[1])) + at->t * f_set(candidate->ahead[2]);
         *sure &= fm_bits(f_lt(zero, b));
@@ -158,7 +159,7 @@ INNER unsigned R(cover_groups)(const R(tile_cast) * tile, const R(candidate) * c
     return ~fm_bits(f_lt(reach * reach, off2)) & ((1u << VF) - 1);
 }
 
-/// Bounds of t where the candidate is hit in the groups, the upper one where it fills them.
+/// Computes bounds of t of the hits in the groups; the upper one holds where the candidate fills the group.
 INNER void R(ways_to)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at, vf *low,
                       vf *high)
 {
@@ -186,7 +187,7 @@ INNER void R(ways_to)(const R(tile_cast) * tile, const R(candidate) * candidate,
     *high = more * (power / (least + f_sqrt(f_max(below, zero))));
 }
 
-/// Leaves out of `may` the groups, from group i on, that another fills nearer to the eye.
+/// Removes from `may` the groups, from group i on, that another candidate fills closer to the eye.
 static inline void R(leave_hidden)(const R(tile_cast) * tile, const R(candidate) *const *candidates, int count,
                                    const R(patches) * at, unsigned may[], const unsigned sure[])
 {
@@ -203,8 +204,8 @@ static inline void R(leave_hidden)(const R(tile_cast) * tile, const R(candidate)
             may[k] &= ~fm_bits(f_lt(nearest, low[k]));
 }
 
-/// may: in, groups that a candidate's box leaves; out, those that it may show in. sure: out, groups that it fills, if
-/// nothing is before it.
+/// Computes the covers of all candidates. may: in, groups that a candidate's box allows; out, those that it may show
+/// in. sure: out, groups that it fills, if nothing is in front of it.
 static void R(cover_tile)(const R(tile_cast) * tile, const R(candidate) *const *candidates, int count, uint64_t may[],
                           uint64_t sure[])
 {

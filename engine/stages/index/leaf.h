@@ -1,8 +1,10 @@
-// leaf: the triangles of a node as an eye or a light sees them, a lane each: where on the screen they may show, how near they
-// come, and their edges, which are linear over the screen. Float and conservative, as screen.h is, whose frame this is.
+// leaf: the triangles of a node as an eye or a light sees them, one per lane: bounds of their screen positions, their
+// smallest depth, and their edge functions, which are linear over the screen. Float and conservative, in the frame of
+// screen.h.
 //
-// A ray at place (u, v) is (u, v, 1) in the coordinates (a, b, k) of the screen. It meets a triangle whose corners are P_j
-// there where its dot products with P_1 x P_2, P_2 x P_0 and P_0 x P_1 all have the sign of the corners' determinant.
+// A ray at position (u, v) is (u, v, 1) in the coordinates (a, b, k) of the screen. It hits a triangle with corners
+// P_j there if its dot products with P_1 x P_2, P_2 x P_0 and P_0 x P_1 all have the sign of the corners'
+// determinant.
 #ifndef GLINT_INDEX_LEAF_H
 #define GLINT_INDEX_LEAF_H
 
@@ -10,25 +12,25 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/elementary.h"
 
-/// Of a corner's numbers: what rounding may have moved it by, on the way to its place; where float decides, twice that.
+/// Relative bound of the rounding error of a corner's screen position; twice that if float decides.
 #define LEAF_SLACK 0x1p-20f
 
 typedef struct leaf_on_screen {
-    /// In: of each corner and axis, from the view's exact origin, in the index's units.
+    /// In: for each corner and axis, relative to the view's exact origin, in the index's units.
     _Alignas(64) float corner[3][3][GLINT_NODE_WIDTH];
-    /// Of each edge: what is met has (edge[0] u + edge[1] v) + edge[2] >= 0. Infinite where it is not known on which side the
-    /// corners run.
+    /// For each edge: hits have (edge[0] u + edge[1] v) + edge[2] >= 0. Infinite if the orientation of the corners is
+    /// uncertain.
     _Alignas(64) float edge[3][3][GLINT_NODE_WIDTH];
-    _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< least w
-    _Alignas(64) float least[2][GLINT_NODE_WIDTH], most[2][GLINT_NODE_WIDTH]; ///< the places between which it shows
-    unsigned certain, turned; ///< slots whose edges are finite; of them, those whose determinant is negative
+    _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< smallest w
+    _Alignas(64) float least[2][GLINT_NODE_WIDTH], most[2][GLINT_NODE_WIDTH]; ///< bounds of the screen positions
+    unsigned certain, turned; ///< slots with finite edge functions; of these, those with a negative determinant
 } leaf_on_screen;
 
 /// VF triangles in the coordinates of the screen.
 typedef struct leaf_lanes {
     vf a[3], b[3], w[3], k[3];
-    vf lowest, highest; ///< least k, and the largest of any sign
-    vf numbers, size; ///< of the corners: bounds of their components' sum, and of the triangle's
+    vf lowest, highest; ///< smallest k; largest |k|
+    vf numbers, size; ///< bounds of the sum of the corners' components, and of the triangle's size
 } leaf_lanes;
 
 static inline leaf_lanes place_leaf(const leaf_on_screen *leaf, const screen_view *view, int i)
@@ -52,8 +54,9 @@ static inline leaf_lanes place_leaf(const leaf_on_screen *leaf, const screen_vie
     return out;
 }
 
-/// What corners and rays may be off by, as a length across the way at the corners: 5 roundings of a corner along each axis,
-/// which lean by the screen's stretch, a few of the place and of k, and what the view says.
+/// Returns a bound of the error of corners and rays, as a length perpendicular to the ray at the corners: 5 roundings
+/// of a corner along each axis, scaled by the screen's stretch, a few of screen position and k, and the view's own
+/// bound.
 static inline vf slack_of_leaf(const leaf_lanes *at, const screen_view *view, bool is_float)
 {
     const float slack = is_float ? 2 * LEAF_SLACK : LEAF_SLACK;
@@ -61,7 +64,7 @@ static inline vf slack_of_leaf(const leaf_lanes *at, const screen_view *view, bo
            f_set(0x1p-21f * view->spread + view->drift) * at->highest;
 }
 
-/// The places between which the triangles show; the box's where they come too near to the eye.
+/// Computes bounds of the triangles' screen positions; the box's bounds if a triangle comes too close to the eye.
 static inline void bound_leaf(const leaf_lanes *at, vf slack, const screen_view *view, int i, leaf_on_screen *leaf)
 {
     const fm ahead = f_lt(f_set(4 * view->inverse) * slack, at->lowest);
@@ -83,11 +86,13 @@ static inline void bound_leaf(const leaf_lanes *at, vf slack, const screen_view 
     }
 }
 
-/// Edges as seen from a ray near the triangle's middle, which spares digits, x and y being across the way from there.
+/// Computes the edge functions relative to a ray near the triangle's middle, which saves digits; x and y are
+/// perpendicular to that ray.
 ///
-/// An edge is the product (x_p y_q - x_q y_p) as seen from the ray it is computed for. A ray that meets the triangle is at most
-/// `wide / 2` from each corner, all of these are off by no more than `off`, and the sums below add up to 22 roundings of
-/// products of k, place and x, and 12 of x and y. The volume is the sum of edges times k, as seen from the middle.
+/// An edge function is the product (x_p y_q - x_q y_p) as seen from the ray it is evaluated for. A ray that hits the
+/// triangle is within `wide / 2` of each corner, and all of these have an error of at most `off`. The sums below add
+/// up to 22 roundings of products of k, position and x, and 12 of x and y. The volume is the sum of the edge
+/// functions times k, as seen from the middle.
 static inline void edges_of_leaf(const leaf_lanes *at, vf slack, const screen_view *view, int i, leaf_on_screen *leaf)
 {
     const vf depth = (at->k[0] + at->k[1]) + at->k[2];
@@ -127,8 +132,8 @@ static inline void edges_of_leaf(const leaf_lanes *at, vf slack, const screen_vi
     leaf->turned |= fm_bits(turned) << i;
 }
 
-/// Fills what follows from the corners. `near` is the box's where rounding may put a hit anywhere on the ray: where the
-/// triangle is seen edge-on, and where float decides.
+/// Computes everything that follows from the corners. `near` is that of the box if rounding may put a hit anywhere on
+/// the ray: if the triangle is seen edge-on, or if float decides.
 static void show_leaf(const screen_view *view, const node_on_screen *seen, bool is_float, leaf_on_screen *leaf)
 {
     leaf->certain = leaf->turned = 0;
@@ -143,7 +148,7 @@ static void show_leaf(const screen_view *view, const node_on_screen *seen, bool 
     }
 }
 
-/// Lanes whose rays, at places u, v, may pass between the edges of the triangle in a slot.
+/// Returns the lanes whose rays, at positions u, v, may pass between the edges of the triangle in a slot.
 static inline unsigned between_edges(const leaf_on_screen *leaf, int slot, vf u, vf v)
 {
     vf e[3];
@@ -154,11 +159,13 @@ static inline unsigned between_edges(const leaf_on_screen *leaf, int slot, vf u,
 
 // ---- Rays that start on a lens ----
 
-/// The triangles of a node. A ray passes corner j, where that is deep, at x = a - (u k + l c) and likewise y beside it, u being its
-/// place and l where on the lens it starts; it meets the triangle where the three x_p y_q - x_q y_p have one sign.
+/// The triangles of a node. At the depth of corner j, a ray passes at x = a - (u k + l c) from it, and likewise y,
+/// where u is the ray's screen position and l its origin on the lens. It hits the triangle if all three x_p y_q - x_q
+/// y_p have one sign.
 typedef struct leaf_through_lens {
     _Alignas(64) float a[3][GLINT_NODE_WIDTH], b[3][GLINT_NODE_WIDTH], k[3][GLINT_NODE_WIDTH], c[3][GLINT_NODE_WIDTH];
-    _Alignas(64) float doubt[GLINT_NODE_WIDTH]; ///< what rounding adds to such a difference where the triangle is met
+    _Alignas(64) float doubt[GLINT_NODE_WIDTH]; ///< bound of the rounding error of such a difference for rays that hit
+        ///< the triangle
 } leaf_through_lens;
 
 static inline vf reach_of_three(const vf v[3])
@@ -166,7 +173,8 @@ static inline vf reach_of_three(const vf v[3])
     return f_max(f_max(v[0], v[1]), v[2]) - f_min(f_min(v[0], v[1]), v[2]);
 }
 
-/// How far a ray that meets a triangle passes beside its corners, along axis j, whose coordinates are `at`.
+/// Returns the maximum distance between a corner and a ray that hits the triangle, along axis j; at: the corners'
+/// coordinates.
 static inline vf width_through_lens(const leaf_lanes *lanes, const vf at[3], const screen_view *view,
                                     const lens_on_screen *lens, int j)
 {
@@ -175,7 +183,7 @@ static inline vf width_through_lens(const leaf_lanes *lanes, const vf at[3], con
            f_set(lens->reach[j] * lens->per_focus) * reach_of_three(lanes->w);
 }
 
-/// `corners`: as in leaf_on_screen.
+/// Computes the triangles for rays from a lens. `corners`: as in leaf_on_screen.
 static void show_through_lens(const leaf_on_screen *corners, const screen_view *view, const lens_on_screen *lens,
                               bool is_float, leaf_through_lens *out)
 {
@@ -191,7 +199,7 @@ static void show_through_lens(const leaf_on_screen *corners, const screen_view *
             deepest = f_max(deepest, f_abs(way));
         }
         const vf slack = slack_of_leaf(&at, view, is_float);
-        for (int j = 0; j < 2; j++) { // of l c: its rounding, and that of c
+        for (int j = 0; j < 2; j++) { // for l c: its rounding error, and that of c
             wide[j] = width_through_lens(&at, j ? at.b : at.a, view, lens, j);
             off[j] = slack * f_set(2 / view->unit[j]) + f_set(0x1p-20f * lens->reach[j]) * (f_set(1) + deepest);
         }
@@ -201,7 +209,8 @@ static void show_through_lens(const leaf_on_screen *corners, const screen_view *
     }
 }
 
-/// Lanes whose rays, at places u, v, start at (across, down) on the lens and may meet the triangle in a slot.
+/// Returns the lanes whose rays, at positions u, v, start at (across, down) on the lens and may hit the triangle in a
+/// slot.
 INNER unsigned meets_through_lens(const leaf_through_lens *leaf, int slot, vf u, vf v, vf across, vf down)
 {
     vf x[3], y[3], e[3];

@@ -1,39 +1,41 @@
-// screen: what one eye sees, or one light: boxes and surfaces of the index in front of a screen that is divided into cells.
-// Rays from one eye are a bundle, and so are segments to one light: what may meet them is tested against the cells of its place
-// on the screen alone. Float and conservative, as all of walk.h is.
+// screen: the view of one eye, or of one light: boxes and surfaces of the index in front of a screen that is divided
+// into cells. Rays from one eye form a bundle, and so do segments to one light. A primitive that they may hit is only
+// tested against the cells at its position on the screen. Float and conservative, like walk.h.
 //
-// The frame: two axes across the way of the bundle, and one, w, along it. What is at (a, b, w) has its place at a / k and b / k,
-// with k = base + inverse w: of a camera's pixels k is w, so that places are s and -t; of segments k is 1 + w / distance, w
-// running away from the light from 0 in the middle of the points; of parallel light k is 1.
+// The frame has two axes across the bundle, and one, w, along it. A point (a, b, w) is projected to a / k and b / k,
+// with k = base + inverse w. For a camera's pixels k is w, so that screen positions are s and -t. For segments k is 1
+// + w / distance, with w = 0 in the middle of the points and growing away from the light. For parallel light k is 1.
 #ifndef GLINT_INDEX_SCREEN_H
 #define GLINT_INDEX_SCREEN_H
 
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/elementary.h"
 
-#define SCREEN_ACROSS 16 ///< most columns
-#define SCREEN_DOWN 20 ///< and rows
+#define SCREEN_ACROSS 16 ///< maximum number of columns
+#define SCREEN_DOWN 20 ///< maximum number of rows
 
 typedef struct screen_view {
-    float origin[3], axis[3][3]; ///< of the frame, in the index's; at right angles but for rounding
-    double exact[3]; ///< what origin was rounded from
-    float unit[2]; ///< length of a unit of place where k is 1; the third axis is unit
+    float origin[3], axis[3][3]; ///< of the frame, in the index's frame; the axes are orthogonal within rounding
+    double exact[3]; ///< origin before rounding
+    float unit[2]; ///< length of a unit of screen position at k = 1; the third axis is a unit vector
     float base, inverse; ///< of k
-    float slack; ///< what rounding may have moved a ray by, besides what the numbers of a box give
-    float first[2], last[2]; ///< places between which there are rays
-    float margin; ///< rounding of these
-    float cells[2]; ///< cells in a unit of place
+    float slack; ///< bound of a ray's rounding error, in addition to the error from a box's numbers
+    float first[2], last[2]; ///< bounds of the rays' screen positions
+    float margin; ///< their rounding error
+    float cells[2]; ///< cells per unit of screen position
     int count[2]; ///< columns and rows
-    float far; ///< largest w that matters
-    float stretch; ///< at most how much longer a ray is than it is along w, squared
+    float far; ///< maximum w that matters
+    float stretch; ///< upper bound of (length of a ray / its extent along w)^2
     float reach,
-        reach_of_numbers; ///< what a ray may be off by at a surface: the first, and the second times its numbers
-    float weight[2], area; ///< squares of `unit`, and their product's root
-    float root_stretch, spread; ///< of `stretch`; bound of the lengths of places, where k is 1
-    float corner_slack, drift; ///< as slack, for corners from the exact origin: anywhere, and where k is 1, with k
+        reach_of_numbers; ///< bound of a ray's error at a surface: the first, plus the second times the surface's
+            ///< numbers
+    float weight[2], area; ///< squares of `unit`, and the root of their product
+    float root_stretch, spread; ///< of `stretch`; bound of the lengths of screen positions, at k = 1
+    float corner_slack, drift; ///< like slack, for corners relative to the exact origin: anywhere, and at k = 1,
+        ///< growing with k
 } screen_view;
 
-/// Fills what follows from the rest.
+/// Computes the fields that follow from the others.
 static void finish_screen(screen_view *view)
 {
     const float stretch = view->root_stretch = sqrtf(view->stretch), numbers = 2 * GLINT_FILTER_SLACK * stretch;
@@ -48,14 +50,15 @@ static void finish_screen(screen_view *view)
     view->area = view->unit[0] * view->unit[1];
 }
 
-/// The cell of a place along an axis: monotonic, so that what is between two places is between their cells.
+/// Returns the cell of a position along an axis. The map is monotonic, so that positions between two others are in
+/// cells between theirs.
 static inline vi cell_of_place(const screen_view *view, int axis, vf place)
 {
     const vf cell = (place - f_set(view->first[axis])) * f_set(view->cells[axis]);
     return i_from_f(f_min(f_max(cell, f_set(0)), f_set((float)(view->count[axis] - 1))));
 }
 
-/// A rectangle of cells: first and last column, first and last row, a byte each from the lowest.
+/// A rectangle of cells: first and last column, first and last row, one byte each from the lowest.
 typedef uint32_t screen_cells;
 
 static inline int first_column(screen_cells cells) { return cells & 255; }
@@ -66,13 +69,14 @@ static inline int last_row(screen_cells cells) { return (int)(cells >> 24); }
 /// The boxes of a node on the screen.
 typedef struct node_on_screen {
     _Alignas(64) float middle[3][GLINT_NODE_WIDTH]; ///< in the frame
-    _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< least w
+    _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< smallest w
     _Alignas(64) uint32_t cells[GLINT_NODE_WIDTH]; ///< see screen_cells
 } node_on_screen;
 
-/// Places between which boxes are whose k is between nearest and farthest. Of those that reach the eye: anywhere, or, where they lie
-/// to one side of it, from where they are farthest on. There the lines of all rays must miss them behind the eye, too, for where a
-/// triangle is seen edge-on, rounding may turn what is met behind into what is met ahead. start, end: of the screen's places.
+/// Computes bounds of the positions of boxes whose k is between nearest and farthest. For boxes that reach the eye
+/// the bounds are infinite, or, if the box lies to one side of the eye, begin at its position at `farthest`. In that
+/// range the lines of all rays must miss the boxes behind the eye, too: for a triangle seen edge-on, rounding may
+/// turn a hit behind the eye into a hit ahead. start, end: bounds of the screen's positions.
 static inline void places_of_boxes(vf low, vf high, vf nearest, vf farthest, vf start, vf end, vf *least, vf *most)
 {
     const fm ahead = f_lt(f_set(0), nearest);
@@ -83,21 +87,22 @@ static inline void places_of_boxes(vf low, vf high, vf nearest, vf farthest, vf 
     *most = f_select(ahead, f_max(high * near, highest), f_select(left, highest, f_set(HUGE_VALF)));
 }
 
-/// Rays that do not start at one eye but on a lens around it: at w they are up to `reach` |1 - per_focus w| beside those of the
-/// eye, along each axis, in units of place where k is 1.
+/// Rays that start on a lens around the eye. At w they are up to `reach` |1 - per_focus w| from the eye's rays, along
+/// each axis, in screen units at k = 1.
 typedef struct lens_on_screen {
     float reach[2], per_focus;
 } lens_on_screen;
 
-/// A bound of |1 - per_focus w| over k, rounding included.
+/// Returns a bound of |1 - per_focus w| over k, including rounding.
 INNER vf lens_share(const lens_on_screen *lens, vf w, vf per_k)
 {
     const vf way = w * f_set(lens->per_focus);
     return (f_abs(f_set(1) - way) + f_set(1e-6f) * (f_set(1) + f_abs(way))) * f_abs(per_k);
 }
 
-/// Which boxes may be met before `far`. NaN, of boxes as wide as float reaches, gives every cell. `lens`: NULL, a constant: all
-/// rays start at the eye. What it does is between what it does at both ends of a box.
+/// Returns the boxes that may be hit before `far`. NaN, from boxes as wide as float's range, gives every cell.
+/// `lens`: NULL, a constant: all rays start at the eye. The offset by a lens in a box is between the offsets at both
+/// ends of the box.
 INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const bool parallel,
                           const lens_on_screen *lens, node_on_screen *out)
 {
@@ -160,7 +165,7 @@ static unsigned boxes_through_lens(const glint_node *node, const screen_view *vi
     return find_boxes(node, view, false, lens, out);
 }
 
-/// A node to be looked into, and where it is.
+/// A node that is still to be opened, and its position.
 typedef struct screen_entry {
     uint32_t node;
     float near;
@@ -178,10 +183,10 @@ static inline screen_entry entry_of_root(const screen_view *view)
     return (screen_entry) { 0, -FLT_MAX, columns << 8 | rows << 24 };
 }
 
-/// Bits first .. last.
+/// Returns bits first .. last.
 static inline unsigned bit_range(int first, int last) { return last < first ? 0 : (2u << last) - (1u << first); }
 
-/// Returns the columns of a row in which something at the distance `near` still matters.
+/// Returns the columns of a row in which a surface at the distance `near` may still be visible.
 static inline unsigned behind_in_row(const float (*far)[SCREEN_ACROSS], int row, float near, unsigned columns)
 {
     unsigned behind = 0;
@@ -190,23 +195,24 @@ static inline unsigned behind_in_row(const float (*far)[SCREEN_ACROSS], int row,
     return behind & columns;
 }
 
-/// Whether in some of the cells something as far away as `near` still matters; far: largest such w of each cell.
+/// Returns whether a surface at the distance `near` may still be visible in some of the cells; far: maximum w of each
+/// cell.
 static inline bool any_behind(const float (*far)[SCREEN_ACROSS], float near, screen_cells cells)
 {
     const unsigned columns = bit_range(first_column(cells), last_column(cells));
     const int last = last_row(cells);
-    for (int row = first_row(cells); row <= last; row += 2) // one row twice costs less than a branch
+    for (int row = first_row(cells); row <= last; row += 2) // repeating the last row costs less than a branch
         if (behind_in_row(far, row, near, columns) | behind_in_row(far, row < last ? row + 1 : last, near, columns))
             return true;
     return false;
 }
 
-/// Finds, for each row, the columns in which something at the distance of a node still matters; none where the node does not show.
+/// For each row, the columns in which a node may still be visible; none where the node does not show.
 typedef struct rows_behind {
     uint16_t columns[SCREEN_DOWN + 3];
 } rows_behind;
 
-/// Returns whether there are any. far: as in any_behind.
+/// Computes the rows of an entry. Returns whether any column is left. far: as in any_behind.
 static inline bool find_behind(const float (*far)[SCREEN_ACROSS], screen_entry entry, rows_behind *out)
 {
     const unsigned columns = bit_range(first_column(entry.cells), last_column(entry.cells));
@@ -219,8 +225,8 @@ static inline bool find_behind(const float (*far)[SCREEN_ACROSS], screen_entry e
     return any;
 }
 
-/// The slots of `mask` whose boxes may have any of these behind them: of the lowest bits of `four`, those of the first row.
-/// Taller boxes are not tested.
+/// Returns the slots of `mask` whose boxes are in front of any of these cells; the first row is in the lowest bits of
+/// `four`. Taller boxes are not tested.
 static inline unsigned slots_before(const rows_behind *rows, const node_on_screen *seen, unsigned mask)
 {
     unsigned before = 0;
@@ -237,7 +243,7 @@ static inline unsigned slots_before(const rows_behind *rows, const node_on_scree
     return before;
 }
 
-/// The slots that hold a primitive.
+/// Returns the slots that hold a primitive.
 static inline unsigned prims_of_node(const glint_node *node)
 {
     unsigned prims = 0;
@@ -246,7 +252,7 @@ static inline unsigned prims_of_node(const glint_node *node)
     return prims;
 }
 
-/// The slots of `mask`, which hold primitives, that hold triangles.
+/// Returns the slots of `mask`, all of which hold primitives, that hold triangles.
 static inline unsigned triangles_in(const glint_geometry_table *geometry, const glint_node *node, unsigned mask)
 {
     unsigned found = 0;
@@ -255,8 +261,8 @@ static inline unsigned triangles_in(const glint_geometry_table *geometry, const 
     return found & mask;
 }
 
-/// Has the memory of primitives, and of the two nodes to be looked into next, on its way; of triangles, that of their corners. Inlined:
-/// GCC takes a call that prefetches alone for one that does nothing.
+/// Prefetches the memory of primitives (for triangles, their corners), and of the next two nodes. Inlined, because
+/// GCC removes a call that does nothing except prefetch.
 INNER void prefetch_prims(const glint_geometry_table *geometry, const glint_node *node, unsigned mask)
 {
     const unsigned triangles = triangles_in(geometry, node, mask);
@@ -277,10 +283,11 @@ INNER void prefetch_nodes(const glint_geometry_table *geometry, const screen_ent
 
 // ---- Surfaces ----
 
-/// A surface as the filter sees it: a ball around it.
+/// A surface's bounding ball, as the filter needs it.
 typedef struct shape_on_screen {
-    float middle[2], k; ///< places of rays times k are where they pass the middle
-    float weight[2], reach2; ///< square of how far from it they may pass, and what makes lengths of places
+    float middle[2], k; ///< k of the middle: a ray passes the middle at its screen position times k
+    float weight[2], reach2; ///< weights of the squared length of a position; square of the maximum distance of a ray
+        ///< from the middle
 } shape_on_screen;
 
 static inline shape_on_screen shape_of(const glint_node *node, const node_on_screen *seen, int slot,
@@ -300,7 +307,7 @@ static inline shape_on_screen shape_of(const glint_node *node, const node_on_scr
     return out;
 }
 
-/// Lanes whose rays may meet the shape; u, v: their places where they pass its middle, times k.
+/// Returns the lanes whose rays may hit the shape; u, v: their screen positions times k, at the depth of its middle.
 static inline unsigned shape_at(const shape_on_screen *shape, vf u, vf v)
 {
     const vf across = u - f_set(shape->middle[0]), down = v - f_set(shape->middle[1]);
@@ -308,22 +315,24 @@ static inline unsigned shape_at(const shape_on_screen *shape, vf u, vf v)
     return ~fm_bits(f_lt(f_set(shape->reach2), distance2)) & ((1u << VF) - 1);
 }
 
-/// The same of rays at places u, v.
+/// Does the same for rays at screen positions u, v.
 static inline unsigned near_shape(const shape_on_screen *shape, vf u, vf v)
 {
     return shape_at(shape, u * f_set(shape->k), v * f_set(shape->k));
 }
 
-/// A solid that is longer than wide, as the filter sees it: all around its axis. With d along a ray, e along the axis and c from the
-/// one line to the other these pass each other at |n . c| / |n|, n = d x e; what follows of a ray's place is linear in that.
+/// A solid that is longer than wide, bounded by a cylinder around its axis. With d along a ray, e along the axis and
+/// c from one line to the other, the lines pass each other at the distance |n . c| / |n|, n = d x e. All terms with a
+/// ray's screen position are linear in it.
 typedef struct rod_on_screen {
     float beside[3]; ///< n . c: coefficients of 1, u, v
     float n[3][2]; ///< n: of 1 and v; of 1 and u; of u and v
-    float reach2, margin; ///< square of how far off the lines may pass; more than what rounding does to n . c and n reach
-    bool is; ///< false: nothing else is set
+    float reach2, margin; ///< square of the maximum distance of the lines; above the rounding error of n . c and n
+        ///< reach
+    bool is; ///< false: the other fields are not set
 } rod_on_screen;
 
-/// Sees a primitive as a rod. Not returned by value: clang 14 for WebAssembly then loses `n`.
+/// Computes a primitive's rod. Not returned by value, because clang 14 for WebAssembly then loses `n`.
 static inline void see_rod(const glint_geometry_table *geometry, const glint_prim *prim, const screen_view *view, rod_on_screen *out)
 {
     const glint_solid *solid = prim->kind == GLINT_PRIM_SOLID ? &geometry->solids[prim->item] : NULL;
@@ -352,7 +361,7 @@ static inline void see_rod(const glint_geometry_table *geometry, const glint_pri
     out->margin = 0x1p-19f * sizes * (1 + inverse * view->spread);
 }
 
-/// Lanes whose rays, at places u, v, may meet it.
+/// Returns the lanes whose rays, at screen positions u, v, may hit the rod.
 static inline unsigned near_rod(const rod_on_screen *rod, vf u, vf v)
 {
     const vf beside = (f_set(rod->beside[0]) + u * f_set(rod->beside[1])) + v * f_set(rod->beside[2]);

@@ -1,5 +1,5 @@
-// view: the primitives of a scene that has few, as one camera's eye sees them from wherever on its picture: candidates for all
-// tiles. Of a tile, one question to each says whether it may show there. Contract: stages.h, cast.
+// view: the primitives of a small scene as seen by one camera anywhere in its picture: candidates for all tiles. For
+// each tile, one test per candidate decides whether it may show there. Contract: stages.h, cast.
 #ifndef GLINT_INDEX_VIEW_H
 #define GLINT_INDEX_VIEW_H
 
@@ -11,7 +11,7 @@
 
 /// The capacity of glint_cast_view.
 typedef struct R(cast_view) {
-    bool few; ///< all primitives are candidates; false: nothing below is there
+    bool few; ///< all primitives are candidates; false: the other fields are not set
     int count;
     float rr, uu, spread; ///< as of a tile
     R(candidate) candidates[GLINT_FIRST_CANDIDATES];
@@ -19,7 +19,7 @@ typedef struct R(cast_view) {
 
 _Static_assert(sizeof(R(cast_view)) <= sizeof(((glint_cast_view *)0)->room), "room for the candidates");
 
-/// The picture and the tile, were they one tile.
+/// Returns the camera of the whole picture, including the tile, as if it were one tile.
 static glint_camera_args R(whole_picture)(const glint_camera_args *camera)
 {
     const double across = 4.0 * camera->groups_across;
@@ -65,7 +65,7 @@ static void R(make_view)(const glint_cast_args *args, R(cast_view) * view)
     view->spread = picture.spread;
 }
 
-/// Returns the existing view, or the one that this call makes in `own`.
+/// Returns the existing view, or a new one, made in `own`.
 static const R(cast_view) * R(view_of)(const glint_cast_args *args, glint_cast_view *own)
 {
     glint_cast_view *view = args->view ? args->view : own;
@@ -76,8 +76,8 @@ static const R(cast_view) * R(view_of)(const glint_cast_args *args, glint_cast_v
     return made;
 }
 
-/// Whether the candidate may show in a rectangle of the picture: its middle, the length of the direction there, and how far
-/// each goes to both sides.
+/// Returns whether the candidate may show in a rectangle of the picture, given by its middle, the length of the
+/// direction there, and its half sizes.
 static inline bool R(may_show)(const R(candidate) * candidate, const float middle[2], const float half[2], float length,
                                float spread)
 {
@@ -94,7 +94,7 @@ static inline bool R(may_show)(const R(candidate) * candidate, const float middl
     return !(reach * reach < DOT(v, v));
 }
 
-/// The candidates that a tile may show, `most` of them at most. Returns how many.
+/// Lists the candidates that a tile may show, at most `most`. Returns their number.
 static int R(candidates_in)(const R(cast_view) * view, const glint_camera_args *camera, const R(candidate) * *list, int most)
 {
     const double down = camera->group_count / camera->groups_across;

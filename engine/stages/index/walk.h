@@ -1,18 +1,19 @@
-// walk: which boxes of the index a tile, a shaft or a ray may touch, sixteen at a time. Everything here is float and
-// conservative: a box is left out only where that is certain, rounding and NaN included. What is decided on these boxes
-// never shows in a picture.
+// walk: the boxes of the index that a tile, a shaft or a ray may touch, sixteen at a time. All of this is float and
+// conservative: a box is only rejected if it certainly is not touched, including rounding and NaN. Decisions about
+// boxes never change a picture.
 #ifndef GLINT_INDEX_WALK_H
 #define GLINT_INDEX_WALK_H
 
 #include "engine/stages/simd/elementary.h"
 
-#define WALK_SLACK 0x1p-21f ///< of the numbers that went into a difference; their rounding is at most 2^-24 each
+#define WALK_SLACK 0x1p-21f ///< relative to the operands of a difference; their rounding errors are at most 2^-24 each
 #define WALK_STACK (GLINT_BVH_DEPTH * (GLINT_NODE_WIDTH - 1) + 1)
 
 static inline float larger(float a, float b) { return a > b ? a : b; }
 static inline float smaller(float a, float b) { return a < b ? a : b; }
 
-/// Middle and half width of boxes in one axis, the half width with all the rounding there may be in `middle - from`.
+/// Computes the middle and half width of boxes along one axis. The half width includes all rounding errors of `middle
+/// - from`.
 static inline void box_axis(const glint_node *node, int k, int i, float from, float slack, vf *middle, vf *half)
 {
     const vf lower = f_load(node->lower[k] + i), upper = f_load(node->upper[k] + i);
@@ -27,7 +28,7 @@ static inline fm box_exists(const glint_node *node, int i)
     return f_le(f_load(node->lower[0] + i), f_load(node->upper[0] + i));
 }
 
-/// The interval of dot(axis, x) over boxes.
+/// Computes the interval of dot(axis, x) over boxes.
 static inline void box_along(const vf middle[3], const vf half[3], const float axis[3], vf *low, vf *high)
 {
     vf at = (f_set(axis[0]) * middle[0] + f_set(axis[1]) * middle[1]) + f_set(axis[2]) * middle[2];
@@ -36,7 +37,8 @@ static inline void box_along(const vf middle[3], const vf half[3], const float a
     *high = at + reach;
 }
 
-// ---- A shaft: all segments from a box of points to a light's box (of a point light, a point), or along one direction ----
+// ---- A shaft: all segments from a box of points to a light's box (for a point light, a point), or along one
+// direction ----
 
 /// Grows a box by the rounding of its points and by `slack`.
 static inline void loosen(float lower[3], float upper[3], float slack)
@@ -48,16 +50,16 @@ static inline void loosen(float lower[3], float upper[3], float slack)
     }
 }
 
-/// Where a light is, in the index's frame.
+/// The position of a light, in the index's frame.
 typedef struct light_place {
-    float lower[3], upper[3]; ///< directional: both are the direction towards it
+    float lower[3], upper[3]; ///< directional: both are the direction towards the light
     bool directional;
 } light_place;
 
 typedef struct light_shaft {
-    float lower[3], upper[3]; ///< the box around all of it; infinite where it runs on
+    float lower[3], upper[3]; ///< the bounding box of the shaft; infinite where it is unbounded
     int plane_count;
-    int axis[6][2]; ///< the planes' normals lie in one coordinate plane each:
+    int axis[6][2]; ///< the normal of each plane lies in one coordinate plane:
     float normal[6][2], bound[6]; ///< inside, normal . x <= bound
 } light_shaft;
 
@@ -65,7 +67,7 @@ static inline float reach_of(float x, float lower, float upper) { return larger(
 
 static inline float largest_of(float lower, float upper) { return larger(fabsf(lower), fabsf(upper)); }
 
-/// The extent of a rectangle along the normal (-ey, ex) of a line through (x, y).
+/// Computes the extent of a rectangle along the normal (-ey, ex) of a line through (x, y).
 static inline void beside_line(int a, int b, float x, float y, float ex, float ey, const float lower[3],
                                     const float upper[3], float *least, float *most)
 {
@@ -75,8 +77,8 @@ static inline void beside_line(int a, int b, float x, float y, float ex, float e
     *least = smaller(left_x, right_x) + smaller(left_y, right_y);
 }
 
-/// A plane of the axes a, b through (x, y) along (ex, ey), if it has the points and the light on one side. `wide`: the
-/// light is not a point.
+/// Adds a plane of the axes a, b through (x, y) along (ex, ey), if the points and the light are on one side of it.
+/// `wide`: the light is not a point.
 static inline void add_shaft_plane(light_shaft *shaft, int a, int b, float x, float y, float ex, float ey,
                                    const float lower[3], const float upper[3], const light_place *light, bool wide)
 {
@@ -95,7 +97,7 @@ static inline void add_shaft_plane(light_shaft *shaft, int a, int b, float x, fl
     shaft->normal[p][1] = ny;
     const float size = fabsf(nx) * largest_of(lower[a], upper[a]) + fabsf(ny) * largest_of(lower[b], upper[b]);
     float bound = reach_of(nx, lower[a], upper[a]) + reach_of(ny, lower[b], upper[b]), far = 0;
-    if (!light->directional) // the light touches the line up to rounding, which grows with how far it is
+    if (!light->directional) // the light touches the line within rounding, which grows with the distance
         far = fabsf(nx) * largest_of(light->lower[a], light->upper[a]) +
               fabsf(ny) * largest_of(light->lower[b], light->upper[b]);
     if (wide)
@@ -104,7 +106,7 @@ static inline void add_shaft_plane(light_shaft *shaft, int a, int b, float x, fl
     shaft->bound[p] = bound + WALK_SLACK * (size + far);
 }
 
-/// The planes of one pair of axes: the lines that touch the rectangles of the points and of the light.
+/// Adds the planes of one pair of axes: the lines that touch the rectangles of the points and of the light.
 static inline void add_shaft_planes(light_shaft *shaft, int a, int b, const float lower[3], const float upper[3],
                                     const light_place *light)
 {
@@ -120,7 +122,7 @@ static inline void add_shaft_planes(light_shaft *shaft, int a, int b, const floa
     }
 }
 
-/// lower, upper: box of the points, in the index's frame.
+/// Makes a shaft. lower, upper: box of the points, in the index's frame.
 static void make_shaft(const float lower[3], const float upper[3], const light_place *light, light_shaft *shaft)
 {
     shaft->plane_count = 0;
@@ -163,10 +165,12 @@ static unsigned boxes_in_shaft(const glint_node *node, const light_shaft *shaft)
 
 typedef struct ray_view {
     float origin[3], slack; ///< in the index's frame
-    float inverse[3]; ///< 1 / direction, infinite where a component is 0: any other stand-in drifts off in the end
+    float inverse[3]; ///< 1 / direction, infinite if a component is 0: with any finite substitute the ray would drift
+        ///< away
 } ray_view;
 
-/// Which boxes the ray may enter before `far` (in units of its direction), and where it enters each.
+/// Returns the boxes that the ray may enter before `far` (in units of its direction), and computes where it enters
+/// each.
 static unsigned boxes_on_ray(const glint_node *node, const ray_view *ray, float far, float depth[GLINT_NODE_WIDTH])
 {
     unsigned inside = 0;
@@ -176,7 +180,7 @@ static unsigned boxes_on_ray(const glint_node *node, const ray_view *ray, float 
             vf middle, half;
             box_axis(node, k, i, ray->origin[k], ray->slack, &middle, &half);
             vf x = (middle - half) * f_set(ray->inverse[k]), y = (middle + half) * f_set(ray->inverse[k]);
-            enter = f_max(f_min(x, y), enter); // NaN, 0 times infinity, keeps what there was
+            enter = f_max(f_min(x, y), enter); // NaN, from 0 times infinity, keeps the previous value
             leave = f_min(f_max(x, y), leave);
         }
         f_store(depth + i, enter);
@@ -186,13 +190,13 @@ static unsigned boxes_on_ray(const glint_node *node, const ray_view *ray, float 
     return inside;
 }
 
-/// A walk may be long; it checks now and then for cancellation.
+/// Returns whether to stop. Long traversals check it from time to time.
 static inline bool is_stopped(const atomic_bool *stop)
 {
     return stop && atomic_load_explicit(stop, memory_order_relaxed);
 }
 
-/// Counts the lanes that are decided about a primitive.
+/// Adds the number of lanes that are decided for a primitive.
 static inline void count_tests(uint64_t *tests, unsigned lanes)
 {
     if (tests)
@@ -201,26 +205,27 @@ static inline void count_tests(uint64_t *tests, unsigned lanes)
 
 // ---- Solids ----
 
-/// Returns whether it is only a side.
+/// Returns whether the solid is only a side, without an inside.
 static inline bool is_open(const glint_solid *solid)
 {
     return solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_FUNNEL;
 }
 
-/// Returns whether a ray that leaves it outwards may hit it again, so that it casts a shadow on itself: of all solids only the torus.
+/// Returns whether a ray that leaves the solid outwards may hit it again, so that it casts a shadow on itself: only a
+/// torus.
 static inline bool is_torus(const glint_geometry_table *table, const glint_prim *prim)
 {
     return prim->kind == GLINT_PRIM_SOLID && table->solids[prim->item].form == GLINT_FORM_TORUS;
 }
 
-// ---- The order of a walk ----
+// ---- The order of traversal ----
 
 typedef struct walk_entry {
     uint32_t node;
     float depth;
 } walk_entry;
 
-/// The slots of `mask` in `order`, nearest first. Returns how many.
+/// Sorts the slots of `mask` into `order`, nearest first. Returns their number.
 static inline int sort_slots(unsigned mask, const float depth[GLINT_NODE_WIDTH], int order[GLINT_NODE_WIDTH])
 {
     int count = 0;

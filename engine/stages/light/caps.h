@@ -1,6 +1,7 @@
-// caps: how much of a sphere light each point sees past spheres and planes, in closed form. Contract: stages.h, occlude.
+// caps: the visible share of a sphere light from each point past spheres and planes, in closed form. Contract:
+// stages.h, occlude.
 //
-// Products of shares are taken in the order of the table, whatever order the index finds the spheres in.
+// Shares are multiplied in the order of the table, whatever the order in which the index finds the spheres.
 #ifndef GLINT_LIGHT_CAPS_H
 #define GLINT_LIGHT_CAPS_H
 
@@ -12,18 +13,18 @@
 #include "engine/stages/occlude/occlude.h"
 #include "engine/stages/simd/real.h"
 
-#define GLINT_CAPS 16 ///< primitives that a group looks up at once
+#define GLINT_CAPS 16 ///< primitives that a group looks up at a time
 
-/// The light as the points of a group see it.
+/// The light as seen from the points of a group.
 typedef struct R(light_cap) {
-    _Alignas(64) real way[3][GLINT_GROUP]; ///< unit, to its centre
+    _Alignas(64) real way[3][GLINT_GROUP]; ///< unit, towards its centre
     _Alignas(64) real sine[GLINT_GROUP], cosine[GLINT_GROUP]; ///< of half the cap's radius
     _Alignas(64) real power[GLINT_GROUP]; ///< squared length of a tangent, in the light's units
-    _Alignas(64) real left[GLINT_GROUP]; ///< share seen so far
-    unsigned around; ///< lanes within the light
+    _Alignas(64) real left[GLINT_GROUP]; ///< visible share so far
+    unsigned around; ///< lanes inside the light
 } R(light_cap);
 
-/// atan2(y, x) of two numbers that are not negative: an eighth of the angle by its series.
+/// Returns atan2(y, x) for y, x >= 0, by the series of an eighth of the angle.
 static inline vr R(angle_of)(vr y, vr x)
 {
     const vr one = r_set(1);
@@ -37,7 +38,7 @@ static inline vr R(angle_of)(vr y, vr x)
     return r_set(8) * (t * sum);
 }
 
-/// The cosine of half the angle whose cosine is k.
+/// Returns the cosine of half the angle whose cosine is k.
 static inline vr R(half_cosine)(vr k) { return r_sqrt(r_set(0.5) + r_set(0.5) * k); }
 
 static void R(make_light_cap)(const glint_occlude_args *args, size_t at, R(light_cap) * cap)
@@ -61,8 +62,8 @@ static void R(make_light_cap)(const glint_occlude_args *args, size_t at, R(light
     }
 }
 
-/// What part of a cap of half sine `ss` and half cosine `cs` lies in one of `sa`, `ca`; `sg`, `cg` are of the angle between
-/// their middles.
+/// Returns the part of a cap of half sine `ss` and half cosine `cs` that lies in a cap of `sa`, `ca`; `sg`, `cg`: of
+/// the angle between their centres.
 static inline vr R(covered_part)(vr ss, vr cs, vr sa, vr ca, vr sg, vr cg)
 {
     const vr zero = r_set(0), one = r_set(1), two = r_set(2);
@@ -86,14 +87,15 @@ static inline vr R(covered_part)(vr ss, vr cs, vr sa, vr ca, vr sg, vr cg)
     return r_select(settled, part, r_min(r_max(lens, zero), one));
 }
 
-/// The share of the light's diameter beyond a height over its middle, where the points are on the side it reaches to.
+/// Returns the share of the light's diameter above a height over its centre, for points on the side of the plane that
+/// the light extends to.
 static inline double R(share_of_diameter)(double radius, double height)
 {
     const double share = (radius + height) / (2 * radius);
     return share < 0 ? 0 : share > 1 ? 1 : share;
 }
 
-/// How far the light's middle is within the sphere, or in front of the plane.
+/// Returns how far the light's centre is inside the sphere, or in front of the plane.
 static inline double R(depth_of_light)(const glint_occlude_args *args, const glint_prim *prim)
 {
     double f[3];
@@ -102,7 +104,7 @@ static inline double R(depth_of_light)(const glint_occlude_args *args, const gli
     return prim->kind == GLINT_PRIM_PLANE ? DOT(prim->normal, f) : prim->radius - sqrt(DOT(f, f));
 }
 
-/// Takes what a primitive covers off the group's shares. own: lanes that are on it.
+/// Multiplies the group's shares by the share that a primitive leaves visible. own: lanes that are on the primitive.
 static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, size_t at, unsigned own, unsigned lit,
                      R(light_cap) * cap)
 {
@@ -144,7 +146,8 @@ static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, siz
     }
 }
 
-/// The first GLINT_CAPS primitives from `from` on that may be before the light, in the table's order. Returns how many.
+/// Lists the first GLINT_CAPS primitives from `from` on that may occlude the light, in the table's order. Returns
+/// their number.
 static int R(look_up_caps)(const R(shadow_tile) * tile, const light_shaft *shaft, uint32_t from,
                            uint32_t ids[GLINT_CAPS])
 {
@@ -179,7 +182,7 @@ static int R(look_up_caps)(const R(shadow_tile) * tile, const light_shaft *shaft
     return count;
 }
 
-/// The shares of one group, and the lanes that have any.
+/// Computes the shares of one group. Returns the lanes with a share above 0.
 static unsigned R(caps_of_group)(const R(shadow_tile) * tile, uint32_t g, unsigned lit, R(light_cap) * cap)
 {
     const glint_occlude_args *args = tile->args;

@@ -1,5 +1,5 @@
-// cone: where the samples of a ball lie that is sampled within the cone in which a point sees it. All of it is double,
-// whatever real is: the cone of a light 1e9 radii away is narrower than a float's roundings. Contract: stages.h, at
+// cone: the positions of samples of a ball, in the cone in which a point sees it. All of it is double, even if real
+// is float: the cone of a light 1e9 radii away is narrower than float's rounding error. Contract: stages.h, at
 // glint_light_sample.
 #ifndef GLINT_LIGHT_CONE_H
 #define GLINT_LIGHT_CONE_H
@@ -11,12 +11,12 @@
 typedef struct R(cone) {
     vd point[3], away[3]; ///< away: to the ball's centre, in the light's units
     vd axis[3], tangent[3], bitangent[3];
-    vd distance, length2, sine, sine2, part; ///< of away; q, q2 and h of cone_sample.h
-    vd before, beyond; ///< squared length of a tangent from outside; of the half chord's from inside
+    vd distance, length2, sine, sine2, part; ///< of `away`; q, q2 and h of cone_sample.h
+    vd before, beyond; ///< squared length of a tangent, for points outside; of the half chord, for points inside
     dm within;
 } R(cone);
 
-/// Directions at right angles to a unit vector (T. Duff et al., JCGT 6(1), 2017).
+/// Computes directions perpendicular to a unit vector (T. Duff et al., JCGT 6(1), 2017).
 static inline void R(cone_frame)(R(cone) * cone)
 {
     const vd one = d_set(1), zero = d_set(0), *n = cone->axis;
@@ -57,8 +57,8 @@ static inline void R(see_ball)(const glint_light_sample *light_sample, double sc
     R(cone_frame)(cone);
 }
 
-/// The directions from the points to one sample of theirs. Returns how far it is to where they meet the ball from outside, or
-/// leave it, in the light's units.
+/// Computes the directions from the points to one sample each. Returns the distances at which they hit the ball from
+/// outside, or leave it, in the light's units.
 static inline vd R(aim_in_cone)(const R(cone) * cone, vd u, vd cosine, vd sine, vd way[3])
 {
     const vd zero = d_set(0), one = d_set(1);
@@ -73,7 +73,7 @@ static inline vd R(aim_in_cone)(const R(cone) * cone, vd u, vd cosine, vd sine, 
     return d_select(cone->within, inside, (cone->distance * cone->before) / far);
 }
 
-/// Places the samples of `count` lamps for the points of the group at `at`, in the set.
+/// Computes the samples of `count` lamps for the points of the group at `at`, into the set.
 static __attribute__((noinline)) void R(place_in_cone)(const glint_light_sample *const light_sample[], uint32_t count, double scale,
                              const void *const point[3], const void *const normal[3], size_t at,
                              R(light_sample_set) * set)

@@ -7,7 +7,7 @@
 #include <math.h>
 
 typedef struct glint_cone_sample {
-    double way[3], far; ///< from the point to the sample: a unit direction, and how far
+    double way[3], far; ///< from the point to the sample: unit direction, and distance
     double place[3];
     double weight; ///< the solid angle over pi
 } glint_cone_sample;
@@ -17,7 +17,7 @@ static inline double glint_cone_dot(const double a[3], const double b[3])
     return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 
-/// A direction of polar angle (sine, cosine) off a unit vector, and around it by x and y.
+/// Computes a direction at the polar angle (sine, cosine) from a unit vector, turned around it by x and y.
 static inline void glint_cone_turn(const double n[3], double x, double y, double cosine, double out[3])
 {
     const double g = n[2] >= 0 ? 1 : -1;
@@ -28,7 +28,7 @@ static inline void glint_cone_turn(const double n[3], double x, double y, double
         out[k] = (x * tangent[k] + y * bitangent[k]) + cosine * n[k];
 }
 
-/// `slack`: GLINT_CONE_SLACK_ of the precision that the point and its normal are of.
+/// Returns a sample. `slack`: GLINT_CONE_SLACK_ for the precision of the point and its normal.
 static inline glint_cone_sample glint_cone_at(const glint_light_sample *light_sample, double scale, double slack,
                                               const double point[3], const double normal[3], uint32_t lane)
 {
@@ -41,7 +41,7 @@ static inline glint_cone_sample glint_cone_at(const glint_light_sample *light_sa
         to[k] = (light_sample->center[k] - point[k]) * scale;
     const double length2 = glint_cone_dot(to, to), d = sqrt(length2), excess = (d - r) * (d + r);
     const double g = excess / length2;
-    if (g < (glint_cone_dot(normal, to) > 0 ? slack : -slack)) { // within: half of all directions
+    if (g < (glint_cone_dot(normal, to) > 0 ? slack : -slack)) { // inside, or on the surface: half of all directions
         const double left = 0 - excess > 0 ? 0 - excess : 0, s = sqrt(u * (2 - u));
         glint_cone_turn(normal, s * turn[0], s * turn[1], 1 - u, out.way);
         const double b = 0 - glint_cone_dot(to, out.way), root = sqrt(b * b + left);

@@ -1,9 +1,9 @@
-// layer: segments from a tile's points to the samples of an area light, as cells of a plane that they go through. Where they cross
-// what lies between, segments that begin far apart may be near each other: a layer across the way has them in the order of its own
-// plane. Float and conservative, as walk.h is.
+// layer: segments from a tile's points to the samples of an area light, sorted into cells of a plane that they cross.
+// At the depth of the occluders, segments that start far apart may be close to each other. A layer perpendicular to
+// the light's direction sorts them by their positions in its own plane. Float and conservative, like walk.h.
 //
-// The frame: from the middle of the points two axes across the way to the light, and one, h, along it, right-handed. A segment is at
-// base + slope h.
+// The frame: origin in the middle of the points, two axes perpendicular to the direction to the light, and one, h,
+// along it, right-handed. A segment is at base + slope h.
 #ifndef GLINT_LIGHT_LAYER_H
 #define GLINT_LIGHT_LAYER_H
 
@@ -13,41 +13,41 @@
 
 #define LAYER_ACROSS 32 ///< columns and rows of cells
 #define LAYER_RAYS (GLINT_TILE_SAMPLES * GLINT_LIGHT_CHUNK)
-#define LAYER_STEEPEST 2 ///< largest slope: beyond, a plane across the way is not worth much
+#define LAYER_STEEPEST 2 ///< largest slope: beyond it, a perpendicular plane is of little use
 
-/// What a segment or a primitive may be off by, of the numbers it is made of: six roundings of a place in the frame, which a slope
-/// of at most LAYER_STEEPEST triples, and as many of base, slope and where that leads.
+/// Bound of the error of a segment or a primitive, relative to its numbers: six roundings of a position in the frame,
+/// which a slope of at most LAYER_STEEPEST triples, and as many for base, slope and the resulting position.
 #define LAYER_SLACK 0x1p-18f
 
-/// The frame, and in it the ends of all segments.
+/// The frame, and the ends of all segments in it.
 typedef struct layer_frame {
-    float origin[3], axis[3][3]; ///< of the index's frame
-    double exact[3]; ///< what the origin is
-    float slack; ///< what rounding may have moved a segment by, at any h
-    float lowest, highest; ///< least and largest h of a point
-    float nearest, farthest; ///< of a sample
+    float origin[3], axis[3][3]; ///< in the index's frame
+    double exact[3]; ///< origin before rounding
+    float slack; ///< bound of a segment's rounding error, at any h
+    float lowest, highest; ///< smallest and largest h of a point
+    float nearest, farthest; ///< smallest and largest h of a sample
     float per_way; ///< 1 / (nearest - highest)
-    float width[2]; ///< of the segments, halfway
-    float slope[2][2]; ///< least and largest
+    float width[2]; ///< of all segments, halfway
+    float slope[2][2]; ///< smallest and largest
     _Alignas(64) float point[3][GLINT_TILE_SAMPLES]; ///< of lit groups
     _Alignas(64) float light[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];
 } layer_frame;
 
-/// Which lanes of the groups of all samples cross the rectangle, and where.
+/// The lanes of the groups of all samples that cross the rectangle, and their cells.
 typedef struct layer_places {
     uint16_t within[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
     _Alignas(64) uint32_t cell[LAYER_RAYS];
 } layer_places;
 
-/// The segments that cross a rectangle of a layer's plane, a cell's in a row, the cells row by row.
+/// The segments that cross a rectangle of a layer's plane, in the order of cells, row by row.
 typedef struct layer_rays {
     layer_places places; ///< before they are sorted
-    float first[2], last[2], cells[2]; ///< the rectangle; cells in a unit of it
+    float first[2], last[2], cells[2]; ///< the rectangle; cells per unit
     _Alignas(64) float base[2][LAYER_RAYS + GLINT_GROUP], slope[2][LAYER_RAYS + GLINT_GROUP];
-    _Alignas(64) float from[LAYER_RAYS + GLINT_GROUP]; ///< h of the point; of blocked ones +inf
+    _Alignas(64) float from[LAYER_RAYS + GLINT_GROUP]; ///< h of the point; +inf for blocked segments
     uint32_t on[LAYER_RAYS + GLINT_GROUP]; ///< the primitive of the point; with BEAM_BACK: seen from behind
     uint16_t at[LAYER_RAYS + GLINT_GROUP]; ///< GLINT_TILE_SAMPLES times the sample, and the point
-    uint16_t begin[LAYER_ACROSS * LAYER_ACROSS + 1]; ///< where each cell's begin
+    uint16_t begin[LAYER_ACROSS * LAYER_ACROSS + 1]; ///< where the segments of each cell begin
 } layer_rays;
 
 /// VF segments of one sample.
@@ -111,7 +111,8 @@ static inline vi cell_in_layer(const layer_rays *rays, int j, vf x)
     return i_from_f(f_min(f_max(cell, f_set(0)), f_set(LAYER_ACROSS - 1)));
 }
 
-/// Finds the cells of the open segments at h. Returns how many cross the rectangle; next[c]: of these, in cell c.
+/// Computes the cells of the unoccluded segments at h. Returns the number of segments that cross the rectangle;
+/// next[c]: of these, in cell c.
 static uint32_t find_cells(const glint_occlude_args *args, const layer_frame *frame, float h, layer_rays *rays,
                            uint16_t next[LAYER_ACROSS * LAYER_ACROSS])
 {
@@ -143,7 +144,7 @@ static uint32_t find_cells(const glint_occlude_args *args, const layer_frame *fr
     return count;
 }
 
-/// Sorts the open segments that cross the rectangle at h. Returns how many.
+/// Sorts the unoccluded segments that cross the rectangle at h. Returns their number.
 static uint32_t sort_layer(const glint_occlude_args *args, const layer_frame *frame, float h, layer_rays *rays)
 {
     uint16_t next[LAYER_ACROSS * LAYER_ACROSS] = { 0 };

@@ -1,5 +1,5 @@
-// layer_blocker: one primitive against the segments in its cells of a layer. Float says what it does to most; the rest are pairs of a
-// segment and a primitive that are decided as everywhere. Contract: stages.h, occlude.
+// layer_blocker: one primitive against the segments in its cells of a layer. Float settles most of them. The rest
+// become pairs of a segment and a primitive, which are decided in real. Contract: stages.h, occlude.
 #ifndef GLINT_LIGHT_LAYER_BLOCKER_H
 #define GLINT_LIGHT_LAYER_BLOCKER_H
 
@@ -19,7 +19,7 @@
 
 // ---- The decision ----
 
-/// Segment i of the layer does not reach its sample.
+/// Marks segment i of the layer as blocked.
 static inline void R(close_segment)(R(layers) * l, uint32_t i)
 {
     const uint32_t at = l->rays.at[i], s = at / GLINT_TILE_SAMPLES, point = at % GLINT_TILE_SAMPLES;
@@ -30,7 +30,7 @@ static inline void R(close_segment)(R(layers) * l, uint32_t i)
     l->open--;
 }
 
-/// Decides the batch: pairs of a segment and one primitive.
+/// Decides the batch: pairs of segments and one primitive.
 static void R(decide_segments)(R(layers) * l, const glint_prim *prim)
 {
     R(beam_batch) *batch = &l->batch;
@@ -79,15 +79,17 @@ typedef struct layer_lanes_met {
 typedef struct R(layer_blocker) {
     const layer_prim *at;
     const glint_prim *prim;
-    bool torus, clear; ///< clear: no sample is as near to the points as it is, or in it
-    float center[3], reach2, inner2; ///< of a sphere: squares of how far off its middle a segment may pass, and surely meets it
-    float above; ///< h that a point is surely below of: of a triangle all of it, of a sphere its middle
-    float doubt; ///< of a triangle: what an edge's number may be off by
-    float unit[3][3], limit; ///< of a solid: from the frame to where it is a unit shape, by axes of the frame; how large it is there, at most
+    bool torus, clear; ///< clear: no sample is inside of it, or as close to the points as it is
+    float center[3], reach2, inner2; ///< of a sphere: squares of the distances from its centre within which a segment
+        ///< may hit it, and certainly hits it
+    float above; ///< the h that a point is certainly below: of a triangle its top, of a sphere its centre
+    float doubt; ///< of a triangle: error bound of its edge functions
+    float unit[3][3], limit; ///< of a solid: from the frame to the space of its unit shape, by axes of the frame;
+        ///< maximum size there
     int form; ///< of a solid
 } R(layer_blocker);
 
-/// A segment passes a triangle where it has all corners, as seen along it, on one side.
+/// Tests a triangle: a segment crosses it if all corners, as seen along it, are on one side.
 INNER layer_lanes_met R(meet_corners)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
 {
     const vf base[2] = { f_load_any(rays->base[0] + i), f_load_any(rays->base[1] + i) };
@@ -102,12 +104,12 @@ INNER layer_lanes_met R(meet_corners)(const layer_rays *rays, const R(layer_bloc
     for (int j = 0; j < 3; j++)
         e[j] = x[(j + 1) % 3] * y[(j + 2) % 3] - x[(j + 2) % 3] * y[(j + 1) % 3];
     const vf least = f_min(f_min(e[0], e[1]), e[2]), most = f_max(f_max(e[0], e[1]), e[2]);
-    const vf area = (e[0] + e[1]) + e[2], of_area = f_set(3) * doubt; // NaN where any edge's number is
+    const vf area = (e[0] + e[1]) + e[2], of_area = f_set(3) * doubt; // NaN if any edge function is NaN
     const fm front_side = f_lt(of_area, area), back_side = f_lt(area, -of_area), apart = fm_and(f_lt(least, -doubt), f_lt(doubt, most));
     const fm front = fm_and(f_lt(doubt, least), front_side), back = fm_and(f_lt(most, -doubt), back_side);
     const vi owner = f_bits(f_load_any((const float *)(rays->on + i))), id = i_set(b->at->id);
     const fm own = i_eq(i_and(owner, i_set(~BEAM_BACK)), id), seen_behind = i_eq(owner, i_set(b->at->id | BEAM_BACK));
-    // its own points are dark where light and viewer are on different sides
+    // a triangle's own points are dark if light and viewer are on different sides
     const fm lit = fm_or(fm_andnot(front_side, seen_behind), fm_and(back_side, seen_behind));
     const fm there = f_le(from, f_set(b->at->high[2]));
     layer_lanes_met out;
@@ -116,7 +118,7 @@ INNER layer_lanes_met R(meet_corners)(const layer_rays *rays, const R(layer_bloc
     return out;
 }
 
-/// A segment meets a sphere for certain where it is inside of it as high as its middle is.
+/// Tests a sphere: a segment certainly hits it if it is inside of it at the height of its centre.
 INNER layer_lanes_met R(meet_middle)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
 {
     const vf slope[2] = { f_load_any(rays->slope[0] + i), f_load_any(rays->slope[1] + i) };
@@ -134,8 +136,9 @@ INNER layer_lanes_met R(meet_middle)(const layer_rays *rays, const R(layer_block
     return out;
 }
 
-/// Lanes whose lines miss a solid for certain, in the place of its unit shape. Cylinders, cones and disks lie within a cylinder around the
-/// axis, balls and tori within a ball. A box and a line are apart where an axis across the line and an edge of the box separates them.
+/// Returns the lanes whose lines certainly miss a solid, in the space of its unit shape. Cylinders, cones and disks
+/// are bounded by a cylinder around the axis, balls and tori by a ball. A box and a line are apart if an axis
+/// perpendicular to the line and to an edge of the box separates them.
 INNER fm R(off_unit_shape)(const R(layer_blocker) * b, const vf x[2], const vf slope[2])
 {
     vf o[3], d[3];
@@ -155,7 +158,7 @@ INNER fm R(off_unit_shape)(const R(layer_blocker) * b, const vf x[2], const vf s
     return fm_or(off, f_lt(limit * (f_abs(d[0]) + f_abs(d[1])), f_abs(c[2])));
 }
 
-/// Other primitives are as large as their boxes.
+/// Tests other primitives by their bounding boxes.
 INNER layer_lanes_met R(meet_extent)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
 {
     const float *low = b->at->low, *high = b->at->high;
@@ -198,8 +201,8 @@ INNER void R(block_segments)(R(layers) * l, const R(layer_blocker) * b, uint32_t
     }
 }
 
-/// What rounding may have moved a segment and a primitive by, at heights from `least` to `most`. Beyond the segment's ends that grows with
-/// how far it is extended.
+/// Returns a bound of the error of a segment and a primitive, at heights from `least` to `most`. Beyond the ends of a
+/// segment the error grows with the extrapolation.
 static inline float R(slack_at)(const layer_frame *frame, const layer_prim *prim, float least, float most)
 {
     float size = 0;
@@ -209,7 +212,7 @@ static inline float R(slack_at)(const layer_frame *frame, const layer_prim *prim
     return (frame->slack + LAYER_SLACK * (size + largest_of(least, most))) * (1 + 2 * beyond * frame->per_way);
 }
 
-/// Where segments that meet a primitive cross a plane at h, along axis j.
+/// Computes bounds of the positions, along axis j, at which segments that hit a primitive cross a plane at h.
 static inline void R(cross_plane)(const layer_frame *frame, const layer_prim *prim, float h, int j, float *least, float *most)
 {
     const float up = h - prim->low[2], down = h - prim->high[2]; // up >= down
@@ -239,7 +242,7 @@ static void R(make_ball)(const R(layers) * l, R(layer_blocker) * out)
     out->clear = out->clear && h < frame->nearest && R(light_outside)(l->tile, prim);
 }
 
-/// `wide` as in make_blocker.
+/// Fills in the data by shape. `wide`: as in make_blocker.
 static void R(make_shape)(const R(layers) * l, float wide, R(layer_blocker) * out)
 {
     const layer_frame *frame = &l->frame;
@@ -263,7 +266,8 @@ static void R(make_shape)(const R(layers) * l, float wide, R(layer_blocker) * ou
     out->limit = (float)(solid->form == GLINT_FORM_TORUS ? 1 + solid->tube : 1) * 1.00001f + 2 * slack * (float)sqrt(size);
 }
 
-/// wide: bounds the distance across the way between a segment and a corner of the primitive, along both axes.
+/// Prepares a primitive. wide: bound of the perpendicular distance between a segment and a corner of the primitive,
+/// along both axes.
 static void R(make_blocker)(const R(layers) * l, const layer_prim *at, float wide, R(layer_blocker) * out)
 {
     const glint_geometry_table *geometry = l->tile->args->geometry;
@@ -285,7 +289,7 @@ static void R(make_blocker)(const R(layers) * l, const layer_prim *at, float wid
     out->clear = most < l->frame.nearest - slack;
 }
 
-/// Tests the segments in the cells that primitive n may be in.
+/// Tests the segments in the cells of primitive n.
 static void R(block_layer)(R(layers) * l, int n, float h)
 {
     const layer_rays *rays = &l->rays;

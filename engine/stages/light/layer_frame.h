@@ -1,4 +1,5 @@
-// layer_frame: what the layers of a tile share, and its frame (layer.h) made of points and samples. Contract: stages.h, occlude.
+// layer_frame: the data that the layers of a tile share, and their frame (layer.h), which is computed from points and
+// samples. Contract: stages.h, occlude.
 #ifndef GLINT_LIGHT_LAYER_FRAME_H
 #define GLINT_LIGHT_LAYER_FRAME_H
 
@@ -10,7 +11,7 @@
 
 #if GLINT_REAL == 64
 
-#define LAYER_PRIMS 1024 ///< that are tested at once
+#define LAYER_PRIMS 1024 ///< maximum number of primitives tested at a time
 #define LAYERS_MOST 16
 
 /// A primitive in the frame.
@@ -27,22 +28,23 @@ typedef struct R(layers) {
     int count;
     layer_prim prim[LAYER_PRIMS];
     uint16_t order[LAYER_PRIMS]; ///< by layer
-    float least[LAYER_PRIMS][2], most[LAYER_PRIMS][2]; ///< between which segments that meet it cross the plane of its layer
-    uint8_t first[LAYER_PRIMS][2], last[LAYER_PRIMS][2]; ///< cells of these
-    uint32_t open; ///< segments
+    float least[LAYER_PRIMS][2], most[LAYER_PRIMS][2]; ///< bounds of the positions at which segments that hit it cross
+        ///< the plane of its layer
+    uint8_t first[LAYER_PRIMS][2], last[LAYER_PRIMS][2]; ///< the cells of these positions
+    uint32_t open; ///< number of unoccluded segments
     R(beam_batch) batch;
-    _Alignas(64) real light[3][GLINT_GROUP]; ///< of the batch: the samples,
+    _Alignas(64) real light[3][GLINT_GROUP]; ///< of the batch: the samples
     _Alignas(64) real direction[3][GLINT_GROUP], slack[GLINT_GROUP]; ///< and the rays that hit the points
 } R(layers);
 
-/// Grows two bounds by the places of lanes.
+/// Extends two bounds by the positions of lanes.
 static inline void bound_places(const float (*place)[GLINT_GROUP], unsigned lanes, vf least[3], vf most[3])
 {
     for (int j = 0; j < 3; j++)
         widen(place[j], lanes, &least[j], &most[j]);
 }
 
-/// Places the points of lit groups, and bounds them.
+/// Computes the positions of the points of lit groups, and their bounds.
 static void R(place_points)(const R(shadow_tile) * tile, const uint16_t *lit, layer_frame *frame, vf least[3], vf most[3])
 {
     for (uint32_t g = 0; g < tile->args->group_count; g++) {
@@ -62,7 +64,7 @@ static void R(place_points)(const R(shadow_tile) * tile, const uint16_t *lit, la
     }
 }
 
-/// Places the samples, and bounds them.
+/// Computes the positions of the samples, and their bounds.
 static void R(place_samples)(const R(shadow_tile) * tile, layer_frame *frame, vf least[3], vf most[3])
 {
     const glint_geometry_table *geometry = tile->args->geometry;
@@ -82,7 +84,7 @@ static void R(place_samples)(const R(shadow_tile) * tile, layer_frame *frame, vf
     }
 }
 
-/// Makes the frame. False: points and samples lie beside each other along the way, or too steep.
+/// Makes the frame. Returns false if points and samples overlap in depth, or a slope is too steep.
 static bool R(aim_layers)(const R(shadow_tile) * tile, const uint16_t *lit, layer_frame *frame)
 {
     const glint_geometry_table *geometry = tile->args->geometry;

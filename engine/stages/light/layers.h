@@ -1,6 +1,7 @@
-// occlude_by_layers: which samples of an area light reach the points, where too much lies between for a list. The index is walked
-// once for all of them; what it finds is cut into layers (layer.h) and tested there. What float says is certain stays so; the rest is
-// decided from point to sample as everywhere. Contract: stages.h, occlude.
+// occlude_by_layers: computes which samples of an area light reach the points, for tiles with too many occluders for
+// a list. The index is traversed once for all segments. The primitives found are sorted into layers (layer.h) and
+// tested there. Certain results of the float test are final; the rest is decided in real, from point to sample.
+// Contract: stages.h, occlude.
 #ifndef GLINT_LIGHT_LAYERS_H
 #define GLINT_LIGHT_LAYERS_H
 
@@ -19,9 +20,9 @@
 
 #if GLINT_REAL == 64
 
-// ---- What is between ----
+// ---- The occluders ----
 
-/// Places the corners of the triangles in the slots of `mask`.
+/// Computes the positions of the corners of the triangles in the slots of `mask`.
 static inline void R(place_corners)(const R(layers) * l, const glint_node *node, unsigned mask, float to[3][3][GLINT_NODE_WIDTH])
 {
     const glint_geometry_table *geometry = l->tile->args->geometry;
@@ -43,7 +44,8 @@ static inline void R(place_corners)(const R(layers) * l, const glint_node *node,
     }
 }
 
-/// Notes the primitives in the slots of `mask` that may be between points and samples. There is room.
+/// Records the primitives in the slots of `mask` that may be between points and samples. The caller checks that there
+/// is space.
 static void R(note_prims)(R(layers) * l, const glint_node *node, unsigned mask)
 {
     const layer_frame *frame = &l->frame;
@@ -56,7 +58,7 @@ static void R(note_prims)(R(layers) * l, const glint_node *node, unsigned mask)
             box_axis(node, k, i, frame->origin[k], frame->slack, &middle[k], &half[k]);
         for (int j = 0; j < 3; j++) {
             box_along(middle, half, frame->axis[j], &least[j], &most[j]);
-            if (j == 2) { // what is beyond the ends of segments does not matter
+            if (j == 2) { // parts beyond the ends of the segments do not matter
                 least[j] = f_max(least[j], f_set(frame->lowest - frame->slack));
                 most[j] = f_min(most[j], f_set(frame->farthest + frame->slack));
             }
@@ -83,8 +85,9 @@ static void R(note_prims)(R(layers) * l, const glint_node *node, unsigned mask)
 
 // ---- Layers ----
 
-/// Into how many layers the noted primitives, with middles from `low` to `high`, are best cut. In nanoseconds, as measured with vectors of
-/// 16: a segment is sorted in 2, a vector of them tested in 12, a primitive and each of its rows of cells begun in 40 and in 4.
+/// Returns the best number of layers for the recorded primitives, with middles from `low` to `high`. The costs are in
+/// nanoseconds, measured with vectors of 16: 2 to sort a segment, 12 to test a vector of them, 40 to begin a
+/// primitive, and 4 for each of its rows of cells.
 static int R(count_layers)(const R(layers) * l, float low, float high)
 {
     const layer_frame *frame = &l->frame;
@@ -99,7 +102,7 @@ static int R(count_layers)(const R(layers) * l, float low, float high)
         for (int j = 0; j < 2; j++) {
             const float cell = frame->width[j] / LAYER_ACROSS;
             const float off = 0.25f * (high - low) / (float)layers * (frame->slope[j][1] - frame->slope[j][0]);
-            rows = smaller(size[j] + off + cell, frame->width[j]) / cell; // of the second axis
+            rows = smaller(size[j] + off + cell, frame->width[j]) / cell; // along the second axis
             vectors *= rows / LAYER_ACROSS;
         }
         const float time = 2 * segments * (float)layers + prims * (40 + 4 * rows + 12 * (vectors + 0.5f * rows));
@@ -111,7 +114,7 @@ static int R(count_layers)(const R(layers) * l, float low, float high)
     return best;
 }
 
-/// Finds the cells of a layer's plane that primitive n may be in.
+/// Computes the cells of a layer's plane that primitive n may be in.
 static void R(find_cells_of)(R(layers) * l, int n)
 {
     const layer_rays *rays = &l->rays;
@@ -152,7 +155,7 @@ static void R(block_one_layer)(R(layers) * l, const uint16_t *order, int count)
     }
 }
 
-/// Tests the noted primitives.
+/// Tests the recorded primitives.
 static void R(block_noted)(R(layers) * l)
 {
     uint16_t begin[LAYERS_MOST + 1] = { 0 };
@@ -164,7 +167,7 @@ static void R(block_noted)(R(layers) * l)
     }
     const int layers = l->count ? R(count_layers)(l, low, high) : 0;
     const float per_h = high > low ? (float)layers / (high - low) : 0;
-    for (int pass = 0; pass < 2; pass++) { // counts, then places
+    for (int pass = 0; pass < 2; pass++) { // first counts, then stores
         for (int n = 0; n < l->count; n++) {
             const float middle = 0.5f * (l->prim[n].low[2] + l->prim[n].high[2]);
             const int layer = (int)smaller((middle - low) * per_h, (float)(layers - 1));
@@ -182,7 +185,7 @@ static void R(block_noted)(R(layers) * l)
     l->count = 0;
 }
 
-/// Walks the index with all segments of the tile.
+/// Traverses the index with all segments of the tile.
 static void R(walk_layers)(R(layers) * l)
 {
     const R(shadow_tile) *tile = l->tile;
@@ -217,7 +220,8 @@ static void R(begin_segments)(R(layers) * l)
         l->batch.args.direction[k] = l->direction[k];
 }
 
-/// False: there is no room, or no frame can be made of these points and samples, and nothing is done.
+/// Computes args->open for all samples. Returns false, with nothing changed, if there is no memory, or if no frame
+/// fits these points and samples.
 static bool R(occlude_by_layers)(R(shadow_tile) * tile, const uint16_t *lit)
 {
     const glint_occlude_args *args = tile->args;
@@ -226,7 +230,7 @@ static bool R(occlude_by_layers)(R(shadow_tile) * tile, const uint16_t *lit)
     _Static_assert(sizeof *l <= GLINT_OCCLUDE_ROOM, "the room of the contract holds the layers");
     if (!l || tile->unbounded > GLINT_OCCLUDERS || R(is_cone)(args->light_sample[0]) || !R(aim_layers)(tile, lit, &l->frame))
         return false;
-    tile->count = tile->unbounded; // these by a list
+    tile->count = tile->unbounded; // these are tested by a list
     R(occlude_listed)(tile, lit);
     l->tile = tile;
     l->count = 0;
@@ -239,7 +243,7 @@ static bool R(occlude_by_layers)(R(shadow_tile) * tile, const uint16_t *lit)
     R(walk_layers)(l);
     return true;
 }
-#else // float decides: see occlude_walking
+#else // for float decisions see occlude_walking
 
 static bool R(occlude_by_layers)(R(shadow_tile) * tile, const uint16_t *lit)
 {

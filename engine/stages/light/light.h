@@ -1,6 +1,6 @@
-// light: what one light does at each point, before shadows and colours. The geometry is real; what needs no more than
-// float (square root, division, logarithm) follows in float over the whole group. Here are spots and area lights, and what
-// plain.h and lit_surface.h need; the stage itself is in plain.h. Contract: stages.h.
+// light: the effect of one light at each point, before shadows and colours. The geometry is real; square root,
+// division and logarithm follow in float for the whole group, as float is enough. This file has spots and area
+// lights, and functions for plain.h and lit_surface.h; the stage itself is in plain.h. Contract: stages.h.
 #ifndef GLINT_LIGHT_LIGHT_H
 #define GLINT_LIGHT_LIGHT_H
 
@@ -13,13 +13,13 @@
 typedef struct R(lit_group) {
     _Alignas(64) real along[GLINT_GROUP]; ///< n.l, in the light's units
     _Alignas(64) real distance2[GLINT_GROUP];
-    _Alignas(64) real x[GLINT_GROUP], x_less_1[GLINT_GROUP]; ///< (r.v)^2 or (n.h)^2, and that less 1
+    _Alignas(64) real x[GLINT_GROUP], x_less_1[GLINT_GROUP]; ///< (r.v)^2 or (n.h)^2, and the same minus 1
     _Alignas(64) float cone_cosine[GLINT_GROUP], cone_less_1[GLINT_GROUP], cone_step[GLINT_GROUP]; ///< of a spot
     unsigned lit, shiny;
-    vf brightest; ///< of the groups so far, a lane
+    vf brightest; ///< over the groups so far, by lane
 } R(lit_group);
 
-/// (r.v)^2 is num / den; where there is one.
+/// Computes (r.v)^2 as num / den. Returns the lanes that have it.
 INNER rm R(phong_parts)(vr nl, vr nv, vr lv, vr l2a, vr *num, vr *den)
 {
     vr rv = (r_set(2) * nl) * nv - lv;
@@ -28,8 +28,8 @@ INNER rm R(phong_parts)(vr nl, vr nv, vr lv, vr l2a, vr *num, vr *den)
     return r_lt(r_set(0), rv);
 }
 
-/// (n.h)^2 likewise, of one h for both: at grazing light h is what is left of a difference, and another rounding of it below
-/// than above the line would count 1 / |h|^2 times, and then shininess times.
+/// Computes (n.h)^2 likewise, with the same h in num and den. At grazing light h is a difference with few digits
+/// left: if it were rounded differently in num and den, the error would grow by 1 / |h|^2, and then by the shininess.
 INNER vr R(blinn_parts)(const vr n[3], const vr l[3], const vr d[3], vr l2, vr a, vr *num, vr *den)
 {
     const vr w = r_sqrt(l2 * a);
@@ -40,15 +40,15 @@ INNER vr R(blinn_parts)(const vr n[3], const vr l[3], const vr d[3], vr l2, vr a
     return nh;
 }
 
-/// The common data of a light's samples: the surfaces of one group, and one vector of its lanes.
+/// Data shared by a light's samples: the surfaces of one group, and one vector of its lanes.
 typedef struct R(lit_point) {
     unsigned phong, blinn; ///< lanes by the highlight of their material
-    _Alignas(64) float least[GLINT_GROUP]; ///< of their material, where highlights are spared; else 0
+    _Alignas(64) float least[GLINT_GROUP]; ///< of their material, if `sparing`; otherwise 0
     R(group_directions) directions;
     vr point[3], normal[3];
-    bool aimed; ///< the next is made
+    bool aimed; ///< the next field is set
     vr direction[3];
-    bool viewed; ///< and these
+    bool viewed; ///< the next fields are set
     vr a, nv; ///< a = length2(direction)
 } R(lit_point);
 
@@ -70,7 +70,7 @@ INNER vr R(fall_off)(const glint_light_args *args, vr distance)
     return r_set(1) / (c0 + (c1 * distance + c2 * (distance * distance)));
 }
 
-/// The real part of one vector of lanes, for sample s. `kind` is a constant.
+/// Computes the real part of one vector of lanes, for sample s. `kind` is a constant.
 INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t s,
                           const R(light_sample_set) * light_samples, size_t at, int i, unsigned open,
                           R(lit_point) * surface, R(lit_group) * group)
@@ -137,7 +137,7 @@ INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t
     group->shiny |= rm_bits(rm_and(some, r_le(r_set(0x1p-126), x))) << i;
 }
 
-/// The float part of one group.
+/// Computes the float part of one group.
 INNER void R(finish_light)(const glint_light_args *args, const int kind, uint32_t s, size_t at, R(lit_group) * group)
 {
     for (int i = 0; i < GLINT_GROUP; i += VF) {
@@ -174,7 +174,7 @@ INNER void R(say_brightest)(const glint_light_args *args, uint32_t s, vf brighte
         *args->brightest[s] = f_max_all(brightest);
 }
 
-/// Notes the highlight of lanes that show one material.
+/// Sets the highlight of lanes that show one material.
 INNER void R(sort_lanes)(const glint_light_args *args, const glint_shade_material *material, unsigned lanes,
                          R(lit_point) * surface)
 {
@@ -188,7 +188,7 @@ INNER void R(sort_lanes)(const glint_light_args *args, const glint_shade_materia
                 f_select(fm_from_bits(lanes >> i & ((1u << VF) - 1)), least, f_load(surface->least + i)));
 }
 
-/// Lanes by the highlight of their material.
+/// Sorts lanes by the highlight of their material.
 INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned left, R(lit_point) * surface)
 {
     surface->phong = surface->blinn = 0;
@@ -200,7 +200,7 @@ INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned 
     }
 }
 
-/// The real part of a group for each sample, after its surfaces.
+/// Computes the real part of a group for each sample. The surfaces must be known.
 INNER void R(light_group)(const glint_light_args *args, const int kind, const uint32_t samples,
                           R(light_sample_set) * light_samples, R(group_place) place, R(lit_point) * surface,
                           R(lit_group) * groups)
@@ -224,7 +224,7 @@ INNER void R(light_group)(const glint_light_args *args, const int kind, const ui
     }
 }
 
-/// All groups. `kind` is a constant, and so is `samples` of a light without.
+/// Computes all groups. `kind` is a constant, and so is `samples` for a light without samples.
 static inline void R(light_groups)(const glint_light_args *args, const int kind, const uint32_t samples,
                                    R(light_sample_set) * light_samples, R(lit_group) * groups)
 {

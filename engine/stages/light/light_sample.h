@@ -1,4 +1,4 @@
-// lamp: what spot and area lights add to a light's arithmetic. Contract: stages.h, at glint_light_args.
+// lamp: spot and area lights: their additions to a light's arithmetic. Contract: stages.h, at glint_light_args.
 #ifndef GLINT_LIGHT_LIGHT_SAMPLE_H
 #define GLINT_LIGHT_LIGHT_SAMPLE_H
 
@@ -8,24 +8,24 @@
 #define LIGHT_PLAIN 0 // kinds of light that the light stage is compiled for
 #define LIGHT_SPOT 1
 #define LIGHT_LIGHT_SAMPLE 2
-#define LIGHT_CONE 3 // lamps that are placed anew for each group
+#define LIGHT_CONE 3 // lamps whose samples are computed for each group
 
-/// A lamp's lanes as the stage computes with them.
+/// A lamp's lanes, in the type that the stage computes with.
 typedef struct R(light_sample_lanes) {
     const real (*position)[GLINT_GROUP], (*normal)[GLINT_GROUP];
-    const double (*place)[GLINT_GROUP]; ///< the positions, not rounded
+    const double (*place)[GLINT_GROUP]; ///< the unrounded positions
 } R(light_sample_lanes);
 
 /// The samples of one call.
 typedef struct R(light_sample_set) {
     R(light_sample_lanes) light_sample[GLINT_LIGHT_CHUNK];
 #if GLINT_REAL == 32
-    _Alignas(64) float rounded[GLINT_LIGHT_CHUNK][2][3][GLINT_GROUP]; ///< what these point to
+    _Alignas(64) float rounded[GLINT_LIGHT_CHUNK][2][3][GLINT_GROUP]; ///< the memory that these point to
 #endif
-    // of GLINT_EMIT_CONE, for the group at hand:
+    // for GLINT_EMIT_CONE, of the current group:
     _Alignas(64) double place[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];
     _Alignas(64) real way[GLINT_LIGHT_CHUNK][3][GLINT_GROUP], far[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< from the points:
-        ///< unit directions, and how far
+        ///< unit directions, and distances
     _Alignas(64) real weight[GLINT_GROUP]; ///< the cone's solid angle over pi
 } R(light_sample_set);
 
@@ -55,7 +55,7 @@ static inline void R(load_light_samples)(const glint_light_sample *const light_s
     }
 }
 
-/// The lanes within the cone; their cosine, less 1 too, and the smooth step there.
+/// Returns the lanes within the cone. Also computes their cosine, the cosine minus 1, and the smooth step there.
 static inline rm R(in_cone)(const glint_spot *spot, const vr l[3], vr l2, float cosine[], float less_1[], float step[])
 {
     const vr axis[3] = { r_set(spot->axis[0]), r_set(spot->axis[1]), r_set(spot->axis[2]) };
@@ -71,7 +71,7 @@ static inline rm R(in_cone)(const glint_spot *spot, const vr l[3], vr l2, float 
     return lit;
 }
 
-/// The cone's factor in float; the lanes that are not lit mean nothing.
+/// Returns the cone's factor in float; undefined in lanes that are not lit.
 static inline vf R(cone_factor)(const glint_spot *spot, fm lit, vf cosine, vf less_1, vf step)
 {
     if (spot->exponent == 0)
@@ -80,7 +80,8 @@ static inline vf R(cone_factor)(const glint_spot *spot, fm lit, vf cosine, vf le
     return step * f_exp2(f_set(spot->exponent) * f_log2(f_select(lit, cosine, one), f_select(lit, less_1, f_set(0))));
 }
 
-/// The lanes that a sample shines at; *m: the cosine at the lamp, times the distance in the light's units.
+/// Returns the lanes towards which a sample emits; *m: the cosine at the lamp, times the distance in the light's
+/// units.
 static inline rm R(in_front)(const glint_light_sample *light_sample, const R(light_sample_lanes) * lanes, int i,
                              const vr l[3], vr *m)
 {

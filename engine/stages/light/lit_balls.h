@@ -1,5 +1,5 @@
-// lit_balls: surface and the light of one plain lamp of groups that show nothing but spheres, in some of their lanes or in all:
-// the lanes are worked off together, each with the sphere of its own. The arithmetic is that of surface.h and plain.h.
+// lit_balls: surface and light of one plain lamp, for groups that show only spheres in some or all of their lanes.
+// All lanes are processed together, each with its own sphere. The arithmetic is that of surface.h and plain.h.
 // Contract: stages.h.
 #ifndef GLINT_LIGHT_LIT_BALLS_H
 #define GLINT_LIGHT_LIT_BALLS_H
@@ -11,7 +11,7 @@
 #include "engine/stages/simd/real.h"
 #include "engine/stages/surface/surface.h"
 
-/// The spheres of a group, a lane each; of lanes without a hit 0.
+/// The spheres of a group, one per lane; 0 in lanes without a hit.
 typedef struct R(ball_lanes) {
     vr center[3][LIT_PARTS], radius[LIT_PARTS], scale[LIT_PARTS], inverse_radius[LIT_PARTS];
 } R(ball_lanes);
@@ -41,7 +41,8 @@ INNER void R(put_ball)(const glint_prim *prim, unsigned lanes, R(ball_lanes) * b
     }
 }
 
-/// Finds the spheres of the lanes in `hits`, and their constants. Returns false if some are of another kind.
+/// Looks up the spheres of the lanes in `hits`, and their constants. Returns false if some hit is on another kind of
+/// primitive.
 INNER bool R(find_balls)(const glint_surface_args *surface, const glint_light_args *light, size_t at, unsigned hits,
                          R(surface_walk) * walk, R(ball_lanes) * balls, R(lit_point) * point)
 {
@@ -64,7 +65,8 @@ INNER bool R(find_balls)(const glint_surface_args *surface, const glint_light_ar
     return true;
 }
 
-/// Points and normals of part j. Returns the lanes of a camera that is near enough, *back: of these, those seen from behind.
+/// Computes points and normals of part j. Returns the lanes in which the camera is near enough to the sphere; *back:
+/// of these, those seen from behind.
 INNER unsigned R(find_ball_part)(const glint_surface_args *surface, const R(ball_lanes) * balls,
                                  R(group_directions) directions, size_t at, int j, R(plain_part) * part, unsigned *back)
 {
@@ -93,8 +95,8 @@ INNER unsigned R(find_ball_part)(const glint_surface_args *surface, const R(ball
     return rm_bits(r_lt(ff, r_set(GLINT_SPHERE_NEAR)));
 }
 
-/// The parts of a group. Returns whether the camera is near enough to the spheres of all lanes in `hits`; *back: of these, those seen
-/// from behind.
+/// Computes the parts of a group. Returns whether the camera is near enough to the spheres of all lanes in `hits`;
+/// *back: of these, those seen from behind.
 INNER bool R(find_ball_parts)(const glint_surface_args *surface, const R(ball_lanes) * balls, R(group_place) place,
                               unsigned hits, R(plain_part) * parts, unsigned *back)
 {
@@ -112,7 +114,7 @@ INNER bool R(find_ball_parts)(const glint_surface_args *surface, const R(ball_la
     return !(hits & ~near);
 }
 
-/// Writes them, lanes without a hit as 0.
+/// Stores the parts, with 0 in lanes without a hit.
 INNER void R(store_ball_parts)(const glint_surface_args *surface, const R(plain_part) * parts, size_t at, unsigned hits,
                                bool normals, R(point_box) * box)
 {

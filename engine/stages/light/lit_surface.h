@@ -1,5 +1,5 @@
-// lit_surface: surface and the light of one plain lamp, a group at a time, so that a point and its normal need not come
-// from memory. The arithmetic is theirs. Contract: stages.h.
+// lit_surface: surface and light of one plain lamp in one pass over each group, so that points and normals stay in
+// registers. The arithmetic is that of surface.h and light.h. Contract: stages.h.
 #ifndef GLINT_LIGHT_LIT_SURFACE_H
 #define GLINT_LIGHT_LIT_SURFACE_H
 
@@ -14,12 +14,12 @@
 
 /// The real part of a group.
 typedef struct R(lit_whole) {
-    vr nl[LIT_PARTS], l2[LIT_PARTS]; ///< n.l and its length squared, in the light's units
-    vr num[LIT_PARTS], den[LIT_PARTS]; ///< of (r.v)^2 or (n.h)^2, where `some` has lanes
+    vr nl[LIT_PARTS], l2[LIT_PARTS]; ///< n.l, and the squared length of l, in the light's units
+    vr num[LIT_PARTS], den[LIT_PARTS]; ///< of (r.v)^2 or (n.h)^2, in lanes of `some`
     unsigned lit, back, some; ///< lanes
 } R(lit_whole);
 
-/// The data that all groups of a call read, as real, in memory.
+/// Data read by all groups of a call, as real, in memory.
 typedef struct R(lit_call) {
     real position[3], scale;
     bool scaled;
@@ -31,7 +31,7 @@ typedef struct R(lit_wants) {
     bool normals, slack;
 } R(lit_wants);
 
-/// VR lanes of it, at p, where n is the outward normal, seen along d.
+/// Computes VR lanes of the real part, at p, where n is the outward normal, seen along d.
 INNER void R(light_part)(const glint_surface_args *surface, const glint_light_args *light, const R(lit_call) * call,
                          const R(lit_wants) wants, const glint_shade_material *material, const vr d[3], const vr n[3],
                          const vr p[3], size_t at, int j, R(point_box) * box, R(lit_whole) * whole)
@@ -55,7 +55,7 @@ INNER void R(light_part)(const glint_surface_args *surface, const glint_light_ar
     for (int k = 0; wants.normals && k < 3; k++)
         r_store((real *)surface->normal[k] + at + i, r_select(back, -n[k], n[k]));
     vr nl = DOT(n, l);
-    nl = r_select(back, -nl, nl); // as of the normal that is turned to the viewer
+    nl = r_select(back, -nl, nl); // for the normal turned towards the viewer
     const rm ahead = r_lt(r_set(0), nl);
     whole->nl[j] = nl;
     whole->l2[j] = l2;
@@ -77,7 +77,7 @@ INNER void R(light_part)(const glint_surface_args *surface, const glint_light_ar
     whole->some |= rm_bits(rm_and(ahead, rm_andnot(some, spared))) << i;
 }
 
-/// The parts of a group of one sphere near the eye, plane or solid; `kind`, of these, is a constant.
+/// Computes the parts of a group that shows one solid, plane or sphere near the eye; `kind` is a constant.
 INNER void R(light_parts)(const glint_surface_args *surface, const glint_light_args *light, const R(lit_call) * call,
                           R(seen_slot) * slot, const R(lit_wants) wants, const glint_prim_kind kind, const glint_shade_material *material,
                           R(group_directions) directions, size_t at, R(point_box) * box, R(lit_whole) * whole)
@@ -99,7 +99,7 @@ INNER vf R(join)(const vr *x)
 #endif
 }
 
-/// The highlights of VF lanes from i on.
+/// Returns the highlights of VF lanes from i on.
 INNER vf R(lit_log2)(const R(lit_whole) * whole, int i)
 {
     unsigned some = whole->some >> i & ((1u << VF) - 1);
@@ -116,7 +116,7 @@ INNER vf R(lit_log2)(const R(lit_whole) * whole, int i)
     return f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR));
 }
 
-/// The float part, of light or sample s. `shiny`, a constant: `some` may have lanes.
+/// Computes the float part, for light or sample s. `shiny`, a constant: `some` may have lanes.
 INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * whole, const bool shiny, uint32_t s,
                            size_t at, vf *brightest)
 {
@@ -142,8 +142,9 @@ INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * w
     }
 }
 
-/// A group that shows one sphere, plane or solid in every lane, and that from where it is not dark: the common case. Returns whether
-/// it is one. mixed: surface->mixed; normals: whether all are wanted; both constants.
+/// Processes a group that shows one sphere, plane or solid in every lane, from a side that is not dark: the common
+/// case. Returns whether the group is one. mixed: surface->mixed; normals: whether all are wanted; both are
+/// constants.
 INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
                           const bool mixed, const bool normals, R(group_place) place, R(point_box) * box,
                           vf *brightest)

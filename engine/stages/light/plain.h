@@ -1,5 +1,5 @@
-// plain: what lights without a surface or a cone do, one or several that are alike but for where they are. What does not depend
-// on a light is found once for all of them. The arithmetic is that of light.h. Contract: stages.h.
+// plain: lights without a surface or a cone: one, or several that differ only in position. Values that do not depend
+// on the light are computed once for all of them. The arithmetic is that of light.h. Contract: stages.h.
 #ifndef GLINT_LIGHT_PLAIN_H
 #define GLINT_LIGHT_PLAIN_H
 
@@ -8,14 +8,14 @@
 #include "engine/stages/light/lit_surface.h"
 #include "engine/stages/simd/real.h"
 
-/// VR points as every light finds them.
+/// VR points, with the data that all lights share.
 typedef struct R(plain_part) {
     vr point[3], normal[3], direction[3];
     vr a, nv; ///< length2(direction), and n.v
 } R(plain_part);
 
-/// Of one light's lanes of a part, (r.v)^2 or (n.h)^2 as a fraction, where there is one and it is not spared. `whole` has
-/// the rest of the light's.
+/// Computes (r.v)^2 or (n.h)^2 as a fraction, for one light's lanes of a part that have a highlight which is not
+/// spared. `whole` has the light's other results.
 INNER void R(plain_highlight)(const R(lit_point) * surface, const R(plain_part) * part, const vr l[3], int j,
                               unsigned lit, R(lit_whole) * whole)
 {
@@ -40,11 +40,11 @@ INNER void R(plain_highlight)(const R(lit_point) * surface, const R(plain_part) 
     whole->some |= rm_bits(some) << i;
 }
 
-/// Where a light is, each with code of its own; light_plain chooses.
+/// The kinds of light positions, each compiled separately; light_plain chooses.
 enum { R(PLAIN_AFAR), R(PLAIN_NEAR), R(PLAIN_SCALED) };
 
-/// One light's real part of a group, of which the lanes in `open` may be lit. `kind` and `shiny`, whether the group has highlights, are
-/// constants.
+/// Computes one light's real part of a group, in which the lanes of `open` may be lit. `kind` and `shiny` (whether
+/// the group has highlights) are constants.
 INNER void R(plain_parts)(const glint_light_args *args, const int kind, const bool shiny, const R(lit_point) * surface,
                           const R(plain_part) * parts, const double *position, unsigned open, R(lit_whole) * whole)
 {
@@ -73,7 +73,7 @@ INNER void R(plain_parts)(const glint_light_args *args, const int kind, const bo
     whole->lit = lit & open;
 }
 
-/// Light s on one group.
+/// Computes light s for one group.
 INNER void R(plain_light)(const glint_light_args *args, const int kind, const bool shiny, R(group_place) place,
                           const R(lit_point) * surface, const R(plain_part) * parts, unsigned open, uint32_t s, vf *brightest)
 {
@@ -84,7 +84,7 @@ INNER void R(plain_light)(const glint_light_args *args, const int kind, const bo
         R(finish_whole)(args, &whole, shiny, s, (size_t)place.g * GLINT_GROUP, brightest);
 }
 
-/// All lights on one group, whose lanes in `open` may be lit. `kind` is a constant.
+/// Computes all lights for one group; the lanes in `open` may be lit. `kind` is a constant.
 INNER void R(plain_group)(const glint_light_args *args, const int kind, R(group_place) place, unsigned open,
                           R(lit_point) * surface, vf brightest[])
 {
@@ -109,7 +109,7 @@ INNER void R(plain_group)(const glint_light_args *args, const int kind, R(group_
     }
 }
 
-/// All groups. `kind` is a constant.
+/// Computes all groups. `kind` is a constant.
 INNER void R(plain_groups)(const glint_light_args *args, const int kind)
 {
     R(lit_point) surface = { 0 };

@@ -1,9 +1,9 @@
-// The light that reaches points, shadows aside.
+// The light that reaches points, before shadows.
 #include "engine/stages/light/lit_balls.h"
 #include "engine/stages/light/lit_surface.h"
 #include "engine/stages/light/plain.h"
 
-/// The same, by copies: what groups after each other gather stays in registers.
+/// Calls it with copies, so that values gathered over consecutive groups stay in registers.
 INNER bool R(try_balls)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
                         bool normals, R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest)
 {

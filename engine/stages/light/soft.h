@@ -1,7 +1,7 @@
-// soft: which points the samples of an area light reach. What stands between a point and the whole light, a ball around
-// it, costs no rays: points that an occluder cannot come near, and points that it hides from all of the ball, are settled
-// in float, sixteen at a time. Elsewhere an occluder is offered all samples of a group at once. Every decision is that of
-// occlude.h.
+// soft: the points that the samples of an area light reach. Tests against the whole light, as a bounding ball, need
+// no rays: points that an occluder cannot come near, and points that it hides from the whole ball, are settled in
+// float, sixteen at a time. For other points, an occluder is tested against all samples of a group at once. Every
+// decision is that of occlude.h.
 #ifndef GLINT_LIGHT_SOFT_H
 #define GLINT_LIGHT_SOFT_H
 
@@ -16,32 +16,33 @@
 
 /// The remaining tests of a group.
 typedef struct R(soft_group) {
-    unsigned near[GLINT_OCCLUDERS]; ///< lanes, for each occluder of the tile's list
-    unsigned any_near; ///< lanes that are near one
-    unsigned hidden; ///< lanes that one hides from the whole light
+    unsigned near[GLINT_OCCLUDERS]; ///< lanes to test, for each occluder of the tile's list
+    unsigned any_near; ///< lanes that are near any occluder
+    unsigned hidden; ///< lanes that some occluder hides from the whole light
 } R(soft_group);
 
-/// How the whole light stands to an occluder of the tile's list, in the index's frame.
+/// The position of the whole light relative to an occluder of the tile's list, in the index's frame.
 typedef struct R(soft_occluder) {
-    float away; ///< from its middle to the light's
-    float slack; ///< what rounding may add to a distance
-    bool outside; ///< all of the light is outside
-    int side; ///< of a plane: 1, all of the light is in front; -1, behind; 0, neither
+    float away; ///< from the occluder's centre to the light's
+    float slack; ///< bound of the rounding error of a distance
+    bool outside; ///< the whole light is outside
+    int side; ///< of a plane: 1, the whole light is in front; -1, behind; 0, neither
 } R(soft_occluder);
 
-/// The whole light, and the data that the groups of one call share besides the tile.
+/// The whole light, and data that the groups of one call share in addition to the tile's.
 typedef struct R(whole_light) {
     float middle[3], radius; ///< of the ball
     double scale; ///< of the index's frame
     R(soft_occluder) occluders[GLINT_OCCLUDERS];
     R(light_sample_set) light_samples;
-    bool cone; ///< they are placed anew for each group, and are for the one at hand
-    bool ready; ///< the rest is made: what samples need
+    bool cone; ///< samples are computed for each group, and hold for the current one
+    bool ready; ///< the fields for samples are set
     R(light_sides) sides[GLINT_OCCLUDERS][GLINT_LIGHT_CHUNK];
-    unsigned open[GLINT_LIGHT_CHUNK]; ///< of the group at hand
+    unsigned open[GLINT_LIGHT_CHUNK]; ///< of the current group
 } R(whole_light);
 
-/// 1: the light's box, of the index's frame, is in front of the plane; -1: behind; 0: neither for certain.
+/// Returns 1 if the light's box, in the index's frame, is in front of the plane, -1 if it is behind, 0 if neither is
+/// certain.
 static int R(side_of_box)(const R(shadow_tile) * tile, const glint_prim *plane)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
@@ -93,8 +94,8 @@ static void R(place_soft_light)(const R(shadow_tile) * tile, R(whole_light) * li
 
 /// Lanes by the effect of an occluder.
 typedef struct R(soft_lanes) {
-    unsigned apart; ///< it is between the point and no part of the light
-    unsigned hidden; ///< between the point and all of it
+    unsigned apart; ///< the occluder is between the point and no part of the light
+    unsigned hidden; ///< it is between the point and the whole light
 } R(soft_lanes);
 
 static inline R(soft_lanes) R(sort_by_plane)(const R(shadow_tile) * tile, const glint_prim *plane, int side, size_t at)
@@ -111,16 +112,18 @@ static inline R(soft_lanes) R(sort_by_plane)(const R(shadow_tile) * tile, const 
     return out;
 }
 
-/// A ball around the occluder is apart from the point's cone around the light where a plane that touches the ball has
-/// both the point and the light on its other side: one along the cone, one across the way from the point, or one before
-/// the light. A sphere hides all of the light where, at some share of the way, it holds the cone's whole width.
+/// Classifies an occluder by its bounding ball. The ball is apart from the point's cone around the light if a plane
+/// that touches the ball has both the point and the light on its other side. Three planes are tried: along the cone,
+/// perpendicular to the direction at the point, and at the light. A sphere hides the whole light if at some depth it
+/// contains the cone's full width.
 static inline R(soft_lanes) R(sort_by_ball)(const R(whole_light) * light, const R(soft_occluder) * occluder,
                                             const glint_prim *prim, const float local[3][GLINT_GROUP])
 {
     R(soft_lanes) out = { 0, 0 };
     const vf radius = f_set(light->radius), bound = f_set(prim->filter_bound), slack = f_set(occluder->slack);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vf way[3], e[3], off[3]; // from the point to the light and to the occluder, and to that at right angles
+        vf way[3], e[3], off[3]; // from the point to the light, from the point to the occluder, and the perpendicular
+            // between both
         for (int k = 0; k < 3; k++) {
             const vf x = f_load(local[k] + i);
             way[k] = f_set(light->middle[k]) - x;
@@ -128,7 +131,7 @@ static inline R(soft_lanes) R(sort_by_ball)(const R(whole_light) * light, const 
         }
         const vf length2 = DOT(way, way), ee = DOT(e, e), along = DOT(e, way), inverse = f_set(1) / length2;
         const vf share = along * inverse, one = f_set(1);
-        // from nearby, and where squares overflow or vanish, nothing is decided
+        // close to the occluder, and where squares overflow or underflow, nothing is decided
         const fm fit =
             fm_and(f_lt(f_max(f_set(4) * (radius * radius), f_set(0x1p-80f)), length2), f_lt(length2, f_set(0x1p80f)));
         for (int k = 0; k < 3; k++)
@@ -171,7 +174,8 @@ static R(soft_group)
         const uint32_t id = tile->occluders[k].id;
         const glint_prim *prim = &args->geometry->prims[id];
         const unsigned own = lanes_equal(args->prim + group->at, id) & lanes;
-        unsigned near = own; // what they leave blocks nothing, but from behind and of triangles and tori
+        unsigned near = own; // the primitive that a point is on does not block it, except from behind, and except for
+            // triangles and tori
         if (prim->kind == GLINT_PRIM_PLANE)
             near = 0;
         else if (prim->kind != GLINT_PRIM_TRIANGLE && !is_torus(args->geometry, prim))
@@ -195,7 +199,8 @@ static R(soft_group)
     return out;
 }
 
-/// Makes what the samples share, when the first group needs them: of one call, or of the group where they are placed for each.
+/// Prepares the data for samples when the first group needs them: once per call, or per group if samples are computed
+/// for each group.
 static void R(prepare_samples)(const R(shadow_tile) * tile, R(whole_light) * light)
 {
     const glint_occlude_args *args = tile->args;
@@ -216,7 +221,7 @@ static void R(load_samples)(const glint_light_sample *const light_sample[], uint
     light->cone = R(is_cone)(light_sample[0]);
 }
 
-/// Takes out of every sample's open lanes what the tile's occluder k blocks of `near`.
+/// Removes from every sample's open lanes the lanes of `near` that the tile's occluder k blocks.
 static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned near, size_t at,
                                     R(whole_light) * light)
 {
@@ -271,7 +276,7 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
     }
 }
 
-/// Takes out of the open lanes of every sample what blocks them, of a group that has been sorted.
+/// Removes the blocked lanes from the open lanes of every sample, for a sorted group.
 static void R(block_group)(const R(shadow_tile) * tile, const R(soft_group) * sorted, size_t at, R(whole_light) * light)
 {
     if (!light->ready)

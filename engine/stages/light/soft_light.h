@@ -1,5 +1,6 @@
-// soft_light: light, occlude and the sums of shade for the samples of an area light, a group at a time: points hidden from
-// all of the light is left out, and sums stay in registers. The arithmetic is theirs. Contract: stages.h.
+// soft_light: light, occlude and the sums of shade for the samples of an area light, a group at a time. Points hidden
+// from the whole light are skipped, and sums stay in registers. The arithmetic is that of the single stages.
+// Contract: stages.h.
 #ifndef GLINT_LIGHT_SOFT_LIGHT_H
 #define GLINT_LIGHT_SOFT_LIGHT_H
 
@@ -14,22 +15,22 @@
 #include "engine/stages/occlude/occlude.h"
 #include "engine/stages/simd/real.h"
 
-#define SOFT_PARTS (VF / VR) // vectors of real that make one of float
-#define SOFT_PLAIN 0 // kinds of light that the sums are compiled for: neither attenuated nor aimed
+#define SOFT_PARTS (VF / VR) // vectors of real per vector of float
+#define SOFT_PLAIN 0 // kinds of light that the sums are compiled for: neither attenuated nor directed
 #define SOFT_PLACED 1
-#define SOFT_CONE 2 // each point has samples of its own
+#define SOFT_CONE 2 // each point has its own samples
 
-/// Sixteen lanes as highlights need them.
+/// Material data of sixteen lanes, for highlights.
 typedef struct R(soft_gloss) {
     unsigned phong, blinn, cosine; ///< lanes by the highlight and the lobe of their material
     _Alignas(64) float shininess[GLINT_GROUP];
-    _Alignas(64) float least[GLINT_GROUP]; ///< of (r.v)^2 or (n.h)^2: at less, shade sees no highlight
+    _Alignas(64) float least[GLINT_GROUP]; ///< of (r.v)^2 or (n.h)^2: below it, shade gives no highlight
 } R(soft_gloss);
 
 /// VF lanes of a group, with the light of the samples so far.
 typedef struct R(soft_point) {
     vr point[SOFT_PARTS][3], normal[SOFT_PARTS][3]; ///< plain: the point in the light's units
-    vr direction[SOFT_PARTS][3], a[SOFT_PARTS], nv[SOFT_PARTS]; ///< where some lane is glossy
+    vr direction[SOFT_PARTS][3], a[SOFT_PARTS], nv[SOFT_PARTS]; ///< set if some lane is glossy
     vf diffuse, specular;
     unsigned reached;
 } R(soft_point);
@@ -39,8 +40,8 @@ typedef struct R(soft_call) {
     const glint_soft_args *args;
     R(shadow_tile) tile;
     R(whole_light) light;
-    R(soft_gloss) gloss; ///< of the group at hand
-    bool plain; ///< the light is not attenuated, no sample is aimed, and the next is made
+    R(soft_gloss) gloss; ///< of the current group
+    bool plain; ///< the light is not attenuated, no sample is directed, and the next field is set
     _Alignas(64) real scaled[GLINT_LIGHT_CHUNK][3][GLINT_GROUP]; ///< positions in the light's units
 } R(soft_call);
 
@@ -52,7 +53,7 @@ INNER unsigned R(join_bits)(const rm mask[SOFT_PARTS])
     return bits;
 }
 
-/// The highlights of the lanes in `shiny`: w S.
+/// Returns the highlights of the lanes in `shiny`: w S.
 INNER vf R(soft_highlight)(const R(soft_call) * call, int i, unsigned shiny, const vr x[SOFT_PARTS], vf w, vf cosine)
 {
     const R(soft_gloss) *gloss = &call->gloss;
@@ -87,7 +88,7 @@ INNER void R(add_highlights)(const R(soft_call) * call, int i, unsigned lit, vr 
             num[j] = r_select(mask, blinn_num, num[j]);
             den[j] = r_select(mask, blinn_den, den[j]);
         }
-        // NaN, and where den overflows, are for the division
+        // NaN, and lanes in which den overflows, are left to the division
         some[j] = rm_andnot(some[j], r_lt(num[j], R(load_wide)(gloss->least + i + j * VR) * den[j]));
     }
     if (!(R(join_bits)(some) & (phong | blinn)))
@@ -100,7 +101,8 @@ INNER void R(add_highlights)(const R(soft_call) * call, int i, unsigned lit, vr 
     p->specular = p->specular + R(soft_highlight)(call, i, shiny, x, w, cosine);
 }
 
-/// Adds sample s to VF lanes from i on; `open`: those that it may reach. Returns the lanes before which it is, open or not.
+/// Adds sample s to VF lanes from i on; `open`: the lanes that it may reach. Returns the lanes on the lit side of the
+/// sample, occluded or not.
 INNER unsigned R(add_sample)(const R(soft_call) * call, const int kind, const bool glossy, uint32_t s, int i,
                              unsigned open, R(soft_point) * p)
 {
@@ -177,8 +179,8 @@ static void R(sort_gloss)(const glint_light_args *args, size_t at, unsigned left
     }
 }
 
-/// All samples for VF lanes from i on; their open lanes are in call->light, of which `near` are counted. `kind` and
-/// `glossy` are constants.
+/// Adds all samples for VF lanes from i on. Their open lanes are in call->light; rays are counted for lanes of
+/// `near`. `kind` and `glossy` are constants.
 INNER void R(add_samples)(const R(soft_call) * call, const int kind, const bool glossy, R(group_place) place, int i,
                           unsigned near, R(soft_point) * p)
 {
@@ -206,7 +208,7 @@ INNER void R(add_samples)(const R(soft_call) * call, const int kind, const bool 
     }
 }
 
-/// Each way is compiled for its constants.
+/// One copy is compiled for each set of constants.
 static void R(add_matt)(const R(soft_call) * call, R(group_place) place, int i, unsigned near, R(soft_point) * p)
 {
     if (call->plain)
@@ -227,7 +229,8 @@ static void R(add_glossy)(const R(soft_call) * call, R(group_place) place, int i
         R(add_samples)(call, SOFT_PLACED, true, place, i, near, p);
 }
 
-/// One group; `open`: the lanes that are not hidden from all of the light, of them `near` those that may be from a part.
+/// Processes one group; `open`: the lanes that are not hidden from the whole light; `near`: of these, the lanes that
+/// may be hidden from a part of it.
 static void R(sum_group)(R(soft_call) * call, R(group_place) place, unsigned open, unsigned near)
 {
     const glint_soft_args *args = call->args;
@@ -281,8 +284,8 @@ static void R(sum_groups)(R(soft_call) * call, const uint16_t *lit)
     }
 }
 
-/// Scales the samples' places, so that a way to them needs no more than a difference. The light's scale being a power of
-/// two, that gives the same bits, unless something overflows or loses digits: false.
+/// Scales the positions of the samples, so that the direction to a sample is one difference. The light's scale is a
+/// power of two, so the bits are the same, unless a number overflows or loses digits: then returns false.
 static bool R(scale_light_samples)(R(soft_call) * call)
 {
     const glint_light_args *args = call->args->light;

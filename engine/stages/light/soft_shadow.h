@@ -1,5 +1,6 @@
-// soft_shadow: occlude of an area light: by a tile's list (soft.h); by layers (layers.h); or, where these have no frame, where each point
-// has samples of its own, and where float decides, sample by sample as of a light without size. Contract: stages.h, occlude.
+// soft_shadow: occlude for an area light: by a tile's list (soft.h), or by layers (layers.h). If no frame of layers
+// fits, if each point has its own samples, or if float decides: sample by sample, like a point light. Contract:
+// stages.h, occlude.
 #ifndef GLINT_LIGHT_SOFT_SHADOW_H
 #define GLINT_LIGHT_SOFT_SHADOW_H
 
@@ -13,7 +14,7 @@
 #include "engine/stages/occlude/through_beam.h"
 #include "engine/stages/simd/real.h"
 
-/// Too many occluders for a list: every group walks for every sample.
+/// Traverses the index for every group and sample, if there are too many occluders for a list.
 static void R(occlude_walking)(R(shadow_tile) * tile)
 {
     const glint_occlude_args *args = tile->args;

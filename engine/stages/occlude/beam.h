@@ -1,5 +1,5 @@
-// beam: the points of a tile as their light sees them, a screen (screen.h) of their own. Segments from points to one light
-// are a bundle as a camera's rays are.
+// beam: the points of a tile as their light sees them, on their own screen (screen.h). Segments from points to one
+// light are a bundle, like a camera's rays.
 #ifndef GLINT_OCCLUDE_BEAM_H
 #define GLINT_OCCLUDE_BEAM_H
 
@@ -8,12 +8,12 @@
 #include "engine/stages/simd/elementary.h"
 
 #define BEAM_DOWN SCREEN_DOWN ///< rows of cells
-#define BEAM_NEAREST 0.25f ///< least k of a point: nearer to the light a place is not worth much
-#define BEAM_WIDEST 1.0f ///< largest tangent of an angle to the axis
-#define BEAM_BACK 0x80000000u ///< of a point's own surface: it is seen from behind
+#define BEAM_NEAREST 0.25f ///< smallest k of a point: closer to the light, a screen position is of little use
+#define BEAM_WIDEST 1.0f ///< largest tangent of the angle to the axis
+#define BEAM_BACK 0x80000000u ///< flag of a point's own surface: it is seen from behind
 
-/// Sets the frame's axes: `away` from the light, and `along` as far as it is across it, which becomes the second. All
-/// may have any length but 0.
+/// Sets the frame's axes: `away` from the light, and the component of `along` perpendicular to it as the second axis.
+/// Both may have any length except 0.
 static bool make_beam_axes(const double away[3], const double along[3], screen_view *view)
 {
     const double length = sqrt(DOT(away, away)), share = DOT(along, away) / (length * length);
@@ -35,7 +35,8 @@ static bool make_beam_axes(const double away[3], const double along[3], screen_v
 
 // ---- Triangles ----
 
-/// Finds the cells that each triangle may show in; edge-on, the cells of its box. Returns the slots of `mask` that show in any.
+/// Computes the cells that each triangle may show in; for a triangle seen edge-on, the cells of its box. Returns the
+/// slots of `mask` that show in any.
 static unsigned cells_of_leaf(const screen_view *view, const node_on_screen *seen, const leaf_on_screen *shown,
                               unsigned mask, uint32_t cells[GLINT_NODE_WIDTH])
 {
@@ -58,7 +59,7 @@ static unsigned cells_of_leaf(const screen_view *view, const node_on_screen *see
     return mask | edge_on;
 }
 
-/// Which side of its own triangle a point must be seen from to be dark for that, as in `own` of the beam; any where float
+/// The side from which a point must be seen for its own triangle to block it, as in `own` of the beam; any: float
 /// cannot tell on which side the light is.
 typedef struct own_side {
     uint32_t id;

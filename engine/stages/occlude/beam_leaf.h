@@ -1,5 +1,5 @@
-// beam_leaf: the triangles of a node against the points of a beam. As in cast/leaf.h, float finds pairs, and these are decided
-// a vector at a time, each lane with a triangle of its own. Contract: stages.h, occlude.
+// beam_leaf: the triangles of a node against the points of a beam. As in cast/leaf.h, float selects pairs, which are
+// decided a vector at a time, with a different triangle in each lane. Contract: stages.h, occlude.
 #ifndef GLINT_OCCLUDE_BEAM_LEAF_H
 #define GLINT_OCCLUDE_BEAM_LEAF_H
 
@@ -13,7 +13,7 @@
 #include "engine/stages/occlude/blocked.h"
 #include "engine/stages/simd/real.h"
 
-/// Largest w of a cell's open points.
+/// Returns the maximum w of a cell's open points.
 static inline float R(farthest_in)(const R(beam) * beam, uint32_t cell)
 {
     const uint32_t end = beam->begin[cell + 1];
@@ -25,8 +25,8 @@ static inline float R(farthest_in)(const R(beam) * beam, uint32_t cell)
     return f_max_all(far);
 }
 
-/// Of the points at from[0] .. from[15], those in `blocked` do not reach the light: they are closed, if they are not yet. A
-/// cell's farthest is looked for again where it was one of them, once for all that lie in a cell one after another.
+/// Closes those of the points from[0] .. from[15] that are in `blocked` and still open. If a closed point was the
+/// farthest of its cell, the cell's maximum is computed again, once for consecutive points of the same cell.
 static inline void R(close_points)(R(beam) * beam, const uint16_t *from, unsigned blocked)
 {
     const uint32_t none = BEAM_DOWN * SCREEN_ACROSS;
@@ -51,7 +51,7 @@ static inline void R(close_points)(R(beam) * beam, const uint16_t *from, unsigne
         far[stale] = R(farthest_in)(beam, stale);
 }
 
-/// Loads the point at `at` into lane n of these arrays. Triangles need the ray that hit it.
+/// Copies the point at `at` into lane n of these arrays. Triangles also need the ray that hit the point.
 static inline void R(copy_point)(const glint_occlude_args *args, uint32_t at, bool triangle, int n, real *const point[3],
                                  real *const direction[3], real *slack)
 {
@@ -75,7 +75,7 @@ static inline void R(begin_beam_leaf)(R(beam_leaf) * leaf)
     leaf->count = 0;
 }
 
-/// Loads the corners. Lanes without a triangle keep what they had.
+/// Loads the corners. Lanes without a triangle are unchanged.
 static inline void R(load_beam_leaf)(const R(beam) * beam, unsigned mask, R(beam_leaf) * leaf)
 {
     const glint_geometry_table *geometry = beam->tile->args->geometry;
@@ -92,7 +92,7 @@ static inline void R(load_beam_leaf)(const R(beam) * beam, unsigned mask, R(beam
 
 // ---- The decision ----
 
-/// Returns those of VR pairs, from number i on, whose triangle lies between point and light.
+/// Returns the pairs, of VR from number i on, whose triangle lies between point and light.
 static unsigned R(pairs_blocked)(const R(beam) * beam, int i)
 {
     const R(beam_leaf) *leaf = &beam->leaf;
@@ -157,7 +157,7 @@ static inline void R(add_beam_pair)(R(beam) * beam, int slot, uint32_t i, bool o
         R(decide_beam_pairs)(beam);
 }
 
-/// Pairs the points found with their triangles.
+/// Makes pairs of the points found and their triangles.
 static inline void R(pair_points)(R(beam) * beam)
 {
     for (int n = 0; n < beam->runs; n++) {
@@ -172,12 +172,12 @@ static inline void R(pair_points)(R(beam) * beam)
 
 // ---- The filter ----
 
-/// Tests the points from `i` on and before `end`.
+/// Tests the points from `i` up to, not including, `end`.
 INNER void R(points_near_triangle)(R(beam) * beam, int slot, own_side mine, uint32_t i, uint32_t end)
 {
     const leaf_on_screen *shown = &beam->leaf.shown;
     int n = beam->runs;
-    for (; i < end; i += VF) { // what few are behind costs less than to guess whether any is
+    for (; i < end; i += VF) { // testing the few points behind the triangle costs less than a branch
         const unsigned in_run = end - i < VF ? (1u << (end - i)) - 1 : (1u << VF) - 1;
         const unsigned behind = fm_bits(f_le(f_set(shown->near[slot]), f_load_any(beam->w + i))) & in_run;
         const vi owner = f_bits(f_load_any((const float *)(beam->own + i)));
@@ -191,14 +191,14 @@ INNER void R(points_near_triangle)(R(beam) * beam, int slot, own_side mine, uint
     beam->runs = n;
 }
 
-/// Finds the points that the triangle in a slot may keep from the light.
+/// Finds the points that the triangle in a slot may block.
 static void R(block_triangle)(R(beam) * beam, int slot)
 {
     const R(beam_leaf) *leaf = &beam->leaf;
     const screen_cells cells = leaf->cells[slot];
     if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, leaf->shown.near[slot], cells))
         return;
-    // the determinant is negative where the light is in front: seen from behind, that is the other side
+    // the determinant is negative if the light is in front; seen from behind means the other side
     const own_side mine = { leaf->node->child[slot] & ~GLINT_NODE_PRIM, leaf->shown.turned >> slot & 1 ? BEAM_BACK : 0,
                             !(leaf->shown.certain >> slot & 1) };
     const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
@@ -211,8 +211,8 @@ static void R(block_triangle)(R(beam) * beam, int slot)
         R(points_near_triangle)(beam, slot, mine, top[first], whole ? bottom[end] : top[end]);
 }
 
-/// Takes out of args->open what the triangles in the slots of `mask` block. Points are found for all of them before the first is paired,
-/// without branches, as in groups.h.
+/// Removes from args->open the points that the triangles in the slots of `mask` block. Points are found for all
+/// triangles before the first pair is made, without branches, as in groups.h.
 static void R(block_triangles)(R(beam) * beam, const glint_node *node, const node_on_screen *seen, unsigned mask)
 {
     R(beam_leaf) *leaf = &beam->leaf;

@@ -1,5 +1,5 @@
-// beam_points: the points of a tile in the order in which their light sees them (beam.h): in cells, so that what may come
-// between is tested against few of them.
+// beam_points: the points of a tile sorted by cells of their light's view (beam.h), so that an occluder is tested
+// against few of them.
 #ifndef GLINT_OCCLUDE_BEAM_POINTS_H
 #define GLINT_OCCLUDE_BEAM_POINTS_H
 
@@ -11,7 +11,7 @@
 #include "engine/stages/occlude/blocked.h"
 #include "engine/stages/simd/real.h"
 
-/// Points on their way to a decision: one surface, up to a group of points that need not be neighbours.
+/// Points to be decided: one surface, and up to a group of points that need not be neighbours.
 typedef struct R(beam_batch) {
     glint_occlude_args args; ///< arguments of the call, with these points instead of the tile's
     _Alignas(64) real point[3][GLINT_GROUP];
@@ -24,15 +24,15 @@ typedef struct R(beam_batch) {
 
 #define GLINT_BEAM_PAIRS (2 * GLINT_GROUP)
 
-#define GLINT_BEAM_RUNS 128 ///< more are paired before the next triangle is looked at
+#define GLINT_BEAM_RUNS 128 ///< if there are more, pairs are made before the next triangle
 
-/// Returns those of VF consecutive points in the beam that may have an occluder.
+/// Those of VF consecutive points in the beam that may have an occluder.
 typedef struct R(near_points) {
     uint16_t first, near;
-    uint16_t own, slot; ///< of a triangle: those that are on it, and its slot
+    uint16_t own, slot; ///< of a triangle: points that are on it, and its slot
 } R(near_points);
 
-/// The triangles of a node, and pairs of one and a point that are to be decided.
+/// The triangles of a node, and pairs of a triangle and a point that are to be decided.
 typedef struct R(beam_leaf) {
     _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< of the triangle in each slot
     _Alignas(64) real point[3][GLINT_BEAM_PAIRS], direction[3][GLINT_BEAM_PAIRS], slack[GLINT_BEAM_PAIRS];
@@ -48,14 +48,15 @@ typedef struct R(beam_leaf) {
 typedef struct R(beam) {
     const R(shadow_tile) * tile;
     screen_view view;
-    uint32_t count, open; ///< points; of them, those that nothing blocks so far
-    // the points, a cell's in a row, the cells row by row
+    uint32_t count, open; ///< points; of these, the ones without an occluder so far
+    // the points in the order of cells, row by row
     _Alignas(64) float place[2][GLINT_TILE_SAMPLES + GLINT_GROUP];
-    _Alignas(64) float w[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< of blocked ones: -inf
-    uint32_t own[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< the primitive it is on; with BEAM_BACK: seen from behind
+    _Alignas(64) float w[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< -inf for blocked points
+    uint32_t own[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< the primitive that the point is on; with BEAM_BACK: seen from
+        ///< behind
     uint16_t at[GLINT_TILE_SAMPLES + GLINT_GROUP], cell[GLINT_TILE_SAMPLES + GLINT_GROUP];
-    uint16_t begin[BEAM_DOWN * SCREEN_ACROSS + 1]; ///< where each cell's begin
-    _Alignas(64) float far[BEAM_DOWN][SCREEN_ACROSS]; ///< largest w of each cell's open points
+    uint16_t begin[BEAM_DOWN * SCREEN_ACROSS + 1]; ///< where the points of each cell begin
+    _Alignas(64) float far[BEAM_DOWN][SCREEN_ACROSS]; ///< maximum w of each cell's open points
     R(beam_batch) batch;
     R(beam_leaf) leaf;
     R(near_points) run[GLINT_BEAM_RUNS + 1 + GLINT_TILE_SAMPLES / VF + BEAM_DOWN]; ///< found, and not yet paired with their occluders
@@ -64,7 +65,7 @@ typedef struct R(beam) {
 
 // ---- The points ----
 
-/// Sets the beam's frame. False: the light is in the middle of the points.
+/// Sets the beam's frame. Returns false if the light is in the middle of the points.
 static bool R(aim_beam)(const R(shadow_tile) * tile, screen_view *view)
 {
     const glint_occlude_args *args = tile->args;
@@ -82,7 +83,7 @@ static bool R(aim_beam)(const R(shadow_tile) * tile, screen_view *view)
             longest = k;
     }
     along[longest] = 1;
-    // a tile's points lie one behind the other as the camera sees them
+    // points of a tile lie behind each other as the camera sees them
     const bool seen = args->camera && make_beam_axes(away, args->camera->forward, view);
     for (int next = 0; !seen && !make_beam_axes(away, along, view); next++) {
         if (next == 3)
@@ -96,13 +97,13 @@ static bool R(aim_beam)(const R(shadow_tile) * tile, screen_view *view)
     view->count[1] = BEAM_DOWN;
     view->margin = 0;
     view->slack = 4 * GLINT_FILTER_SLACK * (float)size + 2 * R(walk_slack)(geometry);
-    // what a point on a triangle's plane may be beside it, and less
+    // bound of the distance of a point from its triangle's plane, and more
     view->corner_slack = (float)(16 * GLINT_POINT_SLACK * geometry->extent * geometry->scale);
     view->drift = 2 * GLINT_FILTER_SLACK * (float)width + 4 * view->corner_slack; // k of a point is above BEAM_NEAREST
     return true;
 }
 
-/// Points of a group in the index's frame, from `origin`, before anything is rounded to float.
+/// Computes the points of a group in the index's frame, relative to `origin`, before rounding to float.
 static inline void R(points_from)(const void *const point[3], size_t at, const glint_geometry_table *geometry,
                                   const double origin[3], float (*local)[GLINT_GROUP])
 {
@@ -115,13 +116,13 @@ static inline void R(points_from)(const void *const point[3], size_t at, const g
     }
 }
 
-/// Where the light sees the points, in the order of the call's groups.
+/// The points as the light sees them, in the order of the call's groups.
 typedef struct R(beam_places) {
     _Alignas(64) float place[2][GLINT_TILE_SAMPLES], w[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t cell[GLINT_TILE_SAMPLES];
 } R(beam_places);
 
-/// Projects the points and bounds their places. Returns whether a beam can be made of them. NaN: no.
+/// Projects the points and bounds their positions. Returns whether a beam fits them; with NaN, it does not.
 static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, screen_view *view,
                               R(beam_places) * places)
 {
@@ -203,7 +204,7 @@ static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_places) *
             beam->own[to] = args->prim[from] | (args->back[g] >> from % GLINT_GROUP & 1 ? BEAM_BACK : 0);
             beam->at[to] = (uint16_t)from;
             beam->cell[to] = (uint16_t)cell;
-            *far = larger(places->w[from], *far); // a w of NaN is ignored
+            *far = larger(places->w[from], *far); // NaN in w is ignored
         }
 }
 

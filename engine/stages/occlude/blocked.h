@@ -1,6 +1,7 @@
-// blocked: whether a surface is between a point and a light. Float says what is certain of spheres, and which solids are near. The rest is
-// decided from the point towards the light, of spheres without a root or a division: the segment meets a sphere when one end is inside and the other outside, or when both are outside,
-// the foot of the perpendicular lies between them and the discriminant is not negative. Contract: stages.h, occlude.
+// blocked: decides whether a surface is between a point and a light. Float settles the certain cases of spheres, and
+// finds the solids that are near. The rest is decided from the point towards the light, for spheres without a root or
+// a division: the segment crosses a sphere if one end is inside and the other outside, or if both are outside, the
+// foot of the perpendicular lies between them and the discriminant is not negative. Contract: stages.h, occlude.
 #ifndef GLINT_OCCLUDE_BLOCKED_H
 #define GLINT_OCCLUDE_BLOCKED_H
 
@@ -13,13 +14,15 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define GLINT_OCCLUDERS 32 ///< what a tile's list holds; of area lights, of triangles, and where float decides, GLINT_OCCLUDERS_FEW
+#define GLINT_OCCLUDERS 32 ///< capacity of a tile's list; GLINT_OCCLUDERS_FEW for area lights, for triangles, and if
+    ///< float decides
 #define GLINT_OCCLUDERS_FEW 12
-#define FAR_LIGHT 0x1p60 ///< in the index's units; from there on squares of the way to it may overflow float
-#define GLINT_SHAFTS_TRIED 3 ///< groups in a row that may give up their shaft before no more is tried in the tile
-#define GLINT_SHAFT_NODES 16 ///< what a group's shaft may see of the index before each lane walks by itself
+#define FAR_LIGHT 0x1p60 ///< in the index's units; from there on squares of the distance may overflow float
+#define GLINT_SHAFTS_TRIED 3 ///< failed shafts of consecutive groups after which the tile tries no more
+#define GLINT_SHAFT_NODES 16 ///< nodes that a group's shaft may visit before each lane is traversed separately
 
-/// On which side of a primitive the light is, a bit a lane: outside or in front, inside or behind; neither on it.
+/// The position of the light relative to a primitive, one bit per lane: outside or in front, inside or behind;
+/// neither if on it.
 typedef struct R(light_sides) {
     uint16_t outside, inside;
 } R(light_sides);
@@ -33,27 +36,27 @@ typedef struct R(occluder) {
 /// Data shared by the groups of one call.
 typedef struct R(shadow_tile) {
     const glint_occlude_args *args;
-    light_place light; ///< of an area light, all of it
-    _Alignas(64) real position[3][GLINT_GROUP]; ///< of the light, or of its sample at hand, for each lane
+    light_place light; ///< the whole light if it is an area light
+    _Alignas(64) real position[3][GLINT_GROUP]; ///< of the light, or of its current sample, for each lane
     _Alignas(64) float local_light[3][GLINT_GROUP]; ///< the same in the index's frame
-    bool far; ///< that, or numbers computed from it, may overflow
+    bool far; ///< local_light, or numbers computed from it, may overflow
     R(occluder) occluders[GLINT_OCCLUDERS];
-    int count, unbounded; ///< of these, first, those without an end; more than GLINT_OCCLUDERS: too many for a list
+    int count, unbounded; ///< of these, first, the unbounded ones; more than GLINT_OCCLUDERS: too many for a list
     float lower[3], upper[3]; ///< a box around the lit points, in the index's frame
 } R(shadow_tile);
 
-/// A group's shadow rays; made as soon as one needs them.
+/// A group's shadow rays, made when one is needed.
 typedef struct R(shadow_group) {
     size_t at;
     bool placed, made;
-    _Alignas(64) float local[3][GLINT_GROUP]; ///< where placed: the points in the index's frame
-    uint32_t last_blocker; ///< of the groups so far, or GLINT_MISS
-    int shafts_failed; ///< of the last groups in a row
-    R(ray_group) rays; ///< where made: in the index's units; --precision float: in the light's
-    _Alignas(64) float inverse[3][GLINT_GROUP]; ///< of their directions, where there are solids
+    _Alignas(64) float local[3][GLINT_GROUP]; ///< if placed: the points in the index's frame
+    uint32_t last_blocker; ///< in the groups so far, or GLINT_MISS
+    int shafts_failed; ///< in the last groups in a row
+    R(ray_group) rays; ///< if made: in the index's units; --precision float: in the light's
+    _Alignas(64) float inverse[3][GLINT_GROUP]; ///< of their directions, if there are solids
 } R(shadow_group);
 
-/// 1: the light is outside or in front of the primitive, -1: inside or behind, 0: on it.
+/// Returns 1 if the light is outside or in front of the primitive, -1 if inside or behind, 0 if on it.
 static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim, const double position[3])
 {
     double f[3], height;
@@ -68,7 +71,7 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
     } else {
         for (int k = 0; k < 3; k++)
             f[k] *= glint_sphere_scale(prim);
-        const double length2 = DOT(f, f); // a few roundings off
+        const double length2 = DOT(f, f); // with an error of a few roundings
         if (args->directional || !(length2 < glint_sphere_r2(prim) * (1 + 1e-12)))
             return 1;
         if (length2 < glint_sphere_r2(prim) * (1 - 1e-12))
@@ -81,7 +84,7 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
     return (height > 0) - (height < 0);
 }
 
-/// `place`: of the sample, NULL when the light is none of area.
+/// Returns the sides of the light. `place`: of the sample; NULL if it is not an area light.
 static inline R(light_sides)
     R(sides_of)(const glint_occlude_args *args, const double (*place)[GLINT_GROUP], const glint_prim *prim)
 {
@@ -98,7 +101,7 @@ static inline R(light_sides)
     return sides;
 }
 
-/// Points the tile at its light (NULL), or at one sample of it.
+/// Aims the tile at its light (NULL), or at one sample of it.
 static inline void R(aim_at)(R(shadow_tile) * tile, const double (*place)[GLINT_GROUP])
 {
     const glint_occlude_args *args = tile->args;
@@ -127,7 +130,7 @@ static inline void R(begin_group)(uint32_t g, R(shadow_group) * group)
     group->placed = group->made = false;
 }
 
-/// From points to the light, in its units.
+/// Computes directions from points to the light, in its units.
 static inline void R(directions_to)(const glint_occlude_args *args, const real position[3][GLINT_GROUP], size_t at,
                                     int i, vr d[3])
 {
@@ -145,8 +148,8 @@ static inline void R(place_group)(const R(shadow_tile) * tile, R(shadow_group) *
     group->placed = true;
 }
 
-/// Directions in the light's units: of a far light, along a part of the way alone; and where float decides, whose filter must see what
-/// it sees.
+/// Computes directions in the light's units: for a far light, a part of the distance only; and if float decides,
+/// because the filter must use the same numbers as the decision.
 static inline void R(aim_in_units)(const R(shadow_tile) * tile, R(shadow_group) * group)
 {
     _Alignas(64) real to_light[3][GLINT_GROUP];
@@ -160,8 +163,8 @@ static inline void R(aim_in_units)(const R(shadow_tile) * tile, R(shadow_group) 
         R(narrow)(to_light[k], group->rays.direction[k]);
 }
 
-/// A direction is the difference of what float knows of both ends. What that is off counts by how far along the segment a primitive
-/// is, and is within GLINT_FILTER_SLACK of its centre and the point.
+/// Computes directions as differences of both ends in float. Their error grows with the distance of a primitive along
+/// the segment, and is within GLINT_FILTER_SLACK of its centre and the point.
 static inline void R(aim_in_index)(const R(shadow_tile) * tile, R(shadow_group) * group)
 {
     for (int k = 0; k < 3; k++)
@@ -190,7 +193,7 @@ static inline void R(make_shadow_rays)(const R(shadow_tile) * tile, R(shadow_gro
 
 static inline rm R(either)(rm mask, rm a, rm b) { return rm_or(rm_and(mask, a), rm_andnot(b, mask)); }
 
-/// One vector of segments: from f off the sphere's centre, where its c is, along d.
+/// Tests one vector of segments: from f relative to the sphere's centre, with its c, along d.
 static inline rm R(sphere_blocks)(const glint_occlude_args *args, const R(ball) *ball, unsigned outside,
                                   unsigned inside, const vr f[3], vr c, const vr d[3])
 {
@@ -209,13 +212,14 @@ static inline rm R(sphere_blocks)(const glint_occlude_args *args, const R(ball) 
     return R(either)(rm_from_bits(inside), from_outside, blocked);
 }
 
-/// h: the points' heights over the plane.
+/// Tests a plane. h: the points' heights over it.
 static inline rm R(plane_blocks)(unsigned outside, unsigned inside, vr h)
 {
     return rm_or(rm_and(rm_from_bits(outside), r_lt(h, r_set(0))), rm_and(rm_from_bits(inside), r_lt(r_set(0), h)));
 }
 
-/// The lanes of `wanted` that a triangle blocks from lights at `position`; of these, `own` are its own points.
+/// Returns the lanes of `wanted` that a triangle blocks from lights at `position`; `own`: lanes whose points are on
+/// the triangle.
 static unsigned R(blocked_by_triangle)(const glint_occlude_args *args, const glint_prim *prim,
                                        const real position[3][GLINT_GROUP], size_t at, unsigned own, unsigned wanted)
 {
@@ -251,7 +255,8 @@ static unsigned R(blocked_by_triangle)(const glint_occlude_args *args, const gli
     return blocked;
 }
 
-/// The lanes of `wanted` that a torus blocks, its own points among them. outside: where the light is.
+/// Returns the lanes of `wanted` that a torus blocks, including lanes `own`, whose points are on it. outside: where
+/// the light is.
 static unsigned R(blocked_by_torus)(const glint_occlude_args *args, const glint_prim *prim,
                                     const real position[3][GLINT_GROUP], size_t at, unsigned own, unsigned wanted,
                                     unsigned outside)
@@ -283,7 +288,8 @@ static unsigned R(blocked_by_torus)(const glint_occlude_args *args, const glint_
     return blocked;
 }
 
-/// The lanes of `wanted` that a solid blocks; of these, `own` are its own points. outside: where the light is.
+/// Returns the lanes of `wanted` that a solid blocks; `own`: lanes whose points are on it. outside: where the light
+/// is.
 static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_prim *prim,
                                     const real position[3][GLINT_GROUP], size_t at, unsigned own, unsigned wanted,
                                     unsigned outside)
@@ -308,20 +314,21 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
     return blocked;
 }
 
-/// Lanes of a group that are on parts of a combined solid.
+/// Returns the lanes of a group that are on parts of a combined solid.
 static inline unsigned R(lanes_on_parts)(const glint_occlude_args *args, const glint_combined *whole, size_t at)
 {
     const uint32_t first = args->geometry->prim_count + whole->first;
     return lanes_below(args->prim + at, first + whole->count) & ~lanes_below(args->prim + at, first);
 }
 
-/// Without the lanes of `wanted` whose segments leave a combined solid: those that go out of a part that all of it is in.
+/// Returns `wanted` without the lanes whose segments leave a combined solid: those that go out of a part that
+/// contains the whole solid.
 static unsigned R(stay_in_combined)(const glint_occlude_args *args, const glint_prim *prim, size_t at, unsigned wanted)
 {
     const glint_combined *whole = &args->geometry->combined[prim->item];
     const uint32_t first = args->geometry->prim_count + whole->first;
     if (!R(lanes_on_parts)(args, whole, at))
-        return wanted; // no lane is on a part, and those need not come from memory
+        return wanted; // no lane is on a part, which saves loading them
     const unsigned back = args->back[at / GLINT_GROUP];
     for (uint64_t left = whole->all & whole->needs; left && wanted; left &= left - 1) {
         const uint32_t index = first + (uint32_t)__builtin_ctzll(left);
@@ -331,8 +338,8 @@ static unsigned R(stay_in_combined)(const glint_occlude_args *args, const glint_
     return wanted;
 }
 
-/// The lanes of `wanted` that a combined solid blocks: a segment from one of its parts begins within where that is seen from
-/// behind, else outside.
+/// Returns the lanes of `wanted` that a combined solid blocks. A segment from one of its parts starts inside if the
+/// point is seen from behind, otherwise outside.
 static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const glint_prim *prim,
                                        const real position[3][GLINT_GROUP], size_t at, unsigned wanted)
 {
@@ -359,8 +366,8 @@ static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const gli
     return blocked;
 }
 
-/// Of VR segments from lane i of the group at `at` along d, those that a sphere or a plane blocks, a bit each; none of the
-/// points is its own.
+/// Returns which of VR segments, from lane i of the group at `at` along d, a sphere or a plane blocks, one bit each.
+/// No point is on the primitive.
 static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const glint_prim *prim, const R(ball) *ball,
                                         R(light_sides) sides, size_t at, int i, const vr d[3])
 {
@@ -377,14 +384,14 @@ static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const gl
     return rm_bits(R(plane_blocks)(outside, inside, R(point_constant)(f, prim)));
 }
 
-/// Lanes of a group by the float test of their segments and a sphere.
+/// Lanes of a group after the float test of their segments against a sphere.
 typedef struct R(sphere_lanes) {
-    unsigned near; ///< it may meet them
-    unsigned within; ///< of these, it has some point of the segment inside for certain
+    unsigned near; ///< the sphere may block them
+    unsigned within; ///< of these, some point of the segment is certainly inside
 } R(sphere_lanes);
 
-/// A sphere is away from a segment where its line passes it, or where it is behind a point that is outside of it. As much as
-/// the filter adds to its radius is taken off it for what is certain.
+/// Classifies a sphere. It is away from a segment if the segment's line misses it, or if it is behind a point that is
+/// outside of it. For certain hits, its radius is reduced by as much as the filter enlarges it.
 static R(sphere_lanes) R(sort_by_sphere)(const R(shadow_tile) * tile, const R(ray_group) * rays, const glint_prim *prim)
 {
 #if GLINT_REAL == 64
@@ -407,7 +414,7 @@ static R(sphere_lanes) R(sort_by_sphere)(const R(shadow_tile) * tile, const R(ra
         within = fm_and(within, f_le(back, zero)); // the foot of the perpendicular is on the segment
         if (!tile->args->directional)
             within = fm_and(within, f_le(-back, length2));
-        // where squares overflow or vanish, nothing is certain
+        // where squares overflow or underflow, nothing is certain
         within = fm_and(within, fm_and(f_lt(f_set(0x1p-100f), inner2), f_lt(length2, f_set(0x1p80f))));
         out.within |= (fm_bits(within) & ~away) << i;
     }
@@ -418,7 +425,7 @@ static R(sphere_lanes) R(sort_by_sphere)(const R(shadow_tile) * tile, const R(ra
 #endif
 }
 
-/// Returns those of `wanted` whose segments pass near the box of a solid or combined solid.
+/// Returns the lanes of `wanted` whose segments pass near the box of a solid or combined solid.
 static unsigned R(segments_near)(const R(shadow_tile) * tile, const glint_prim *prim, R(shadow_group) * group, unsigned wanted)
 {
     const glint_geometry_table *table = tile->args->geometry;
@@ -432,7 +439,7 @@ static unsigned R(segments_near)(const R(shadow_tile) * tile, const glint_prim *
     return wanted & R(rays_to_box)(&group->rays, group->inverse, whole->lower, whole->upper);
 }
 
-/// The lanes of `wanted` that the primitive blocks.
+/// Returns the lanes of `wanted` that the primitive blocks.
 INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, R(shadow_group) * group,
                              unsigned wanted)
 {
@@ -466,7 +473,7 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
         blocked = own & args->back[group->at / GLINT_GROUP] & occluder.sides.outside;
     wanted &= ~own;
     R(sphere_lanes) sorted = { 0xffff, 0 };
-    if (wanted && sphere && occluder.sides.inside != 0xffff) { // with the light inside, being outside is enough
+    if (wanted && sphere && occluder.sides.inside != 0xffff) { // if the light is inside, being outside is enough
         if (!group->made)
             R(make_shadow_rays)(tile, group);
         sorted = R(sort_by_sphere)(tile, &group->rays, prim);

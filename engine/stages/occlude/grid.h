@@ -1,7 +1,7 @@
-// grid: points of a tile against what their light has in the cells of its own view (glint_light_grid). Points of a group that share
-// a cell are tested together, an entry after the other. Of the others each finds the entries that may block it in its cell, nearest
-// to the light first; what is found is decided a vector at a time, each lane with a sphere of its own, until every point is
-// blocked or has no entry left. Contract: stages.h, occlude.
+// grid: points of a tile against the occluders in the cells of their light's view (glint_light_grid). Points of a
+// group that share a cell are tested together, one entry after the other. Each of the other points searches its cell
+// for entries that may block it, nearest to the light first. The pairs found are decided a vector at a time, with a
+// different sphere in each lane, until every point is blocked or has no entry left. Contract: stages.h, occlude.
 #ifndef GLINT_OCCLUDE_GRID_H
 #define GLINT_OCCLUDE_GRID_H
 
@@ -14,17 +14,19 @@
 
 #if GLINT_REAL == 64
 
-#define GRID_FAR 0x1p20 // of directional light, in the index's units: from farther away a place is not known well enough
-#define GRID_REACH (GLINT_GRID_RADIUS * GLINT_GRID_RADIUS * (1 + 0x1p-20f)) // steps^2 in the square of a unit of radius, with the rounding error
-#define GRID_BIAS 0x1p23f // whole numbers below this are the lower bits of floats from this on
+#define GRID_FAR 0x1p20 // for directional light, in the index's units: from farther away a projected position is not
+    // exact enough
+#define GRID_REACH (GLINT_GRID_RADIUS * GLINT_GRID_RADIUS * (1 + 0x1p-20f)) // steps^2 per squared unit of radius, with
+    // the rounding error
+#define GRID_BIAS 0x1p23f // integers below this are the lower bits of floats from this on
 
-/// Points that may be blocked, and how far each has come.
+/// Points that may be blocked, and their state.
 typedef struct grid_points {
     uint32_t count, live_count;
-    uint16_t live[GLINT_TILE_SAMPLES]; ///< those that are not decided yet
-    float place[2][GLINT_TILE_SAMPLES], near[GLINT_TILE_SAMPLES]; ///< as an entry has them, and GRID_BIAS
-    float reach[GLINT_TILE_SAMPLES]; ///< what the square of an entry's radius is multiplied by
-    uint32_t next[GLINT_TILE_SAMPLES], end[GLINT_TILE_SAMPLES]; ///< entries of its cell to be looked at
+    uint16_t live[GLINT_TILE_SAMPLES]; ///< points that are not decided yet
+    float place[2][GLINT_TILE_SAMPLES], near[GLINT_TILE_SAMPLES]; ///< in the format of entries, plus GRID_BIAS
+    float reach[GLINT_TILE_SAMPLES]; ///< factor of the square of an entry's radius
+    uint32_t next[GLINT_TILE_SAMPLES], end[GLINT_TILE_SAMPLES]; ///< entries of its cell that remain
     uint16_t at[GLINT_TILE_SAMPLES]; ///< number of the sample
 } grid_points;
 
@@ -43,23 +45,23 @@ typedef struct grid_pairs {
     uint16_t point[GLINT_TILE_SAMPLES]; ///< index in the points
 } grid_pairs;
 
-// ---- Places ----
+// ---- Projected positions ----
 
-/// A group's places as the light sees them.
+/// A group's projected positions in the light's view.
 typedef struct grid_places {
     _Alignas(64) float place[2][GLINT_GROUP], w[GLINT_GROUP], reach[GLINT_GROUP];
     _Alignas(64) uint32_t cell[GLINT_GROUP];
-    unsigned known; ///< lanes whose numbers mean something
+    unsigned known; ///< lanes whose numbers are defined
 } grid_places;
 
-/// The tile's places and runs.
+/// The tile's projected positions and runs.
 typedef struct grid_runs {
     grid_places places[GLINT_TILE_GROUPS];
     uint32_t count;
     grid_run run[GLINT_TILE_GROUPS];
 } grid_runs;
 
-/// VD lanes from i on.
+/// Projects VD lanes from i on.
 static void grid_place_lanes(const glint_occlude_args *args, size_t at, int i, grid_places *out)
 {
     const glint_light_grid *grid = args->grid;
@@ -84,11 +86,11 @@ static void grid_place_lanes(const glint_occlude_args *args, size_t at, int i, g
     out->known |= dm_bits(d_lt(size, d_set(grid->directional ? GRID_FAR : 0x1p100))) << i;
 }
 
-/// Whole numbers below GRID_BIAS, and that.
+/// Returns integers below GRID_BIAS plus GRID_BIAS, as floats.
 static inline vf grid_biased(vi x) { return f_from_bits(i_or(x, i_set(0x4b000000))); }
 
-/// Finds the cells of a group, and its places as entries of these have them. Returns the lanes that are in one, and behind the nearest
-/// of all entries.
+/// Computes the cells of a group, and the projected positions in the format of entries. Returns the lanes that are in
+/// a cell, and behind the nearest of all entries.
 static unsigned grid_cells(const glint_light_grid *grid, grid_places *places)
 {
     const vf bias = f_set(GRID_BIAS), aside = f_set((float)(GLINT_GRID_ASIDE * GLINT_GRID_STEPS) + GRID_BIAS);
@@ -105,13 +107,14 @@ static unsigned grid_cells(const glint_light_grid *grid, grid_places *places)
         }
         f_store(places->w + i, (w - f_set(grid->nearest)) * f_set(grid->slices) + bias);
         f_store(places->reach + i, f_load(places->reach + i) * f_set(GRID_REACH));
-        i_store(places->cell + i, i_or(i_shl(cell[1], 16), cell[0])); // a row and a column
+        i_store(places->cell + i, i_or(i_shl(cell[1], 16), cell[0])); // row and column
         inside |= fm_bits(in) << i;
     }
     return inside;
 }
 
-/// The lanes of `back`, seen from behind, that are on a sphere in a cell: the light is outside of it, so that it blocks them.
+/// Returns the lanes of `back`, seen from behind, that are on a sphere in a cell: the light is outside of the sphere,
+/// so it blocks them.
 static unsigned grid_own(const glint_occlude_args *args, size_t at, unsigned back)
 {
     const glint_light_grid *grid = args->grid;
@@ -132,7 +135,7 @@ static inline void grid_prefetch(const glint_light_grid *grid, uint32_t entry)
     __builtin_prefetch(grid->size + entry);
 }
 
-/// The entries of a lane's cell, which are on their way then.
+/// Returns the entries of a lane's cell, and prefetches them.
 static grid_run grid_look_up(const glint_light_grid *grid, const grid_places *places, unsigned lane)
 {
     const uint32_t cell = (places->cell[lane] >> 16) * grid->count[0] + (places->cell[lane] & 0xffff);
@@ -162,7 +165,7 @@ static void grid_add_points(const glint_light_grid *grid, const grid_places *pla
     }
 }
 
-/// Adds the open points of a group that may be blocked. False: some place is not known.
+/// Adds the open points of a group that may be blocked. Returns false if some projected position is unknown.
 static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_runs *runs, grid_points *points)
 {
     const glint_light_grid *grid = args->grid;
@@ -195,20 +198,20 @@ static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_runs
 
 static inline vi grid_load(const uint32_t *p) { return f_bits(f_load_any((const float *)p)); }
 
-/// An entry's place along an axis, as a point has it: the lower 16 bits.
+/// Returns an entry's position along an axis, in the format of points: the lower 16 bits.
 static inline vf grid_step(vi place) { return grid_biased(i_and(place, i_set(0xffff))); }
 
-/// Whether the squares of a distance in steps are within an entry's reach.
+/// Returns whether squared distances in steps are within an entry's reach.
 static inline fm grid_within(vi size, vf du, vf dv, vf reach)
 {
     const vf radius = grid_biased(i_and(size, i_set((1u << GLINT_GRID_RADIUS_BITS) - 1))) - f_set(GRID_BIAS);
     return f_le(du * du + dv * dv, radius * radius * reach);
 }
 
-/// Whether an entry may block a point of this w, by depth.
+/// Returns whether an entry may block a point at this w, by depth.
 static inline fm grid_before(vi size, vf w) { return f_le(grid_biased(i_shr(size, GLINT_GRID_RADIUS_BITS)), w); }
 
-/// The next entry that may block point k, whose own primitive is `own`; GLINT_MISS: none.
+/// Returns the next entry that may block point k, whose own primitive is `own`; GLINT_MISS: none.
 static uint32_t grid_next(const glint_light_grid *grid, const grid_points *points, uint32_t k, uint32_t own)
 {
     const uint32_t end = points->end[k];
@@ -222,13 +225,13 @@ static uint32_t grid_next(const glint_light_grid *grid, const grid_points *point
         for (; near; near &= near - 1)
             if (grid->id[from + (unsigned)__builtin_ctz(near)] != own)
                 return from + (unsigned)__builtin_ctz(near);
-        if (grid->sorted && before != there) // what follows is behind the point
+        if (grid->sorted && before != there) // the entries that follow are behind the point
             break;
     }
     return GLINT_MISS;
 }
 
-/// Makes a pair of each point that is not decided and its next entry. Points without a next entry are open.
+/// Makes a pair of each undecided point and its next entry. Points without a next entry are open.
 static void grid_pair(const glint_occlude_args *args, grid_points *points, grid_pairs *pairs)
 {
     pairs->count = 0;
@@ -254,7 +257,7 @@ typedef struct grid_lanes {
     _Alignas(64) double center[3][VD], scale[VD], r2[VD], r2_low[VD], point[3][VD];
 } grid_lanes;
 
-/// The lanes whose sphere keeps the light, which is outside of it, from the point. As sphere_blocks.
+/// Returns the lanes whose sphere blocks the light, which is outside of it. Like sphere_blocks.
 static unsigned grid_blocked(const glint_occlude_args *args, const grid_lanes *lanes)
 {
     const vd zero = d_set(0), scale = d_load(lanes->scale), r2 = d_load(lanes->r2);
@@ -273,7 +276,7 @@ static unsigned grid_blocked(const glint_occlude_args *args, const grid_lanes *l
     return dm_bits(dm_or(d_lt(c, zero), blocked));
 }
 
-/// Decides all pairs. Points that are blocked are closed; the others of the pairs are not decided yet.
+/// Decides all pairs. Blocked points are closed; the other points of the pairs stay undecided.
 static void grid_decide(const glint_occlude_args *args, const grid_pairs *pairs, grid_points *points)
 {
     grid_lanes lanes;
@@ -305,9 +308,9 @@ static void grid_decide(const glint_occlude_args *args, const grid_pairs *pairs,
 
 // ---- Points of one cell ----
 
-/// Bounds of a run's places.
+/// Bounds of a run's projected positions.
 typedef struct grid_bounds {
-    vf least[2], most[2], w, reach; ///< one number in all lanes
+    vf least[2], most[2], w, reach; ///< the same number in all lanes
 } grid_bounds;
 
 static inline grid_bounds grid_bound(const grid_places *places, unsigned lanes)
@@ -324,10 +327,10 @@ static inline grid_bounds grid_bound(const grid_places *places, unsigned lanes)
     return (grid_bounds) { { least[0], least[1] }, { most[0], most[1] }, most[2], most[3] };
 }
 
-/// Steps from a place to the next one within bounds.
+/// Returns the distance in steps from a position to the interval of bounds.
 static inline vf grid_beside(vf place, vf least, vf most) { return f_max(f_max(least - place, place - most), f_set(0)); }
 
-/// The lanes of `open`, all in the cell of an entry, that its sphere keeps from the light.
+/// Returns the lanes of `open`, all in the cell of an entry, that the entry's sphere blocks.
 static unsigned grid_entry_blocks(const shadow_tile_f64 *tile, const grid_places *places, size_t at, uint32_t entry, unsigned open)
 {
     const glint_occlude_args *args = tile->args;
@@ -370,7 +373,7 @@ static void grid_test_run(const shadow_tile_f64 *tile, const grid_places *places
         const unsigned before = fm_bits(grid_before(size, bounds.w)) & there;
         for (unsigned near = before & fm_bits(grid_within(size, du, dv, bounds.reach)); near && open; near &= near - 1)
             open &= ~grid_entry_blocks(tile, places, (size_t)run->group * GLINT_GROUP, from + (unsigned)__builtin_ctz(near), open);
-        if (grid->sorted && before != there) // what follows is behind the points
+        if (grid->sorted && before != there) // the entries that follow are behind the points
             break;
     }
     tile->args->open[0][run->group] &= (uint16_t)~(run->lanes & ~open);
@@ -378,7 +381,7 @@ static void grid_test_run(const shadow_tile_f64 *tile, const grid_places *places
 
 // ---- All ----
 
-/// Removes the points from args->open that primitives outside of all cells block.
+/// Removes from args->open the points that primitives outside of all cells block.
 static void grid_others(const shadow_tile_f64 *tile, shadow_group_f64 *group)
 {
     const glint_occlude_args *args = tile->args;
@@ -396,7 +399,8 @@ static void grid_others(const shadow_tile_f64 *tile, shadow_group_f64 *group)
     }
 }
 
-/// Takes out of args->open what the index blocks. False: not all places are known, and some is left to be done.
+/// Removes from args->open the points that the index's primitives block. Returns false if some projected position is
+/// unknown; then the work is not complete.
 static bool occlude_grid(const shadow_tile_f64 *tile, shadow_group_f64 *group)
 {
     const glint_occlude_args *args = tile->args;
@@ -420,7 +424,8 @@ static bool occlude_grid(const shadow_tile_f64 *tile, shadow_group_f64 *group)
 
 #endif
 
-/// Whether a grid is there and has done it. Where float decides, what may be met is not what it shows.
+/// Returns whether there is a grid and it has done the work. If float decides, the grid cannot be used: its entries
+/// are not those that float would hit.
 static inline bool R(occlude_by_grid)(const R(shadow_tile) * tile, R(shadow_group) * group)
 {
 #if GLINT_REAL == 64

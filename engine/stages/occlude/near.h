@@ -1,6 +1,7 @@
-// near: which occluders of a tile's list may be between the points of a group and the light, a vector of occluders at a time. All segments
-// of the group are within its reach of that of one of its points: they begin so near, and end in one place or run side by side. Float,
-// and conservative: primitives left out block nothing. Contract: stages.h, occlude.
+// near: the occluders of a tile's list that may be between the points of a group and the light, a vector of occluders
+// at a time. All segments of the group are within `reach` of the segment of one of its points: they start that close
+// to it, and end in one point or are parallel. Float, and conservative: the primitives left out block nothing.
+// Contract: stages.h, occlude.
 #ifndef GLINT_OCCLUDE_NEAR_H
 #define GLINT_OCCLUDE_NEAR_H
 
@@ -10,10 +11,10 @@
 #include "engine/stages/simd/real.h"
 
 #define NEAR_MIDDLE 0x0660u ///< the lanes in the middle of a group
-#define NEAR_LEAST 2 ///< occluders; fewer are as quickly tested
+#define NEAR_LEAST 2 ///< occluders: fewer are tested faster directly
 #define NEAR_MOST 0x1p80f ///< squared reach beyond which nothing is decided
 
-/// A list's occluders by the balls around them, in the index's frame; a lane each.
+/// A list's occluders as bounding balls in the index's frame, one per lane.
 typedef struct R(near_list) {
     _Alignas(64) float center[3][GLINT_OCCLUDERS], bound[GLINT_OCCLUDERS];
     _Alignas(64) uint32_t id[GLINT_OCCLUDERS];
@@ -38,7 +39,7 @@ static inline unsigned R(all_occluders)(const R(shadow_tile) * tile)
     return UINT32_MAX >> (GLINT_OCCLUDERS - tile->count);
 }
 
-/// Where an occluder is in the list: a bit, or none.
+/// Returns an occluder's bit in the list, or 0.
 static inline unsigned R(places_of)(const R(shadow_tile) * tile, const R(near_list) * list, uint32_t id)
 {
     unsigned places = 0;
@@ -47,7 +48,7 @@ static inline unsigned R(places_of)(const R(shadow_tile) * tile, const R(near_li
     return places & R(all_occluders)(tile);
 }
 
-/// How far from one point of a group the others of `lanes` are, rounded up; infinite where float does not know.
+/// Returns the maximum distance of `lanes` from one point of a group, rounded up; infinite if float overflows.
 static inline float R(reach_of_group)(const R(shadow_group) * group, const float from[3], unsigned lanes)
 {
     vf most = f_set(0);
@@ -60,7 +61,8 @@ static inline float R(reach_of_group)(const R(shadow_group) * group, const float
     return sqrtf(f_max_all(most)) * (1 + 0x1p-18f);
 }
 
-/// The occluders whose balls come near the segments from points within `reach` of `from`. As sort_by_sphere has it.
+/// Returns the occluders whose balls come near the segments from points within `reach` of `from`. As in
+/// sort_by_sphere.
 static inline unsigned R(balls_near)(const R(shadow_tile) * tile, const R(near_list) * list, const float from[3],
                                      float reach)
 {
@@ -80,7 +82,8 @@ static inline unsigned R(balls_near)(const R(shadow_tile) * tile, const R(near_l
     return near & R(all_occluders)(tile);
 }
 
-/// The occluders, a bit each, that `lanes` of a group are tested against. A sphere that all of them are on, seen from outside, is none.
+/// Returns the occluders, one bit each, that `lanes` of a group are tested against. A sphere that all lanes are on,
+/// seen from outside, is not among them.
 static unsigned R(near_occluders)(const R(shadow_tile) * tile, const R(near_list) * list, R(shadow_group) * group,
                                   unsigned lanes)
 {
@@ -102,14 +105,15 @@ static unsigned R(near_occluders)(const R(shadow_tile) * tile, const R(near_list
     return near | own;
 }
 
-/// The occluders that each group's open lanes are tested against, a bit each; 0 for groups without such lanes.
+/// Computes the occluders that each group's open lanes are tested against, one bit each; 0 for groups without such
+/// lanes.
 static void R(find_near)(const R(shadow_tile) * tile, R(shadow_group) * group, uint32_t near[GLINT_TILE_GROUPS])
 {
     const glint_occlude_args *args = tile->args;
     const uint16_t *open = args->open[0];
     R(near_list) list;
     if (GLINT_REAL == 32 || tile->far ||
-        tile->count < NEAR_LEAST) { // where float decides, the filter must see what it sees
+        tile->count < NEAR_LEAST) { // if float decides, the filter must use the same numbers as the decision
         for (uint32_t g = 0; g < args->group_count; g++)
             near[g] = open[g] ? R(all_occluders)(tile) : 0;
         return;

@@ -1,7 +1,7 @@
 // occlude: which points a light reaches. Contract: stages.h.
 //
-// A tile's segments are a bundle seen from the light: the index is walked once for all of them. Where too much lies
-// between, each group walks with its own, thinner shaft.
+// A tile's segments are a bundle seen from the light, for which the index is traversed once. If there are too many
+// occluders, each group traverses the index with its own, thinner shaft.
 #ifndef GLINT_OCCLUDE_OCCLUDE_H
 #define GLINT_OCCLUDE_OCCLUDE_H
 
@@ -12,7 +12,8 @@
 #include "engine/stages/simd/real.h"
 #include "engine/stages/surface/surface.h"
 
-/// Whether a plane that touches the sphere keeps the whole shaft on its other side: then it blocks nothing.
+/// Returns whether a plane that touches the sphere has the whole shaft on its other side: then the sphere blocks
+/// nothing.
 static bool R(sphere_apart)(const glint_prim *prim, const float lower[3], const float upper[3],
                             const light_place *light)
 {
@@ -45,7 +46,7 @@ static bool R(sphere_apart)(const glint_prim *prim, const float lower[3], const 
     return at_points > bound && at_light > (light->directional ? slack : bound);
 }
 
-/// Notes an occluder of the tile; false: there is no more room.
+/// Adds an occluder to the tile's list. Returns false if the list is full.
 static inline bool R(note_occluder)(R(shadow_tile) * tile, uint32_t id)
 {
     const glint_occlude_args *args = tile->args;
@@ -56,14 +57,14 @@ static inline bool R(note_occluder)(R(shadow_tile) * tile, uint32_t id)
         return false;
     }
     tile->occluders[tile->count].id = id;
-    if (!args->light_sample[0]) // the sides of samples are found for each
+    if (!args->light_sample[0]) // for samples, the sides are computed for each one
         tile->occluders[tile->count].sides = R(sides_of)(args, NULL, &args->geometry->prims[id]);
     tile->count++;
     return true;
 }
 
-/// only: the primitive that all points are on, where that is known. A ball does not shadow what is seen of its outside,
-/// nor does a plane shadow itself.
+/// Lists the tile's occluders. only: the primitive that all points are on, if known. A ball does not shadow its
+/// visible outside, and a plane does not shadow itself.
 static void R(find_occluders)(R(shadow_tile) * tile, uint32_t only)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
@@ -108,7 +109,7 @@ static inline bool R(light_outside)(const R(shadow_tile) * tile, const glint_pri
     return distance2 > reach * reach * (1 + 1e-5f);
 }
 
-/// As sides_of, and quicker where the light is far from the primitive.
+/// Computes the same as sides_of, faster if the light is far from the primitive.
 static inline R(light_sides)
     R(seen_sides)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP], const glint_prim *prim)
 {
@@ -117,7 +118,7 @@ static inline R(light_sides)
     return R(sides_of)(tile->args, place, prim);
 }
 
-/// Tests a primitive that a walk came upon. Returns the lanes that are still open.
+/// Tests a primitive found by traversal. Returns the lanes that are still open.
 static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP],
                                         R(shadow_group) * group, uint32_t id, unsigned open)
 {
@@ -143,7 +144,8 @@ static inline void R(group_box)(const R(shadow_tile) * tile, R(shadow_group) * g
     loosen(lower, upper, R(walk_slack)(tile->args->geometry));
 }
 
-/// Walks with the shaft of a group, and gives up where it has many nodes to see: *done tells.
+/// Traverses the index with the shaft of a group. Gives up if there are many nodes to visit; *done: whether it did
+/// not.
 static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP], R(shadow_group) * group,
                               unsigned open, bool *done)
 {
@@ -186,7 +188,7 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*place)[
         ray.origin[k] = group->local[k][lane];
         const float light = tile->local_light[k][lane];
         ray.inverse[k] = 1 / (tile->args->directional ? light : light - group->local[k][lane]);
-        // the light's own rounding: as if the box were that much larger
+        // the light's rounding error: as if the box were larger by that
         ray.slack = larger(ray.slack, WALK_SLACK * fabsf(light));
     }
     stack[height++] = 0;
@@ -207,7 +209,7 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*place)[
     return open;
 }
 
-/// The lanes of `open` that no surface without an end blocks.
+/// Returns the lanes of `open` that no unbounded surface blocks.
 static inline unsigned R(test_unbounded)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP],
                                          R(shadow_group) * group, unsigned open)
 {
@@ -217,13 +219,13 @@ static inline unsigned R(test_unbounded)(const R(shadow_tile) * tile, const doub
     return open;
 }
 
-/// The lanes of `open` that nothing in the index blocks, for a group that walks by itself.
+/// Returns the lanes of `open` that nothing in the index blocks, for a group that is traversed separately.
 static unsigned R(walk_group)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP], R(shadow_group) * group,
                               unsigned open)
 {
     bool done = !tile->args->geometry->nodes;
     R(place_group)(tile, group);
-    if (group->last_blocker != GLINT_MISS) // often in the way of the next group too
+    if (group->last_blocker != GLINT_MISS) // it often blocks the next group, too
         open = R(test_occluder)(tile, place, group, group->last_blocker, open);
     if (open && !done && group->shafts_failed < GLINT_SHAFTS_TRIED) {
         open = R(walk_shaft)(tile, place, group, open, &done);
@@ -252,7 +254,7 @@ static void R(place_light)(R(shadow_tile) * tile)
         loosen(tile->light.lower, tile->light.upper, R(walk_slack)(geometry));
 }
 
-/// The box of the lit points, in the world.
+/// Computes the box of the lit points, in world space.
 static void R(box_of_points)(const glint_occlude_args *args, const uint16_t *lit, glint_point_box *out)
 {
     R(point_box) box;
@@ -270,7 +272,7 @@ static void R(box_of_points)(const glint_occlude_args *args, const uint16_t *lit
     out->only = GLINT_MISS;
 }
 
-/// lit: of the light or of any of its samples, for each group.
+/// Prepares a tile. lit: of the light or of any of its samples, for each group.
 static inline void R(begin_shadows)(const glint_occlude_args *args, const uint16_t *lit, R(shadow_tile) * tile)
 {
     const glint_geometry_table *geometry = args->geometry;
@@ -287,7 +289,7 @@ static inline void R(begin_shadows)(const glint_occlude_args *args, const uint16
         R(box_of_points)(args, lit, &box);
     else
         box = *args->box;
-    for (int k = 0; k < 3; k++) { // as index_frame does it, which keeps the order of numbers
+    for (int k = 0; k < 3; k++) { // as in index_frame, which preserves the order of numbers
         const real reference = (real)geometry->reference[k], scale = (real)geometry->scale;
         tile->lower[k] = (float)(((real)box.lower[k] - reference) * scale);
         tile->upper[k] = (float)(((real)box.upper[k] - reference) * scale);

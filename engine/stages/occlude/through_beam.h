@@ -1,5 +1,5 @@
-// occlude_beam: where much lies between a tile and its light, the index is walked once with the tile's beam (beam.h), and
-// what may block a segment is tested against the points in its cells alone. Contract: stages.h, occlude.
+// occlude_beam: if there are many occluders between a tile and its light, the index is traversed once with the tile's
+// beam (beam.h). A possible occluder is only tested against the points in its cells. Contract: stages.h, occlude.
 #ifndef GLINT_OCCLUDE_THROUGH_BEAM_H
 #define GLINT_OCCLUDE_THROUGH_BEAM_H
 
@@ -17,7 +17,7 @@
 
 // ---- The decision ----
 
-/// The lanes of `wanted` that a primitive keeps from the light at `position`, which has these sides.
+/// Returns the lanes of `wanted` that a primitive blocks from the light at `position`, which is on these sides of it.
 static unsigned R(batch_blocked)(const R(beam_batch) * batch, const glint_prim *prim, const real position[3][GLINT_GROUP],
                                  R(light_sides) sides, unsigned wanted)
 {
@@ -70,18 +70,18 @@ static inline void R(add_to_batch)(R(beam) * beam, const glint_prim *prim, uint3
 
 // ---- The filter ----
 
-/// The possible occluders between points and light.
+/// A possible occluder between points and light.
 typedef struct R(beam_blocker) {
     const glint_prim *prim;
     uint32_t id;
-    float near; ///< least w of its box
+    float near; ///< smallest w of its box
     bool torus;
     shape_on_screen shape;
     rod_on_screen rod;
 } R(beam_blocker);
 
-/// Finds the points from `i` on and before `end` that it may block. Its own are dark for that only where they are seen from behind, see
-/// blocked.h.
+/// Finds the points from `i` up to, not including, `end` that the primitive may block. It only blocks points on
+/// itself that are seen from behind, see blocked.h.
 INNER void R(points_near)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i, uint32_t end)
 {
     int n = beam->runs;
@@ -113,7 +113,7 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
     const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
     const int first = first_column(cells), end = last_column(cells) + 1;
-    if (end - first == SCREEN_ACROSS) // the cells of all rows are one run
+    if (end - first == SCREEN_ACROSS) // the cells of all rows are contiguous
         R(points_near)(beam, &b, *top, bottom[SCREEN_ACROSS]);
     for (; end - first < SCREEN_ACROSS && top <= bottom; top += SCREEN_ACROSS)
         R(points_near)(beam, &b, top[first], top[end]);
@@ -126,7 +126,7 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
     R(decide_batch)(beam, b.prim);
 }
 
-/// Takes out of args->open what the primitives in the slots of `mask` block.
+/// Removes from args->open the points that the primitives in the slots of `mask` block.
 static void R(block_prims)(R(beam) * beam, const glint_node *node, const node_on_screen *seen, unsigned mask)
 {
     const unsigned triangles = triangles_in(beam->tile->args->geometry, node, mask);
@@ -136,9 +136,10 @@ static void R(block_prims)(R(beam) * beam, const glint_node *node, const node_on
         R(block_triangles)(beam, node, seen, triangles);
 }
 
-// ---- The walk ----
+// ---- Traversal ----
 
-/// A node's primitives wait for their memory as in walk_tile.
+/// Traverses the index with the beam. A node's primitives are tested while the next one's memory is prefetched, as in
+/// walk_tile.
 static void R(walk_beam)(R(beam) * beam)
 {
     const glint_geometry_table *geometry = beam->tile->args->geometry;
@@ -181,11 +182,12 @@ static void R(begin_batch)(const glint_occlude_args *args, R(beam_batch) * batch
     batch->args.prim = batch->on;
     for (int k = 0; k < 3; k++)
         batch->args.point[k] = batch->point[k];
-    memset(batch->point, 0, sizeof batch->point); // lanes without a point are computed too
+    memset(batch->point, 0, sizeof batch->point); // lanes without a point are computed, too
     memset(batch->on, 0xff, sizeof batch->on);
 }
 
-/// Takes out of args->open what the index blocks. False: no beam can be made of these points, and nothing is done.
+/// Removes from args->open the points that the index's primitives block. Returns false, with nothing changed, if no
+/// beam fits these points.
 static bool R(occlude_beam)(const R(shadow_tile) * tile)
 {
     const glint_occlude_args *args = tile->args;
@@ -204,9 +206,9 @@ static bool R(occlude_beam)(const R(shadow_tile) * tile)
     return true;
 }
 
-// ---- One light without size ----
+// ---- One point light ----
 
-/// Where there are too many occluders for a list.
+/// Computes the shadows if there are too many occluders for a list.
 static void R(occlude_many)(const R(shadow_tile) * tile, R(shadow_group) * group)
 {
     const glint_occlude_args *args = tile->args;

@@ -1,11 +1,11 @@
-// surface_mesh: groups that show several triangles: what surface needs of them is computed a vector at a time, each lane with
-// a triangle of its own. The arithmetic is that of triangle.h. Contract: stages.h, surface.
+// surface_mesh: groups that show several triangles. They are computed a vector at a time, with a different triangle
+// in each lane. The arithmetic is that of triangle.h. Contract: stages.h, surface.
 #ifndef GLINT_SURFACE_MESH_H
 #define GLINT_SURFACE_MESH_H
 
 #include "engine/stages/simd/real.h"
 
-/// The triangles of a group, a lane each.
+/// The triangles of a group, one per lane.
 typedef struct R(mesh_group) {
     _Alignas(64) double corner[3][3][GLINT_GROUP];
     _Alignas(64) double normal[3][GLINT_GROUP]; ///< geometric, unit
@@ -13,7 +13,7 @@ typedef struct R(mesh_group) {
     unsigned smooth;
 } R(mesh_group);
 
-/// VR doubles, rounded.
+/// Loads VR doubles, rounded.
 static inline vr R(load_rounded)(const double *p)
 {
 #if GLINT_REAL == 64
@@ -29,7 +29,7 @@ INNER void R(load_corners)(double corner[3][3][GLINT_GROUP], int i, vr out[3][3]
         out[j / 3][j % 3] = R(load_rounded)(corner[j / 3][j % 3] + i);
 }
 
-/// The lanes of `hits` that show triangles, where they show more than one primitive.
+/// Returns the lanes of `hits` that show triangles, if they show more than one primitive.
 static inline unsigned R(mesh_lanes)(const glint_surface_args *args, size_t at, unsigned hits)
 {
     const uint32_t *prim = args->prim + at;
@@ -44,7 +44,7 @@ static inline unsigned R(mesh_lanes)(const glint_surface_args *args, size_t at, 
     return found;
 }
 
-/// Writes the materials of some lanes. Returns those whose surface has one side.
+/// Stores the materials of some lanes. Returns the lanes whose surface is one-sided.
 static inline unsigned R(put_materials)(const glint_surface_args *args, size_t at, unsigned lanes)
 {
     unsigned one_sided = 0;
@@ -74,7 +74,7 @@ static inline void R(load_corner_normals)(const glint_surface_args *args, size_t
     }
 }
 
-/// Fills the lanes of `lanes`, and the others with numbers.
+/// Fills `lanes`, and puts harmless numbers into the other lanes.
 static void R(load_mesh)(const glint_surface_args *args, size_t at, unsigned lanes, R(mesh_group) * mesh)
 {
     const uint32_t some = args->prim[at + (size_t)__builtin_ctz(lanes)];

@@ -5,7 +5,8 @@
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
 
-/// The normal as seen from so far that origin and sphere have no digits in common but the foot of the perpendicular.
+/// Computes the normal if the origin is so far away that origin and sphere have no common digits except for the foot
+/// of the perpendicular.
 static inline void R(far_normal)(const vr f[3], const vr d[3], vr r2, vr n[3])
 {
     const vr zero = r_set(0);
@@ -22,10 +23,10 @@ static inline void R(far_normal)(const vr f[3], const vr d[3], vr r2, vr n[3])
         n[k] = r_select(defined, n[k] / length, -d[k] / ray);
 }
 
-/// Where the origin is known to be in every lane.
+/// Bounds of the distance of the origin, for all lanes.
 typedef enum R(sphere_range) { R(RANGE_ANY), R(RANGE_NEAR), R(RANGE_CLOSE) } R(sphere_range);
 
-/// f: of a camera.
+/// Returns the range. f: of a camera.
 static R(sphere_range) R(range_of)(const real f[3])
 {
     const real ff = DOT(f, f);

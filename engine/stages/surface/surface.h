@@ -1,5 +1,5 @@
-// surface: the point, the normal and the material of each hit. A group is worked off object by object: most groups
-// show one, whose numbers are then the same in every lane. Contract: stages.h.
+// surface: the point, the normal and the material of each hit. A group is processed object by object. Most groups
+// show only one, so that its numbers are the same in every lane. Contract: stages.h.
 #ifndef GLINT_SURFACE_SURFACE_H
 #define GLINT_SURFACE_SURFACE_H
 
@@ -11,8 +11,8 @@
 #include "engine/stages/surface/mesh.h"
 #include "engine/stages/surface/sphere.h"
 
-/// Brings points next to a plane of any normal onto it: what is left of their heights is a rounding of themselves, wherever the
-/// rays came from.
+/// Projects points next to a plane of any normal onto it. The remaining height is within one rounding, wherever the
+/// rays started.
 INNER void R(onto_plane_of)(const glint_prim *prim, const vr n[3], vr p[3])
 {
     const vr q[3] = { p[0] - r_set(prim->center[0]), p[1] - r_set(prim->center[1]), p[2] - r_set(prim->center[2]) };
@@ -21,7 +21,7 @@ INNER void R(onto_plane_of)(const glint_prim *prim, const vr n[3], vr p[3])
         p[k] = p[k] - h * n[k];
 }
 
-/// Writes `x` in the lanes of `mask`; `whole` says that these are all.
+/// Stores `x` in the lanes of `mask`; `whole`: these are all lanes.
 INNER void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
 {
     real *to = (real *)array + at;
@@ -30,19 +30,21 @@ INNER void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
     r_store(to, x);
 }
 
-/// A primitive as all rays of a camera see it.
+/// The constants of a primitive for all rays of a camera.
 typedef struct R(seen_prim) {
     uint32_t id; ///< GLINT_MISS: none yet
     const glint_prim *prim;
     real scale, inverse_radius; ///< of a sphere, in its own units
-    R(sphere_range) range; ///< of the eye from a sphere
-    real f[3]; ///< of a sphere, scaled; of a solid, where it is the unit one
+    R(sphere_range) range; ///< distance of the eye from a sphere
+    real f[3]; ///< of a sphere, scaled; of a solid, in the space of the unit shape
     real normal[3]; ///< of a plane or triangle
-    int level; ///< of a plane: the axis that it is square to; 3: none
-    real from[3], way[3]; ///< of a plane: points are at from + way (t direction): on that axis the plane's own place
+    int level; ///< of a plane: the axis that it is perpendicular to; 3: none
+    real from[3], way[3]; ///< of a plane: points are at from + way (t direction); along that axis this is the plane's
+        ///< exact coordinate
 } R(seen_prim);
 
-/// In place, since a copy of numbers that were just written waits for them. height: where the heights of the eye over a solid's faces go.
+/// Computes the constants of a primitive in place, because reading a copy of just-written numbers would stall.
+/// height: memory for the heights of the eye over a solid's faces.
 static inline void R(see_prim)(const glint_surface_args *args, uint32_t id, R(seen_prim) * seen, real height[6])
 {
     const glint_prim *prim = &args->prims[id];
@@ -79,17 +81,18 @@ typedef struct R(seen_slot) {
     real height[6]; ///< of the eye over a solid's faces
 } R(seen_slot);
 
-#define SEEN_SLOTS 4 ///< a tile's groups come back to the same few
+#define SEEN_SLOTS 4 ///< the groups of a tile return to the same few primitives
 
 /// State while iterating over the groups of a tile.
 typedef struct R(surface_walk) {
     uint32_t only; ///< the only primitive so far, GLINT_MISS: none
-    bool several, turned; ///< there are others; some lane is seen from behind
-    R(seen_slot) * last; ///< the last primitive's
-    R(seen_slot) slots[SEEN_SLOTS]; ///< by the lowest bits of their numbers; of balls and planes alone one, which is soon made
+    bool several, turned; ///< there are other primitives; some lane is seen from behind
+    R(seen_slot) * last; ///< of the last primitive
+    R(seen_slot) slots[SEEN_SLOTS]; ///< indexed by the lowest bits of the primitive's index; only one is used if there
+        ///< are only balls and planes, whose constants are computed quickly
 } R(surface_walk);
 
-/// The last primitive's; mixed: a constant, see glint_surface_args.
+/// Returns the last primitive's slot; mixed: a constant, see glint_surface_args.
 INNER R(seen_slot) *R(last_seen)(R(surface_walk) * walk, const bool mixed) { return mixed ? walk->last : walk->slots; }
 
 /// One vector of lanes of one primitive.
@@ -99,7 +102,7 @@ typedef struct R(found) {
     rm back;
 } R(found);
 
-/// n: the outward normal.
+/// Turns the normal towards the viewer. n: the outward normal.
 INNER void R(face_viewer)(const vr n[3], R(found) * found)
 {
     found->away = DOT(n, found->direction);
@@ -123,7 +126,7 @@ INNER void R(find_on_solid)(const glint_surface_args *args, R(seen_slot) * slot,
         n[k] = -n[k];
 }
 
-/// Of a vector of lanes from i on.
+/// Computes a vector of lanes from i on.
 INNER void R(find_lanes)(const glint_surface_args *args, R(seen_slot) * slot, R(group_directions) directions, size_t at,
                          int i, bool mixed, R(found) * found)
 {
@@ -192,7 +195,7 @@ INNER void R(find_mesh_lanes)(const glint_surface_args *args, R(mesh_group) * me
         found->normal[k] = r_select(rm_from_bits(smooth), curved[k], found->normal[k]);
 }
 
-/// A box around points. NaN is ignored.
+/// A bounding box of points. NaN is ignored.
 typedef struct R(point_box) {
     vr least[3], most[3];
 } R(point_box);
@@ -229,14 +232,14 @@ static void R(write_box)(R(point_box) box, glint_point_box *out)
     }
 }
 
-/// The outputs of a call: each combination is compiled separately.
+/// The outputs of a call. Each combination is compiled separately.
 typedef enum R(surface_way) {
     R(MIXED), ///< there are triangles or solids
     R(BALLS_AND_PLANES),
-    R(POINTS_ALONE) ///< of balls and planes
+    R(POINTS_ALONE) ///< only points, of balls and planes
 } R(surface_way);
 
-/// Writes some lanes of a vector and leaves the others as they are. Returns the lanes that are seen from behind.
+/// Stores some lanes of a vector, and leaves the others unchanged. Returns the lanes that are seen from behind.
 INNER unsigned R(put_found)(const glint_surface_args *args, const R(found) * found, size_t at, unsigned lanes,
                             R(surface_way) way, R(point_box) * box)
 {
@@ -255,7 +258,7 @@ INNER unsigned R(put_found)(const glint_surface_args *args, const R(found) * fou
     return rm_bits(found->back) & lanes;
 }
 
-/// Zeroes the lanes of a group that is hit in part.
+/// Zeroes the lanes of a group of which only some hit.
 static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
 {
     for (int k = 0; k < 3; k++)
@@ -279,7 +282,7 @@ INNER void R(begin_walk)(const glint_surface_args *args, R(surface_walk) * walk)
     walk->several = walk->turned = false;
 }
 
-/// Not inlined, so that the result stays in memory, from where all lanes are read at once.
+/// Not inlined, so that the result stays in memory, from where it is broadcast to all lanes.
 static __attribute__((noinline)) void R(look_at_other)(const glint_surface_args *args, R(surface_walk) * walk,
                                                        uint32_t id)
 {
@@ -305,7 +308,7 @@ INNER void R(end_walk)(const glint_surface_args *args, const R(surface_walk) * w
     args->box->only = walk->several || walk->turned ? GLINT_MISS : walk->only;
 }
 
-/// The lanes of a group that show several triangles. Returns those that are seen from behind.
+/// Computes the lanes of a group that show several triangles. Returns the lanes seen from behind.
 INNER unsigned R(surface_mesh)(const glint_surface_args *args, R(surface_walk) * walk, R(point_box) * box,
                                R(group_directions) directions, size_t at, unsigned lanes)
 {
@@ -324,15 +327,15 @@ INNER unsigned R(surface_mesh)(const glint_surface_args *args, R(surface_walk) *
     return back;
 }
 
-/// Whether find_whole knows such a primitive.
+/// Returns whether find_whole supports the primitive.
 static inline bool R(is_near_or_plane)(const R(seen_prim) * seen)
 {
     const uint32_t kind = seen->prim->kind;
     return kind == GLINT_PRIM_PLANE || (kind == GLINT_PRIM_SPHERE && seen->range != R(RANGE_ANY));
 }
 
-/// Directions, outward normals and points of lanes i .. of a group that shows one plane, or one sphere that the camera is not far
-/// from, or one solid, in every lane; `kind`, of these, is a constant.
+/// Computes directions, outward normals and points of lanes i .. of a group that shows, in every lane, one plane, one
+/// solid, or one sphere that is not far from the camera; `kind` is a constant.
 INNER void R(find_whole)(const glint_surface_args *args, R(seen_slot) * slot, const glint_prim_kind kind,
                          R(group_directions) directions, size_t at, int i, vr d[3], vr n[3], vr p[3])
 {
@@ -360,7 +363,7 @@ INNER void R(find_whole)(const glint_surface_args *args, R(seen_slot) * slot, co
         R(onto_plane_of)(seen->prim, n, p);
 }
 
-/// The points alone of a group of one plane that is square to `level`, a constant.
+/// Computes only the points of a group that shows one plane perpendicular to axis `level`, a constant.
 INNER void R(place_level)(const glint_surface_args *args, const R(seen_prim) * seen, R(group_directions) directions,
                           size_t at, const int level)
 {
@@ -376,7 +379,7 @@ INNER void R(place_level)(const glint_surface_args *args, const R(seen_prim) * s
     }
 }
 
-/// The points alone of such a group of another plane or of a sphere; `kind` is a constant.
+/// Computes only the points of a group that shows one other plane, or a sphere; `kind` is a constant.
 INNER void R(place_lanes)(const glint_surface_args *args, R(seen_slot) * slot, const glint_prim_kind kind,
                           R(group_directions) directions, size_t at)
 {
@@ -388,7 +391,7 @@ INNER void R(place_lanes)(const glint_surface_args *args, R(seen_slot) * slot, c
     }
 }
 
-/// The points alone of such a group.
+/// Computes only the points of a group that shows one primitive.
 INNER void R(place_whole)(const glint_surface_args *args, R(seen_slot) * slot, R(group_directions) directions, size_t at)
 {
     const R(seen_prim) *seen = &slot->prim;
@@ -404,7 +407,7 @@ INNER void R(place_whole)(const glint_surface_args *args, R(seen_slot) * slot, R
         R(place_lanes)(args, slot, GLINT_PRIM_PLANE, directions, at);
 }
 
-/// One group that is hit: its triangles together, where there are several, and the rest primitive by primitive.
+/// Computes one group with hits: its triangles together, if there are several, and the rest primitive by primitive.
 INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * walk, R(point_box) * box,
                             R(group_place) place, R(surface_way) way)
 {
@@ -414,7 +417,7 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
     unsigned left = args->hits[g], back = 0, dark = 0;
     if (left != 0xffff)
         R(clear_surface)(args, at);
-    const bool meshes = way == R(MIXED) && args->slack; // which triangles alone need
+    const bool meshes = way == R(MIXED) && args->slack; // only triangles need slack
     const unsigned mesh = meshes ? R(mesh_lanes)(args, at, left) : 0;
     if (mesh) {
         back = R(surface_mesh)(args, walk, box, directions, at, mesh);
@@ -423,7 +426,7 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
     }
     while (left) {
         R(seen_slot) *slot = R(last_seen)(walk, way == R(MIXED));
-        uint32_t id = slot->prim.id; // what the group before has shown last need not be looked at anew
+        uint32_t id = slot->prim.id; // the last primitive of the previous group is not looked up again
         unsigned lanes = lanes_equal(args->prim + at, id) & left, behind = 0;
         if (!lanes) {
             id = args->prim[at + (unsigned)__builtin_ctz(left)];

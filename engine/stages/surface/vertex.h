@@ -1,4 +1,5 @@
-// vertex: interpolates light computed at the corners of a triangle, or once for its face, at each sample. Contract: stages.h.
+// vertex: interpolates light that was computed at the corners of a triangle, or once for its face, at each sample.
+// Contract: stages.h.
 #ifndef GLINT_SURFACE_VERTEX_H
 #define GLINT_SURFACE_VERTEX_H
 
@@ -6,7 +7,7 @@
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
 
-/// Adds the light of one lane's sites; w: the weights of the corners.
+/// Adds the light of one lane's shading points; w: the weights of the corners.
 static inline void R(add_shading_points)(const glint_vertex_args *args, const glint_shading_points *shading_points,
                                          unsigned back, const double w[3], size_t lane)
 {
@@ -21,7 +22,7 @@ static inline void R(add_shading_points)(const glint_vertex_args *args, const gl
         }
 }
 
-/// The lanes of a group that hit one triangle.
+/// Computes the lanes of a group that hit one triangle.
 static inline void R(vertex_lanes)(const glint_vertex_args *args, const glint_prim *prim,
                                    R(group_directions) directions, size_t at, unsigned lanes)
 {
