@@ -1,5 +1,5 @@
-// How fast hits on one sphere or plane move, that an eye sees. Contract: contract/derivative.h; one hit of any kind: bend.c of
-// tile/derivative.
+// How fast visible hits on one sphere or plane move. Contract: contract/derivative.h. For one hit on any kind of
+// primitive: bend.c of effects/derivative.
 #ifndef GLINT_DERIVATIVE_BEND_H
 #define GLINT_DERIVATIVE_BEND_H
 
@@ -7,7 +7,8 @@
 #include "engine/stages/program/exact.h"
 #include "engine/stages/simd/elementary.h"
 
-/// Rays of VD hits: along them, of any length; how fast they start elsewhere and turn; how far along the hits are.
+/// The rays of VD hits: their directions, of any length; slopes of origin and direction; distance of the hits along
+/// them.
 typedef struct bent_rays {
     vd way[3], moved[3], turned[3], far;
 } bent_rays;
@@ -29,7 +30,7 @@ INNER bent_rays see_from_point(const glint_bend_args *args, int i)
     return out;
 }
 
-/// The ray of an orthographic camera, or of one with a lens.
+/// Returns the ray of an orthographic camera, or of one with a lens.
 INNER bent_rays see_along(const glint_bend_args *args, const bool parallel, int i)
 {
     const glint_derivative_view *view = args->view;
@@ -50,7 +51,8 @@ INNER bent_rays see_along(const glint_bend_args *args, const bool parallel, int 
     return out;
 }
 
-/// The point stays on the tangent plane, which moves as the surface does there. out: slopes of points, of normals, of eyes.
+/// Computes slopes of points, normals and eye vectors, into `out`. The point stays on the tangent plane, which moves
+/// like the surface does there.
 INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const bool round, int i, vd out[3][3])
 {
     const glint_prim *prim = args->prim;
@@ -70,7 +72,8 @@ INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const 
     }
     const vd further = rest / DOT(gradient, rays->way);
     const vd side = d_select(d_lt(DOT(gradient, normal), d_set(0)), d_set(-1), d_set(1));
-    const vd shorter = d_set(-1) / DOT(rays->way, eye), away = DOT(rays->turned, eye); // the eye lies against the way
+    const vd shorter = d_set(-1) / DOT(rays->way, eye), away = DOT(rays->turned, eye); // the eye vector is opposite to
+        // the ray
     const vd curved = side * d_set(round ? 1 / prim->radius : 1);
     for (int c = 0; c < 3; c++) {
         const vd moved = carried[c] + further * rays->way[c];
@@ -83,7 +86,7 @@ INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const 
 
 INNER void bend_group(const glint_bend_args *args, const bool along, const bool parallel, const bool round)
 {
-    const glint_bend_args call = *args; // stores may not change it
+    const glint_bend_args call = *args; // a copy, because stores might change it
     for (int i = 0; i < GLINT_GROUP; i += VD) {
         const bent_rays rays = along ? see_along(&call, parallel, i) : see_from_point(&call, i);
         vd slope[3][3];

@@ -1,5 +1,5 @@
-// How fast what lights leave on points changes: the formulas of stages/ref/light.h, shade.h and microfacets.h on numbers with slopes.
-// Contract: contract/derivative.h.
+// How fast reflected light changes: the formulas of stages/ref/light.h, shade.h and microfacets.h on numbers with
+// slopes. Contract: contract/derivative.h.
 #ifndef GLINT_DERIVATIVE_LIGHT_H
 #define GLINT_DERIVATIVE_LIGHT_H
 
@@ -9,11 +9,11 @@
 #include "engine/stages/program/exact.h"
 #include "engine/stages/simd/elementary.h"
 
-// The inputs with slopes: each kernel is compiled for some sets of these.
+// The inputs with slopes. Each kernel is compiled for some of these sets.
 enum {
-    SLOPES_BENT = 1, ///< points, normals and ways to the eye
-    SLOPES_TURNED = 2, ///< where a light is, and where it is aimed
-    SLOPES_OTHER = 4, ///< colours, and all other numbers
+    SLOPES_BENT = 1, ///< points, normals and eye vectors
+    SLOPES_TURNED = 2, ///< position and direction of the light
+    SLOPES_OTHER = 4, ///< colours, and all other values
     SLOPES_ALL = 7
 };
 
@@ -27,8 +27,8 @@ typedef struct shine_lanes {
     vs way[3]; ///< unit, towards the light
     vs cosine; ///< n.l
     vs distance; ///< directional: infinite
-    vs weight; ///< by distance, cone and surface, and the transmitted share
-    bool weighs; ///< else the weight is 1
+    vs weight; ///< attenuation by distance, cone and surface, times the transmitted share
+    bool weighs; ///< false: the weight is 1
 } shine_lanes;
 
 INNER void load_points(const glint_derivative_points *points, int what, const unsigned slopes, int i, vs out[3])
@@ -47,7 +47,7 @@ INNER seen_lanes seen_points(const glint_derivative_points *points, const unsign
     return out;
 }
 
-/// A spot's cone; see spot_x and cone of stages/ref/light.h.
+/// Returns a spot's factor; see spot_x and cone of stages/ref/light.h.
 INNER vs spot_cone(const glint_derivative_light *light, const unsigned slopes, const vs way[3])
 {
     const bool any = slopes, turned = slopes & SLOPES_TURNED, other = slopes & SLOPES_OTHER;
@@ -118,7 +118,7 @@ INNER shine_lanes find_shine(const glint_derivative_light *light, const glint_de
     return s;
 }
 
-/// Returns the program's result for number `which`, or `own`.
+/// Returns the program's result for value `which`, or `own` if there is none.
 INNER vs take_plane(const glint_derivative_planes *planes, int which, const unsigned slopes, int i, vs own)
 {
     const bool other = slopes & SLOPES_OTHER;
@@ -128,7 +128,7 @@ INNER vs take_plane(const glint_derivative_planes *planes, int which, const unsi
     return (vs) { d_load(planes->value[which] + i), slope, !other };
 }
 
-/// S of Phong and Blinn-Phong.
+/// Returns S of Phong and Blinn-Phong.
 INNER vs power_lanes(const glint_derivative_material *material, vs shininess, const shine_lanes *s, const vs normal[3],
                     const vs eye[3])
 {
@@ -146,7 +146,7 @@ INNER vs power_lanes(const glint_derivative_material *material, vs shininess, co
     return material->lobe == GLINT_LOBE_POWER_COSINE ? s_keep(true, s_mul(strength, s->cosine)) : s_keep(true, strength);
 }
 
-/// Smith's masking for Beckmann's distribution, Lambda times x; see stages/ref/shade.h.
+/// Returns Smith's masking for Beckmann's distribution, Lambda times x; see stages/ref/shade.h.
 INNER vs mask_lanes(vs alpha, vs x)
 {
     const vs zero = s_set(0), one = s_set(1), rest = s_sub(one, s_mul(x, x));
@@ -156,7 +156,7 @@ INNER vs mask_lanes(vs alpha, vs x)
     return s_select(d_lt(q.v, d_set(1.6)), s_div(up, down), zero);
 }
 
-/// D G / (4 n.v) of pi D F G / (4 n.v) n.l, as stages/ref/shade.h has it; `sine2` is between n and h.
+/// Returns D G / (4 n.v) of pi D F G / (4 n.v) n.l, as in stages/ref/shade.h; `sine2`: between n and h.
 INNER vs facet_lanes(const glint_derivative_material *material, vs alpha, vs sine2, vs l, vs v)
 {
     const vs one = s_set(1), aa = s_mul(alpha, alpha), floor = s_set(0x1p-126), cosine2 = s_sub(one, sine2);
@@ -175,7 +175,7 @@ INNER vs facet_lanes(const glint_derivative_material *material, vs alpha, vs sin
     return s_keep(true, s_mul(s_div(s_div(s_div(spread, c), c), aa), s_div(s_mul(l, s_set(0.25)), s_max(d, floor))));
 }
 
-/// S of microfacets, and that times Schlick's (1 - v.h)^5.
+/// Computes S of microfacets, and S times Schlick's (1 - v.h)^5.
 INNER void lobe_lanes(const glint_derivative_material *material, vs alpha, const shine_lanes *s, const vs normal[3],
                      const vs eye[3], vs *specular, vs *grazing)
 {
@@ -198,7 +198,7 @@ INNER void lobe_lanes(const glint_derivative_material *material, vs alpha, const
     *grazing = s_keep(true, s_select(there, s_mul(lobe, s_mul(s_mul(mm, mm), m)), zero));
 }
 
-/// The common factors of a light's and a material's colours.
+/// The products of a light's and a material's colours.
 typedef struct shared_colors {
     vs diffuse[3], specular[3], grazing[3];
 } shared_colors;
@@ -218,7 +218,7 @@ INNER shared_colors share_colors(const glint_slope_args *args, const unsigned sl
     return out;
 }
 
-/// Adds the light on VD lanes, in channel c.
+/// Returns the light that VD lanes reflect, in channel c.
 INNER vs left_of(const glint_slope_args *args, const shared_colors *k, const shine_lanes *s, vs specular, vs grazing,
                  const unsigned slopes, int c, int i)
 {
@@ -291,7 +291,7 @@ static void slope(const glint_slope_args *args)
 
 INNER void arrival_group(const glint_arrival_args *args, const unsigned slopes)
 {
-    const glint_arrival_args call = *args; // stores may not change it
+    const glint_arrival_args call = *args; // a copy, because stores might change it
     const glint_derivative_source *source = call.source;
     const bool any = slopes, other = slopes & SLOPES_OTHER;
     for (int i = 0; i < GLINT_GROUP; i += VD) {
@@ -331,7 +331,7 @@ static void arrival(const glint_arrival_args *args)
 
 static void eyes(const glint_eyes_args *args)
 {
-    const glint_eyes_args call = *args; // stores may not change it
+    const glint_eyes_args call = *args; // a copy, because stores might change it
     for (int i = 0; i < GLINT_GROUP; i += VD) {
         vd d[3];
         for (int c = 0; c < 3; c++)

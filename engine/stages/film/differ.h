@@ -1,4 +1,4 @@
-// estimate, range and differ: which neighbours show different things. Contract: stages.h.
+// estimate, range and differ: which neighbouring pixels differ. Contract: stages.h.
 #ifndef GLINT_FILM_DIFFER_H
 #define GLINT_FILM_DIFFER_H
 
@@ -32,13 +32,13 @@ static void range(const glint_range_args *args, float out[2])
     out[1] = f_max_all(most);
 }
 
-/// How far apart codes are: from number i of one line's arrays and k of another's on.
+/// Returns the differences of one value, from pixel i of one line and k of another on.
 static inline vf apart_in(const float *const *p, int value, uint32_t i, const float *const *q, uint32_t k)
 {
     return f_abs(f_load_any(p[value] + i) - f_load_any(q[value] + k));
 }
 
-/// VF pairs, from pixel i of one line and k of another on.
+/// Compares VF pairs, from pixel i of one line and k of another on.
 static inline void differ_pairs(const glint_differ_args *args, const float *const *p, uint32_t i, const float *const *q,
                                 uint32_t k, uint32_t bit, uint32_t *sure, uint32_t *open)
 {
@@ -56,7 +56,7 @@ static inline void differ_pairs(const glint_differ_args *args, const float *cons
     *open |= fm_bits(f_lt(f_set(args->low), sum)) << bit;
 }
 
-/// The first so many bits of 32.
+/// Returns the lowest `count` bits of 32.
 static inline uint32_t first_bits(uint32_t count) { return count < 32 ? (1u << count) - 1 : UINT32_MAX; }
 
 static inline void differ_lines(const glint_differ_args *args, bool along, bool across, glint_differences *out)
@@ -79,7 +79,7 @@ static inline void differ_lines(const glint_differ_args *args, bool along, bool 
     }
 }
 
-/// Each way is compiled for its constant.
+/// One copy is compiled for each constant.
 static void differ(const glint_differ_args *args, glint_differences *out)
 {
     if (args->along && args->q)

@@ -7,14 +7,14 @@
 #include "engine/stages/shade/shade.h"
 #include "engine/stages/simd/elementary.h"
 
-/// 1 / samples of a power of two, whose product with anything is the quotient; else 0.
+/// Returns 1 / samples if samples is a power of two, so that products equal quotients; otherwise 0.
 static inline double inverse_of(double samples)
 {
     int exponent;
     return frexp(samples, &exponent) == 0.5 ? 1 / samples : 0;
 }
 
-/// sum / samples. `inverse`: of these samples.
+/// Returns sum / samples. `inverse`: of these samples.
 static inline vd mean_of(vd sum, double samples, double inverse)
 {
     if (inverse > 0)
@@ -22,7 +22,7 @@ static inline vd mean_of(vd sum, double samples, double inverse)
     return sum / d_set(samples);
 }
 
-/// Adds one term that shade does not make.
+/// Computes one term that shade does not compute.
 static inline void resolve_further(const glint_resolve_args *args, double inverse, int term, size_t at)
 {
     _Alignas(64) float mean[GLINT_GROUP];

@@ -1,4 +1,4 @@
-// resolve_samples: shade and resolve in one, with sums that never leave a group. Contract: stages.h.
+// resolve_samples: shade and resolve in one pass, with sums in registers or a group's own memory. Contract: stages.h.
 #ifndef GLINT_FILM_SAMPLES_H
 #define GLINT_FILM_SAMPLES_H
 
@@ -15,10 +15,10 @@ typedef struct samples_frame {
     const glint_shade_args *sample;
     uint32_t count;
     double inverse; ///< see mean_of
-    float background[3]; ///< the mean of so many
+    float background[3]; ///< the mean over all samples
 } samples_frame;
 
-/// The mean of so many equal terms, added up as others are.
+/// Returns the mean of equal terms, added up like others.
 static inline float mean_of_equal(const samples_frame *frame, double term)
 {
     double sum = 0;
@@ -27,7 +27,8 @@ static inline float mean_of_equal(const samples_frame *frame, double term)
     return (float)(frame->inverse > 0 ? sum * frame->inverse : sum / (double)frame->count);
 }
 
-/// Computes one light's contribution to a term in a channel: factor times kd Id or ks Is, plus that of microfacets.
+/// One light's contribution to a term in a channel: factor times kd Id or ks Is, plus the grazing term of
+/// microfacets.
 typedef struct light_share {
     const float *factor, *grazing; ///< grazing NULL: nothing
     float color, rise;
@@ -44,7 +45,7 @@ static inline light_share share_of(const light_factors *factors, const glint_sha
                            has_facets(material) ? share_color(material->grazing[c], light->specular[c]) : 0 };
 }
 
-/// One vector of it.
+/// Returns one vector of it.
 static inline vf share_lanes(const light_share *share, int i)
 {
     vf x = f_load(share->factor + i) * f_set(share->color);
@@ -53,7 +54,7 @@ static inline vf share_lanes(const light_share *share, int i)
     return x;
 }
 
-/// One vector of a term that lights make, in each channel: the mean of all shares.
+/// Computes one vector of a term with lights, in each channel: the mean of all shares.
 static inline void mean_shares(const samples_frame *frame, const light_factors *factors,
                                const glint_shade_material *material, int term, int i, vf mean[3])
 {
@@ -76,7 +77,7 @@ static inline void mean_shares(const samples_frame *frame, const light_factors *
     }
 }
 
-/// The material that every sample shows in every lane; NULL: there is none.
+/// Returns the material that every sample shows in every lane; NULL: there is none.
 static inline const glint_shade_material *only_material(const samples_frame *frame, uint32_t g)
 {
     const glint_shade_material *material = NULL;
@@ -93,7 +94,7 @@ static inline const glint_shade_material *only_material(const samples_frame *fra
     return material;
 }
 
-/// A group that shows one material, with no term kept: in registers.
+/// Resolves a group that shows one material, without terms to store: in registers.
 static inline void resolve_whole(const samples_frame *frame, const glint_shade_material *material, uint32_t g)
 {
     const bool specular = frame->sample->highlights && material->highlight;
@@ -119,7 +120,7 @@ static inline void resolve_whole(const samples_frame *frame, const glint_shade_m
     }
 }
 
-/// Any group.
+/// Resolves any group.
 static inline void resolve_mixed(const samples_frame *frame, uint32_t g)
 {
     _Alignas(64) double sum[GLINT_TERM_LOCAL][3][GLINT_GROUP];

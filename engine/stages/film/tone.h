@@ -1,12 +1,12 @@
-// tone: float light to 8-bit codes, exact for every float. Where the instruction set has f_by_exponent, an estimate
-// gives the code and only vectors with a lane in doubt look it up. Contract: stages.h.
+// tone: float light to 8-bit pixel values, exact for every float. If the instruction set has f_by_exponent, an
+// estimate gives the value, and only vectors with an uncertain lane are looked up. Contract: stages.h.
 #ifndef GLINT_FILM_TONE_H
 #define GLINT_FILM_TONE_H
 
 #include "engine/stages/shade/group.h"
 #include "engine/stages/simd/elementary.h"
 
-/// One look-up and one comparison; x in 0 .. 1.
+/// Looks up a value, with one comparison; x in 0 .. 1.
 static inline vi tone_look_up(const uint32_t *table, vf x)
 {
     const vi lowest = i_set(GLINT_TONE_FIRST << 16);
@@ -26,7 +26,7 @@ static inline vi tone_exact(const uint32_t *table, const vf x[3])
     return i_or(rgb, i_shl(tone_look_up(table, x[2]), 16));
 }
 
-/// The fit in registers. `table`: without instructions for the fit, or without a fit, all is looked up.
+/// The fit in registers. `table`: everything is looked up, without instructions for the fit or without a fit.
 typedef struct tone_fit {
     bool table;
 #ifdef f_by_exponent
@@ -84,7 +84,7 @@ static inline vi tone_codes(const uint32_t *table, const tone_fit *fit, const vf
 }
 #endif
 
-/// Brings three vectors that are not all in 0 .. top there, and counts their pixels; `active`: of their lanes; `beauty`:
+/// Clamps three vectors that are not all in 0 .. top, and counts their pixels; `active`: of their lanes; `beauty`:
 /// the light before exposure.
 static inline void tone_clamp(const glint_tone_args *args, const vf beauty[3], vf x[3], unsigned active)
 {
@@ -120,7 +120,7 @@ static inline bool tone_is_same(const vf a[3], const vf b[3])
     return fm_bits(fm_and(fm_and(f_eq(a[0], b[0]), f_eq(a[1], b[1])), f_eq(a[2], b[2]))) == (1u << VF) - 1;
 }
 
-/// Light as it was before, as backgrounds and even shadows have it, has the codes that it had then.
+/// Consecutive groups with the same light, as in backgrounds and uniform shadows, reuse the previous values.
 static inline void tone_groups(const glint_tone_args *args, bool exposed)
 {
     const vf gain = f_set(args->gain), top = f_set(args->top);
@@ -128,11 +128,12 @@ static inline void tone_groups(const glint_tone_args *args, bool exposed)
     const tone_fit fit = tone_load_fit(args->fit);
     uint32_t column = 0;
     uint8_t *codes = args->codes;
-    vf seen[3] = { f_set(NAN), f_set(NAN), f_set(NAN) }; // no number where it was clamped, which is counted each time
+    vf seen[3] = { f_set(NAN), f_set(NAN), f_set(NAN) }; // NaN equals nothing: clamped vectors are never reused,
+        // because each is counted
     vi rgb = i_set(0);
     for (uint32_t g = 0; g < args->group_count; g++) {
         const bool last = ++column == args->groups_across;
-        const bool spill = !last && args->active[g + 1] == 0xffff; // the next group is yet to be written, over it
+        const bool spill = !last && args->active[g + 1] == 0xffff; // the next group will be written over it
         for (int i = 0; i < GLINT_GROUP && args->active[g]; i += VF) {
             const unsigned active = args->active[g] >> i & all;
             vf beauty[3], x[3];
@@ -160,7 +161,7 @@ static inline void tone_groups(const glint_tone_args *args, bool exposed)
     }
 }
 
-/// Each way is compiled for its constant.
+/// One copy is compiled for each constant.
 static void tone(const glint_tone_args *args)
 {
     if (args->gain != 1)

@@ -1,5 +1,5 @@
-// What the kernels of operations have in common: each reads and writes whole rows, one vector after the other, and of a
-// vector reads all operands before it writes a result, which may be in an operand's place.
+// Common code of the kernels of operations. Each reads and writes whole rows, one vector after the other. For each
+// vector it reads all operands before it writes a result, so that a result may replace an operand.
 #ifndef GLINT_PROGRAM_CALL_H
 #define GLINT_PROGRAM_CALL_H
 
@@ -7,7 +7,8 @@
 
 typedef struct op_call {
     const double *in[GLINT_OPERANDS_MAX];
-    size_t step[GLINT_OPERANDS_MAX]; ///< lane & step: where in an operand; 0 of a number, as it is one group long
+    size_t step[GLINT_OPERANDS_MAX]; ///< an operand is read at lane & step; 0 for a number, which is only one group
+        ///< long
     double *out[GLINT_RESULTS_MAX];
     size_t lanes;
     const glint_texture_table *texture;
@@ -15,7 +16,7 @@ typedef struct op_call {
 
 static inline vd op_in(const op_call *call, int k, size_t lane) { return d_load(call->in[k] + (lane & call->step[k])); }
 
-// One result from operands a; a and b; a, b and c; a to f. The compiler unrolls the inner loop.
+// One result, from operands a; a and b; a, b and c; a to f. The compiler unrolls the inner loop.
 #define OP_KERNEL(name, operands, expression) \
     static void op_##name(const op_call *call) \
     { \
@@ -48,7 +49,7 @@ static inline vd op_in(const op_call *call, int k, size_t lane) { return d_load(
     each(4, e); \
     each(5, f)
 
-/// 1 where the mask is set, else 0.
+/// Returns 1 where the mask is set, otherwise 0.
 static inline vd d_truth(dm mask) { return d_select(mask, d_set(1), d_set(0)); }
 
 static inline vd d_horner(const double *c, int count, vd x)

@@ -1,5 +1,6 @@
-// Cells: each unit cube has one point, and what counts are the two nearest. They are in the 125 cubes around: the own
-// one, the 26 next to it, and the 98 beyond, of which most are too far. Contract: contract/program.h.
+// Cells: each unit cube has one feature point. The two points nearest to a position are in the 125 cubes around it:
+// its own cube, the 26 cubes next to it, and the 98 beyond, most of which are too far away. Contract:
+// contract/program.h.
 #ifndef GLINT_PROGRAM_CELL_H
 #define GLINT_PROGRAM_CELL_H
 
@@ -12,14 +13,14 @@
 #define CELL_SIDE 5
 
 typedef struct cell_place {
-    vq word[3][CELL_SIDE]; ///< of the hash, for each place along an axis
-    vd x[3][CELL_SIDE]; ///< where the cubes begin, from the point
-    vd least2[3][CELL_SIDE]; ///< square of the way to them along the axis alone
+    vq word[3][CELL_SIDE]; ///< of the hash, for each cube along an axis
+    vd x[3][CELL_SIDE]; ///< lower sides of the cubes, relative to the position
+    vd least2[3][CELL_SIDE]; ///< square of the distance to the cubes along the one axis
 } cell_place;
 
 typedef struct cell_nearest {
     vd length2[2];
-    vd to[2][3]; ///< from the point
+    vd to[2][3]; ///< relative to the position
 } cell_nearest;
 
 INNER void cell_locate(const vd p[3], cell_place *at)
@@ -58,7 +59,7 @@ INNER void cell_visit(const cell_place *at, int i, int j, int k, bool slope, cel
     nearest->length2[0] = d_select(first, length2, nearest->length2[0]);
 }
 
-/// Whether a place of 0 .. 124, x fastest, is in this ring around the middle.
+/// Returns whether a cube of 0 .. 124, x fastest, is in this ring around the middle.
 INNER bool cell_in_ring(int i, int j, int k, int ring)
 {
     const int a = abs(i - CELL_SIDE / 2), b = abs(j - CELL_SIDE / 2), c = abs(k - CELL_SIDE / 2);
@@ -76,7 +77,7 @@ INNER void cell_find(const vd p[3], bool slope, cell_nearest *nearest)
             nearest->to[n][c] = d_set(NAN);
     }
     for (int ring = 0; ring <= CELL_SIDE / 2; ring++) {
-        if (ring == CELL_SIDE / 2) { // the nearest of them may all be too far
+        if (ring == CELL_SIDE / 2) { // even the nearest cubes of this ring may be too far away
             vd least2 = d_min(at.least2[0][0], at.least2[0][CELL_SIDE - 1]);
             for (int c = 1; c < 3; c++)
                 least2 = d_min(least2, d_min(at.least2[c][0], at.least2[c][CELL_SIDE - 1]));

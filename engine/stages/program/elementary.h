@@ -1,9 +1,9 @@
-// Elementary functions of doubles. How far they may be off the truth:
-//   sin, cos        4e-16
-//   exp2            2.5e-16 of the result; where that is subnormal, one of its last place
-//   log2            4e-16 of the result, or 4e-16 where that is smaller than 1
-//   pow             1e-12 of the result
-//   atan2, acos     6e-16
+// Elementary functions of doubles. Maximum errors:
+//   sin, cos: 4e-16
+//   exp2: 2.5e-16 of the result; for subnormal results, one unit in the last place
+//   log2: 4e-16 of the result, or 4e-16 if the result is smaller than 1
+//   pow: 1e-12 of the result
+//   atan2, acos: 6e-16
 // Contract: contract/program.h.
 #ifndef GLINT_PROGRAM_ELEMENTARY_H
 #define GLINT_PROGRAM_ELEMENTARY_H
@@ -15,7 +15,7 @@
 
 static double scalar_sine(double x, double turn) { return turn != 0 ? glint_cos(x) : glint_sin(x); }
 
-/// Sine, or with turn 1 cosine. Angles beyond GLINT_ANGLE_MAX are reduced one by one.
+/// Returns the sine, or with turn 1 the cosine. Angles beyond GLINT_ANGLE_MAX are reduced one by one.
 INNER vd d_sine(vd x, uint64_t turn)
 {
     static const double sine[] = GLINT_SINE, cosine[] = GLINT_COSINE;
@@ -29,7 +29,7 @@ INNER vd d_sine(vd x, uint64_t turn)
     return wide ? d_each(turned, wide, x, d_set((double)turn), scalar_sine) : turned;
 }
 
-/// 2^n of a whole number, -1022 .. 1023.
+/// Returns 2^n for an integer n, -1022 .. 1023.
 static inline vd d_power_of_2(vd n) { return d_of_bits(q_shl(d_bits(n + d_set(0x1p52 + 1023)), 52)); }
 
 static inline vd d_exp2(vd y)
@@ -105,7 +105,7 @@ OP_KERNEL(pow, OP_AB, d_pow(a, b))
 OP_KERNEL(atan2, OP_AB, d_atan2(a, b))
 OP_KERNEL(acos, OP_A, d_acos(a))
 
-/// S of shade, in its float.
+/// S of shade, in shade's float.
 static void op_highlight(const op_call *call)
 {
     const vd zero = d_set(0), one = d_set(1);

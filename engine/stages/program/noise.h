@@ -8,20 +8,20 @@
 #include "engine/stages/program/exact.h"
 #include "engine/stages/simd/elementary.h"
 
-/// The lower 32 bits count.
+/// Folds 64 bits; only the lower 32 bits of the result count.
 static inline vq q_fold(vq x) { return q_xor(x, q_shr(x, 32)); }
 
 static inline vq q_times(vq x, uint32_t factor) { return q_mul(x, q_set(factor)); }
 
-/// A whole number modulo 2^32.
+/// Returns an integer modulo 2^32.
 static inline vq q_word(vd whole) { return d_bits(whole + d_set(GLINT_ROUNDER_DOUBLE)); }
 
-/// Mixes a sum of products by GLINT_HASH_X, _Y, _Z and _SEED into a number without a pattern.
+/// Hashes a sum of products with GLINT_HASH_X, _Y, _Z and _SEED.
 static inline vq q_hash(vq sum) { return q_fold(q_times(q_fold(sum), GLINT_HASH_A)); }
 
 static inline vq q_hash_word(vq h, vq word, uint32_t factor) { return q_fold(q_times(q_xor(h, word), factor)); }
 
-/// 32 bits as a number of [0, 1).
+/// Returns 32 bits as a number in [0, 1).
 static inline vd d_of_word(vq word)
 {
     const vq fraction = q_shr(q_shl(word, 32), 12);
@@ -45,7 +45,7 @@ static inline vd d_odd(vd whole) { return whole - d_set(2) * d_floor(d_set(0.5) 
 OP_KERNEL(hash, OP_ABC, d_hash(a, b, c))
 static inline dm d_below(vd x, double limit) { return d_lt(d_abs(x), d_set(limit)); }
 
-/// Returns the lowest bit of the sum of whole parts.
+/// Returns the lowest bit of the sum of integer parts.
 static inline vd d_parity(vd a, vd b, vd c)
 {
     if (dm_bits(dm_and(d_below(a, 0x1p51), dm_and(d_below(b, 0x1p51), d_below(c, 0x1p51)))) != D_ALL)
@@ -57,10 +57,10 @@ static inline vd d_parity(vd a, vd b, vd c)
 
 OP_KERNEL(parity, OP_ABC, d_parity(a, b, c))
 
-/// Where a point is among the corners of its cube.
+/// The position of a point in its unit cube.
 typedef struct noise_place {
     vq word[2][4]; ///< of the hash: for the four edges along z, x fastest; for the two sides along z
-    vd from[3][2]; ///< from either to the point
+    vd from[3][2]; ///< from each of the two sides to the point
     vd fade[3];
 } noise_place;
 
@@ -85,14 +85,14 @@ INNER void noise_locate(const vd p[3], noise_place *at)
 
 INNER vd d_between(vd t, vd a, vd b) { return a + t * (b - a); }
 
-/// The hash of a corner's gradient, in bits 28 .. 31.
+/// Returns the hash of a corner's gradient, in bits 28 .. 31.
 INNER vq noise_gradient(const noise_place *at, int c, vq seed)
 {
     const vq sum = q_add(at->word[0][c & 3], q_add(at->word[1][c >> 2], seed));
     return q_times(q_hash(sum), GLINT_HASH_B);
 }
 
-/// -x where the first, or second, bit of a gradient's hash is set.
+/// Returns -x where the first, or second, bit of a gradient's hash is set, otherwise x.
 INNER vd d_turned_by_first(vd x, vq h)
 {
     return d_of_bits(q_xor(d_bits(x), q_and(q_shl(h, 35), q_set((uint64_t)1 << 63))));
@@ -102,10 +102,10 @@ INNER vd d_turned_by_second(vd x, vq h)
     return d_of_bits(q_xor(d_bits(x), q_and(q_shl(h, 34), q_set((uint64_t)1 << 63))));
 }
 
-/// Which two axes a gradient is of.
+/// The two axes of a gradient.
 typedef struct noise_axes {
-    dm y_first; ///< the first axis is y, else x
-    dm y_second, x_second; ///< the second is y or x, else z
+    dm y_first; ///< the first axis is y, otherwise x
+    dm y_second, x_second; ///< the second axis is y or x, otherwise z
 } noise_axes;
 
 INNER noise_axes noise_axes_of(vq h)
@@ -113,7 +113,7 @@ INNER noise_axes noise_axes_of(vq h)
     return (noise_axes) { q_test(h, 8u << 28), q_is(h, 12u << 28, 0), q_is(h, 13u << 28, 12u << 28) };
 }
 
-/// The gradient of a corner times the way from there to the point.
+/// Returns the dot product of a corner's gradient and the vector from the corner to the point.
 INNER vd noise_ramp(const noise_place *at, int c, vq h, const noise_axes *axes)
 {
     const vd x = at->from[0][c & 1], y = at->from[1][c >> 1 & 1], z = at->from[2][c >> 2];
@@ -174,7 +174,7 @@ INNER vd noise_across(const noise_place *at, const vd corner[8], int axis)
     return d_between(at->fade[b], d_between(at->fade[a], edge[0], edge[1]), d_between(at->fade[a], edge[2], edge[3]));
 }
 
-/// The part of a gradient along an axis: -1, 0 or 1.
+/// Returns the component of a gradient along an axis: -1, 0 or 1.
 INNER vd noise_along(vq h, const noise_axes *axes, int axis)
 {
     const vd zero = d_set(0), first = d_turned_by_first(d_set(1), h), second = d_turned_by_second(d_set(1), h);

@@ -61,7 +61,7 @@ static void (*const op_kernels[GLINT_OP_COUNT])(const op_call *call) = {
     [GLINT_OP_TEXEL_SLOPE] = op_texel_slope,
 };
 
-/// Where an operand is read: `step` as op_call has it.
+/// Returns where an operand is read; `step` as in op_call.
 static inline const double *find_operand(const glint_program_args *args, uint32_t row, size_t *step)
 {
     *step = ~(size_t)0;
@@ -75,16 +75,17 @@ static inline const double *find_operand(const glint_program_args *args, uint32_
     return args->code->numbers[row - GLINT_ROW_NUMBER];
 }
 
-/// VF numbers as reflectances; NaN gives 0. They are rounded before they are bounded, as the bounds are floats.
+/// Converts VF numbers to reflectances; NaN gives 0. They are rounded first and then clamped, as the bounds are
+/// floats.
 INNER vf reflectances(vd low, vd high)
 {
     return f_min(f_max(f_join(low, high), f_set(0)), f_set((float)GLINT_REFLECTANCE_MAX));
 }
 
-/// Lanes that are such already.
+/// Returns the lanes that are valid reflectances already.
 INNER dm are_even(vd x) { return dm_and(d_le(d_set(0), x), d_le(x, d_set(GLINT_REFLECTANCE_MAX))); }
 
-/// The lanes of a group that are none.
+/// Returns the lanes of a group that are not.
 INNER unsigned find_odd(const double *from)
 {
     unsigned even = 0;
@@ -93,12 +94,12 @@ INNER unsigned find_odd(const double *from)
     return ~even;
 }
 
-/// Where an output stands, and where its groups go.
+/// An output: its row, and the positions of its groups.
 typedef struct output {
     const glint_program_args *args;
     const double *row;
     size_t step;
-    bool whole; ///< all lanes are wanted, and the groups follow each other: see is_whole
+    bool whole; ///< all lanes are wanted, and the groups are consecutive: see is_whole
 } output;
 
 INNER const double *output_of(const output *out, uint32_t g) { return out->row + ((size_t)g * GLINT_GROUP & out->step); }
@@ -118,14 +119,14 @@ static bool is_whole(const glint_program_args *args)
     return wanted == 0xffff && !apart;
 }
 
-/// Notes the lanes whose values are not reflectances.
+/// Records the lanes whose values are not reflectances.
 static void note_odd(const output *out)
 {
     for (uint32_t g = 0; g < out->args->group_count; g++)
         out->args->odd[g] |= (uint16_t)(find_odd(output_of(out, g)) & out->args->wanted[g]);
 }
 
-/// Checks the results of a whole call. `watched`, a constant: returns whether all are valid reflectances.
+/// Stores the results of a whole call. `watched`, a constant: returns whether all are valid reflectances.
 INNER bool store_lanes(const output *out, const bool watched, float *to)
 {
     const size_t step = out->step, count = (size_t)out->args->group_count * GLINT_GROUP;
@@ -166,7 +167,7 @@ static void store_plane(const output *out, float *plane)
         note_odd(out);
 }
 
-/// Adds outputs, as store_plane rounds them, times `share`.
+/// Adds outputs, rounded as in store_plane, times `share`.
 static void add_total(const output *out, double *total)
 {
     for (uint32_t g = 0; g < out->args->group_count; g++) {
@@ -234,7 +235,7 @@ static void add_sums(const glint_program_args *args)
         }
 }
 
-/// Adds slopes, where all are finite.
+/// Adds slopes in lanes where all are finite.
 static void add_slopes(const glint_program_args *args)
 {
     const vd most = d_set(HUGE_VAL);
@@ -269,9 +270,9 @@ static void add_slopes(const glint_program_args *args)
     }
 }
 
-// ---- Choices by a bit ---------------------------------------------------------------------------------------------
+// ---- Choices by one bit -------------------------------------------------------------------------------------------
 
-/// Stores one of two numbers in the lanes of a group that are wanted.
+/// Stores one of two numbers in the wanted lanes of a group.
 INNER void choose_lanes(float *to, unsigned wanted, unsigned truths, vf no, vf yes)
 {
     for (int i = 0; i < GLINT_GROUP; i += VF) {

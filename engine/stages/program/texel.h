@@ -1,5 +1,5 @@
-// Texels: where in which level a lane reads is found for all lanes at once, the texels are read lane by lane.
-// Contract: contract/program.h.
+// Texels: level and position are computed for all lanes at once, and the texels are read lane by lane. Contract:
+// contract/program.h.
 #ifndef GLINT_PROGRAM_TEXEL_H
 #define GLINT_PROGRAM_TEXEL_H
 
@@ -25,7 +25,7 @@ static inline bool texel_repeats_u(const glint_texture_table *texture) { return 
 
 static inline bool texel_repeats_v(const glint_texture_table *texture) { return texture->wrap == GLINT_WRAP_REPEAT; }
 
-/// width, height: of each lane's level.
+/// Computes positions and weights. width, height: of each lane's level.
 static void texel_locate(vd u, vd v, vd width, vd height, texel_place *at)
 {
     const vd x = u * width - d_set(0.5), y = (d_set(1) - v) * height - d_set(0.5);
@@ -35,7 +35,7 @@ static void texel_locate(vd u, vd v, vd width, vd height, texel_place *at)
     d_store(at->fy, y - d_floor(y));
 }
 
-/// The index before and after a wrapping: `at` is -1 .. side.
+/// Wraps or clamps an index `at`, -1 .. side.
 static inline size_t texel_index(bool repeat, int at, uint32_t side)
 {
     if (at < 0)
@@ -45,7 +45,7 @@ static inline size_t texel_index(bool repeat, int at, uint32_t side)
     return repeat ? 0 : side - 1;
 }
 
-/// The four channels of the four texels of a lane: upper left, upper right, lower left, lower right.
+/// Returns the four channels of the four texels of a lane: upper left, upper right, lower left, lower right.
 static inline void texel_corners(const glint_texture_table *texture, const glint_texture_level *level,
                                  const texel_place *at, int lane, const float *corner[4])
 {
@@ -82,7 +82,7 @@ static void texel_slopes(const float *const corner[4], double fx, double fy, con
     }
 }
 
-/// The level of each lane, with a fraction.
+/// Returns the level of each lane, with a fraction.
 static inline vd texel_level(const glint_texture_table *texture, vd footprint)
 {
     const glint_texture_level *whole = &texture->levels[0];
@@ -92,7 +92,7 @@ static inline vd texel_level(const glint_texture_table *texture, vd footprint)
     return d_min(level, d_set(texture->level_count - 1));
 }
 
-/// The given lanes' level, or, with `next` 1, the one after it, by its share, on top of that.
+/// Reads the level of the given lanes, or, with `next` 1, adds the next level times its share.
 static void texel_add(const op_call *call, vd u, vd v, const double level[VD], unsigned lanes, int next, bool slope,
                       double out[VD][GLINT_RESULTS_MAX])
 {

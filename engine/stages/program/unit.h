@@ -1,4 +1,4 @@
-// The stage `unit`: ways to lights and to the eye, as shaders read them. Contract: contract/program.h.
+// The stage `unit`: directions to lights and to the eye, as shaders read them. Contract: contract/program.h.
 #ifndef GLINT_PROGRAM_UNIT_H
 #define GLINT_PROGRAM_UNIT_H
 
@@ -6,7 +6,7 @@
 #include "engine/stages/program/exact.h"
 #include "engine/stages/simd/elementary.h"
 
-/// d / by, where `by` is d's length.
+/// Computes d / by, where `by` is the length of d.
 static inline void divide_each(const vd d[3], vd by, vd q[3])
 {
     for (int c = 0; c < 3; c++)
@@ -14,11 +14,12 @@ static inline void divide_each(const vd d[3], vd by, vd q[3])
 }
 
 #ifdef GLINT_D_FUSED
-/// The same bits by one division in place of three, where |1 - y by| < 2^-53 (y: 1 / by), which it is where it is so once rounded.
-/// If q is a neighbour of d / by, q + (d - q by) y with both steps fused is d / by rounded to nearest (after P. Markstein, IBM J. Res.
-/// Dev. 34(1), 1990): what is rounded last is off by less than 2^-53 of q's own error, and d / by is 2^-54 of a last place or more
-/// from where rounding turns. d y + d rest, fused, is within 2^-104 of d / by before it is rounded, and so a neighbour after.
-/// Within the bounds, where by is at most 2^512 as a root is, nothing that counts over- or underflows.
+/// Computes the same bits with one division instead of three, if |1 - y by| < 2^-53 (y: 1 / by) holds after rounding,
+/// as it then holds exactly. If q is a neighbour of d / by, q + (d - q by) y with both steps fused is d / by rounded
+/// to nearest (after P. Markstein, IBM J. Res. Dev. 34(1), 1990): the error before the last rounding is less than
+/// 2^-53 of the error of q, and d / by is at least 2^-54 of a last place away from the nearest rounding boundary. d y
+/// + d rest, fused, is within 2^-104 of d / by before rounding, and so a neighbour after it. Within the bounds, where
+/// by is at most 2^512 as a root is, no number that matters over- or underflows.
 static inline void divide_by_length(const vd d[3], vd by, vd q[3])
 {
     const vd y = d_set(1) / by, less_1 = d_fnma(by, y, d_set(1)), rest = less_1 * y;
@@ -37,10 +38,10 @@ static inline void divide_by_length(const vd d[3], vd by, vd q[3])
 static inline void divide_by_length(const vd d[3], vd by, vd q[3]) { divide_each(d, by, q); }
 #endif
 
-/// Which ways a call finds: each is compiled by itself.
+/// The kinds of directions, each compiled separately.
 typedef enum unit_way { TO_EYE, TO_PLACE, TO_EACH } unit_way;
 
-/// VD of them; across and down: the camera's axes, of these lanes.
+/// Computes VD directions; across and down: the camera's axes, for these lanes.
 INNER void unit_lanes(const glint_unit_args *args, const unit_way way, const double *across, const double *down,
                       size_t at)
 {
@@ -63,7 +64,7 @@ INNER void unit_lanes(const glint_unit_args *args, const unit_way way, const dou
 
 INNER void unit_groups(const glint_unit_args *args, const unit_way way)
 {
-    const glint_unit_args call = *args; // stores may not change it
+    const glint_unit_args call = *args; // a copy, because stores might change it
     const double *across = NULL, *down = NULL;
     for (size_t k = 0; k < call.group_count; k++) {
         if (way == TO_EYE) {

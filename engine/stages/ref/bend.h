@@ -1,6 +1,6 @@
 // The reference of bend.
 
-/// A ray that a hit is seen by: where along it, and its slopes.
+/// The ray that sees a hit: distance of the hit along it, and the ray's slopes.
 typedef struct bent_ray {
     double way[3], moved[3], turned[3], far;
 } bent_ray;

@@ -1,6 +1,6 @@
-// The reference of caps, for one type of real; included by ref/real.h. One line of stages.h after the other.
+// The reference of caps, for one type of real; included by ref/real.h. It follows stages.h line by line.
 
-/// atan2(y, x) of two numbers that are not negative.
+/// Returns atan2(y, x) for y, x >= 0.
 static REAL NAME(angle_of)(REAL y, REAL x)
 {
     REAL t = y / (NAME(square_root)(x * x + y * y) + x);
@@ -17,7 +17,8 @@ typedef struct NAME(cap) {
     REAL sine, cosine; ///< of half its radius
 } NAME(cap);
 
-/// A ball of that radius, at `offset` from the point; `power`: its distance squared less its radius squared.
+/// Returns the cap of a ball of that radius, at `offset` from the point; `power`: squared distance minus squared
+/// radius.
 static NAME(cap) NAME(cap_of)(NAME(vec3) offset, REAL radius, REAL power)
 {
     REAL distance = NAME(square_root)(NAME(length2)(offset));
@@ -52,7 +53,7 @@ static REAL NAME(covered_part)(NAME(cap) s, NAME(cap) a)
     return NAME(min)(NAME(max)(lens, 0), 1);
 }
 
-/// The share of the light that a primitive leaves to a point.
+/// Returns the visible share of the light from a point past a primitive.
 static REAL NAME(share_left)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) point, NAME(vec3) l,
                              bool own)
 {
@@ -85,7 +86,7 @@ static REAL NAME(share_seen)(const glint_occlude_args *args, uint32_t i)
     REAL left = 1;
     bool back = args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
     if (!((REAL)(args->light_sample[0]->radius * args->scale) < NAME(square_root)(NAME(length2)(l))))
-        return 1; // within the light
+        return 1; // inside the light
     for (uint32_t k = 0; k < args->geometry->prim_count; k++) {
         const glint_prim *prim = &args->geometry->prims[k];
         bool own = args->prim[i] == k;

@@ -1,13 +1,13 @@
-// The reference of the cast and of scan conversion: included by ref/real.h for each type of real.
+// The reference of cast and scan conversion: included by ref/real.h for each type of real.
 
-/// The hybrid discriminant: from afar by the distance of the line from the centre, close by as b^2 - a c.
+/// Returns the hybrid discriminant: from far away by the distance of the line from the centre, close by as b^2 - a c.
 static REAL NAME(discriminant)(NAME(vec3) f, NAME(vec3) direction, REAL a, REAL b, REAL c, REAL r2)
 {
     bool near = b * b < a * r2;
     return near ? b * b - a * c : a * r2 - NAME(length2)(NAME(cross)(f, direction));
 }
 
-/// The distance at which a ray meets a sphere; 0 stands for a miss.
+/// Returns the distance at which a ray hits a sphere; 0: a miss.
 static REAL NAME(sphere_t)(NAME(vec3) f, REAL c, NAME(vec3) direction, const glint_prim *prim)
 {
     REAL scale = (REAL)glint_sphere_scale(prim);
@@ -21,7 +21,7 @@ static REAL NAME(sphere_t)(NAME(vec3) f, REAL c, NAME(vec3) direction, const gli
     return disc >= 0 && t > 0 ? t : 0;
 }
 
-/// The height of a place over a plane; of a point of some surface 0 on it, as far as rounding lets us know.
+/// Returns the height of a point over a plane. For a point on some surface, it is 0 if it is within rounding.
 static REAL NAME(over_plane)(const glint_prim *prim, NAME(vec3) place, bool on_surface)
 {
     NAME(vec3) n = NAME(rounded)(prim->normal), q = NAME(sub)(place, NAME(rounded)(prim->center));
@@ -30,7 +30,7 @@ static REAL NAME(over_plane)(const glint_prim *prim, NAME(vec3) place, bool on_s
     return on_surface && prim->normal[3] > 0 ? NAME(zero_within)(h, NAME(ON_FACE) * (sizes + (REAL)prim->normal[3])) : h;
 }
 
-/// The distance at which a ray meets a plane, h being the height of its origin; 0 stands for a miss.
+/// Returns the distance at which a ray hits a plane, h being the height of its origin; 0: a miss.
 static REAL NAME(plane_t)(REAL h, NAME(vec3) direction, const glint_prim *prim)
 {
     REAL nd = NAME(dot)(NAME(rounded)(prim->normal), direction);
@@ -40,7 +40,7 @@ static REAL NAME(plane_t)(REAL h, NAME(vec3) direction, const glint_prim *prim)
 
 #include "engine/stages/ref/combined.h"
 
-/// Likewise for any primitive but a combined solid.
+/// Likewise for any primitive except a combined solid.
 static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim *prim, NAME(vec3) origin,
                          NAME(vec3) direction, bool on_surface)
 {
@@ -54,8 +54,8 @@ static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim 
     return NAME(sphere_t)(f, NAME(exact_c)(f.x, f.y, f.z, prim), direction, prim);
 }
 
-/// Whether ray i starts on the primitive, or on a triangle that it has not left for certain when it comes to this one's plane;
-/// then *t is where it meets it, or 0.
+/// Returns whether ray i starts on the primitive, or on a triangle that it has not certainly left when it reaches
+/// this one's plane; then *t is the distance of the hit, or 0.
 static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3) origin, NAME(vec3) direction,
                          uint32_t i, REAL *t)
 {
@@ -104,7 +104,7 @@ static REAL NAME(meets)(const glint_cast_args *args, bool eye, uint32_t index, N
     return t;
 }
 
-/// `eye`: where all rays start; NULL: each has its own origin.
+/// Casts ray i. `eye`: the origin of all rays; NULL: each has its own.
 static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, uint32_t i)
 {
     REAL best = INFINITY;
@@ -168,7 +168,7 @@ static void NAME(raster)(const glint_raster_args *args)
     }
 }
 
-/// The reference never rules a tile out but where there is nothing at all.
+/// The reference only rules a tile out if there are no primitives.
 static bool NAME(in_sight)(const glint_cast_args *args) { return args->geometry->prim_count > 0; }
 
 static void NAME(cast_bundle)(const glint_cast_args *args) { NAME(cast)(args, args->camera->eye); }

@@ -1,11 +1,11 @@
-// The reference of combined solids, for one type of real; included by ref/cast.h. One line of stages.h after the other.
+// The reference of combined solids, for one type of real; included by ref/cast.h. It follows stages.h line by line.
 
-/// Where a ray is inside a part: in < out, or nowhere.
+/// The interval of a ray inside a part: in < out, or empty.
 typedef struct NAME(stretch) {
     REAL in, out;
 } NAME(stretch);
 
-/// Which parts a ray that starts on one of them is on, and whether it goes into the whole there.
+/// The primitive that a ray starts on, and whether the ray goes into the whole there.
 typedef struct NAME(start) {
     uint32_t on; ///< index in prims, or GLINT_MISS
     bool inward;
@@ -31,7 +31,7 @@ static NAME(stretch) NAME(within_part)(const glint_geometry_table *geometry, con
     return p.hit ? (NAME(stretch)) { p.in.t, p.out.t } : NAME(nowhere)();
 }
 
-/// The same of a ray that starts on the part: in it up to its other side, or not at all.
+/// Returns the same for a ray that starts on the part: inside up to its other side, or nowhere.
 static NAME(stretch) NAME(from_part)(const glint_geometry_table *geometry, const glint_prim *part, NAME(vec3) origin,
                                      NAME(vec3) direction, bool inward)
 {
@@ -43,7 +43,7 @@ static NAME(stretch) NAME(from_part)(const glint_geometry_table *geometry, const
     return (NAME(stretch)) { -INFINITY, NAME(max)(p.out.t, (REAL)GLINT_LEAST_WAY) };
 }
 
-/// One of the two stretches that a ray may be inside of a torus.
+/// Returns one of the two intervals in which a ray may be inside a torus.
 static NAME(stretch) NAME(within_torus)(const glint_geometry_table *geometry, const glint_prim *part, NAME(vec3) origin,
                                         NAME(vec3) direction, bool own, bool inward)
 {
@@ -61,7 +61,7 @@ static NAME(stretch) NAME(stretch_of)(const glint_geometry_table *geometry, uint
 {
     const glint_prim *part = &geometry->prims[index];
     if (part->kind == GLINT_PRIM_HULL)
-        return NAME(nowhere)(); // its stretches are many: see ref/hull.h
+        return NAME(nowhere)(); // it can have many intervals: see ref/hull.h
     if (part->kind == GLINT_PRIM_SOLID && part->face)
         return NAME(within_torus)(geometry, part, origin, direction,
                                   start.on == index || start.on == (part->face == 1 ? index + 1 : index - 1), start.inward);
@@ -71,8 +71,8 @@ static NAME(stretch) NAME(stretch_of)(const glint_geometry_table *geometry, uint
 
 /// The state of a set next to a position on a ray.
 typedef struct NAME(change) {
-    bool before, after; ///< the ray is in it
-    uint32_t part; ///< whose surface the change is, where there is one
+    bool before, after; ///< whether the ray is inside
+    uint32_t part; ///< the part on whose surface the change is, if there is one
 } NAME(change);
 
 static NAME(change) NAME(combine)(uint8_t operation, NAME(change) a, NAME(change) b)
@@ -132,7 +132,7 @@ static NAME(change) NAME(change_at)(const NAME(passing) * ray, REAL t)
     return stack[0];
 }
 
-/// Takes the change at t, if it is nearer than the known one.
+/// Takes the change at t if it is nearer than the best one so far.
 static void NAME(consider)(const NAME(passing) * ray, REAL t, REAL *best, uint32_t *met)
 {
     if (!(t > 0 && t < *best))
@@ -144,7 +144,8 @@ static void NAME(consider)(const NAME(passing) * ray, REAL t, REAL *best, uint32
     *met = change.part;
 }
 
-/// The distance at which a ray meets a combined solid; 0 stands for a miss. *met: the part, or the triangle of one; an index in prims.
+/// Returns the distance at which a ray hits a combined solid; 0: a miss. *met: the part, or its triangle; an index in
+/// prims.
 static REAL NAME(combined_t)(const glint_geometry_table *geometry, const glint_prim *prim, NAME(vec3) origin,
                              NAME(vec3) direction, NAME(start) start, uint32_t *met)
 {
@@ -162,7 +163,7 @@ static REAL NAME(combined_t)(const glint_geometry_table *geometry, const glint_p
         for (uint32_t k = 0; k < geometry->hulls[part->item].count; k++)
             if (NAME(hull_crossing)(geometry, part, k, origin, direction, start, &t))
                 NAME(consider)(&ray, t, &best, met);
-        NAME(consider)(&ray, (REAL)GLINT_LEAST_WAY, &best, met); // where the ray may begin on it
+        NAME(consider)(&ray, (REAL)GLINT_LEAST_WAY, &best, met); // for rays that start on it
     }
     return best < INFINITY ? best : 0;
 }

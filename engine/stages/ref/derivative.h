@@ -7,7 +7,7 @@ static glint_dual dual_dot(const glint_dual a[3], const glint_dual b[3])
     return dual_add(dual_add(dual_mul(a[0], b[0]), dual_mul(a[1], b[1])), dual_mul(a[2], b[2]));
 }
 
-/// x^s of x 0 .. 1.
+/// Returns x^s for x 0 .. 1.
 static glint_dual dual_power(glint_dual x, glint_dual s)
 {
     if (!(x.value > 0))
@@ -39,7 +39,7 @@ static glint_dual dual_cone(const glint_derivative_light *light, const glint_dua
     return falls ? dual_mul(step, dual_power(c, light->exponent)) : step;
 }
 
-/// For a light at a position: its direction is not normalised yet.
+/// Computes the direction to a light at a position, not normalised yet.
 static void come_near(const glint_derivative_source *source, dual_shine *s, int i)
 {
     const glint_dual length2 = dual_dot(s->way, s->way);
@@ -133,7 +133,7 @@ static glint_dual dual_beckmann(glint_dual alpha, glint_dual sine2, glint_dual l
     return dual_mul(spread, dual_div(dual_scale(l, 0.25), dual_either(d.value > 0x1p-126, d, dual(0x1p-126, 0))));
 }
 
-/// Computes the microfacet term; *grazing: times Schlick's (1 - v.h)^5.
+/// Returns the microfacet term; *grazing: the term times Schlick's (1 - v.h)^5.
 static glint_dual dual_lobe(const glint_derivative_material *m, glint_dual alpha, const dual_shine *s, const dual_ways *w,
                             glint_dual *grazing)
 {

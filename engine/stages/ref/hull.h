@@ -1,7 +1,10 @@
-// The reference of closed meshes that are parts of combined solids; included by ref/combined.h. One line of stages.h after the other.
+// The reference of closed meshes that are parts of combined solids; included by ref/combined.h. It follows stages.h
+// line by line.
 
-/// How the triangle turns around a ray, seen along it: +-1 where the ray goes through. A ray through an edge or corner is taken for
-/// one beside it, on the side to which the two axes across point, the second before the first: of what shares them it goes through one.
+/// Returns how the triangle turns around a ray, seen along it: +-1 if the ray passes through it, otherwise 0. A ray
+/// through an edge or corner is treated as if shifted along the two perpendicular axes, along the second infinitely
+/// more than along the first. So it passes through exactly one of the triangles that share the edge or corner, or
+/// none.
 static int NAME(turns)(const NAME(vec3) corner[3], NAME(vec3) d)
 {
     int z = NAME(main_axis)(d), x = (z + 1) % 3, y = (z + 2) % 3, turns = 0;
@@ -28,8 +31,8 @@ static bool NAME(starts_on_hull)(const glint_geometry_table *table, const glint_
     return start.on != GLINT_MISS && start.on >= first && start.on - first < hull->count;
 }
 
-/// Whether the ray begins in the triangle's plane, as far as rounding lets us know. That is 0 or not of a plane that triangles
-/// share, but of a ray that starts on the mesh, which may do so at an edge.
+/// Returns whether the ray starts in the triangle's plane, within rounding. For a plane that triangles share, t = 0
+/// decides, except for a ray that starts on the mesh, which may start at an edge.
 static bool NAME(begins_on)(const glint_geometry_table *table, const glint_prim *prim, NAME(vec3) origin,
                             NAME(vec3) direction, bool on_surface, bool on_hull, REAL t)
 {
@@ -39,7 +42,8 @@ static bool NAME(begins_on)(const glint_geometry_table *table, const glint_prim 
            NAME(in_plane)(NAME(part)(&plane_of, prim, direction), prim, origin, on_surface);
 }
 
-/// How the ray goes through triangle k of the mesh: 1: out, -1: in, 0: not; *t: where, within the triangle's own depth.
+/// Returns how the ray crosses triangle k of the mesh: 1: out, -1: in, 0: not; *t: where, within the triangle's own
+/// depth.
 static int NAME(way_through)(const glint_geometry_table *table, const glint_prim *part, uint32_t k, NAME(vec3) origin,
                              NAME(vec3) direction, REAL *t)
 {
@@ -60,7 +64,8 @@ static int NAME(way_through)(const glint_geometry_table *table, const glint_prim
     return part->turned ? -turns : turns;
 }
 
-/// The same ahead of where the ray starts: not of the triangle that it starts on, nor of others whose plane it starts in.
+/// Returns the same for crossings ahead of the ray's origin, without the triangle that it starts on, and without
+/// others whose plane it starts in.
 static int NAME(hull_crossing)(const glint_geometry_table *table, const glint_prim *part, uint32_t k, NAME(vec3) origin,
                           NAME(vec3) direction, NAME(start) start, REAL *t)
 {
@@ -73,9 +78,9 @@ static int NAME(hull_crossing)(const glint_geometry_table *table, const glint_pr
     return way;
 }
 
-/// Where the ray starts on the mesh, whether it goes into it or not is known, and what is ahead may tell another: then it goes
-/// out, or in, where it starts. Returns how, as many times as makes it agree. *triangle: the first that it starts on and goes through
-/// likewise, or the one that it starts on.
+/// For a ray that starts on the mesh, it is known whether it goes inside. If the crossings ahead disagree, an exit or
+/// entry at the origin is added. Returns its direction, times the number of crossings that are needed. *triangle: the
+/// first triangle that the ray starts on and crosses in that direction, or the one that it starts on.
 static int NAME(hull_crossing_at_start)(const glint_geometry_table *table, const glint_prim *part, NAME(vec3) origin,
                                    NAME(vec3) direction, NAME(start) start, uint32_t *triangle)
 {
@@ -100,10 +105,10 @@ static int NAME(hull_crossing_at_start)(const glint_geometry_table *table, const
     return way;
 }
 
-/// What holds of the mesh next to a place on the ray: it is inside where it is yet to go out more often than in.
+/// The state of the mesh next to a point on the ray: inside if there are more exits than entries ahead.
 typedef struct NAME(hull_change) {
     bool before, after;
-    uint32_t triangle; ///< the first of those that are gone through there as the change goes
+    uint32_t triangle; ///< the first of the triangles that are crossed there in the direction of the change
 } NAME(hull_change);
 
 static void NAME(note_crossing)(int way, bool here, bool later, uint32_t triangle, int left[2], uint32_t found[2])

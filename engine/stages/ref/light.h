@@ -1,6 +1,6 @@
 // The reference of the light stage, and of lit surfaces: included by ref/real.h for each type of real.
 
-/// log2 of r.v (Phong) or n.h (Blinn-Phong).
+/// Returns log2 of r.v (Phong) or n.h (Blinn-Phong).
 static float NAME(highlight)(uint32_t kind, REAL least, REAL l2, REAL nl, NAME(vec3) l, NAME(vec3) normal,
                              NAME(vec3) direction)
 {
@@ -20,7 +20,7 @@ static float NAME(highlight)(uint32_t kind, REAL least, REAL l2, REAL nl, NAME(v
     return x >= (REAL)0x1p-126 ? 0.5f * log2_of((float)x, (float)(x - 1)) : GLINT_NO_SPECULAR;
 }
 
-/// Lane i of three arrays of 16 doubles.
+/// Returns lane i of three arrays of 16 doubles.
 static NAME(vec3) NAME(lane_of)(const double array[3][GLINT_GROUP], uint32_t i)
 {
     uint32_t lane = i % GLINT_GROUP;
@@ -32,7 +32,7 @@ static bool NAME(is_cone)(const glint_light_sample *light_sample)
     return light_sample && light_sample->emission == GLINT_EMIT_CONE;
 }
 
-/// Sample i's own place in the cone in which it sees the ball.
+/// Returns sample i's own position in the cone in which it sees the ball.
 static glint_cone_sample NAME(in_own_cone)(const glint_light_sample *light_sample, double scale,
                                            const void *const point[3], const void *const normal[3], uint32_t i)
 {
@@ -80,14 +80,14 @@ static float NAME(cone)(const glint_spot *spot, NAME(vec3) l)
     return step * highlight_strength(spot->exponent, log2_of((float)c, (float)(c - 1)));
 }
 
-/// The cosine at the lamp times the distance: positive where the sample shines at the point.
+/// Returns the cosine at the lamp times the distance: positive if the sample emits towards the point.
 static REAL NAME(light_sample_cosine)(const glint_light_sample *light_sample, NAME(vec3) l, uint32_t i)
 {
     REAL m = -NAME(dot)(NAME(lane_of)(light_sample->normal, i), l);
     return light_sample->emission == GLINT_EMIT_RADIANT_BOTH ? NAME(max)(m, -m) : m;
 }
 
-/// Whether a sample shines at the point.
+/// Returns whether a sample emits towards the point.
 static bool NAME(shines)(const glint_light_sample *light_sample, NAME(vec3) l, uint32_t i)
 {
     return !light_sample || light_sample->emission == GLINT_EMIT_ALL || NAME(is_cone)(light_sample) ||

@@ -12,7 +12,7 @@ static void NAME(view)(const glint_view_args *args)
     }
 }
 
-/// Whether the group has a lit lane with microfacets.
+/// Returns whether the group has a lit lane with microfacets.
 static bool NAME(facet_group)(const glint_facet_args *args, uint32_t s, uint32_t group)
 {
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)

@@ -1,4 +1,4 @@
-// Noise, cells, hash, parity and texels, a lane at a time. Included by ref_program.h.
+// Noise, cells, hash, parity and texels, a lane at a time. Included by ref/program.h.
 
 // ---- the hash ----------------------------------------------------------------------------------------------------
 
@@ -6,7 +6,7 @@ static uint32_t fold(uint64_t x) { return (uint32_t)(x ^ x >> 32); }
 
 static uint64_t product(uint32_t a, uint32_t b) { return (uint64_t)a * b; }
 
-/// The unit cube that x, y, z lies in, modulo 2^32, as a number without a pattern.
+/// Hashes the unit cube at x, y, z, modulo 2^32.
 static uint32_t hash_of_cube(uint32_t x, uint32_t y, uint32_t z, uint32_t seed)
 {
     const uint32_t sum = fold(product(x, GLINT_HASH_X) + product(y, GLINT_HASH_Y) + product(z, GLINT_HASH_Z) +
@@ -14,10 +14,10 @@ static uint32_t hash_of_cube(uint32_t x, uint32_t y, uint32_t z, uint32_t seed)
     return fold(product(sum, GLINT_HASH_A));
 }
 
-/// A whole number modulo 2^32; beyond 2^51, and for NaN, any.
+/// Returns an integer modulo 2^32; undefined beyond 2^51, and for NaN.
 static uint32_t word_of(double whole) { return (uint32_t)bits_of_double(whole + GLINT_ROUNDER_DOUBLE); }
 
-/// The bits of x, where -0 is 0 and every NaN is 0.
+/// Returns the bits of x, with -0 and every NaN as 0.
 static uint64_t canonical_bits(double x) { return x == x ? bits_of_double(x + 0.0) : 0; }
 
 static double op_hash(double x, double y, double z)
@@ -53,7 +53,7 @@ static double fade_slope(double t) { return 30 * (t * t) * (t * (t - 2) + 1); }
 
 static double between_two(double t, double a, double b) { return a + t * (b - a); }
 
-/// The gradient of a corner, as Perlin's table has it, times the way d from there.
+/// Returns the dot product of a corner's gradient, from Perlin's table, and the vector d from the corner.
 static double ramp_of(uint32_t hash, const double d[3], double gradient[3])
 {
     const uint32_t h = (uint32_t)product(hash, GLINT_HASH_B) >> 28;
@@ -64,7 +64,7 @@ static double ramp_of(uint32_t hash, const double d[3], double gradient[3])
     return gradient[u] * d[u] + gradient[v] * d[v];
 }
 
-/// Something of the eight corners of a cube, x fastest, between them.
+/// Interpolates between values at the eight corners of a cube, x fastest.
 static double between_corners(const double at[8], const double f[3])
 {
     const double near = between_two(f[1], between_two(f[0], at[0], at[1]), between_two(f[0], at[2], at[3]));
@@ -84,7 +84,7 @@ static double across_corners(const double at[8], const double f[3], int axis)
     return between_two(f[b], between_two(f[a], edge[0], edge[1]), between_two(f[a], edge[2], edge[3]));
 }
 
-/// Noise, and its three derivatives unless `slope` is NULL.
+/// Returns noise, and its three derivatives unless `slope` is NULL.
 static double op_noise(double x, double y, double z, uint32_t seed, double *slope)
 {
     const double p[3] = { x, y, z };
@@ -121,8 +121,8 @@ static void to_feature(const uint32_t cube[3], const double x[3], double d[3])
         d[k] = x[k] + (double)(uint32_t)product(h, factor[k]) * 0x1p-32;
 }
 
-/// The two nearest of the points of all cubes that may have them; of equal distances the first, from the point's own
-/// cube outwards.
+/// Computes the two nearest feature points, of all cubes that may have them. Of equal distances the first one counts,
+/// in the order from the point's own cube outwards.
 static void op_cell(const double p[3], double *distance, double *slope)
 {
     double d2[2] = { INFINITY, INFINITY }, to[2][3] = { { NAN, NAN, NAN }, { NAN, NAN, NAN } };
@@ -161,13 +161,13 @@ static void op_cell(const double p[3], double *distance, double *slope)
 
 // ---- texels ------------------------------------------------------------------------------------------------------
 
-/// Whether a picture goes on across with itself, and whether it does down.
+/// Returns whether a picture repeats horizontally, or, with `down`, vertically.
 static bool repeats(glint_wrap wrap, bool down)
 {
     return wrap == GLINT_WRAP_REPEAT || (wrap == GLINT_WRAP_AROUND && !down);
 }
 
-/// 0 .. 1 of a picture's side; NaN gives 0.
+/// Wraps or clamps a coordinate to 0 .. 1 of a picture's side; NaN gives 0.
 static double wrapped(bool repeat, double u)
 {
     if (repeat)
@@ -176,7 +176,7 @@ static double wrapped(bool repeat, double u)
     return u < 1 ? u : 1;
 }
 
-/// The two texels around x of a side of n.
+/// Computes the two texels around x on a side of n texels.
 static void neighbours(bool repeat, double x, uint32_t n, uint32_t at[2])
 {
     const double first = floor(x);
@@ -184,7 +184,7 @@ static void neighbours(bool repeat, double x, uint32_t n, uint32_t at[2])
     at[1] = first + 1 < n ? (uint32_t)(first + 1) : repeat ? 0 : n - 1;
 }
 
-/// Colour and derivatives by u and v, of one level, each unless NULL.
+/// Computes colour and derivatives by u and v, of one level, each unless NULL.
 static void texel_of_level(const glint_texture_table *texture, uint32_t level, double u, double v, double color[4],
                            double *slope)
 {
@@ -220,7 +220,7 @@ static void nearest_texel(const glint_texture_table *texture, double u, double v
         color[c] = (double)l->texels[4 * (j * l->width + i) + c];
 }
 
-/// in: u, v, footprint. `color` or `slope` is NULL.
+/// Reads a texture. in: u, v, footprint. `color` or `slope` is NULL.
 static void op_texel(const glint_texture_table *texture, const double in[3], double *color, double *slope)
 {
     double *out = color ? color : slope, next[GLINT_RESULTS_MAX];

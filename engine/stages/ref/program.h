@@ -33,7 +33,7 @@ static double op_round(double x)
     return copysign(whole, x);
 }
 
-/// As luai_nummod of Lua 5.4 has it; fmod is exact.
+/// As luai_nummod of Lua 5.4; fmod is exact.
 static double op_mod(double a, double b)
 {
     double m = fmod(a, b);
@@ -124,7 +124,7 @@ static double op_atan2(double y, double x)
     static const double arc[] = GLINT_ARC_TANGENT;
     double ax = fabs(x), ay = fabs(y);
     double low = ax < ay ? ax : ay, high = ax < ay ? ay : ax;
-    double t = low == high ? 1 : low / high; // infinite both: 1
+    double t = low == high ? 1 : low / high; // both infinite: 1
     if (high == 0)
         t = 0;
     bool upper = t > GLINT_TAN_PI_8;
@@ -152,7 +152,7 @@ static double op_acos(double x)
     return x < 0 ? GLINT_PI_1 - 2 * angle : 2 * angle;
 }
 
-/// S of shade, with its roundings to float.
+/// S of shade, rounded to float as there.
 static double op_highlight(double x, double s)
 {
     if (!(x >= 0x1p-126))
@@ -216,7 +216,7 @@ static double op_of_one(glint_op op, double a, double b, double c)
     }
 }
 
-/// The results of one instruction for a lane.
+/// Computes the results of one instruction for a lane.
 static void run_instruction(const glint_instruction *at, const glint_program_code *code, const double in[GLINT_OPERANDS_MAX],
                             double out[GLINT_RESULTS_MAX])
 {

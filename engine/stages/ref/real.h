@@ -1,8 +1,8 @@
 // The reference of the geometry stages, for one type of real. ref.c includes this twice, with
-//   REAL      the type: double or float
-//   NAME(x)   x_double or x_float; ref.c defines square_root, exact_c and PLANE_GRAZING for each type
-// Every function is one line of stages.h after the other, for one sample; the loops over samples come last. The larger stages
-// have files of their own, included here.
+//   REAL the type: double or float
+//   NAME(x) x_double or x_float; ref.c defines square_root, exact_c and PLANE_GRAZING for each type
+// Every function follows stages.h line by line, for one sample. The loops over samples come last. The larger stages
+// have their own files, which are included here.
 
 typedef struct NAME(vec3) {
     REAL x, y, z;
@@ -51,7 +51,7 @@ static void NAME(store)(void *const array[3], uint32_t i, NAME(vec3) v)
     ((REAL *)array[2])[i] = v.z;
 }
 
-/// From a sphere's centre to a point, in units that bring the radius into [1, 2).
+/// Returns the vector from a sphere's centre to a point, in units that bring the radius into [1, 2).
 static NAME(vec3) NAME(from_center)(NAME(vec3) point, const glint_prim *prim)
 {
     return NAME(times)(NAME(sub)(point, NAME(rounded)(prim->center)), (REAL)glint_sphere_scale(prim));
@@ -59,7 +59,7 @@ static NAME(vec3) NAME(from_center)(NAME(vec3) point, const glint_prim *prim)
 
 // ---- camera ------------------------------------------------------------------------------------------------------
 
-/// A column's or a row's share of a direction.
+/// Stores a column's or a row's part of a direction.
 static void NAME(store_part)(void *parts, uint32_t group, uint32_t lane, NAME(vec3) v)
 {
     REAL *at = (REAL *)parts + group * 3 * GLINT_GROUP + lane;
@@ -112,7 +112,7 @@ static void NAME(camera)(const glint_camera_args *args)
         NAME(camera_sample)(args, i);
 }
 
-/// The direction of ray i: of the camera, or from arrays.
+/// Returns the direction of ray i: of the camera, or from arrays.
 static NAME(vec3) NAME(direction_of)(const glint_camera_args *camera, const void *const direction[3], uint32_t i)
 {
     if (!camera)
@@ -129,7 +129,7 @@ static NAME(vec3) NAME(direction_of)(const glint_camera_args *camera, const void
 
 // ---- surface -----------------------------------------------------------------------------------------------------
 
-/// The outward normal where f + ts direction cancels too much: from the point of the ray closest to the centre.
+/// Returns the outward normal if f + ts direction cancels too much: from the point of the ray closest to the centre.
 static NAME(vec3) NAME(far_normal)(NAME(vec3) f, NAME(vec3) direction, REAL r2)
 {
     REAL a = NAME(length2)(direction);
@@ -239,7 +239,7 @@ static void NAME(surface_group)(const glint_surface_args *args, uint32_t group)
     args->dark[group] = (uint16_t)dark;
 }
 
-/// Around every hit's point; NaN stays outside.
+/// Computes the box around all hits' points, ignoring NaN.
 static void NAME(surface_box)(const glint_surface_args *args)
 {
     glint_point_box box = { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, GLINT_MISS };
@@ -274,7 +274,8 @@ static void NAME(surface)(const glint_surface_args *args)
 
 // ---- bounce ------------------------------------------------------------------------------------------------------
 
-/// Share of unpolarised light that a dielectric mirrors; cosines of the angles on both sides.
+/// Returns the reflected share of unpolarised light for a dielectric; here, beyond: cosines of the angles on both
+/// sides.
 static REAL NAME(fresnel)(REAL ratio, REAL here, REAL beyond)
 {
     REAL across = (ratio * here - beyond) / (ratio * here + beyond);

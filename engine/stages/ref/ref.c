@@ -1,5 +1,6 @@
-/// The scalar reference: every stage of stages.h for one sample at a time, in the order written there and with nothing
-/// borrowed from the vector bodies. A difference between this file and a vector body is a mistake in one of them.
+/// The scalar reference: every stage of stages.h for one sample at a time, in the order of operations of stages.h,
+/// sharing nothing with the vector bodies. A difference between this file and a vector body is a mistake in one of
+/// them.
 #include "engine/base/sequence.h"
 #include "engine/stages/program/coefficients.h"
 #include "engine/stages/simd/coefficients.h"
@@ -28,7 +29,7 @@ static float log2_of_parts(float f, int e)
     return (float)e + f * p;
 }
 
-/// log2 of x in [2^-126, 1], already rounded; `less_1` is x - 1, from before that.
+/// Returns log2 of the rounded x in [2^-126, 1]; `less_1` is x - 1, computed before rounding.
 static float log2_of(float x, float less_1)
 {
     if (x >= (float)GLINT_SQRT1_2)
@@ -58,25 +59,25 @@ static float exp2_of(float y)
     return p * power;
 }
 
-/// Counts a decision about a ray and a primitive; `tests` may be NULL.
+/// Counts one decision about a ray and a primitive; `tests` may be NULL.
 static void note_test(uint64_t *tests)
 {
     if (tests)
         ++*tests;
 }
 
-/// x^exponent from log2(x) <= 0.
+/// Returns x^exponent from log2(x) <= 0.
 static float highlight_strength(float shininess, float log2_specular)
 {
     float y = shininess * log2_specular;
     return y < GLINT_EXP2_LOWEST ? 0 : exp2_of(y);
 }
 
-// ---- errors of sums and products ---------------------------------------------------------------------------------
+// ---- rounding errors of sums and products ------------------------------------------------------------------------
 
 typedef struct exact_pair {
     double value, error;
-} exact_pair; ///< a number as value + error, value the rounded one
+} exact_pair; ///< a number as value + error; value is the rounded number
 
 static exact_pair two_sum(double a, double b)
 {
@@ -84,14 +85,14 @@ static exact_pair two_sum(double a, double b)
     return (exact_pair) { s, (a - (s - v)) + (b - v) };
 }
 
-/// Upper half of a number, Veltkamp's way: the lower half, x - upper, fits 26 bits as well.
+/// Returns the upper half of a number, by Veltkamp's split: the lower half, x - upper, fits into 26 bits, too.
 static double upper_half(double x)
 {
     double y = 134217729.0 * x; // 2^27 + 1
     return y - (y - x);
 }
 
-/// x^2 with its error, Dekker's way: the parts of the product are exact.
+/// Returns x^2 with its error, by Dekker's product: the partial products are exact.
 static exact_pair two_square(double x)
 {
     double p = x * x, upper = upper_half(x), lower = x - upper;
@@ -115,7 +116,7 @@ static float exact_c_float(float fx, float fy, float fz, const glint_prim *prim)
     return ((fx * fx + fy * fy) + fz * fz) - (float)glint_sphere_r2(prim);
 }
 
-// ---- On which side of a primitive a light is ----------------------------------------------------------------------
+// ---- The side of a primitive that a light is on -------------------------------------------------------------------
 
 static int sign_of(double x) { return (x > 0) - (x < 0); }
 
@@ -176,7 +177,8 @@ static bool is_within(const glint_solid *solid, const glint_prim *prim, const do
     return solid->form == GLINT_FORM_CONE && x * x + y * y < z * z && between;
 }
 
-/// 1 in front of a plane or outside a sphere, -1 behind or inside, 0 on it. In double whatever the precision.
+/// Returns 1 if the light is in front of a plane or outside a sphere, -1 if behind or inside, 0 if on it. In double
+/// for any precision.
 static int light_side(bool directional, const double position[3], const glint_prim *prim, const glint_solid *solids)
 {
     if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_COMBINED)

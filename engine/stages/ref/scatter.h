@@ -1,6 +1,6 @@
 // The reference of scatter, for one REAL; included by ref.c after ref/real.h.
 
-/// sin and cos of `quarters` times pi / 2, for quarters in 0 .. 4.
+/// Computes sin and cos of `quarters` times pi / 2, for quarters in 0 .. 4.
 static void NAME(turn)(REAL quarters, REAL *sine, REAL *cosine)
 {
     REAL nearest = (quarters + (REAL)ROUNDER) - (REAL)ROUNDER;

@@ -1,6 +1,6 @@
 // The specification of shade in plain C: Phong, Blinn-Phong and microfacets, lights added in their order. Contract: stages.h.
 
-/// A material's number at a sample: its own, or what a plane has in its place.
+/// Returns a material's value at a sample: its own, or that of the plane that replaces it.
 static float number_at(const glint_shade_material *material, unsigned which, float number, const float *plane,
                        uint32_t i)
 {
@@ -11,7 +11,7 @@ typedef struct terms {
     double value[GLINT_TERM_COUNT][3];
 } terms; ///< of one sample
 
-/// Smith's masking for Beckmann's distribution, Lambda times x.
+/// Returns Smith's masking for Beckmann's distribution, Lambda times x.
 static float beckmann_mask(float alpha, float x)
 {
     float s = alpha * sqrtf(max_float(1 - x * x, 0));
@@ -36,12 +36,12 @@ static float beckmann(float alpha, float sine2, float l, float v)
     return (((e / c) / c) * (1 / aa)) * ((0.25f * l) / max_float(d, FLT_MIN));
 }
 
-/// The factors of a light and of those joined to it: w (n.l), w S, and of microfacets w S (1 - v.h)^5.
+/// The factors of a light and of those joined to it: w (n.l), w S, and for microfacets w S (1 - v.h)^5.
 typedef struct factors {
     float diffuse, specular, grazing;
 } factors;
 
-/// w S of microfacets. Returns whether there is a half vector.
+/// Adds w S of microfacets. Returns whether there is a half vector.
 static bool add_facets(const glint_shade_args *args, const glint_shade_light *light, float w, uint32_t i, factors *sum)
 {
     const glint_shade_material *material = &args->materials[args->material[i]];
@@ -56,7 +56,7 @@ static bool add_facets(const glint_shade_args *args, const glint_shade_light *li
     return true;
 }
 
-/// Returns whether there is a highlight.
+/// Adds the factors of a light. Returns whether there is a highlight.
 static bool add_factors(const glint_shade_args *args, const glint_shade_light *light, uint32_t i, factors *sum)
 {
     const glint_shade_material *material = &args->materials[args->material[i]];
@@ -81,7 +81,7 @@ static bool add_factors(const glint_shade_args *args, const glint_shade_light *l
     return true;
 }
 
-/// A light's share of a term is float; the term is a sum in double.
+/// Returns a light's contribution to a term, as float; the term is a sum in double.
 static float share_of(float factor, double color) { return factor * (color < FLT_MAX ? (float)color : FLT_MAX); }
 
 /// Returns a reflectance at a sample: the table's value, times the plane's.
@@ -96,7 +96,7 @@ static bool reaches(const glint_shade_light *light, uint32_t i)
     return light->lit[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
 }
 
-/// Adds light k with those joined to it. Returns the next that is not.
+/// Adds light k and the lights joined to it. Returns the next light that is not joined.
 static uint32_t add_lights(const glint_shade_args *args, uint32_t k, uint32_t i, terms *sum)
 {
     const glint_shade_light *light = &args->lights[k];
@@ -127,7 +127,8 @@ static uint32_t add_lights(const glint_shade_args *args, uint32_t k, uint32_t i,
     return k;
 }
 
-/// Rounds the terms into the film and adds them up into the beauty. further: those there are besides the local ones, a bit each.
+/// Rounds the terms into the film, and adds them up into beauty. further: the non-local terms that the frame has, one
+/// bit each.
 static void write_film(const terms *sum, unsigned further, float *const film[GLINT_TERM_COUNT][3],
                        float *const beauty[3], uint32_t i)
 {

@@ -1,4 +1,5 @@
-// The reference of soft_light, for one REAL; included by ref.c after ref/real.h: the stages one after the other.
+// The reference of soft_light, for one REAL; included by ref.c after ref/real.h: light, occlude and shade one after
+// the other.
 
 /// The results of light and occlude for each sample.
 typedef struct NAME(soft_rows) {

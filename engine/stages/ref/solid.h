@@ -1,8 +1,8 @@
-// The reference of solids, for one type of real; included by ref/real.h. One line of stages.h after the other.
+// The reference of solids, for one type of real; included by ref/real.h. It follows stages.h line by line.
 
 typedef struct NAME(crossing) {
     REAL t;
-    bool flat; ///< by a face of the slab
+    bool flat; ///< on a face of the slab
     REAL face[3]; ///< its outward normal
 } NAME(crossing);
 
@@ -20,7 +20,7 @@ static NAME(vec3) NAME(into_unit)(const glint_solid *solid, NAME(vec3) v)
 
 static REAL NAME(zero_within)(REAL x, REAL bound) { return NAME(abs)(x) <= bound ? 0 : x; }
 
-/// The height of a place over a face; 0 on it, as far as rounding lets us know.
+/// Returns the height of a point over a face; 0 if it is on the face within rounding.
 static REAL NAME(over_face)(const glint_face *face, NAME(vec3) place)
 {
     NAME(vec3) n = NAME(rounded)(face->normal), q = NAME(sub)(place, NAME(rounded)(face->at));
@@ -37,7 +37,7 @@ static REAL NAME(rise)(const glint_face *face, NAME(vec3) direction)
     return NAME(dot)(n, direction);
 }
 
-/// faces: the low one and the high one.
+/// Clips the passage to a slab. faces: the low one and the high one.
 static void NAME(pass_slab)(NAME(passage) * p, const glint_face *faces, NAME(vec3) origin, NAME(vec3) direction,
                             int axis)
 {
@@ -141,13 +141,13 @@ static NAME(passage)
     return p;
 }
 
-/// From the solid's centre to a place, where the shape is the unit one.
+/// Returns the vector from the solid's centre to a point, in the space of the unit shape.
 static NAME(vec3) NAME(unit_place)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) place)
 {
     return NAME(into_unit)(solid, NAME(sub)(place, NAME(rounded)(prim->center)));
 }
 
-/// The distance at which a ray meets a solid; 0 stands for a miss.
+/// Returns the distance at which a ray hits a solid; 0: a miss.
 static REAL NAME(solid_t)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) origin, NAME(vec3) direction)
 {
     if (solid->form == GLINT_FORM_TORUS)
@@ -157,7 +157,7 @@ static REAL NAME(solid_t)(const glint_solid *solid, const glint_prim *prim, NAME
     return p.hit && t > 0 ? t : 0;
 }
 
-/// Brings a point next to the curved side onto it. Returns the outward normal there.
+/// Projects a point next to the curved side onto it. Returns the outward normal there.
 static NAME(vec3) NAME(onto_side)(uint32_t form, NAME(vec3) * k)
 {
     REAL round = k->x * k->x + k->y * k->y;
@@ -176,7 +176,7 @@ static NAME(vec3) NAME(onto_side)(uint32_t form, NAME(vec3) * k)
     return g;
 }
 
-/// Moves a point of a face square to an axis of the world exactly there.
+/// Sets the exact coordinate of a point on a face perpendicular to an axis of the world.
 static NAME(vec3) NAME(onto_plane)(const glint_face *face, NAME(vec3) point)
 {
     NAME(vec3) at = NAME(rounded)(face->at);
@@ -184,7 +184,7 @@ static NAME(vec3) NAME(onto_plane)(const glint_face *face, NAME(vec3) point)
                      face->axis == 2 ? at.z : point.z);
 }
 
-/// Brings a point next to a face onto it.
+/// Projects a point next to a face onto it.
 static NAME(vec3) NAME(onto_face)(uint32_t form, NAME(vec3) k, const REAL face[3])
 {
     if (form == GLINT_FORM_DISK || (form == GLINT_FORM_CONE && face[2] < 0))
@@ -225,7 +225,8 @@ static NAME(vec3) NAME(solid_point)(const glint_solid *solid, const glint_prim *
     return NAME(onto_plane)(&solid->faces[(solid->form == GLINT_FORM_BOX ? 2 * axis : 0) + high], point);
 }
 
-/// own: the segment begins on it; back: and goes in. inside: the light is.
+/// Returns whether the torus blocks the segment. own: the segment starts on it; back: and goes inside. inside: the
+/// light is inside.
 static bool NAME(torus_blocks)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) position,
                                NAME(vec3) point, bool inside, bool own, bool back)
 {
@@ -236,7 +237,7 @@ static bool NAME(torus_blocks)(const glint_occlude_args *args, const glint_prim 
                              back);
 }
 
-/// `own`: the segment begins on it, within.
+/// Returns whether the solid blocks the segment. `own`: the segment starts on it and goes inside.
 static bool NAME(solid_blocks)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) position,
                                NAME(vec3) point, bool own)
 {

@@ -1,11 +1,13 @@
-// The reference of the torus, for one type of real; included by ref/real.h. One line of stages.h after the other.
+// The reference of the torus, for one type of real; included by ref/real.h. It follows stages.h line by line.
 //
-// Along a line p + s u from the place nearest to the middle on, u unit, the surface is where Q(s) = 0, a quartic that has no
-// cubic term. Q' / 4 = s^3 + bend s - lean: up to three turns, between which Q only rises or falls. So there are four stretches,
-// falling and rising by turns, and a root in each at most: it is there where its ends are on different sides of the surface.
-// Sides are decided at places, not by coefficients: by how far they are from the circle in the middle of the tube.
+// A line is p + s u, with u unit and p the point nearest to the centre. The surface is at Q(s) = 0, a quartic without
+// a cubic term. Q' / 4 = s^3 + bend s - lean has up to three roots, the turning points of Q, between which Q is
+// monotonic. So there are four stretches, falling and rising in turn, with at most one root each. A stretch has a
+// root if its ends are on different sides of the surface. The side is decided at points, not by coefficients: by
+// their distance from the circle in the middle of the tube.
 
-/// Where a place is to the torus: below 0 inside. *beyond: what Q has besides as a factor, above 0.
+/// Returns the position of a point relative to the torus: below 0 inside. *beyond: the remaining factor of Q, above
+/// 0.
 static REAL NAME(torus_gap)(NAME(vec3) k, REAL tube, REAL *beyond)
 {
     REAL round = NAME(square_root)(k.x * k.x + k.y * k.y), near = round - 1, far = round + 1, level = k.z * k.z;
@@ -17,16 +19,17 @@ typedef struct NAME(torus_line) {
     REAL tube;
     NAME(vec3) p, u;
     REAL from, per, length, begin; ///< t = from + s per, per = 1 / length; s of t = 0
-    REAL reach; ///< beyond -reach .. reach there is nothing
+    REAL reach; ///< there are no roots beyond -reach .. reach
     REAL bend, lean;
-    bool near; ///< it comes near the torus
-    REAL turn[3], gap[3], beyond[3]; ///< in order; where there is but one the others are at infinity, outside
+    bool near; ///< the line comes near the torus
+    REAL turn[3], gap[3], beyond[3]; ///< in order; if there is only one turning point, the others are at infinity,
+        ///< outside
     REAL begin_gap;
-    bool on, inward; ///< it begins on the surface; then, that it goes in
-    int stretch; ///< 0 .. 3: where it begins
+    bool on, inward; ///< the ray starts on the surface; if so, it goes inside
+    int stretch; ///< 0 .. 3: where the ray starts
 } NAME(torus_line);
 
-/// The largest x with x^3 + bend x = lean; lean >= 0.
+/// Returns the largest x with x^3 + bend x = lean; lean >= 0.
 static REAL NAME(last_turn)(REAL bend, REAL lean)
 {
     REAL r = NAME(square_root)(NAME(max)(-bend, 0));
@@ -58,7 +61,7 @@ static void NAME(find_turns)(NAME(torus_line) * l)
     }
 }
 
-/// Where it begins. leaves: on the surface, for certain.
+/// Computes where the ray starts. leaves: certainly on the surface.
 static void NAME(begin_on_torus)(NAME(torus_line) * l, const glint_solid *solid, NAME(vec3) f, NAME(vec3) e,
                                  bool leaves, bool inward)
 {
@@ -74,7 +77,8 @@ static void NAME(begin_on_torus)(NAME(torus_line) * l, const glint_solid *solid,
     const REAL *turn = l->inward ? l->turn : l->turn + 1;
     l->stretch = (l->inward ? 0 : 1) + (l->begin < (REAL)0.5 * turn[0] + (REAL)0.5 * turn[1] ? 0 : 2);
     REAL *next =
-        l->stretch < 3 ? &l->gap[l->stretch] : NULL; // on this side of it, whatever rounding made of the next turn
+        l->stretch < 3 ? &l->gap[l->stretch] : NULL; // on this side of it, however rounding has moved the next turning
+            // point
     if (next && l->inward && *next > 0)
         *next = 0;
     if (next && !l->inward && *next <= 0)
@@ -106,15 +110,15 @@ static NAME(torus_line)
     return l;
 }
 
-/// Whether a ray that leaves the torus at f, and does not go in, surely never meets it again: of the outer half of the tube the
-/// tangent planes have all of the torus on one side.
+/// Returns whether a ray that leaves the torus at f, and does not go inside, certainly never hits it again: the
+/// tangent planes of the outer half of the tube have the whole torus on one side.
 static bool NAME(leaves_torus)(NAME(vec3) f, NAME(vec3) e)
 {
     REAL round = NAME(square_root)(f.x * f.x + f.y * f.y);
     return round >= 1 && ((round - 1) / round) * (f.x * e.x + f.y * e.y) + f.z * e.z >= 0;
 }
 
-/// Whether there is a root in a stretch.
+/// Returns whether there is a root in a stretch.
 static bool NAME(torus_crosses)(const NAME(torus_line) * l, int stretch)
 {
     const REAL *gap = l->gap;
@@ -124,7 +128,7 @@ static bool NAME(torus_crosses)(const NAME(torus_line) * l, int stretch)
                                       : gap[2] <= 0);
 }
 
-/// Whether the root of a stretch is ahead of where the ray begins.
+/// Returns whether the root of a stretch is ahead of the ray's origin.
 static bool NAME(torus_ahead)(const NAME(torus_line) * l, int stretch)
 {
     if (stretch != l->stretch || l->on)
@@ -132,7 +136,7 @@ static bool NAME(torus_ahead)(const NAME(torus_line) * l, int stretch)
     return stretch % 2 ? l->begin_gap < 0 : l->begin_gap > 0;
 }
 
-/// t of the root of a stretch that has one.
+/// Returns t of the root of a stretch that has one.
 static REAL NAME(torus_root)(const NAME(torus_line) * l, int stretch)
 {
     int least = stretch < 2 ? 0 : 2;
@@ -161,13 +165,13 @@ static REAL NAME(torus_root)(const NAME(torus_line) * l, int stretch)
         REAL moved = NAME(abs)(next - s);
         s = next;
         if (moved * moved * moved * (bound * bound) <= NAME(ON_FACE) * (slope * slope) || moved <= NAME(ON_FACE))
-            break; // what is left is as a cube
+            break; // convergence is cubic: the remaining error is below rounding
     }
     REAL t = l->from + s * l->per;
     return t > 0 ? t : (REAL)GLINT_LEAST_WAY;
 }
 
-/// The distance at which a ray meets a torus; 0 stands for a miss. leaves: the ray begins on it, and goes in or not.
+/// Returns the distance at which a ray hits a torus; 0: a miss. leaves: the ray starts on it, and goes inside or not.
 static REAL NAME(torus_t)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, bool leaves, bool inward)
 {
     if (leaves && !inward && NAME(leaves_torus)(f, e))
@@ -179,8 +183,9 @@ static REAL NAME(torus_t)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, 
     return leaves && inward ? (REAL)GLINT_LEAST_WAY : 0;
 }
 
-/// Where a ray is inside: from ends[0] to ends[1], and from ends[2] to ends[3] or, where it does not come out between, from the
-/// first root to the last; an end of -inf: there is no such stretch, or the ray begins in it.
+/// Computes the intervals inside: ends[0] to ends[1], and ends[2] to ends[3]. If the ray does not come out in
+/// between, there is one interval, from the first root to the last. -inf: there is no such interval, or the ray
+/// starts inside of it.
 static void NAME(torus_ends)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, bool leaves, bool inward, REAL ends[4])
 {
     NAME(torus_line) l = NAME(along_torus)(solid, f, e, leaves, inward);
@@ -193,7 +198,7 @@ static void NAME(torus_ends)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) 
         ends[3] = (REAL)GLINT_LEAST_WAY;
 }
 
-/// Brings a point next to the surface onto it. Returns the outward normal there.
+/// Projects a point next to the surface onto it. Returns the outward normal there.
 static NAME(vec3) NAME(onto_torus)(REAL tube, NAME(vec3) * k)
 {
     REAL round = NAME(square_root)(k->x * k->x + k->y * k->y), x = round > 0 ? k->x / round : 0;
@@ -203,8 +208,8 @@ static NAME(vec3) NAME(onto_torus)(REAL tube, NAME(vec3) * k)
     return NAME(vec)(out * x, out * y, up);
 }
 
-/// Whether a segment from f on crosses the surface before it ends at t = end, inside or not. leaves: it begins on it, and
-/// goes in or not.
+/// Returns whether a segment from f crosses the surface before it ends at t = end, inside or outside. leaves: it
+/// starts on the torus, and goes inside or not.
 static bool NAME(torus_parts)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, REAL end, bool end_inside,
                               bool leaves, bool inward)
 {

@@ -1,4 +1,4 @@
-// The reference of triangles, for one type of real; included by ref/real.h. One line of stages.h after the other.
+// The reference of triangles, for one type of real; included by ref/real.h. It follows stages.h line by line.
 
 static REAL NAME(largest)(NAME(vec3) v) { return NAME(max)(NAME(max)(NAME(abs)(v.x), NAME(abs)(v.y)), NAME(abs)(v.z)); }
 
@@ -63,7 +63,8 @@ static void NAME(corners_seen)(const glint_prim *prim, NAME(vec3) from, double s
         out[j] = NAME(times)(NAME(sub)(NAME(rounded)(prim->corner[j]), from), (REAL)scale);
 }
 
-/// The distance at which a ray crosses the plane of a triangle, which is that of its corners or one that it shares.
+/// Returns the distance at which a ray crosses the plane of a triangle: the plane of its corners, or one that it
+/// shares.
 static REAL NAME(way_to_plane)(const glint_geometry_table *table, const glint_prim *prim, NAME(seen_edges) seen,
                                NAME(vec3) origin, NAME(vec3) direction)
 {
@@ -88,7 +89,7 @@ static NAME(vec3) NAME(flat_normal)(const glint_prim *prim, double scale)
     return NAME(vec)((REAL)(m[0] / length), (REAL)(m[1] / length), (REAL)(m[2] / length));
 }
 
-/// The point, the weights of the corners there, and how far rounding may have moved it.
+/// Computes the point, the weights of the corners there, and a bound of the point's rounding error.
 static NAME(vec3) NAME(triangle_point)(const glint_surface_args *args, const glint_prim *prim, NAME(vec3) origin,
                                        NAME(vec3) direction, REAL weight[3], REAL *slack)
 {
@@ -135,7 +136,7 @@ static NAME(parted) NAME(part)(const glint_occlude_args *args, const glint_prim 
     return out;
 }
 
-/// Whether a place is within a triangle's bounds, give or take `loose`.
+/// Returns whether a point is within a triangle's bounds, enlarged by `loose`.
 static bool NAME(in_box)(const NAME(vec3) corner[3], NAME(vec3) place, REAL loose)
 {
     for (int k = 0; k < 3; k++) {
@@ -163,7 +164,7 @@ static bool NAME(touched_triangle_blocks)(const glint_occlude_args *args, NAME(p
            NAME(in_box)(corner, NAME(vec)(0, 0, 0), loose);
 }
 
-/// Sample i, of another surface.
+/// Returns whether the triangle blocks sample i, which is on another surface.
 static bool NAME(triangle_blocks)(const glint_occlude_args *args, const glint_prim *prim, NAME(parted) plane,
                                   NAME(vec3) position, uint32_t i)
 {
@@ -200,7 +201,8 @@ static REAL NAME(spread)(NAME(parted) plane)
     return (NAME(abs)(plane.m.x) + NAME(abs)(plane.m.y)) + NAME(abs)(plane.m.z);
 }
 
-/// Whether a place is in the plane as far as rounding lets us know; of a point of some surface, its own included.
+/// Returns whether a point is in the plane within rounding; on_surface: the point is on some surface, and has the
+/// rounding error of such points.
 static bool NAME(in_plane)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) place, bool on_surface)
 {
     REAL rounding, h = NAME(height)(plane, prim, place, &rounding);
@@ -209,7 +211,7 @@ static bool NAME(in_plane)(NAME(parted) plane, const glint_prim *prim, NAME(vec3
     return NAME(abs)(h) <= rounding;
 }
 
-/// The distance at which a ray meets a triangle; 0 stands for a miss.
+/// Returns the distance at which a ray hits a triangle; 0: a miss.
 static REAL NAME(triangle_t)(const glint_geometry_table *table, const glint_prim *prim, NAME(vec3) origin,
                              NAME(vec3) direction, bool on_surface)
 {
@@ -225,7 +227,7 @@ static REAL NAME(triangle_t)(const glint_geometry_table *table, const glint_prim
     return begins ? 0 : t;
 }
 
-/// Whether a corner of `other` is for certain on that side of the plane to which `way` points.
+/// Returns whether a corner of `other` is certainly on the side of the plane that `way` points to.
 static bool NAME(has_corner)(NAME(parted) plane, const glint_prim *prim, REAL way, const glint_prim *other)
 {
     for (int j = 0; j < 3; j++) {
@@ -238,8 +240,8 @@ static bool NAME(has_corner)(NAME(parted) plane, const glint_prim *prim, REAL wa
     return false;
 }
 
-/// Whether the ray, which starts on triangle `from`, is in the planes of both triangles at once, as far as rounding lets us
-/// know; then *t is where it goes through `prim`, else 0.
+/// Returns whether the ray, which starts on triangle `from`, is within rounding in the planes of both triangles; then
+/// *t is where it passes through `prim`, or 0.
 static bool NAME(is_shared_edge)(const glint_geometry_table *table, const glint_prim *from, const glint_prim *prim,
                                  NAME(vec3) origin, NAME(vec3) direction, REAL *t)
 {

@@ -1,4 +1,4 @@
-// bounce: where rays go on from a surface: mirrored, and refracted by Snell's law. Contract: stages.h.
+// bounce: directions of reflected rays, and of rays refracted by Snell's law. Contract: stages.h.
 #ifndef GLINT_SHADE_BOUNCE_H
 #define GLINT_SHADE_BOUNCE_H
 
@@ -6,7 +6,7 @@
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
 
-/// Returns the lanes in which a ray goes through.
+/// Computes a vector of rays. Returns the lanes in which a ray is refracted.
 static inline unsigned R(bounce_lanes)(const glint_bounce_args *args, const vr d[3], size_t at)
 {
     const vr zero = r_set(0), one = r_set(1);

@@ -1,4 +1,4 @@
-// Microfacets, and the directions in which rays go on.
+// Microfacets, and the directions of continued rays.
 #include "engine/stages/shade/bounce.h"
 #include "engine/stages/shade/microfacets.h"
 #include "engine/stages/shade/scatter.h"

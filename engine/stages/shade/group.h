@@ -1,4 +1,4 @@
-// group: the factors, terms and sums of a group, which all ways to shade it share. Contract: stages.h, shade.
+// group: the factors, terms and sums of a group, for all variants of shading. Contract: stages.h, shade.
 #ifndef GLINT_SHADE_GROUP_H
 #define GLINT_SHADE_GROUP_H
 
@@ -7,7 +7,7 @@
 #include "engine/stages/shade/phong.h"
 #include "engine/stages/simd/elementary.h"
 
-/// The factors of a light whose samples have been summed up.
+/// Stores the factors of a light whose samples have been summed up.
 static inline void put_sums(const glint_shade_light *light, bool specular, size_t at, float diffuse[GLINT_GROUP],
                             float highlight[GLINT_GROUP])
 {
@@ -20,7 +20,7 @@ static inline void put_sums(const glint_shade_light *light, bool specular, size_
     }
 }
 
-/// Factors of the only light, for a material without highlights.
+/// Stores the factors of the only light, for a material without highlights.
 INNER void put_only_factors(const glint_shade_light *light, const glint_shade_material *material, uint32_t g,
                             light_factors *factors)
 {
@@ -37,13 +37,13 @@ static inline bool has_only_factors(const glint_shade_args *args, bool specular)
     return !specular && args->light_count == 1 && !args->lights->summed;
 }
 
-/// Factors of the lights that reach a group, appended to the list. `exponent`: see put_factors.
+/// Appends the factors of the lights that reach a group to the list. `exponent`: see put_factors.
 INNER void add_factors(const glint_shade_args *args, const glint_shade_material *material, const float *exponent,
                        bool specular, uint32_t g, light_factors *factors)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
     const bool power = specular && material->lobe == GLINT_LOBE_POWER;
-    bool begun = false; // a light that the next ones may be joined to
+    bool begun = false; // the next lights may be joined to the last one of the list
     for (uint32_t k = 0; k < args->light_count; k++) {
         const glint_shade_light *light = &args->lights[k];
         begun = begun && light->joined;
@@ -81,7 +81,7 @@ INNER void find_factors(const glint_shade_args *args, const glint_shade_material
         add_factors(args, material, NULL, specular, g, factors);
 }
 
-/// The product of a material's and a light's colour; finite, so that 0 times it is 0.
+/// Returns the product of a material's and a light's colour, limited to finite numbers, so that 0 times it is 0.
 static inline float share_color(double reflectance, double light)
 {
     const double color = reflectance * light;
@@ -93,23 +93,24 @@ typedef struct group_terms {
     _Alignas(64) float term[GLINT_TERM_LOCAL][3][GLINT_GROUP];
 } group_terms;
 
-/// Writes `x` where the mask is set.
+/// Stores `x` where the mask is set.
 static inline void put_float(float *to, fm mask, vf x) { f_store(to, f_select(mask, x, f_load(to))); }
 
-/// The lights whose share of a term may be other than 0, a bit each.
+/// Returns the lights whose contribution to a term may differ from 0, one bit each.
 static inline uint32_t sharing_lights(const light_factors *factors, int term)
 {
     return term ? factors->shiny : (1u << factors->count) - 1;
 }
 
-/// kd Id, ks Is and the microfacets' factors of a material and all lights of a call, cached because consecutive groups often show one material.
+/// kd Id, ks Is and the microfacets' factors of a material for all lights of a call. They are cached because
+/// consecutive groups often show the same material.
 typedef struct light_colors {
     const glint_shade_args *of; ///< NULL: none yet
     const glint_shade_material *material;
     float color[2][GLINT_LIGHT_CHUNK][3], rise[GLINT_LIGHT_CHUNK][3]; ///< color: by term
 } light_colors;
 
-/// specular: its highlights are wanted.
+/// Computes the colours. specular: highlights are wanted.
 static inline void color_lights(const glint_shade_args *args, const glint_shade_material *material, bool specular,
                                 light_colors *colors)
 {
@@ -128,7 +129,7 @@ static inline void color_lights(const glint_shade_args *args, const glint_shade_
     }
 }
 
-/// One vector of the share of the light in `slot`, in each channel. `facets` is a constant.
+/// Computes one vector of the contribution of the light in `slot`, in each channel. `facets` is a constant.
 INNER void share_channels(const light_factors *factors, const light_colors *colors, const bool facets, int term, uint32_t slot,
                           int i, vf share[3])
 {
@@ -140,7 +141,7 @@ INNER void share_channels(const light_factors *factors, const light_colors *colo
         share[c] = share[c] + f_load(factors->grazing[slot] + i) * f_set(colors->rise[number][c]);
 }
 
-/// Adds the shares of `lights`, a bit a slot, in their order and in double. `facets` is a constant.
+/// Adds the contributions of `lights`, one bit per slot, in order and in double. `facets` is a constant.
 INNER void add_lights(const light_factors *factors, const light_colors *colors, const bool facets, int term, uint32_t lights,
                       int i, vd total[3][VF / VD])
 {
@@ -171,7 +172,7 @@ INNER void sum_lights(const light_factors *factors, const light_colors *colors, 
         sum[c] = f_join(total[c][0], total[c][1]);
 }
 
-/// The same of a material, as bare powers or microfacets have it.
+/// Does the same for any material, with or without microfacets.
 static inline void light_material(const glint_shade_material *material, const light_factors *factors, const light_colors *colors,
                                   int term, int i, vf sum[3])
 {
@@ -181,13 +182,13 @@ static inline void light_material(const glint_shade_material *material, const li
         sum_lights(factors, colors, false, term, i, sum);
 }
 
-/// How many of the terms of a material lights make: none, diffuse, and specular as well.
+/// Returns the number of a material's terms that lights contribute to: 0, 1 for diffuse, or 2 for specular, too.
 static inline int lit_kinds(const light_factors *factors, bool specular)
 {
     return factors->count == 0 ? 0 : specular ? 2 : 1;
 }
 
-/// One material's lanes of a group whose terms are final: no sums in memory.
+/// Shades one material's lanes of a group whose terms are final, without sums in memory.
 static __attribute__((noinline)) void shade_direct(const glint_shade_args *args, const glint_shade_material *material,
                                                    bool specular, const light_factors *factors, light_colors *colors,
                                                    unsigned lanes, group_terms *terms)
@@ -209,7 +210,7 @@ static __attribute__((noinline)) void shade_direct(const glint_shade_args *args,
 
 static inline dm lane_mask(unsigned lanes, int i) { return dm_from_bits(lanes >> i & ((1u << VD) - 1)); }
 
-/// Stores one vector of a sum in the lanes given; `whole`: these are all, of the group.
+/// Stores one vector of a sum in the given lanes; `whole`: these are all lanes of the group.
 static inline void put_where(double *sum, int i, bool whole, unsigned lanes, vd x)
 {
     d_store(sum + i, whole ? x : d_select(lane_mask(lanes, i), x, d_load(sum + i)));
@@ -221,13 +222,13 @@ static inline void add_where(double *sum, int i, bool whole, unsigned lanes, vd 
     put_where(sum, i, whole, lanes, d_load(sum + i) + x);
 }
 
-/// Sums in double over samples and lights; `at`: where in them a group is.
+/// Sums in double over samples and lights; `at`: the position of a group in them.
 typedef struct group_sums {
     double *const (*sum)[3];
     size_t at;
 } group_sums;
 
-/// One vector of a material's lanes, added to the sums of a term. `whole`, a constant: all lanes.
+/// Adds one vector of a material's lanes to the sums of a term. `whole`, a constant: all lanes.
 static inline void add_term(const glint_shade_material *material, const light_factors *factors, const light_colors *colors,
                             const group_sums *to, bool whole, unsigned lanes, int term, int i)
 {
@@ -245,7 +246,7 @@ static inline void add_term(const glint_shade_material *material, const light_fa
             put_where(to->sum[GLINT_TERM_DIFFUSE + term][c] + to->at, i + h * VD, whole, lanes, total[c][h]);
 }
 
-/// One material's lanes of a group, added to sums. `whole`, a constant: all lanes.
+/// Adds one material's lanes of a group to sums. `whole`, a constant: all lanes.
 static inline void add_material(const glint_shade_args *args, const glint_shade_material *material, bool specular,
                                 const light_factors *factors, light_colors *colors, const group_sums *to, bool whole, unsigned lanes)
 {
@@ -258,7 +259,7 @@ static inline void add_material(const glint_shade_args *args, const glint_shade_
             add_term(material, factors, colors, to, whole, lanes, term, i);
 }
 
-/// Finds the material of the first of some lanes of a group, and the lanes that have it.
+/// Returns the material of the first of some lanes of a group, and computes the lanes that have it.
 static inline const glint_shade_material *material_of(const glint_shade_args *args, size_t at, unsigned *lanes)
 {
     const uint32_t index = args->only ? *args->only : args->material[at + (unsigned)__builtin_ctz(*lanes)];

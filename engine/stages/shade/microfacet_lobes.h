@@ -1,4 +1,4 @@
-// microfacet_lobes: pi D G / (4 n.v) of GGX and Beckmann, and normalised powers; what the stage facet has found goes in.
+// microfacet_lobes: pi D G / (4 n.v) of GGX and Beckmann, and normalised powers, from the results of the stage facet.
 // Contract: stages.h.
 #ifndef GLINT_SHADE_MICROFACET_LOBES_H
 #define GLINT_SHADE_MICROFACET_LOBES_H
@@ -10,7 +10,8 @@ static inline bool has_facets(const glint_shade_material *material)
     return GLINT_WITH_FACET && material->highlight == GLINT_HIGHLIGHT_FACETS;
 }
 
-/// Smith's masking by Beckmann's distribution as Heitz gives Walter's fit: x times Lambda at the cosine x.
+/// Returns Smith's masking for Beckmann's distribution, in Heitz' form of Walter's fit: x times Lambda at the cosine
+/// x.
 static inline vf beckmann_mask(vf alpha, vf x)
 {
     const vf one = f_set(1), s = alpha * f_sqrt(f_max(one - x * x, f_set(0))), q = x / s;
@@ -18,7 +19,7 @@ static inline vf beckmann_mask(vf alpha, vf x)
     return f_select(f_lt(q, f_set(1.6f)), fit, f_set(0));
 }
 
-/// pi D G / (4 n.v) of the GGX distribution; l, v: the cosines.
+/// Returns pi D G / (4 n.v) of the GGX distribution; l, v: the cosines.
 static inline vf ggx_lobe(vf alpha, vf sine2, vf l, vf v)
 {
     const vf one = f_set(1), aa = alpha * alpha, b = one - aa;
@@ -27,7 +28,7 @@ static inline vf ggx_lobe(vf alpha, vf sine2, vf l, vf v)
     return (u * u) * ((f_set(0.5f) * l) / f_max(d, f_set(FLT_MIN)));
 }
 
-/// The same of Beckmann's.
+/// Returns the same for Beckmann's distribution.
 static inline vf beckmann_lobe(vf alpha, vf sine2, vf l, vf v)
 {
     const vf aa = alpha * alpha;
@@ -45,7 +46,8 @@ static inline void put_share(float *to, bool add, vf share)
     f_store(to, share);
 }
 
-/// w S of a lobe other than a bare power, and of microfacets w S (1 - v.h)^5; otherwise as put_factors.
+/// Stores w S of a lobe other than a bare power, and for microfacets w S (1 - v.h)^5. The arguments are those of
+/// put_factors.
 static __attribute__((noinline)) void put_lobe(const glint_shade_args *args, const glint_shade_light *light,
                                                const glint_shade_material *material, size_t at, bool add,
                                                float highlight[GLINT_GROUP], float grazing[GLINT_GROUP])

@@ -1,5 +1,5 @@
-// view and facet: what materials of microfacets need beside light: at which angle a point is seen, how the half vector
-// of each light lies to the normal, and how much Fresnel's reflection has risen there. Contract: stages.h.
+// view and facet: the inputs of materials with microfacets: the angle at which a point is seen, the angle between
+// each light's half vector and the normal, and Fresnel's reflection there. Contract: stages.h.
 #ifndef GLINT_SHADE_MICROFACETS_H
 #define GLINT_SHADE_MICROFACETS_H
 
@@ -31,7 +31,7 @@ static void R(view)(const glint_view_args *args)
     }
 }
 
-/// Lanes of `lit` whose material has microfacets: some, or none.
+/// Returns whether lanes of `lit` have a material with microfacets.
 static inline bool R(has_facets)(const glint_facet_args *args, size_t at, unsigned lit)
 {
     while (lit) {
@@ -43,7 +43,8 @@ static inline bool R(has_facets)(const glint_facet_args *args, size_t at, unsign
     return false;
 }
 
-/// The real part of one vector of lanes: the squared sine, and (v.h)^2. Returns the lanes that have a half vector.
+/// Computes the real part of one vector of lanes: the squared sine, and (v.h)^2. Returns the lanes that have a half
+/// vector.
 static inline unsigned R(facet_lanes)(const vr n[3], const vr l[3], const vr d[3], float *sine2, float *square)
 {
     const vr zero = r_set(0), one = r_set(1), two = r_set(2);
@@ -56,7 +57,7 @@ static inline unsigned R(facet_lanes)(const vr n[3], const vr l[3], const vr d[3
     return rm_bits(r_lt(zero, h2));
 }
 
-/// One group of sample s; lamps: NULL where the light is none of area.
+/// Computes one group of sample s; light_samples: NULL if it is not an area light.
 static inline void R(facet_group)(const glint_facet_args *args, uint32_t s, const R(light_sample_set) * light_samples,
                                   size_t at, R(group_directions) directions)
 {

@@ -1,5 +1,5 @@
-// mixed: groups that show several materials, or nothing in some lanes, under one light at most and with no term kept: the lanes are
-// shaded together, each with the numbers of its own material. Contract: stages.h, shade.
+// mixed: groups that show several materials, or nothing in some lanes, with at most one light and no terms to store.
+// The lanes are shaded together, each with the values of its own material. Contract: stages.h, shade.
 #ifndef GLINT_SHADE_MIXED_H
 #define GLINT_SHADE_MIXED_H
 
@@ -7,9 +7,9 @@
 #include "engine/stages/shade/phong.h"
 #include "engine/stages/simd/elementary.h"
 
-#define MIXED_MATERIALS 16 ///< whose numbers are at hand
+#define MIXED_MATERIALS 16 ///< number of cached materials
 
-/// The numbers of a material under the light, as share_color has its colours; 0: it has none of these.
+/// The values of a material under the light, with colours as in share_color; 0 for values that it does not have.
 enum { MIXED_AMBIENT, MIXED_DIFFUSE = 3, MIXED_SPECULAR = 6, MIXED_EXPONENT = 9, MIXED_COUNT };
 
 typedef struct mixed_numbers {
@@ -17,9 +17,9 @@ typedef struct mixed_numbers {
     float number[MIXED_COUNT];
 } mixed_numbers;
 
-/// Factors of materials that groups showed before.
+/// The values of materials that previous groups showed.
 typedef struct mixed_table {
-    bool usable; ///< there is one light at most, and no sum of samples
+    bool usable; ///< there is at most one light, and no sum of samples
     mixed_numbers materials[MIXED_MATERIALS];
 } mixed_table;
 
@@ -50,13 +50,14 @@ static inline const float *mixed_numbers_of(const glint_shade_args *args, const 
     return out->number;
 }
 
-/// Whether nothing but its numbers tells the material from others.
+/// Returns whether the material only differs from others by these values.
 static inline bool is_plain_material(const glint_shade_material *material)
 {
     return !material->planes && (!material->highlight || material->lobe == GLINT_LOBE_POWER);
 }
 
-/// The numbers of a group's lanes, 0 where nothing is hit; *specular: some have highlights. Returns false where a material is not plain.
+/// Looks up the values of a group's lanes, 0 for misses; *specular: some have highlights. Returns false if a material
+/// is not plain.
 INNER bool find_mixed(const glint_shade_args *args, uint32_t g, mixed_table *table,
                       float lanes_of[MIXED_COUNT][GLINT_GROUP], bool *specular)
 {
@@ -75,7 +76,7 @@ INNER bool find_mixed(const glint_shade_args *args, uint32_t g, mixed_table *tab
     return true;
 }
 
-/// Returns whether the group was shaded.
+/// Shades a group. Returns whether it did.
 static __attribute__((noinline)) bool shade_mixed(const glint_shade_args *args, uint32_t g, mixed_table *table)
 {
     const size_t at = (size_t)g * GLINT_GROUP;

@@ -1,24 +1,26 @@
-// phong: the local lighting of one light: diffuse w (n.l), and the highlight w S with S = 2^(shininess log2 x). The stage light
-// has found x: r.v of Phong (B. T. Phong, "Illumination for Computer Generated Pictures", CACM 18(6), 1975), n.h of Blinn-Phong
-// (J. F. Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977). w is attenuation. Contract: stages.h.
+// phong: the local lighting of one light: diffuse w (n.l), and the highlight w S with S = 2^(shininess log2 x), where
+// w is the attenuation. The stage light computes x: r.v for Phong (B. T. Phong, "Illumination for Computer Generated
+// Pictures", CACM 18(6), 1975), n.h for Blinn-Phong (J. F. Blinn, "Models of Light Reflection for Computer
+// Synthesized Pictures", SIGGRAPH 1977). Contract: stages.h.
 #ifndef GLINT_SHADE_PHONG_H
 #define GLINT_SHADE_PHONG_H
 
 #include "engine/stages/simd/elementary.h"
 
-/// The geometric factors of the lights that reach a group: w (n.l), and w S for one material. Lanes that a light does
-/// not reach have 0.
+/// The geometric factors of the lights that reach a group: w (n.l), and w S for one material; 0 in lanes that a light
+/// does not reach.
 typedef struct light_factors {
     _Alignas(64) float diffuse[GLINT_LIGHT_CHUNK][GLINT_GROUP], specular[GLINT_LIGHT_CHUNK][GLINT_GROUP];
-    _Alignas(64) float grazing[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< of microfacets: specular times Fresnel's rise
+    _Alignas(64) float grazing[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< for microfacets: specular times Fresnel's rise
     const glint_shade_light *light[GLINT_LIGHT_CHUNK];
     uint8_t number[GLINT_LIGHT_CHUNK]; ///< of the light
     uint32_t count;
-    uint32_t shiny; ///< a bit for each whose specular factors are not all 0
+    uint32_t shiny; ///< one bit for each light whose specular factors are not all 0
 } light_factors;
 
-/// w (n.l) and w S of one light or sample, for a group. `exponent`: of each lane of the group; NULL, a constant: the
-/// material's. `add`: adds to the stored values of the light it is joined to. Returns whether w S may be more than 0 anywhere.
+/// Computes w (n.l) and w S of one light or sample, for a group. `exponent`: of each lane of the group; NULL, a
+/// constant: the material's. `add`: adds to the stored values of the light that it is joined to. Returns whether w S
+/// may be above 0 anywhere.
 INNER bool put_factors(const glint_shade_light *light, const glint_shade_material *material, const float *exponent,
                        bool specular, size_t at, bool add, float diffuse[GLINT_GROUP], float highlight[GLINT_GROUP])
 {

@@ -1,4 +1,4 @@
-// planes: materials whose numbers differ from sample to sample, and are read from planes. Contract: stages.h, shade.
+// planes: materials with values that differ between samples, and are read from planes. Contract: stages.h, shade.
 #ifndef GLINT_SHADE_PLANES_H
 #define GLINT_SHADE_PLANES_H
 
@@ -8,7 +8,7 @@
 #include "engine/stages/shade/phong.h"
 #include "engine/stages/simd/elementary.h"
 
-/// The product of a plane and a light's colour, as share_color makes it.
+/// Returns the product of a plane and a light's colour, like share_color.
 static inline vf plane_color(const float *plane, double light)
 {
     vd halves[VF / VD];
@@ -23,7 +23,8 @@ static inline vf plane_product(const float *factor, const float *plane, double c
     return f_load(factor) * color;
 }
 
-/// The plane of a material's reflectance in a channel; term 0: diffuse, else specular. NULL: it is the table's.
+/// Returns the plane of a material's reflectance in a channel; term 0: diffuse, otherwise specular. NULL: the
+/// reflectance is the table's.
 static inline const float *plane_of(const glint_shade_args *args, const glint_shade_material *material, int term, int c,
                                     size_t at)
 {
@@ -31,7 +32,7 @@ static inline const float *plane_of(const glint_shade_args *args, const glint_sh
     return has ? (term ? args->planes->specular : args->planes->diffuse)[c] + at : NULL;
 }
 
-/// One light's share of a term in a channel.
+/// Computes one light's contribution to a term in a channel.
 static inline void plane_share(const glint_shade_args *args, const glint_shade_material *material,
                                const light_factors *factors, uint32_t k, int term, int c, size_t at,
                                float share[GLINT_GROUP])
@@ -50,7 +51,7 @@ static inline void plane_share(const glint_shade_args *args, const glint_shade_m
     }
 }
 
-/// The ambient term of a vector of lanes, in double.
+/// Returns the ambient term of a vector of lanes, in double.
 static inline vd plane_ambient(const glint_shade_args *args, const glint_shade_material *material, int c, size_t at)
 {
     const glint_shade_planes *planes = args->planes;
@@ -76,7 +77,7 @@ static inline void find_plane_factors(const glint_shade_args *args, const glint_
         add_factors(args, material, NULL, specular, g, factors);
 }
 
-/// As add_material.
+/// Like add_material.
 static __attribute__((noinline)) void add_planes(const glint_shade_args *args, const glint_shade_material *material,
                                                  bool specular, uint32_t g, const group_sums *to, unsigned lanes)
 {
@@ -97,7 +98,7 @@ static __attribute__((noinline)) void add_planes(const glint_shade_args *args, c
     }
 }
 
-/// The sum of all lights' shares of a term, in double, rounded.
+/// Computes the sum of all lights' contributions to a term, in double, then rounded.
 static inline void sum_plane_shares(const glint_shade_args *args, const glint_shade_material *material,
                                     const light_factors *factors, int term, int c, size_t at, float sum[GLINT_GROUP])
 {
@@ -117,7 +118,7 @@ static inline void sum_plane_shares(const glint_shade_args *args, const glint_sh
         d_store_f(sum + i, total[i / VD]);
 }
 
-/// A vector of a plane times a number, in double.
+/// Returns a vector of a plane times a number, computed in double.
 static inline vf scaled_plane(const float *plane, double number)
 {
     vd part[VF / VD];
@@ -125,8 +126,8 @@ static inline vf scaled_plane(const float *plane, double number)
     return f_join(part[0] * d_set(number), part[1] * d_set(number));
 }
 
-/// One channel of whole_planes. `has`: the material's planes. light NULL: none reaches the group. Numbers are read first, as stores
-/// may change what pointers lead to.
+/// Computes one channel of whole_planes. `has`: the material's planes. light NULL: none reaches the group. Numbers
+/// are read first, because stores might change what pointers point to.
 INNER void whole_channel(const glint_shade_args *args, const glint_shade_material *material, unsigned has, bool shines,
                          const light_factors *factors, int c, size_t at)
 {
@@ -151,7 +152,7 @@ INNER void whole_channel(const glint_shade_args *args, const glint_shade_materia
     }
 }
 
-/// As shade_whole. Diffuse reflectances that are the ambient ones, too, are the common case.
+/// Like shade_whole. Diffuse reflectances that are also the ambient ones are the common case.
 static __attribute__((noinline)) void whole_planes(const glint_shade_args *args, const glint_shade_material *material,
                                                    bool shines, const light_factors *factors, size_t at)
 {
@@ -164,7 +165,7 @@ static __attribute__((noinline)) void whole_planes(const glint_shade_args *args,
     }
 }
 
-/// As shade_direct.
+/// Like shade_direct.
 static __attribute__((noinline)) void shade_planes(const glint_shade_args *args, const glint_shade_material *material,
                                                    bool specular, const light_factors *factors, size_t at,
                                                    unsigned lanes, group_terms *terms)
@@ -186,7 +187,7 @@ static __attribute__((noinline)) void shade_planes(const glint_shade_args *args,
     }
 }
 
-/// The lanes of a group that any light reaches.
+/// Returns the lanes of a group that any light reaches.
 static inline unsigned lanes_reached(const glint_shade_args *args, uint32_t g)
 {
     unsigned lit = 0;
@@ -195,7 +196,7 @@ static inline unsigned lanes_reached(const glint_shade_args *args, uint32_t g)
     return lit;
 }
 
-/// Where any light reaches, of a group.
+/// The lanes of a group that any light reaches, as masks.
 typedef struct reached_lanes {
     fm part[GLINT_GROUP / VF];
 } reached_lanes;
@@ -208,7 +209,7 @@ static inline reached_lanes find_reached(unsigned lit)
     return reached;
 }
 
-/// As shade_direct.
+/// Like shade_direct.
 static __attribute__((noinline)) void shade_shaded(const glint_shade_args *args, const glint_shade_material *material,
                                                    uint32_t g, unsigned lanes, group_terms *terms)
 {

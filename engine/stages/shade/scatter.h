@@ -1,4 +1,4 @@
-// scatter: directions around normals, as dense as their cosine. Contract: stages.h.
+// scatter: cosine-distributed directions around normals. Contract: stages.h.
 #ifndef GLINT_SHADE_SCATTER_H
 #define GLINT_SHADE_SCATTER_H
 
@@ -7,7 +7,7 @@
 #include "engine/stages/shade/sequence.h"
 #include "engine/stages/simd/real.h"
 
-/// The point of the unit disk that a point of the unit square stands for: the radius is sqrt(u), the angle 2 pi v.
+/// Maps a point of the unit square to the unit disk: the radius is sqrt(u), the angle 2 pi v.
 static inline void R(disk_point)(vr u, vr v, vr *x, vr *y)
 {
     const vr zero = r_set(0), one = r_set(1), magic = r_set(GLINT_ROUNDER);
@@ -38,7 +38,7 @@ static inline void R(scatter_lanes)(const glint_scatter_args *args, vr u, vr v, 
         r_store((real *)args->direction[k] + at, (x * tangent[k] + y * bitangent[k]) + h * n[k]);
 }
 
-/// Directions of the first `count` of some groups; the others are any.
+/// Computes the directions of the first `count` of some groups; the others are undefined.
 static void R(scatter_groups)(const glint_scatter_args *args, const uint32_t groups[DRAWN_GROUPS], uint32_t count)
 {
     _Alignas(64) double place[2][DRAWN];

@@ -1,14 +1,15 @@
-// sequence: points of scrambled Sobol sequences: plain loops over arrays, which compilers make vectors of. Each product waits for
-// the one before it: while one vector's does, another's is made. The arithmetic: base/sequence.c, glint_sequence_flipped.
+// sequence: points of scrambled Sobol sequences, as plain loops over arrays, which compilers vectorise. Each product
+// depends on the one before it, so two vectors are interleaved. The arithmetic: base/sequence.c,
+// glint_sequence_flipped.
 #ifndef GLINT_SHADE_SEQUENCE_H
 #define GLINT_SHADE_SEQUENCE_H
 
 #include "engine/stages/simd/elementary.h"
 
-#define DRAWN_GROUPS (VF < GLINT_GROUP ? 1 : 2) ///< drawn together, so that there are two vectors
+#define DRAWN_GROUPS (VF < GLINT_GROUP ? 1 : 2) ///< computed together, so that there are two vectors
 #define DRAWN (DRAWN_GROUPS * GLINT_GROUP)
 
-/// The bits of each number in the other order.
+/// Reverses the bits of each number.
 static inline void reverse_drawn(uint32_t x[DRAWN])
 {
     for (int i = 0; i < DRAWN; i++) {
@@ -20,7 +21,7 @@ static inline void reverse_drawn(uint32_t x[DRAWN])
     }
 }
 
-/// Flips each bit or not, by the seed and the bits below it.
+/// Flips each bit or not, depending on the seed and the bits below it.
 static inline void flip_drawn(uint32_t x[DRAWN], const uint32_t seed[DRAWN])
 {
     for (int i = 0; i < DRAWN; i++) {
@@ -31,8 +32,8 @@ static inline void flip_drawn(uint32_t x[DRAWN], const uint32_t seed[DRAWN])
     }
 }
 
-/// Computes the second coordinate's bits, lowest first, from the bits of the index. Bit i of the index stands for (1 + x)^i modulo 2; halves
-/// are parted by (1 + x)^16 = 1 + x^16, and so on down.
+/// Computes the second coordinate's bits, lowest first, from the bits of the index. Bit i of the index stands for (1
+/// + x)^i modulo 2. Halves are separated by (1 + x)^16 = 1 + x^16, and so on down.
 static inline void second_drawn(uint32_t x[DRAWN])
 {
     for (int i = 0; i < DRAWN; i++) {
@@ -44,21 +45,21 @@ static inline void second_drawn(uint32_t x[DRAWN])
     }
 }
 
-/// Digits as a number in 0 .. 1.
+/// Converts digits to numbers in 0 .. 1.
 static inline void scale_drawn(const uint32_t digits[DRAWN], double out[DRAWN])
 {
     for (int i = 0; i < DRAWN; i++)
         out[i] = (digits[i] + 0.5) * 0x1p-32;
 }
 
-/// The numbers of some groups, one after the other.
+/// Gathers the numbers of some groups, one group after the other.
 static inline void take_groups(const uint32_t *from, const uint32_t groups[DRAWN_GROUPS], uint32_t to[DRAWN])
 {
     for (int k = 0; k < DRAWN_GROUPS; k++)
         memcpy(to + k * GLINT_GROUP, from + (size_t)groups[k] * GLINT_GROUP, GLINT_GROUP * sizeof *to);
 }
 
-/// Points of the sequences of some groups.
+/// Computes points of the sequences of some groups.
 static inline void scrambled_groups(const glint_scatter_args *args, const uint32_t groups[DRAWN_GROUPS],
                                     double out[2][DRAWN])
 {

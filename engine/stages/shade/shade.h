@@ -1,4 +1,4 @@
-// shade: the terms of each sample. A group is worked off material by material, so that colours and exponents are the
+// shade: the terms of each sample. A group is processed material by material, so that colours and exponents are the
 // same in every lane. Lights are added in their order, in double. Contract: stages.h.
 #ifndef GLINT_SHADE_SHADE_H
 #define GLINT_SHADE_SHADE_H
@@ -12,7 +12,7 @@
 #include "engine/stages/shade/planes.h"
 #include "engine/stages/simd/elementary.h"
 
-/// A group of one sample, added to sums.
+/// Shades a group of one sample, and adds it to sums.
 static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, uint32_t g, light_colors *colors,
                                                  const group_sums *to)
 {
@@ -37,7 +37,7 @@ static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, u
     }
 }
 
-/// Keeps the terms that are needed and adds them up.
+/// Stores the terms that are needed, and adds them up.
 static inline void finish_terms(const group_terms *terms, float *const film[][3], float *const beauty[3], size_t at)
 {
     for (int c = 0; c < 3; c++)
@@ -52,7 +52,7 @@ static inline void finish_terms(const group_terms *terms, float *const film[][3]
         }
 }
 
-/// Writes the background where nothing is hit, and 0 in the other terms.
+/// Stores the background in lanes without a hit, and 0 in the other terms.
 static inline void start_direct(const glint_shade_args *args, uint32_t g, group_terms *terms)
 {
     const unsigned empty = args->active[g] & ~(unsigned)args->hits[g];
@@ -67,7 +67,7 @@ static inline void start_direct(const glint_shade_args *args, uint32_t g, group_
     }
 }
 
-/// A group of one colour: without any surface, or any light.
+/// Stores a group of one colour: without any surface, or without any light.
 static inline void store_even(const glint_shade_args *args, const float color[3], size_t at)
 {
     for (int c = 0; c < 3; c++)
@@ -75,7 +75,7 @@ static inline void store_even(const glint_shade_args *args, const float color[3]
             f_store(args->beauty[c] + at + i, f_set(color[c]));
 }
 
-/// A group that shows one material in every lane, whose numbers are given, where there is one light at most and no term is kept:
+/// Shades a group that shows one material in every lane, with given values, at most one light, and no terms to store:
 /// the common case, in registers.
 INNER void shade_whole(const glint_shade_args *args, const glint_shade_material *material, const float *number, uint32_t g)
 {
@@ -99,7 +99,7 @@ INNER void shade_whole(const glint_shade_args *args, const glint_shade_material 
         }
 }
 
-/// The same of any material and any lights.
+/// Does the same for any material and any lights.
 static __attribute__((noinline)) void shade_lit(const glint_shade_args *args, const glint_shade_material *material,
                                                 bool specular, const light_factors *factors, light_colors *colors, size_t at)
 {
@@ -109,7 +109,7 @@ static __attribute__((noinline)) void shade_lit(const glint_shade_args *args, co
         vf light[2][3] = { { f_set(0), f_set(0), f_set(0) }, { f_set(0), f_set(0), f_set(0) } };
         for (int k = 0; k < kinds; k++)
             light_material(material, factors, colors, k, i, light[k]);
-        for (int c = 0; c < 3; c++) // as finish_terms adds them
+        for (int c = 0; c < 3; c++) // in the order of finish_terms
             f_store(args->beauty[c] + at + i, (f_set(0 + (float)material->ambient[c]) + light[0][c]) + light[1][c]);
     }
 }
@@ -122,7 +122,7 @@ static inline bool wants_terms(const glint_shade_args *args)
     return false;
 }
 
-/// A group whose terms are final; `simple` is a constant.
+/// Shades a group whose terms are final; `simple` is a constant.
 INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t g, light_colors *colors,
                        mixed_table *mixed)
 {

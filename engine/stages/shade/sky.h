@@ -1,4 +1,4 @@
-// sky: what rays that meet nothing bring. Contract: stages.h.
+// sky: the background seen by rays that miss. Contract: stages.h.
 #ifndef GLINT_SHADE_SKY_H
 #define GLINT_SHADE_SKY_H
 

@@ -1,4 +1,4 @@
-/// The vector vocabulary, spelled for AVX2 and FMA. What the words mean: simd/avx512.h.
+/// The vector vocabulary for AVX2 and FMA. simd/avx512.h explains the words.
 #ifndef GLINT_SIMD_H
 #define GLINT_SIMD_H
 
@@ -132,20 +132,20 @@ static inline dm dm_from_bits(unsigned bits)
 static inline vd d_load_f(const float *p) { return _mm256_cvtps_pd(_mm_load_ps(p)); }
 static inline void d_store_f(float *p, vd x) { _mm_store_ps(p, _mm256_cvtpd_ps(x)); }
 
-/// Two vectors of doubles, rounded.
+/// Joins two vectors of doubles, rounded to float.
 static inline vf f_join(vd low, vd high)
 {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)), _mm256_cvtpd_ps(high), 1);
 }
 
-/// The other way.
+/// Splits a vector of floats into two vectors of doubles.
 static inline void f_split(vf x, vd out[2])
 {
     out[0] = _mm256_cvtps_pd(_mm256_castps256_ps128(x));
     out[1] = _mm256_cvtps_pd(_mm256_extractf128_ps(x, 1));
 }
 
-/// p = i in the lanes of the mask.
+/// Stores i into p in the lanes of the mask.
 static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
 {
     float *to = (float *)p;
@@ -176,7 +176,7 @@ static inline vd d_ceil(vd x) { return _mm256_ceil_pd(x); }
 
 static inline vq d_bits(vd x) { return _mm256_castpd_si256(x); }
 static inline vd d_of_bits(vq x) { return _mm256_castsi256_pd(x); }
-/// Those of floor(x) + 0x1.8p52: where |x| < 2^51, their lowest are those of the whole part.
+/// Returns the bits of floor(x) + 0x1.8p52: for |x| < 2^51, the lowest bits are those of the integer part.
 static inline vq d_floor_bits(vd x) { return d_bits(d_floor(x) + d_set(0x1.8p52)); }
 static inline vq q_set(uint64_t x) { return _mm256_set1_epi64x((long long)x); }
 static inline vq q_add(vq a, vq b) { return _mm256_add_epi64(a, b); }
@@ -192,11 +192,11 @@ static inline dm q_is(vq x, uint32_t bits, uint32_t value)
 }
 static inline dm q_test(vq x, uint32_t bit) { return q_is(x, bit, bit); }
 
-#define GLINT_D_FUSED 1 ///< there are the three that follow
-/// a * b + c and c - a * b, rounded once.
+#define GLINT_D_FUSED 1 ///< the following three functions exist
+/// Return a * b + c and c - a * b, rounded once.
 static inline vd d_fma(vd a, vd b, vd c) { return _mm256_fmadd_pd(a, b, c); }
 static inline vd d_fnma(vd a, vd b, vd c) { return _mm256_fnmadd_pd(a, b, c); }
-/// min(|a|, |b|), of NaN anything.
+/// Returns min(|a|, |b|); undefined for NaN.
 static inline vd d_least_size(vd a, vd b) { return d_min(d_abs(a), d_abs(b)); }
 
 static inline vd d_two_prod(vd a, vd b, vd *error)

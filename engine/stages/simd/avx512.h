@@ -1,10 +1,11 @@
-/// The vector vocabulary, spelled for AVX-512 (F, DQ, VL, BW) and FMA.
+/// The vector vocabulary for AVX-512 (F, DQ, VL, BW) and FMA.
 ///
-/// vf  16 floats     vd  8 doubles     vi  32-bit integers, as many as vf     vq  64-bit integers, as many as vd
-/// fm, dm  masks of vf and vd
+///   vf 16 floats vd 8 doubles vi 32-bit integers, as many as vf vq 64-bit integers, as many as vd
+///   fm, dm masks of vf and vd
+///
 /// An index is a 32-bit number below 2^31 (or GLINT_MISS) in a lane of either width: a double's value in vd, the raw
-/// bits in vf. Arithmetic is written with operators. fma appears in two_prod, in unit, where it
-/// gives a division's bits, and in the estimate of tone, whose rounding no result sees.
+/// bits in vf. Arithmetic is written with operators. fma appears only in two_prod; in unit, where it gives the bits
+/// of a division; and in the estimate of tone, whose rounding does not affect results.
 #ifndef GLINT_SIMD_H
 #define GLINT_SIMD_H
 
@@ -58,7 +59,8 @@ static inline vi i_load(const uint32_t *p) { return _mm512_load_si512(p); }
 static inline void i_store(uint32_t *p, vi x) { _mm512_store_si512(p, x); }
 static inline vi i_gather(const uint32_t *table, vi index) { return _mm512_i32gather_epi32(index, table, 4); }
 
-#define GLINT_PACKS 1 ///< there are the four that follow, of which three put some lanes side by side and anything behind them, to the end of a vector
+#define GLINT_PACKS 1 ///< the following four functions exist; three of them pack selected lanes at the front of a
+    ///< vector, with undefined lanes after them
 static inline void i_store_any(uint32_t *to, vi x) { _mm512_storeu_si512(to, x); }
 static inline void i_pack(uint32_t *to, vi x, unsigned lanes)
 {
@@ -78,16 +80,16 @@ static inline vf f_fma(vf a, vf b, vf c) { return _mm512_fmadd_ps(a, b, c); }
 
 static inline vf f_load_any(const float *p) { return _mm512_loadu_ps(p); }
 
-/// The bytes of a where the mask's are 255, of b where they are 0.
+/// Selects bytes of a where the mask's bytes are 255, of b where they are 0.
 static inline vi i_merge(vi mask, vi a, vi b) { return _mm512_ternarylogic_epi32(mask, a, b, 0xca); }
 
-/// Lanes where the bits of a, b or c, as numbers without sign, are above the limit.
+/// Returns the lanes where the bits of a, b or c, as unsigned integers, are above the limit.
 static inline fm i_any_above(vi a, vi b, vi c, vi limit)
 {
     return _mm512_cmpgt_epu32_mask(_mm512_max_epu32(_mm512_max_epu32(a, b), c), limit);
 }
 
-/// table[biased exponent & 15], the table being F_EXPONENTS floats in registers.
+/// Returns table[biased exponent & 15]; the table is F_EXPONENTS floats in registers.
 #define F_EXPONENTS 16
 static inline vf f_by_exponent(const vf table[F_EXPONENTS / VF], vf x)
 {
@@ -95,8 +97,8 @@ static inline vf f_by_exponent(const vf table[F_EXPONENTS / VF], vf x)
 }
 #define f_by_exponent f_by_exponent
 
-/// Stores pixels, one a lane as red | green << 8 | blue << 16, as rows of four: 12 bytes, `stride` apart. `spill`: the
-/// four bytes after each row may be overwritten.
+/// Stores pixels, one per lane as red | green << 8 | blue << 16, as rows of four: 12 bytes, `stride` apart. `spill`:
+/// the four bytes after each row may be overwritten.
 static inline void i_store_rgb(uint8_t *to, size_t stride, vi rgb, bool spill)
 {
     const __m128i bytes = _mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1);
@@ -118,7 +120,7 @@ static inline vd d_set(double x) { return _mm512_set1_pd(x); }
 static inline vd d_load(const double *p) { return _mm512_load_pd(p); }
 static inline void d_store(double *p, vd x) { _mm512_store_pd(p, x); }
 
-/// table[index], the table being 16 numbers and the indices below 16.
+/// Returns table[index], for a table of 16 numbers and indices below 16.
 static inline vd d_pick(const double *table, const uint32_t *index)
 {
     const __m512i i = _mm512_cvtepu32_epi64(_mm256_load_si256((const __m256i *)index));
@@ -140,27 +142,27 @@ static inline dm dm_from_bits(unsigned bits) { return (dm)bits; }
 static inline vd d_load_f(const float *p) { return _mm512_cvtps_pd(_mm256_load_ps(p)); }
 static inline void d_store_f(float *p, vd x) { _mm256_store_ps(p, _mm512_cvtpd_ps(x)); }
 
-/// Two vectors of doubles, rounded.
+/// Joins two vectors of doubles, rounded to float.
 static inline vf f_join(vd low, vd high)
 {
     return _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(low)), _mm512_cvtpd_ps(high), 1);
 }
 
-/// The other way.
+/// Splits a vector of floats into two vectors of doubles.
 static inline void f_split(vf x, vd out[2])
 {
     out[0] = _mm512_cvtps_pd(_mm512_castps512_ps256(x));
     out[1] = _mm512_cvtps_pd(_mm512_extractf32x8_ps(x, 1));
 }
 
-/// p = i in the lanes of the mask.
+/// Stores i into p in the lanes of the mask.
 static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
 {
     __m256i *to = (__m256i *)p;
     _mm256_store_si256(to, _mm256_mask_blend_epi32(mask, _mm256_load_si256(to), _mm256_set1_epi32((int)i)));
 }
 
-/// The biased exponent, as a number; and the mantissa, in [1, 2). For normal numbers > 0.
+/// Return the biased exponent, as a number, and the mantissa, in [1, 2). For normal numbers > 0.
 static inline vd d_exponent(vd x)
 {
     __m512i e = _mm512_srli_epi64(_mm512_castpd_si512(x), 52);
@@ -182,7 +184,7 @@ static inline vd d_ceil(vd x) { return _mm512_roundscale_pd(x, _MM_FROUND_TO_POS
 
 static inline vq d_bits(vd x) { return _mm512_castpd_si512(x); }
 static inline vd d_of_bits(vq x) { return _mm512_castsi512_pd(x); }
-/// Those of floor(x) + 0x1.8p52: where |x| < 2^51, their lowest are those of the whole part.
+/// Returns the bits of floor(x) + 0x1.8p52: for |x| < 2^51, the lowest bits are those of the integer part.
 static inline vq d_floor_bits(vd x)
 {
     return d_bits(_mm512_add_round_pd(x, d_set(0x1.8p52), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
@@ -195,24 +197,24 @@ static inline vq q_xor(vq a, vq b) { return _mm512_xor_si512(a, b); }
 #define q_shl(x, n) _mm512_slli_epi64(x, n)
 #define q_shr(x, n) _mm512_srli_epi64(x, n)
 
-/// The products of the lower 32 bits, without sign: 64 bits.
+/// Returns the 64-bit products of the unsigned lower 32 bits.
 static inline vq q_mul(vq a, vq b) { return _mm512_mul_epu32(a, b); }
 
-/// Lanes where these of the lower 32 bits are those of `value`.
+/// Returns the lanes in which the given bits, of the lower 32, equal those of `value`.
 static inline dm q_is(vq x, uint32_t bits, uint32_t value)
 {
     return value ? _mm512_cmpeq_epi64_mask(q_and(x, q_set(bits)), q_set(value)) : _mm512_testn_epi64_mask(x, q_set(bits));
 }
 
-/// Lanes where the bit, one of the lower 32, is set.
+/// Returns the lanes in which the bit, one of the lower 32, is set.
 static inline dm q_test(vq x, uint32_t bit) { return _mm512_test_epi64_mask(x, q_set(bit)); }
 
-#define GLINT_D_FUSED 1 ///< there are the three that follow
-/// a * b + c and c - a * b, rounded once.
+#define GLINT_D_FUSED 1 ///< the following three functions exist
+/// Return a * b + c and c - a * b, rounded once.
 static inline vd d_fma(vd a, vd b, vd c) { return _mm512_fmadd_pd(a, b, c); }
 static inline vd d_fnma(vd a, vd b, vd c) { return _mm512_fnmadd_pd(a, b, c); }
 
-/// min(|a|, |b|), of NaN anything.
+/// Returns min(|a|, |b|); undefined for NaN.
 static inline vd d_least_size(vd a, vd b) { return _mm512_range_pd(a, b, 10); }
 
 static inline vd d_two_prod(vd a, vd b, vd *error)

@@ -1,11 +1,11 @@
-/// log2 and exp2 as stages.h writes them down, and the small vector algebra every stage uses.
+/// log2 and exp2 in the order of operations of stages.h, and the small vector algebra that every stage uses.
 #ifndef GLINT_ELEMENTARY_H
 #define GLINT_ELEMENTARY_H
 
 #include "engine/stages/simd/coefficients.h"
 #include "engine/stages/simd/vector.h"
 
-/// In the innermost loops: inlined, however large the file has grown.
+/// For the innermost loops: inlined, however large the file is.
 #define INNER static __attribute__((always_inline)) inline
 
 static inline vf f_exponent(vf x)
@@ -31,7 +31,7 @@ static inline vf f_log2_of_parts(vf e, vf f)
     return e + f * p;
 }
 
-/// log2 of x in [2^-126, 1]; `less_1` is x - 1, from a better x where there is one.
+/// Returns log2 of x in [2^-126, 1]; `less_1`: x - 1, computed from a more accurate x if possible.
 static inline vf f_log2(vf x, vf less_1)
 {
     const fm near_1 = f_le(f_set((float)GLINT_SQRT1_2), x);
@@ -42,7 +42,7 @@ static inline vf f_log2(vf x, vf less_1)
     return f_log2_of_parts(f_select(near_1, f_set(0), e), f_select(near_1, less_1, m - f_set(1)));
 }
 
-/// 2^y for y <= 0; 0 below `lowest`, at least -126.
+/// Returns 2^y for y <= 0, and 0 below `lowest`, which is at least -126.
 static inline vf f_exp2_above(vf y, float lowest)
 {
     fm vanishes = f_lt(y, f_set(lowest));
@@ -61,7 +61,7 @@ static inline vf f_exp2_above(vf y, float lowest)
 
 static inline vf f_exp2(vf y) { return f_exp2_above(y, GLINT_EXP2_LOWEST); }
 
-/// a + b and its rounding error (Knuth, TAOCP 4.2.2).
+/// Returns a + b, and its rounding error (Knuth, TAOCP 4.2.2).
 static inline vd d_two_sum(vd a, vd b, vd *error)
 {
     vd s = a + b, v = s - a;
@@ -95,7 +95,7 @@ static inline unsigned lanes_with(const uint32_t *flags, uint32_t flag)
     return bits;
 }
 
-/// to = value where the bit is set.
+/// Stores `value` into `to` where the bit is set.
 static inline void lanes_put(uint32_t *to, unsigned bits, uint32_t value)
 {
     for (int i = 0; i < GLINT_GROUP; i += VF) {
@@ -104,7 +104,7 @@ static inline void lanes_put(uint32_t *to, unsigned bits, uint32_t value)
     }
 }
 
-/// The largest number of a group.
+/// Returns the largest number of a group.
 static inline float group_highest(const float x[GLINT_GROUP])
 {
     vf most = f_load(x);
@@ -113,7 +113,7 @@ static inline float group_highest(const float x[GLINT_GROUP])
     return f_max_all(most);
 }
 
-/// Widens an interval of lanes by the lanes in `bits`.
+/// Extends an interval by the numbers of the lanes in `bits`.
 static inline void widen(const float x[GLINT_GROUP], unsigned bits, vf *least, vf *most)
 {
     for (int i = 0; i < GLINT_GROUP; i += VF) {

@@ -1,5 +1,6 @@
-/// The functions that a frame calls of the kernels, by their names in `glint_stages`: the object of a stage defines its own, the table of
-/// an instruction set has all. Their symbols have the instruction set in them: glint_avx2_tone, glint_avx2_camera_f64.
+/// The functions of the kernels that a frame calls, by their names in `glint_stages`. The object file of a stage
+/// defines its own, and the table of an instruction set has all. Their symbols contain the instruction set:
+/// glint_avx2_tone, glint_avx2_camera_f64.
 #ifndef GLINT_ENTRIES_H
 #define GLINT_ENTRIES_H
 

@@ -1,6 +1,6 @@
-/// The vector vocabulary in the vector extensions of GCC and clang, for any processor that is little-endian: ARM's NEON
-/// (with the few intrinsics of simd/neon.h), WebAssembly's (with those of simd/wasm.h), RISC-V's V, x86's SSE2. What the words mean:
-/// simd/avx512.h.
+/// The vector vocabulary in the vector extensions of GCC and clang, for any little-endian processor: ARM's NEON (with
+/// the few intrinsics of simd/neon.h), WebAssembly (with those of simd/wasm.h), RISC-V's V, x86's SSE2. simd/avx512.h
+/// explains the words.
 #ifndef GLINT_SIMD_H
 #define GLINT_SIMD_H
 
@@ -46,22 +46,22 @@ static inline vd d_load_f(const float *p)
     return __builtin_convertvector(x, vd);
 }
 
-/// Two vectors of doubles, rounded.
+/// Joins two vectors of doubles, rounded to float.
 static inline vf f_join(vd low, vd high)
 {
-    // not (float)low[0] and so on: after f_split GCC 12 takes such numbers for those before they were rounded
+    // not (float)low[0] and so on: after f_split, GCC 12 would use the numbers from before the rounding
     const glint_f32x2 x = __builtin_convertvector(low, glint_f32x2), y = __builtin_convertvector(high, glint_f32x2);
     return (vf) { x[0], x[1], y[0], y[1] };
 }
 
-/// The other way.
+/// Splits a vector of floats into two vectors of doubles.
 static inline void f_split(vf x, vd out[2])
 {
     out[0] = (vd) { x[0], x[1] };
     out[1] = (vd) { x[2], x[3] };
 }
 
-/// p = i in the lanes of the mask.
+/// Stores i into p in the lanes of the mask.
 static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
 {
     for (int lane = 0; lane < VD; lane++)
@@ -81,7 +81,8 @@ static inline vf f_abs(vf x) { return (vf)((fm)x & INT32_MAX); }
 static inline vd d_sqrt(vd x) { return (vd) { sqrt(x[0]), sqrt(x[1]) }; }
 static inline vd d_select(dm m, vd a, vd b)
 {
-#ifdef __SSE2__ // GCC 12 stops at a choice whose mask comes from several branches, for which SSE2 alone has no instruction
+#ifdef __SSE2__ // GCC 12 fails to compile a select whose mask comes from several branches; plain SSE2 has no
+    // instruction for it
     __asm__("" : "+x"(m));
 #endif
     return (vd)(((dm)a & m) | ((dm)b & ~m));
@@ -183,7 +184,7 @@ static inline vd d_copysign(vd size, vd sign) { return (vd)(((dm)size & INT64_MA
 
 static inline vq d_bits(vd x) { return (vq)x; }
 static inline vd d_of_bits(vq x) { return (vd)x; }
-/// Those of floor(x) + 0x1.8p52: where |x| < 2^51, their lowest are those of the whole part.
+/// Returns the bits of floor(x) + 0x1.8p52: for |x| < 2^51, the lowest bits are those of the integer part.
 static inline vq d_floor_bits(vd x) { return d_bits(d_floor(x) + d_set(0x1.8p52)); }
 static inline vq q_set(uint64_t x) { return (vq) { x, x }; }
 static inline vq q_add(vq a, vq b) { return a + b; }
@@ -203,7 +204,7 @@ static inline vd d_two_prod(vd a, vd b, vd *error)
     return p;
 }
 #else
-/// Dekker's product (1971), with Veltkamp's splitting: the same bits as the FMA, short of over- and underflow.
+/// Dekker's product (1971), with Veltkamp's splitting: the same bits as with FMA, except after over- or underflow.
 static inline vd d_two_prod(vd a, vd b, vd *error)
 {
     const vd splitter = d_set(0x1p27 + 1);

@@ -1,5 +1,5 @@
-/// The words of the vocabulary for `real`: double where the Makefile defines GLINT_REAL as 64, float where it is 32. R(name) names a
-/// kernel or helper of this precision.
+/// The words of the vocabulary for `real`: double if the Makefile defines GLINT_REAL as 64, float if it is 32.
+/// R(name) is the name of a kernel or helper for this precision.
 #ifndef GLINT_REAL_H
 #define GLINT_REAL_H
 
@@ -71,8 +71,8 @@
 #define GLINT_SPHERE_CLOSE GLINT_SPHERE_CLOSE_FLOAT
 #endif
 
-/// Loads VF lanes of real as floats. Data stored as real and read as float is loaded this way: a wide load of data from narrower
-/// stores left would wait until they are in the cache.
+/// Loads VR floats as real; load_narrow loads VF reals as floats. A wide load of data from narrower stores would
+/// stall until these are in the cache.
 static inline vr R(load_wide)(const float *p)
 {
 #if GLINT_REAL == 64
@@ -91,7 +91,7 @@ static inline vf R(load_narrow)(const real *p)
 #endif
 }
 
-/// VD lanes of real as doubles, and back, rounded.
+/// Convert VD lanes of real to doubles, and back, rounded.
 static inline vd R(load_exact)(const real *p)
 {
 #if GLINT_REAL == 64
@@ -110,7 +110,7 @@ static inline void R(store_exact)(real *p, vd x)
 #endif
 }
 
-/// A group of reals as floats.
+/// Converts a group of reals to floats.
 static inline void R(narrow)(const real from[GLINT_GROUP], float to[GLINT_GROUP])
 {
     for (int i = 0; i < GLINT_GROUP; i += VF)

@@ -5,7 +5,7 @@
 #include <string.h>
 
 const glint_stages *const glint_stages_built[] = {
-#ifndef __wasm__ // no page can ask for it, and each one would load it
+#ifndef __wasm__ // no web page can ask for the reference, and each page would load it
     &glint_stages_ref,
 #endif
 #ifdef GLINT_KERNEL_generic
@@ -36,7 +36,7 @@ bool glint_stages_usable(const glint_stages *stages)
     return stages != NULL;
 }
 
-/// Whether some machine has an instruction set of this name.
+/// Returns whether some machine has an instruction set of this name.
 static bool is_known(const char *name)
 {
     static const char *const known[] = { "ref", "generic", "avx2", "avx512" };
@@ -51,7 +51,7 @@ const glint_stages *glint_stages_select(const char *name, const char **requested
     const glint_stages *best = NULL;
     if (!name || !*name)
         name = getenv("GLINT_ISA");
-    if (name && strcmp(name, "sse2") == 0) // whose kernels are the generic ones
+    if (name && strcmp(name, "sse2") == 0) // its kernels are the generic ones
         name = "generic";
     *requested = name && *name ? name : NULL;
     *unknown = *requested && !is_known(*requested);

@@ -1,6 +1,6 @@
-/// The vector vocabulary of the instruction set that a kernel is compiled for: the Makefile defines GLINT_ISA, and GLINT_REAL for stages
-/// of geometry and light. All of a kernel but its entries is static, so that no function compiled for one processor is ever run on
-/// another; compilers drop what an object does not call.
+/// The vector vocabulary of the instruction set that a kernel is compiled for. The Makefile defines GLINT_ISA, and
+/// GLINT_REAL for stages of geometry and light. All functions of a kernel except its entries are static, so that no
+/// function compiled for one processor ever runs on another. Compilers remove functions that an object does not call.
 #ifndef GLINT_VECTOR_H
 #define GLINT_VECTOR_H
 
