@@ -1,5 +1,5 @@
-/// The stages of a frame, in the order in which a frame runs them: STAGE(ID, name) for each, whose declaration is glint_stage_NAME.
-/// Internal. A new stage is a folder and a row here.
+/// The stages of a frame, in the order in which a frame runs them: STAGE(ID, name) for each one, declared as
+/// glint_stage_NAME. Internal. A new stage is a folder and a row here.
 #ifndef GLINT_EFFECTS_LIST_H
 #define GLINT_EFFECTS_LIST_H
 

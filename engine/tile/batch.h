@@ -7,7 +7,7 @@
 #include "engine/effects/pattern/pattern.h"
 #include "engine/tile/rays.h"
 
-#define GLINT_WEIGHT_MAX 1e150 ///< products with a surface's light stay finite
+#define GLINT_WEIGHT_MAX 1e150 ///< products with a surface's light are finite below it
 
 /// Returns a weight, limited to GLINT_WEIGHT_MAX.
 static inline double glint_weight(double x) { return x < GLINT_WEIGHT_MAX ? x : GLINT_WEIGHT_MAX; }
@@ -23,7 +23,7 @@ typedef struct glint_batch {
     _Alignas(64) double t[GLINT_TILE_SAMPLES]; ///< for each ray, before packing; real. `prim` likewise
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
     uint16_t met[GLINT_TILE_GROUPS]; ///< not whole: the rays that have a sample
-    uint16_t sample[GLINT_TILE_SAMPLES]; ///< the sample the sample of each ray that has one
+    uint16_t sample[GLINT_TILE_SAMPLES]; ///< the sample of each ray that has one
     uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< the ray of each sample
     double shown[3][GLINT_TILE_SAMPLES]; ///< the background seen by rays without a sample, if a program computes it
     // continuations of the wanted samples of a tile, by glint_batch_find_ways
@@ -46,7 +46,7 @@ typedef enum glint_way {
 /// Rays that continue from samples of a tile.
 typedef struct glint_sent {
     uint32_t count;
-    uint16_t sample[GLINT_TILE_SAMPLES]; ///< sample where each begins
+    uint16_t sample[GLINT_TILE_SAMPLES]; ///< the sample where each ray starts
     uint8_t way[GLINT_TILE_SAMPLES]; ///< a glint_way
 } glint_sent;
 
@@ -87,8 +87,8 @@ static inline double glint_batch_light_of(const glint_batch *batch, const glint_
         return glint_batch_found(batch, c, batch->sample[ray]);
     return plan->environment ? batch->shown[c][ray] : plan->background[c];
 }
-/// Returns whether ray `ray` shows the eye the background through surfaces, and lowers the coverage of its pixel. Only for frames that need
-/// coverage.
+/// Returns whether ray `ray` shows the eye the background through surfaces, which lowers the coverage of its pixel.
+/// Only for frames that need coverage.
 static inline bool glint_batch_uncovers(const glint_batch *batch, const glint_plan *plan, uint32_t ray)
 {
     const uint32_t i = batch->sample[ray];
@@ -103,11 +103,12 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
 /// and the media only in frames with transparent materials.
 void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                            glint_ray *ray);
-/// Weighs the rays that go on from sample `i`, after glint_batch_find_ways: each comes with the weight of the ray that came. A ray that the
-/// material does not send gets 0.
+/// Computes the weights of the rays that go on from sample `i`, after glint_batch_find_ways. In: the weight of the
+/// arriving ray for each. A ray that the material does not send gets 0.
 void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        double weight[GLINT_WAYS][3]);
-/// These rays, weighed; the last one only in frames with translucent surfaces. Where batch->total is set the first two go the same way.
+/// Returns these rays, with weights; the last one only in frames with translucent surfaces. If batch->total is set,
+/// the first two have the same direction.
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        glint_ray rays[GLINT_WAYS]);
 /// Does the same for many samples: makes `rays` of the rays in `sent`, from ray 0 on, except for weights and slopes. Rays from a tile

@@ -90,7 +90,7 @@ static void prefetch_last_codes(const glint_tile *tile, const glint_image *last)
 static bool may_shine(const glint_cached_tile *cached, const glint_plan *plan)
 {
     if (!plan->powers || !glint_key_equal(cached->seen, plan->keys[GLINT_STAGE_SURFACE]))
-        return plan->powers; // what it showed is not known
+        return plan->powers; // the materials that it showed are unknown
     bool shines = cached->shown_count > GLINT_SHOWN_MAX;
     for (uint32_t i = 0; !shines && i < cached->shown_count; i++)
         shines = plan->materials[cached->shown[i]].highlight;
@@ -121,7 +121,7 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
     }
     if (points)
         glint_prefetch(cached->t, GLINT_TILE_SAMPLES * reuse->real_size);
-    if (cached->only == GLINT_MISS) // it gives the materials
+    if (cached->only == GLINT_MISS) // its primitive gives the materials
         glint_prefetch(cached->prim, GLINT_TILE_SAMPLES * sizeof *cached->prim);
     if (glint_splits_are_on(&reuse->splits) && glint_key_equal(cached->split, reuse->splits.key))
         glint_prefetch(cached->values, glint_splits_bytes(&reuse->splits));
@@ -369,7 +369,8 @@ void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint
     for (uint32_t i = 0; sampled && i < frame->reuse->light_count && cached->shown_count > 0; i++)
         cached->lights[i].place = frame->plan->lights[i].place_key;
     glint_film_stamp stamp = stamp_of(tile, frame);
-    const bool has_last = frame->last && frame->last != frame->image && frame->last->film; // its codes are still there
+    const bool has_last = frame->last && frame->last != frame->image && frame->last->film; // its pixel values are still
+        // there
     const glint_film_stamp *last = has_last ? &frame->last->film[tile->index] : NULL;
     const bool moved = tile->counts.runs[GLINT_STAGE_LIGHT] != before.lights; // then pixel values rarely stay the same
     if (last && last->codes && !moved && glint_tile_has_codes_of(tile, frame->image, frame->last))

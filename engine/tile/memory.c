@@ -1,4 +1,5 @@
-/// The working memory of a tile that only some frames need: allocated for the first such frame, and kept for later ones.
+/// The working memory of a tile that only some frames need. It is allocated for the first such frame, and kept for
+/// later ones.
 #include "engine/base/alloc.h"
 #include "engine/effects/pattern/pattern.h"
 #include "engine/effects/light_groups/light_groups.h"

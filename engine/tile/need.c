@@ -1,4 +1,4 @@
-/// Data of the current sample that stages request: computed when the first stage needs it, and not otherwise.
+/// Data of the current sample that stages request. It is only computed when a stage needs it.
 #include "engine/tile/tile.h"
 
 void glint_tile_need_rays(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)

@@ -6,10 +6,10 @@
 
 /// One ray, outside of the arrays.
 typedef struct glint_ray {
-    double origin[3], direction[3], weight[3]; ///< the direction has length 1 up to rounding
-    uint32_t leaving; ///< the primitive it starts on
+    double origin[3], direction[3], weight[3]; ///< the direction has length 1 within rounding
+    uint32_t leaving; ///< the primitive that it starts on
     uint32_t pixel; ///< index of its sample in the tile
-    uint32_t point; ///< of a path of indirect light: the point where it began
+    uint32_t point; ///< of a path of indirect light: the point where it started
     uint32_t depth; ///< mirrors and refractions on its path so far
     uint32_t passes; ///< translucent surfaces that its path went straight through
     uint32_t scatters; ///< scatterings on its path so far

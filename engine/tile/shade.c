@@ -80,7 +80,7 @@ static void run_shaders(glint_tile *tile, const glint_tile_frame *frame, uint32_
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_bounce_material *materials = frame->plan->bouncing;
-    uint32_t last = GLINT_MISS; // most lanes show the same primitive as the lane before
+    uint32_t last = GLINT_MISS; // most lanes show the same primitive as the previous lane
     if (tile->at.only) {
         const glint_bounce_material *only = &materials[frame->geometry.prims[*tile->at.only].material];
         return glint_sends_on(only);

@@ -15,7 +15,7 @@ static bool is_past(const glint_spot *spot, const double apex[3], const glint_po
         size = fmax(size, fmax(fabs(apex[c]), fmax(fabs(box->lower[c]), fabs(box->upper[c]))));
     }
     const double distance = sqrt(vec_dot(way, way)), radius = sqrt(vec_dot(half, half));
-    if (!(distance - radius > SPOT_SLACK * size)) // too near: rounding may turn a direction
+    if (!(distance - radius > SPOT_SLACK * size)) // too close: rounding may change the direction
         return false;
     const double sine = radius / distance, cosine = sqrt(1 - sine * sine);
     const double along = vec_dot(way, spot->axis) / distance, across = sqrt(fmax(1 - along * along, 0));

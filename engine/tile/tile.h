@@ -15,20 +15,20 @@
 /// Invalid reflectances computed by patterns.
 typedef struct glint_odd_pattern {
     uint64_t count;
-    uint32_t material; ///< of the result at the smallest point, by x, then y, then z; likewise the following fields
+    uint32_t material; ///< for the result at the smallest point, by x, then y, then z; likewise the following fields
     int field;
     double point[3];
 } glint_odd_pattern;
 
-/// The same of each glint_odd_kind.
+/// The invalid reflectances of each glint_odd_kind.
 typedef struct glint_odd_patterns {
     glint_odd_pattern of[GLINT_ODD_COUNT];
 } glint_odd_patterns;
 
-/// Merges the counts of both.
+/// Merge `more` into `to`.
 void glint_odd_pattern_add(glint_odd_pattern *to, const glint_odd_pattern *more);
 void glint_odd_patterns_add(glint_odd_patterns *to, const glint_odd_patterns *more);
-/// Adds a point at which the outputs of a pattern, `step` numbers from one to the next, are not all fit to be taken.
+/// Adds a point at which the outputs of a pattern, `step` numbers apart, are not all valid.
 void glint_odd_patterns_note(glint_odd_patterns *to, const glint_odd_pattern *one, const double *outputs, size_t step, uint32_t count);
 /// Returns the count over all kinds.
 static inline uint64_t glint_odd_patterns_count(const glint_odd_patterns *odd)
@@ -48,7 +48,7 @@ typedef struct glint_tile_counts {
     uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls, and results reused from an earlier frame
 } glint_tile_counts;
 
-/// Adds every count of `more`.
+/// Adds every counter of `more`.
 static inline void glint_work_add(glint_work *to, const glint_work *more)
 {
     to->tests += more->tests;
@@ -61,7 +61,7 @@ static inline void glint_work_add(glint_work *to, const glint_work *more)
     to->overlaps += more->overlaps;
 }
 
-#define GLINT_TILE_GRIDS 4 ///< largest number of lights with a grid
+#define GLINT_TILE_GRIDS 4 ///< maximum number of lights with a grid
 
 /// Data shared by all tiles of a frame.
 typedef struct glint_tile_frame {
@@ -93,7 +93,7 @@ typedef struct glint_tile_light {
     uint16_t lit[GLINT_TILE_GROUPS], open[GLINT_TILE_GROUPS];
 } glint_tile_light;
 
-/// The same for the stages view and facet.
+/// One sample's results of the stages view and facet.
 typedef struct glint_tile_facets {
     _Alignas(64) float facing[GLINT_TILE_SAMPLES];
     _Alignas(64) float sine2[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES], schlick[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES];
@@ -106,15 +106,15 @@ typedef struct glint_tile_sample {
     uint16_t *hits;
     const uint32_t *only; ///< the primitive that all hits have in common; NULL: unknown
     const glint_point_box *box; ///< around the points; NULL: unknown
-    const uint16_t *sampled; ///< those of them that are shaded per sample
+    const uint16_t *sampled; ///< the hits that are shaded per sample
     struct {
         float *cosine, *attenuation, *log2_specular;
         float *sine2, *schlick; ///< only in frames with microfacets, like `facing`
         uint16_t *lit, *open;
         float *visible; ///< for lights with caps
         float brightest; ///< the largest log2_specular of the sample, or of all samples
-        bool summed; ///< for samples of an area light: only their sum is stored, in the first one's cosine and
-            ///< log2_specular, and each has the `lit` and `open` of all
+        bool summed; ///< samples of an area light: only their sum is stored, in the cosine and log2_specular of the
+            ///< first one, and each has the `lit` and `open` of all
     } light[GLINT_LIGHT_CHUNK];
     float *facing;
     float *planes; ///< results of programs, see effects/pattern/plan.h; NULL in frames without programs
@@ -127,7 +127,7 @@ typedef struct glint_tile_rays {
     _Alignas(64) double across[GLINT_TILE_WIDTH / 4][3][GLINT_GROUP], down[GLINT_TILE_HEIGHT / 4][3][GLINT_GROUP];
 } glint_tile_rays;
 
-/// Their first hits.
+/// The first hits of the rays.
 typedef struct glint_tile_hit {
     _Alignas(64) double t[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
@@ -149,8 +149,8 @@ typedef struct glint_tile_film {
     _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
     _Alignas(64) float terms[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
     _Alignas(64) float beauty[3][GLINT_TILE_SAMPLES];
-    double covered[GLINT_TILE_SAMPLES]; ///< how many samples hit something, less the shares of them that reach the background through
-        ///< surfaces; may be below 0. Only if the plan needs coverage
+    double covered[GLINT_TILE_SAMPLES]; ///< number of samples that hit something, minus their shares that reach the
+        ///< background through surfaces; may be below 0. Only if the plan needs coverage
 } glint_tile_film;
 
 /// A worker's memory for one tile.
@@ -182,14 +182,16 @@ typedef struct glint_tile {
     struct glint_samples *samples; ///< memory of tile/shade.c; likewise
     uint32_t own_lights; ///< index of the current sample's first element in `lights`
     const struct glint_batch *batch; ///< the batch whose rays hit the samples; NULL: rays of the eye
-    struct glint_raster_rest *raster_rest; ///< effects/raster/raster.c: hits of primitives other than triangles; likewise
+    struct glint_raster_rest *raster_rest; ///< effects/raster/raster.c: hits of primitives other than triangles; NULL
+        ///< until a frame needs it
     struct glint_gathered *gathered; ///< of effects/adaptive/gather.c; NULL until a frame is adaptive
     struct glint_differ_work *differ; ///< of effects/adaptive/differ.c; NULL until a frame is a base
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
     void *shadow_room; ///< of occlude; owned; NULL until a frame has shadows of area lights
     struct glint_pattern *pattern; ///< memory of effects/pattern/pattern.c; NULL in frames without programs
-    struct glint_group_sums *group_sums; ///< of effects/light_groups/; NULL in frames without light passes; of a batch the tile's
+    struct glint_group_sums *group_sums; ///< of effects/light_groups/; NULL in frames without light passes; for a batch
+        ///< those of its tile
     double *unbumped[3]; ///< real: normals before bumps; NULL: no bumps
     uint32_t own_planes; ///< index of the current sample's planes among those of samples shaded together
 } glint_tile;
@@ -224,7 +226,7 @@ typedef struct glint_sample_walk {
     uint32_t sample;
     bool rays, points; ///< computed already
     bool patterns; ///< computed, or no visible material has any
-    bool lit; ///< points and the work of the only light are computed, perhaps without normals
+    bool lit; ///< points and the result of the only light are computed, perhaps without normals
     bool centres; ///< the walk of the rays through the pixels' centres, which are not samples
     bool shows; ///< its geometry is stored in the picture when normals are known
     bool any; ///< something is hit
@@ -234,7 +236,7 @@ typedef struct glint_sample_walk {
     uint32_t slot;
 } glint_sample_walk;
 
-/// Computes the rays of the sample, and the surfaces, unless the walk has them.
+/// Compute the rays of the sample, and the surfaces, unless the walk has them.
 void glint_tile_need_rays(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk);
 void glint_tile_need_points(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk);
 
@@ -270,12 +272,12 @@ void glint_tile_use_own_light(glint_tile *tile, uint32_t slot);
 /// own. Memory is allocated only at the first sample: all samples of a tile are cached, or none. Returns whether the hits are
 /// known.
 bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
-/// The same for light `light` of the plan, in `slot`.
+/// Does the same for light `light` of the plan, in `slot`.
 void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot,
                              bool *light_known, bool *occlude_known);
 /// Sets the keys of the cached arrays. Called after the last sample, because the keys cover all samples.
 void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame);
-/// These record: a sample's materials, and whether it shows background; background if nothing is hit; whether a light
+/// Record a sample's materials, and whether it shows background; background if nothing is hit; whether a light
 /// reaches any point of a sample, and its largest possible highlight.
 void glint_tile_note_surfaces(const glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 void glint_tile_note_nothing(const glint_tile *tile, uint32_t k);
@@ -293,13 +295,13 @@ typedef struct glint_film_counts {
 /// Sets the stamp of the tile's pixels. sampled: they have samples of this frame, not only of the base.
 void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before, bool sampled);
 
-/// tile/cached.c: drops cached results of other pixels, from the second frame on with the same choice. In the first, nothing is
-/// cached, nor if pixels may be gathered.
+/// tile/cached.c: drops cached results of other pixels, from the second frame on with the same choice. In the first
+/// such frame, and if pixels may be gathered, nothing is cached.
 void glint_tile_fit_cached(glint_tile *tile, const glint_tile_frame *frame);
 /// Prefetches the cached results of the first sample that the tile will read.
 void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame);
 
-/// Each calls one stage for the current sample, and counts it.
+/// The following functions each call one stage for the current sample, and count it.
 void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t sample);
 void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame);
 /// Returns false if no ray of the tile hits anything. Not counted.
@@ -320,7 +322,7 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
                       uint32_t count);
 void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                         uint32_t count);
-/// Returns the arguments of these two.
+/// Return the arguments of these two stages.
 glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
                                        const uint32_t *slot, uint32_t count);
 glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
@@ -344,9 +346,9 @@ struct glint_samples *glint_samples_create(void);
 void glint_samples_destroy(struct glint_samples *samples);
 void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count);
 void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame);
-/// Shades `samples` samples that follow each other in the tile's groups; the first one is number `first` of its pixel:
-/// together, or into the tile's sums; after the last sample resolves them. sites: diffuse and specular light of faces and vertices, one
-/// pixel's samples after another's, `count` pixels; NULL: none. beauty: of the pixels.
+/// Shades `samples` consecutive samples in the tile's groups; the first one is number `first` of its pixel: together,
+/// or into the tile's sums; after the last sample resolves them. sites: diffuse and specular light of faces and
+/// vertices, one pixel's samples after another's, `count` pixels; NULL: none. beauty: of the pixels.
 void glint_tile_shade_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, uint32_t first, uint32_t samples,
                               const double (*sites)[3][GLINT_TILE_SAMPLES], uint32_t count, float *const beauty[3]);
 /// Counts a stage's call and, when stages are timed, its time; `reused`: its result was in the cache.
@@ -407,13 +409,13 @@ static inline float *glint_differ_values(struct glint_differ_work *work, int val
 void glint_tile_prefetch_borders(const glint_tile *tile, const glint_refine *refine);
 void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
 
-/// effects/adaptive/gather.c: the chosen pixels of a tile, in groups of their own.
+/// effects/adaptive/gather.c: gathers the chosen pixels of a tile in their own groups.
 struct glint_gathered *glint_gathered_create(void);
 void glint_gathered_destroy(struct glint_gathered *gathered); ///< NULL: nothing
 /// Returns whether light is local, and no stage depends on the position of a pixel in its group or tile.
 bool glint_tile_may_gather(const glint_tile_frame *frame);
-/// Lists the positions of the active pixels in the tile, if gathering pays and is possible in this frame. Returns their number; 0: all
-/// samples are taken in place.
+/// Lists the positions of the active pixels in the tile, if gathering pays and is possible in this frame. Returns
+/// their number; 0: the pixels are not gathered.
 uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame, uint16_t place[GLINT_TILE_SAMPLES]);
 /// Return the number of samples of gathered pixels that are walked together, and the largest number of pixels.
 static inline uint32_t glint_tile_gathered_samples(const glint_plan *plan)
@@ -431,15 +433,16 @@ void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const ui
                        uint32_t samples);
 /// Adds the light of faces and vertices, if any are visible. The points must be known.
 void glint_tile_vertex_gathered(glint_tile *tile, const glint_tile_frame *frame);
-/// After the other stages: shades the samples, and after the last resolves them into their pixels. The tile is then as before.
+/// After the other stages: shades the samples, and after the last one resolves them into their pixels. The tile is
+/// then restored.
 void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
                                uint32_t count, uint32_t first, uint32_t samples);
 
 /// effects/adaptive/refine.c: returns whether some pixels of the tile get all samples.
 bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame);
-/// Makes only these active. Returns whether there are any.
+/// Makes only these pixels active. Returns whether there are any.
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
-/// Returns whether all pixels of the tile come from the base; then the picture has them.
+/// Returns whether all pixels of the tile come from the base. The picture then has them.
 bool glint_tile_is_base(glint_tile *tile, const glint_tile_frame *frame);
 /// Copies the lanes that are not refined from a plane of the base (4-byte numbers) into an array of the tile.
 void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame, const void *plane, void *groups);
@@ -523,7 +526,7 @@ static inline uint32_t glint_count_lanes(uint16_t lanes)
 {
     return lanes == 0xffff ? GLINT_GROUP : (uint32_t)__builtin_popcount(lanes);
 }
-/// Reads the numbers of group g.
+/// Reads the numbers of group g as doubles.
 static inline void glint_reals_of(const void *array, glint_precision precision, uint32_t g, double out[GLINT_GROUP])
 {
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -550,11 +553,11 @@ void glint_tile_lend_facets(glint_tile *to, const glint_tile *from);
 /// effects/vertex_shading/vertex.c: flat and Gouraud shading.
 /// Sets at.sampled to the hits that are shaded per sample. Returns whether there are any.
 bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame);
-/// Returns whether there are others, with light computed per face or vertex.
+/// Returns whether there are other hits, with light computed per face or vertex.
 bool glint_tile_has_shading_points(const glint_tile *tile);
-/// Adds the light of faces and vertices to the sums of these others; after `shade`. The points must be known.
+/// Adds the light of faces and vertices to the sums of these other hits; after `shade`. The points must be known.
 void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
-/// The same, added to other sums: diffuse and specular.
+/// Does the same for other sums: diffuse and specular.
 void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES]);
 
 /// effects/raster/raster.c: scan conversion.
@@ -568,8 +571,9 @@ void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const gl
 /// At the first call of a sample, adds the part without lights; then the part of `count` lights of the plan from `from` on, whose
 /// shadows must be known. The points must be known.
 void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
-/// For light through transparent surfaces: before the first step of its rays; ray `ray` crosses a surface, at which `share` and
-/// `left` multiply channel c of its colour; when it arrives at sample i; when a light in `slot` is added to samples this way.
+/// For light through transparent surfaces, these are called: before the first step of its rays; when ray `ray`
+/// crosses a surface, at which `share` and `left` multiply channel c of its colour; when it arrives at sample i; and
+/// when a light in `slot` is added to samples this way.
 void glint_tile_begin_tints(const glint_tile *tile, const glint_plan *plan);
 void glint_tile_derive_tint(const glint_tile *tile, const glint_plan *plan, uint32_t material, uint32_t ray, int c,
                             double color, double share, double left);

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#define TIMED_TILES 17 ///< one of so many; not a divisor of common picture widths in tiles
+#define TIMED_TILES 17 ///< one of this many; not a divisor of common picture widths in tiles
 
 // ---- A sample ----
 
@@ -67,7 +67,7 @@ static void store_geometry(glint_tile *tile, const glint_tile_frame *frame, glin
     w->shows = false;
 }
 
-/// Casts the rays. Casts the rays. Returns whether anything is hit.
+/// Casts the rays. Returns whether anything is hit.
 static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w)
 {
     const glint_plan *plan = frame->plan;

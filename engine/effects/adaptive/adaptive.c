@@ -1,5 +1,5 @@
-/// Adaptive sampling: a frame as two, its base of one sample a pixel and then all samples of the pixels that are worth them. Which
-/// those are: refine.h.
+/// Adaptive sampling: a frame in two steps: a base with one sample per pixel, and then all samples of the pixels that
+/// need them. refine.h states the rule.
 #include "engine/base/status.h"
 #include "engine/frame/render.h"
 #include "engine/frame/renderer.h"
@@ -32,7 +32,8 @@ static glint_status open_base(glint_renderer *renderer, glint_error *error)
     return GLINT_OK;
 }
 
-/// Of the last base nothing is taken where its pixels would be compared otherwise, or were given up half way.
+/// Renders the base. The last base is discarded if its pixels would be compared differently now, or if it was
+/// abandoned half way.
 static glint_status render_base(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
                                 glint_error *error)
 {
@@ -48,8 +49,9 @@ static glint_status render_base(glint_renderer *renderer, const glint_plan *plan
     return status;
 }
 
-/// The base in the picture that is made of it: `base` is that picture, with planes of `*more` where it has none. Nothing is kept, and
-/// the last base is given up, since what its pixels were compared by is overwritten.
+/// Renders the base into the picture that is made from it: `base` is that picture, with planes of `*more` where it
+/// has none. Nothing is cached, and the last base is discarded, because the values that its pixels were compared by
+/// are overwritten.
 static glint_status render_in_place(glint_renderer *renderer, const glint_plan *plan, const glint_image *image,
                                     const glint_tone_table *table, glint_image *base, glint_image **more,
                                     glint_frame_stats *stats, glint_error *error)
@@ -78,7 +80,7 @@ static glint_status render_in_place(glint_renderer *renderer, const glint_plan *
 
 // ---- The frame ----
 
-/// Adds what the base took, compare_ms of it for comparing pixels, and the choice after it.
+/// Adds the work and time of the base, of which compare_ms was spent on comparing pixels, and of the choice after it.
 static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const glint_plan *plan, double choose_ms,
                      double compare_ms, bool time_stages)
 {
@@ -86,7 +88,7 @@ static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const
     const double all = pixels + (double)to->refined * plan->desc.samples; // samples
     glint_frame_stats_add(to, base, pixels / all);
     to->render_ms += choose_ms;
-    if (!glint_plan_compares_codes(&plan->desc)) { // its codes are the picture's
+    if (!glint_plan_compares_codes(&plan->desc)) { // then the pixel values are those of the picture
         to->render_ms -= base->tone_ms;
         to->tone_ms += base->tone_ms;
     }
@@ -95,7 +97,7 @@ static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const
             to->stage_ms[i] = choose_ms + compare_ms;
 }
 
-/// Returns the share of comparing in the time of the last tiles, if stages are timed.
+/// Returns the time spent on comparing, as its share in the time of the last tiles, if stages are timed.
 static double comparing_ms(const glint_renderer *renderer)
 {
     double ms = 0;
@@ -104,7 +106,7 @@ static double comparing_ms(const glint_renderer *renderer)
     return ms;
 }
 
-/// The pixels of a base that are worth it, then those.
+/// Chooses the pixels of a base that need all samples, then renders these pixels.
 static glint_status refine_base(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,
                                 const glint_tone_table *table, const glint_frame_stats *first, glint_frame_stats *stats,
                                 glint_error *error)
@@ -123,8 +125,8 @@ static glint_status refine_base(glint_renderer *renderer, const glint_plan *plan
     return GLINT_OK;
 }
 
-/// The base stands in the frame's own picture where nothing of it is kept: without reuse, in the first frame, and where so much has
-/// changed since the last that few of its pixels can stay.
+/// The base is rendered into the frame's own picture if nothing of it is cached: without reuse, in the first frame,
+/// and if so much has changed since the last frame that few of its pixels can stay.
 glint_status glint_renderer_run_adaptive(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
                                          const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
 {

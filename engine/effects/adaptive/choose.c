@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ESTIMATED ((GLINT_DIFFER_LENGTH + GLINT_GROUP - 1) / GLINT_GROUP * GLINT_GROUP) ///< numbers of a line
+#define ESTIMATED ((GLINT_DIFFER_LENGTH + GLINT_GROUP - 1) / GLINT_GROUP * GLINT_GROUP) ///< numbers per line
 
 static glint_refine_tile *tile_at(const glint_refine *refine, uint32_t column, uint32_t row)
 {
@@ -56,7 +56,7 @@ typedef struct joiner {
     const glint_extent *extent;
 } joiner;
 
-/// Two lines at a border as they are compared: with codes, or estimates of them.
+/// Two lines at a border in the form for comparison: with pixel values, or with estimates.
 typedef struct border {
     const float *line[2][GLINT_DIFFER_VALUES], *light[2][3];
     _Alignas(64) float code[2][3][ESTIMATED];
@@ -82,7 +82,7 @@ static void estimate_border(const glint_refine *refine, border *b)
     }
 }
 
-/// Which of its pixels differ.
+/// Computes which of the border's pixels differ.
 static void compare_border(const glint_refine *refine, border *b, uint32_t count, uint32_t ahead,
                            uint32_t differ[GLINT_DIFFER_WAYS])
 {
@@ -92,7 +92,7 @@ static void compare_border(const glint_refine *refine, border *b, uint32_t count
     glint_refine_compare(refine, &lines, differ);
 }
 
-/// Whether all pixels of two tiles are.
+/// Returns whether the ranges show that no pixels of two tiles can differ.
 static bool are_alike(const glint_refine *refine, const glint_refine_tile *a, const glint_refine_tile *b)
 {
     return a->ranged && b->ranged && glint_refine_alike(refine, &a->range, &b->range);
@@ -119,7 +119,7 @@ static void join_columns(const glint_refine *refine, glint_refine_tile *left, gl
         right->chosen[__builtin_ctz(other)] |= 1;
 }
 
-/// Compares the pixels in `column` of a row of tiles' last row of pixels with those below.
+/// Compares the pixels in `column` of the last row of pixels of a row of tiles with the pixels below.
 static void join_rows(const joiner *j, uint32_t column, uint32_t row)
 {
     glint_refine *refine = j->refine;
@@ -194,7 +194,7 @@ static void spread_row(const glint_refine *refine, const glint_extent *e, int y)
 /// Adds the pixels of a column of tiles that are near a chosen one above or below.
 static void spread_column(const glint_refine *refine, const glint_extent *e, uint32_t column)
 {
-    uint32_t before[GLINT_REFINE_SPREAD] = { 0 }; // rows above as they were, the nearest first
+    uint32_t before[GLINT_REFINE_SPREAD] = { 0 }; // rows above before the change, the nearest first
     const int end = e->y + e->height;
     for (int y = e->y; y < end; y++) {
         uint32_t *word = word_at(refine, column, y);

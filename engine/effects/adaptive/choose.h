@@ -1,8 +1,9 @@
-/// Adaptive sampling: which pixels of a picture of one sample each are worth all samples. Internal. The rule, and the pixels inside
-/// of a tile: effects/adaptive/refine.h.
+/// Adaptive sampling: the choice of pixels that get all samples, in a picture with one sample each. Internal. The
+/// rule, and the pixels inside a tile: effects/adaptive/refine.h.
 ///
-/// Through a lens a pixel of the base shows one point of it, and 4 x 4 neighbours all 16 that there are: what any of them see
-/// otherwise is in the blur of all. So pixels are chosen as well that are up to GLINT_REFINE_SPREAD from such a pair.
+/// Through a lens, a pixel of the base shows one point of the lens, and 4 x 4 neighbours show all 16. A difference at
+/// any of these points is blurred over all of them. So pixels up to GLINT_REFINE_SPREAD away from a differing pair
+/// are chosen, too.
 #ifndef GLINT_REFINE_H
 #define GLINT_REFINE_H
 
@@ -12,14 +13,14 @@
 
 #define GLINT_REFINE_SPREAD 2 ///< pixels, in every direction
 
-/// Before a base is rendered into `image`, which must stay until the choice. `desc`: of it, with the threshold. Makes room for its tiles;
-/// the keys of those that are there are kept. GLINT_ERR_NOMEM.
+/// Called before a base is rendered into `image`, which must live until the choice. `desc`: of the base, with the
+/// threshold. Allocates its tiles; existing tiles keep their keys. GLINT_ERR_NOMEM.
 glint_status glint_refine_begin(glint_refine *refine, const glint_stages *stages, const glint_image *image,
                                 const glint_render_desc *desc, glint_error *error);
-/// After that: brings together what its tiles have found, compares pixels across their borders, and sets `count`. lens: pixels around
-/// those chosen are chosen as well. Any number of threads gives the same.
+/// Called after that: collects the results of the tiles, compares pixels across borders of tiles, and sets `count`.
+/// lens: also chooses pixels around the chosen ones. The result does not depend on the number of threads.
 void glint_refine_choose(glint_refine *refine, const glint_extent *extent, bool lens, glint_pool *pool);
-/// Frees what it owns; zeroed memory is a beginning.
+/// Frees what it owns. Zeroed memory is a valid initial state.
 void glint_refine_clear(glint_refine *refine);
 
 #endif

@@ -21,14 +21,14 @@ void glint_differ_work_destroy(struct glint_differ_work *work) { free(work); }
 
 // ---- Pairs --------------------------------------------------------------------------------------------------------
 
-/// The code of pixel i of a line, before it is rounded.
+/// Returns the value of pixel i of a line, before rounding.
 static double code_at(const glint_refine *refine, const glint_refine_lines *lines, int line, int c, size_t i)
 {
     const size_t at = lines->grouped ? i / 4 * GLINT_GROUP + i % 4 : i;
     return glint_tone_value(&refine->tone, (double)lines->light[line][c][at]);
 }
 
-/// Whether the codes of pixel i of one line and k of another are far enough apart.
+/// Returns whether the values of pixel i of one line and pixel k of another differ by more than the threshold.
 static bool exceeds(const glint_refine *refine, const glint_refine_lines *lines, const int line[2], size_t i, size_t k)
 {
     double sum = 0;
@@ -60,7 +60,7 @@ void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *
 
 // ---- A tile -------------------------------------------------------------------------------------------------------
 
-/// Whether no ray has met anything.
+/// Returns whether no ray has hit anything.
 static bool shows_nothing(const glint_tile *tile, const glint_tile_frame *frame)
 {
     return frame->plan->visible_light_count == 0 && !glint_has_lanes(tile->at.hits, tile->group_count);
@@ -71,7 +71,7 @@ typedef struct tile_values {
     const float *of[GLINT_DIFFER_VALUES];
 } tile_values;
 
-/// Codes of the base as numbers.
+/// Loads the pixel values of the base as numbers.
 static void take_codes(const glint_tile *tile, const glint_image *base, struct glint_differ_work *work)
 {
     const size_t channels = (size_t)base->channels;
@@ -84,7 +84,7 @@ static void take_codes(const glint_tile *tile, const glint_image *base, struct g
     }
 }
 
-/// Reorders values from groups into rows: those in `open`, and the values below each.
+/// Reorders values from groups into rows: the rows in `open`, and the row below each.
 static void make_rows(const glint_tile *tile, const tile_values *values, uint32_t open, struct glint_differ_work *work)
 {
     const uint32_t wanted = open | open << 1;
@@ -103,16 +103,17 @@ static void make_rows(const glint_tile *tile, const tile_values *values, uint32_
     }
 }
 
-/// A column of one value: `from` is in the first group.
+/// Copies a column of one value: `from` is in the first group.
 static void copy_column(const glint_tile *tile, const float *from, float *to)
 {
     const size_t row = (size_t)tile->groups_across * GLINT_GROUP;
-    for (uint32_t y = 0; y < tile->height; y += 4, from += row, to += 4) // up to three below the image: there is room, and
-        for (uint32_t r = 0; r < 4; r++) // they are not read
+    for (uint32_t y = 0; y < tile->height; y += 4, from += row, to += 4) // up to three rows below the image: they have
+        // memory, and
+        for (uint32_t r = 0; r < 4; r++) // are not read
             to[r] = from[4 * r];
 }
 
-/// Rows and columns of one value: four pixels of a group at a time.
+/// Copies rows and columns of one value, four pixels of a group at a time.
 static void copy_borders(const glint_tile *tile, const float *from, float *const edge[2], float *const side[2])
 {
     for (int last = 0; last < 2; last++) {
@@ -149,8 +150,8 @@ static void note_borders(const glint_tile *tile, const glint_refine *refine, con
                          (float *const[2]) { own->side[0][v], own->side[1][v] });
 }
 
-/// The range of `rows` rows of groups from `row` on; of several objects no more than that they are. none: nothing is hit, and no light
-/// is seen.
+/// Computes the range of `rows` rows of groups from `row` on; for several objects, the range only tells that there
+/// are several. none: nothing is hit, and no light is seen.
 static void find_range(const glint_tile *tile, const glint_refine *refine, const tile_values *values, uint32_t row, uint32_t rows,
                        bool none, glint_refine_range *range)
 {
@@ -179,7 +180,8 @@ static void find_range(const glint_tile *tile, const glint_refine *refine, const
     memcpy(range->code, code, sizeof range->code);
 }
 
-/// From the lower of the two least to the higher of the two most: how far these are apart. No call: fminf is one.
+/// Returns the distance from the lower minimum to the higher maximum of two ranges. Without fminf, which would be a
+/// call.
 static inline float spread_of(const float a[2], const float b[2])
 {
     return (a[1] > b[1] ? a[1] : b[1]) - (a[0] < b[0] ? a[0] : b[0]);
@@ -195,10 +197,11 @@ bool glint_refine_alike(const glint_refine *refine, const glint_refine_range *a,
         bend += turn * turn;
         sum += spread_of(a->code[c], b->code[c]);
     }
-    return bend < 2 * (1 - GLINT_REFINE_NORMAL) - 0.01f && sum <= refine->low; // normals have length 1 up to rounding
+    return bend < 2 * (1 - GLINT_REFINE_NORMAL) - 0.01f && sum <= refine->low; // normals have length 1 within rounding
 }
 
-/// Which rows of a tile may differ from themselves or the next: a bit a row, by the ranges of rows of groups. Finds that of the tile.
+/// Returns the rows of a tile that may have differences within them or to the next row, one bit each, by the ranges
+/// of rows of groups. Also computes the range of the tile.
 static uint32_t find_open_rows(const glint_tile *tile, const glint_tile_frame *frame, const tile_values *values,
                                glint_refine_range *all)
 {
@@ -221,7 +224,7 @@ static uint32_t find_open_rows(const glint_tile *tile, const glint_tile_frame *f
     return open;
 }
 
-/// Compares the rows in `open`, from the first down, each with itself and with the next.
+/// Compares the rows in `open`, first to last: the pixels of each with each other, and with the next row.
 static void compare_rows(const glint_tile *tile, const glint_refine *refine, const struct glint_differ_work *work,
                          uint32_t open, uint32_t chosen[GLINT_TILE_HEIGHT])
 {
@@ -249,7 +252,7 @@ static void compare_rows(const glint_tile *tile, const glint_refine *refine, con
     }
 }
 
-/// Estimates the codes of rows of groups that have any of these rows of pixels.
+/// Estimates the pixel values of rows of groups that contain any of these rows of pixels.
 static void estimate_rows(const glint_tile *tile, const glint_refine *refine, uint32_t wanted, tile_values *values)
 {
     const size_t row = (size_t)tile->groups_across * GLINT_GROUP;
@@ -265,7 +268,7 @@ static void estimate_rows(const glint_tile *tile, const glint_refine *refine, ui
     }
 }
 
-/// Compares the tile's pixels, unless all are alike.
+/// Compares the tile's pixels, unless their range shows that none can differ.
 static void compare_inside(const glint_tile *tile, const glint_tile_frame *frame, tile_values *values, uint32_t inside[])
 {
     struct glint_differ_work *work = tile->differ;

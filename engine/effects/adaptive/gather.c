@@ -1,24 +1,26 @@
-/// Adaptive sampling: the chosen pixels of a tile, gathered. They lie along edges, so that the tile's own groups are mostly empty. One
-/// walk has up to 16 samples of as many as fit. Where primitives are few a group is one sample of 16 of them, wherever they are in the
-/// tile. Else it is the samples of one pixel, or of a few that are side by side: so little of the picture that little may show there,
-/// and that its lanes mostly show the same. Shading adds up samples in their order, and has them one after the other in both cases.
+/// Adaptive sampling: gathers the chosen pixels of a tile. They lie along edges, so the tile's own groups are mostly
+/// empty. One walk takes up to 16 samples of as many pixels as fit. With few primitives, a group is one sample of 16
+/// pixels at any position in the tile. Otherwise it is the samples of one pixel, or of a few adjacent pixels: such a
+/// small part of the picture shows few primitives, and mostly the same one in all lanes. Shading adds up samples in
+/// their order, and gets them one after the other in both cases.
 #include "engine/base/alloc.h"
 #include "engine/tile/tile.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define FEW_PRIMS 16 ///< of more, rays are cast faster where they lie beside each other
-#define BLOCK 2 ///< groups along a side of the squares that pixels are listed by
-#define FULL 0.9 ///< of the lanes of the groups that have any: from there on gathering saves nothing
+#define FEW_PRIMS 16 ///< with more primitives, rays are cast faster if they are adjacent
+#define BLOCK 2 ///< groups along the side of the squares in whose order pixels are listed
+#define FULL 0.9 ///< share of the lanes of all groups with a chosen pixel: above it, gathering saves nothing
 
 struct glint_gathered {
-    _Alignas(64) double pixel[2][GLINT_TILE_SAMPLES]; ///< columns and rows of the picture
+    _Alignas(64) double pixel[2][GLINT_TILE_SAMPLES]; ///< columns and rows in the picture
     _Alignas(64) float beauty[3][GLINT_TILE_SAMPLES];
-    _Alignas(64) uint32_t numbers[GLINT_TILE_SAMPLES]; ///< a result while it is put in another order
-    _Alignas(64) double sites[2][3][GLINT_TILE_SAMPLES]; ///< their light, diffuse and specular, of each sample
+    _Alignas(64) uint32_t numbers[GLINT_TILE_SAMPLES]; ///< a result while it is reordered
+    _Alignas(64) double sites[2][3][GLINT_TILE_SAMPLES]; ///< diffuse and specular light of faces and vertices, for each
+        ///< sample
     bool has_sites;
-    uint16_t active[GLINT_TILE_GROUPS]; ///< as they are in the tile, and the following
+    uint16_t active[GLINT_TILE_GROUPS]; ///< these and the following: saved from the tile
     uint32_t group_count, groups_across;
 };
 
@@ -26,7 +28,7 @@ struct glint_gathered *glint_gathered_create(void) { return glint_alloc(1, sizeo
 
 void glint_gathered_destroy(struct glint_gathered *gathered) { free(gathered); }
 
-/// Whether a group is samples of one pixel.
+/// Returns whether a group is the samples of one pixel.
 static bool groups_samples(const glint_tile_frame *frame)
 {
     return frame->geometry.prim_count > FEW_PRIMS || frame->plan->runs[GLINT_STAGE_VERTEX];
@@ -51,7 +53,7 @@ uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame
     return count < FULL * GLINT_GROUP * groups ? count : 0;
 }
 
-/// Column and row of the picture's pixel at a place in the tile.
+/// Computes column and row, in the picture, of the pixel at a position in the tile.
 static void pixel_at(const glint_tile *tile, uint32_t place, double out[2])
 {
     const uint32_t g = place / GLINT_GROUP, lane = place % GLINT_GROUP;
@@ -59,8 +61,8 @@ static void pixel_at(const glint_tile *tile, uint32_t place, double out[2])
     out[1] = tile->y0 + 4 * (g / tile->groups_across) + lane / 4;
 }
 
-/// Tells the camera where the rays of the pixels at these places are: `samples` lanes each, `offset` from its corner. Lanes that are
-/// left over have the first pixel once more, and are not active.
+/// Sets the camera's rays for the pixels at these positions: `samples` lanes each, at `offset` within the pixel. The
+/// remaining lanes repeat the first pixel, and are not active.
 static void place_pixels(glint_tile *tile, const uint16_t *place, uint32_t count, const double (*offset)[GLINT_LIGHT_CHUNK],
                          uint32_t samples, double (*pixel)[GLINT_TILE_SAMPLES])
 {
@@ -86,7 +88,7 @@ static void place_pixels(glint_tile *tile, const uint16_t *place, uint32_t count
     }
 }
 
-/// The rays of one sample after the other.
+/// Makes the rays, one sample of all pixels after the other.
 static void make_stacked_rays(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
                               uint32_t samples)
 {
@@ -104,7 +106,7 @@ static void make_stacked_rays(glint_tile *tile, const glint_tile_frame *frame, c
     tile->camera.down = tile->rays.direction;
 }
 
-/// The rays of one pixel after the other.
+/// Makes the rays, one pixel after the other.
 static void make_pixel_rays(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
                             uint32_t samples)
 {
@@ -117,12 +119,12 @@ static void make_pixel_rays(glint_tile *tile, const glint_tile_frame *frame, con
     place_pixels(tile, place, count, (const double(*)[GLINT_LIGHT_CHUNK])offset, samples, tile->gathered->pixel);
     tile->camera.groups_across = 1;
     tile->camera.group_count = (count * samples + GLINT_GROUP - 1) / GLINT_GROUP;
-    tile->camera.offset[0] = tile->camera.offset[1] = 0; // they are in the places
+    tile->camera.offset[0] = tile->camera.offset[1] = 0; // they are in the pixels' positions
     tile->camera.down = tile->rays.direction;
     glint_tile_make_rays(tile, frame);
 }
 
-/// Lanes of groups that repeat after `every` of them, the first `count` of all of which are active.
+/// Activates lanes in groups that repeat after `every` groups: the first `count` lanes of each repetition.
 static void activate_lanes(glint_tile *tile, uint32_t every, uint32_t count)
 {
     for (uint32_t g = 0; g < tile->group_count; g++) {
@@ -152,9 +154,9 @@ void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const ui
     activate_lanes(tile, every, lanes);
 }
 
-// ---- From one pixel after the other to one sample after the other ----
+// ---- Reordering from pixel by pixel to sample by sample ----
 
-/// For 16 pixels with 16 samples each.
+/// Transposes 16 pixels with 16 samples each.
 static void stack_square(const uint32_t *from, uint32_t *to, size_t stride)
 {
     for (size_t k = 0; k < GLINT_GROUP; k++)
@@ -162,7 +164,7 @@ static void stack_square(const uint32_t *from, uint32_t *to, size_t stride)
             to[k * stride + p] = from[p * GLINT_GROUP + k];
 }
 
-/// Numbers, one a lane.
+/// Reorders numbers, one per lane.
 static void stack_numbers(struct glint_gathered *gathered, void *numbers, uint32_t count, uint32_t samples)
 {
     const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP, *from = gathered->numbers;
@@ -178,7 +180,7 @@ static void stack_numbers(struct glint_gathered *gathered, void *numbers, uint32
             to[k * blocks * GLINT_GROUP + p] = *from++;
 }
 
-/// The bits of 16 groups: those of one lane become a group.
+/// Transposes the bits of 16 groups: those of one lane become a group.
 static void turn_lanes(uint16_t lanes[GLINT_GROUP])
 {
     unsigned low = 0x00ff;
@@ -190,7 +192,7 @@ static void turn_lanes(uint16_t lanes[GLINT_GROUP])
         }
 }
 
-/// Bits, one a lane.
+/// Reorders bits, one per lane.
 static void stack_lanes(uint16_t *lanes, uint32_t groups, uint32_t count, uint32_t samples)
 {
     const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP;
@@ -207,13 +209,13 @@ static void stack_lanes(uint16_t *lanes, uint32_t groups, uint32_t count, uint32
     memcpy(lanes, to, samples * blocks * sizeof *lanes);
 }
 
-/// Gathers the input of shade.
+/// Reorders the input of shade.
 static void stack_samples(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, uint32_t count, uint32_t samples)
 {
     const glint_plan *plan = frame->plan;
     const uint32_t groups = tile->group_count;
     stack_lanes(tile->at.hits, groups, count, samples);
-    if (!tile->at.only) // else they are not read
+    if (!tile->at.only) // otherwise they are not read
         stack_numbers(tile->gathered, tile->surface.material, count, samples);
     for (uint32_t i = 0; i < light_count; i++) {
         const glint_plan_light *light = &plan->lights[i];

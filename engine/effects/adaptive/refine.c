@@ -1,9 +1,9 @@
-/// The part of a tile that gets all samples, and the rest, which has its one.
+/// The pixels of a tile that get all samples, and the other pixels, which come from the base.
 #include "engine/effects/light_groups/light_groups.h"
 
 #include <string.h>
 
-/// Where the pixels of a group are, and how many of them the image has.
+/// The positions of a group's pixels, and which of them are inside the image.
 typedef struct group_pixels {
     size_t first; ///< in a plane of the image
     uint32_t columns, rows;
@@ -79,7 +79,7 @@ void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame
     }
 }
 
-/// The base has one sample, which stands for all.
+/// Computes the coverage from the one sample of the base, which stands for all.
 static void take_coverage(glint_tile *tile, const glint_tile_frame *frame)
 {
     float alpha[GLINT_TILE_SAMPLES] = { 0 };
@@ -109,7 +109,8 @@ void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_image *base = frame->base;
     const glint_refine_tile *own = &frame->refine->tiles[tile->index];
-    if (frame->refine->in_codes && !own->clipped && !own->nonfinite) { // the refined pixels' codes are all that is to be made
+    if (frame->refine->in_codes && !own->clipped && !own->nonfinite) { // only the refined pixels' values must be
+        // computed
         mark_refined(tile, frame);
         return;
     }
@@ -127,7 +128,7 @@ void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_activate(tile);
 }
 
-/// How much neighbours must differ, and how they are shown.
+/// Hashes how much neighbours must differ, and how the differences are computed.
 static glint_key own_key(const glint_plan *plan, glint_key key)
 {
     const double seen[] = { plan->desc.adaptive, plan->desc.tone.curve, plan->desc.tone.exposure };
@@ -136,7 +137,7 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
 
 static bool called(const glint_plan *plan) { return plan->desc.adaptive > 0 && plan->desc.samples > 1; }
 
-/// It comes before all other stages: it chooses the pixels that they run for.
+/// Runs before all other stages, because it chooses the pixels that they run for.
 const glint_stage glint_stage_refine = {
     .name = "refine",
     .doc = "which pixels get all samples: edges of objects, normals and contrast",

@@ -1,19 +1,20 @@
-/// Rays beyond the first surface of a tile: mirrored, refracted and straight ones, and their light.
+/// Rays beyond the first surface of a tile: reflected, refracted and straight ones, and their light.
 ///
-/// Rays wait in levels, each with space for the samples of one tile. A batch is all the rays of the highest level. Where a surface sends
-/// on several rays, the strongest stays in the batch's level, the second goes one level up and the third two levels: a level never
-/// holds more rays than the batch that filled it. That bounds the memory, however long the chains are. The order of a
-/// pixel's rays, and so of its sums, depends on nothing but that pixel.
+/// Rays wait in levels, each with space for the samples of one tile. A batch is all the rays of the highest level. If
+/// a surface sends on several rays, the strongest stays in the batch's level, the second goes one level up and the
+/// third two levels: a level never holds more rays than the batch that filled it. That bounds the memory, however
+/// long the chains are. The order of a pixel's rays, and so of its sums, only depends on that pixel.
 ///
-/// If all rays of every surface were followed, their number would double at each surface. Beyond GLINT_BOUNCE_SPLITS surfaces only
-/// one ray is followed. It is drawn with probability as the weights, and takes the weight of all: no light is lost, and work no
-/// longer doubles. The lot is made of the ray's own bits, so that it falls the same everywhere.
+/// If all rays of every surface were followed, their number would double at each surface. Beyond GLINT_BOUNCE_SPLITS
+/// surfaces only one ray is followed. It is drawn with a probability proportional to the weights, and takes the
+/// weight of all: no light is lost, and work no longer doubles. The random number is a hash of the ray's own bits, so
+/// that it is always the same.
 ///
-/// max_depth does not count translucent surfaces that a ray goes straight through. These are its passes, of which a ray may have
-/// GLINT_PASSES_MAX.
+/// max_depth does not count translucent surfaces that a ray goes straight through. These are its passes; a ray has at
+/// most GLINT_PASSES_MAX.
 ///
-/// A ray too weak to be seen is not followed: all that a sample loses so is at most GLINT_BOUNCE_LOSS of linear light, by
-/// the plan's bound of what any ray can bring. That is 1/318 of the smallest step between two 8-bit sRGB codes.
+/// A ray too weak to be seen is not followed. A sample loses at most GLINT_BOUNCE_LOSS of linear light in total, by
+/// the plan's bound of the light along any ray. That is 1/318 of the smallest step between two 8-bit sRGB values.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/effects/derivative/work.h"
@@ -32,10 +33,11 @@ struct glint_bounce {
     uint32_t counts[LEVELS];
     glint_sent sent[GLINT_WAYS]; ///< the rays that a batch sends to its own level, and to the levels above
     double budget[GLINT_TILE_SAMPLES]; ///< light that each sample may still lose
-    glint_ray_slope *slopes; ///< what those of all levels and of the batch's own rays are in; NULL until a frame has derivatives
+    glint_ray_slope *slopes; ///< slopes of the rays of all levels and of the batch's own rays; NULL until a frame has
+        ///< derivatives
 };
 
-/// Not zeroed as a whole: the pages of a level are the system's until it is used.
+/// Not zeroed as a whole, so that the system allocates the pages of a level only when it is used.
 static void *create(const glint_plan *plan)
 {
     (void)plan;
@@ -70,7 +72,8 @@ static bool fit(void *memory, const glint_plan *plan)
     if (!plan->derivatives)
         return true;
     if (!bounce->slopes)
-        bounce->slopes = malloc((LEVELS + 1) * each * sizeof *bounce->slopes); // pages are the system's until used
+        bounce->slopes = malloc((LEVELS + 1) * each * sizeof *bounce->slopes); // the system allocates pages on first
+            // use
     for (size_t i = 0; bounce->slopes && i < LEVELS; i++)
         bounce->room[i].slopes = bounce->slopes + i * each;
     if (bounce->slopes)
@@ -100,7 +103,7 @@ static bool goes_on(const struct glint_bounce *bounce, const glint_tile *tile, c
            (m->clears && passes_at(bounce, tile, i) < GLINT_PASSES_MAX);
 }
 
-/// The hits of `tile` whose materials send rays on, and whose chain is not at its end.
+/// Selects the hits of `tile` whose materials send rays on, and whose chain has not reached its end.
 static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
@@ -117,7 +120,7 @@ static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const gl
     return any;
 }
 
-/// The rays of a sample.
+/// The rays that continue from a sample.
 typedef struct parting {
     double weight[GLINT_WAYS][3];
     glint_ray_slope slopes[GLINT_WAYS][GLINT_DERIVATIVES_MAX]; ///< in frames with derivatives
@@ -125,13 +128,14 @@ typedef struct parting {
 
 static double total_weight(const double weight[3]) { return (weight[0] + weight[1]) + weight[2]; }
 
-/// Whether a ray must be followed; if not, what it might have brought is off the budget.
+/// Returns whether a ray must be followed. If not, subtracts the light that it could have contributed from the
+/// budget.
 static bool matters(const glint_plan *plan, const double weight[3], double *budget)
 {
     double most = weight[0]; // none is NaN
     for (int c = 1; c < 3; c++)
         most = weight[c] > most ? weight[c] : most;
-    if (most == 0) // of a ray that is none
+    if (most == 0) // the ray does not exist
         return false;
     const double lost = most * plan->brightest;
     if (!(4 * lost <= *budget))
@@ -156,7 +160,8 @@ static void push(struct glint_bounce *bounce, const glint_plan *plan, uint32_t b
                plan->derivatives->count * sizeof *rays->slopes);
 }
 
-/// A number in 0 .. 1 that is the mirrored ray's own: made of its direction's bits (the finish of splitmix64).
+/// Returns a number in 0 .. 1 that only depends on the mirrored ray: a hash of its direction's bits (the finish of
+/// splitmix64).
 static double lot_of(const glint_batch *batch, glint_precision precision, uint32_t i, uint32_t depth)
 {
     uint64_t z = depth;
@@ -182,7 +187,7 @@ static void take_weight(const glint_plan *plan, parting *rays, int one, int othe
     }
 }
 
-/// Draws one of the rays with probability as their weights; it takes the weight of all. lot: 0 .. 1.
+/// Draws one of the rays, with a probability proportional to their weights. It takes the weight of all. lot: 0 .. 1.
 static void draw(const glint_plan *plan, parting *rays, double lot)
 {
     const double mirrored = total_weight(rays->weight[0]), refracted = total_weight(rays->weight[1]),
@@ -231,7 +236,7 @@ static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const g
         glint_derive_split(batch, tile, frame, i, rays.slopes);
     if (!(depth < plan->desc.max_depth)) // only the straight ray is left
         memset(rays.weight, 0, GLINT_WAY_STRAIGHT * sizeof *rays.weight);
-    if (!first && glint_has_lane(batch->total, i)) // both go the same way
+    if (!first && glint_has_lane(batch->total, i)) // both have the same direction
         take_weight(plan, &rays, GLINT_WAY_MIRRORED, GLINT_WAY_REFRACTED);
     if (!first && surfaces > GLINT_BOUNCE_SPLITS)
         draw(plan, &rays, lot_of(batch, plan->desc.precision, i, surfaces));
@@ -254,7 +259,7 @@ static void end_sending(struct glint_bounce *bounce, const glint_tile *tile, con
     }
 }
 
-/// Sends on what the eye's samples have hit, to level 0.
+/// Sends on rays from the hits of the eye's samples, to level 0.
 static void spawn_first(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame)
 {
     if (!choose(bounce, tile, frame))
@@ -267,7 +272,8 @@ static void spawn_first(struct glint_bounce *bounce, const glint_tile *tile, con
     end_sending(bounce, tile, frame, 0);
 }
 
-/// Sends on what the batch has hit, in the order of its rays; `level` is where these were, and empty as those above.
+/// Sends on rays from the hits of the batch, in the order of its rays; `level` is where these were, and is empty like
+/// the levels above.
 static void spawn(struct glint_bounce *bounce, const glint_tile_frame *frame, uint32_t level)
 {
     const glint_batch *batch = &bounce->batch;
@@ -299,7 +305,7 @@ static void take_level(struct glint_bounce *bounce, uint32_t level, glint_tile_c
     bounce->counts[level] = 0;
 }
 
-/// Adds what the rays found to their pixels, in their order.
+/// Adds the light along the rays to their pixels, in order.
 static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to)
 {
     const glint_rays *rays = batch->rays;
@@ -346,12 +352,12 @@ static void follow(glint_tile *tile, const glint_tile_frame *frame)
 {
     struct glint_bounce *bounce = tile->own[GLINT_STAGE_BOUNCE];
     glint_batch_begin(&bounce->batch, tile, frame, GLINT_WALK_BOUNCE);
-    bounce->batch.ordered = frame->plan->runs[GLINT_STAGE_INDIRECT]; // whose paths begin in the order of samples
+    bounce->batch.ordered = frame->plan->runs[GLINT_STAGE_INDIRECT]; // its paths begin in the order of samples
     memset(bounce->counts, 0, sizeof bounce->counts);
     for (int i = 0; i < GLINT_TILE_SAMPLES; i++)
         bounce->budget[i] = GLINT_BOUNCE_LOSS;
     spawn_first(bounce, tile, frame);
-    for (uint32_t level = GLINT_WAYS - 1;;) { // the highest that rays may be in
+    for (uint32_t level = GLINT_WAYS - 1;;) { // the highest level that may have rays
         while (level > 0 && bounce->counts[level] == 0)
             level--;
         if (bounce->counts[level] == 0 || glint_tile_cancelled(frame))

@@ -31,7 +31,7 @@ static void bounce_material_init(glint_bounce_material *out, const glint_plan *p
     bounded(out->mirror, mirror_of(desc));
     bounded(out->transmission, desc->transmission);
     bounded(out->absorption, desc->absorption);
-    for (int c = 0; c < 3; c++) { // what bounds them is what bounds what programs give
+    for (int c = 0; c < 3; c++) { // the same limits apply to programs' results
         out->mirror[c] = desc->program.mirror ? GLINT_REFLECTANCE_MAX : out->mirror[c];
         out->transmission[c] = desc->program.transmission ? GLINT_REFLECTANCE_MAX : out->transmission[c];
     }
@@ -52,19 +52,19 @@ static double gain(const glint_bounce_material *m)
     return opaque(m, most);
 }
 
-/// The same of any ray: total reflection dims none.
+/// Returns the same for any ray: total reflection does not dim.
 static double gain_anywhere(const glint_bounce_material *m)
 {
     return m->transmits && !m->fresnel ? fmax(gain(m), 1) : gain(m);
 }
 
-/// Bounds a program's result: 1 without a program, where the table has the number.
+/// Returns a bound of a program's result: 1 without a program, as the table then has the value.
 static double most_of(const glint_plan *plan, uint32_t i, glint_field field)
 {
     return plan->patterns && plan->patterns->of[i].made >> field & 1 ? GLINT_REFLECTANCE_MAX : 1;
 }
 
-/// A bound of the diffuse reflectance.
+/// Returns a bound of the diffuse reflectance.
 static double most_diffuse(const glint_plan *plan, uint32_t i)
 {
     return most_of(plan, i, GLINT_FIELD_DIFFUSE) * brightest_of(glint_plan_diffuse(plan, i));
@@ -76,7 +76,7 @@ static double as_opaque(const glint_plan *plan, uint32_t i, double bound)
     return plan->bouncing ? opaque(&plan->bouncing[i], bound) : bound;
 }
 
-/// A bound of the light that surfaces of a material themselves give to any ray.
+/// Returns a bound of the light that surfaces of a material themselves give to any ray.
 static double surface_light(const glint_plan *plan, uint32_t i)
 {
     const glint_shade_material *m = &plan->materials[i];
@@ -102,7 +102,7 @@ static double surface_light(const glint_plan *plan, uint32_t i)
     return as_opaque(plan, i, sum);
 }
 
-/// The same of all surfaces, of lights that are seen, and of the background.
+/// Returns the same over all surfaces, visible lights and the background.
 static double brightest_surface(const glint_plan *plan)
 {
     double most = plan->environment ? plan->environment->most : brightest_of(plan->background);
@@ -113,8 +113,8 @@ static double brightest_surface(const glint_plan *plan)
     return most;
 }
 
-/// The most that a chain without indirect light, whose materials send on no more than they get, can bring: at each surface
-/// what a material that sends on gives itself, at its end anything.
+/// Returns a bound of the light along a chain without indirect light, if no material sends on more than it gets: the
+/// own light of a material at each surface that sends on, and anything at the end.
 static double brightest_chain(const glint_plan *plan, double depth)
 {
     double each = 0;
@@ -124,7 +124,7 @@ static double brightest_chain(const glint_plan *plan, double depth)
     return brightest_surface(plan) + (each > 0 ? each * depth : 0);
 }
 
-/// A bound of 1 + g + g^2 + ... + g^depth.
+/// Returns a bound of 1 + g + g^2 + ... + g^depth.
 static double geometric(double g, double depth)
 {
     return g < 1 ? fmin(depth + 1, 1 / (1 - g)) : (depth + 1) * glint_pow(g, depth);
@@ -132,8 +132,9 @@ static double geometric(double g, double depth)
 
 // ---- How bright ----
 
-/// Bounds the light along a ray, and with it the least weight of a path of indirect light: two bounds' worth of what all
-/// rays of a sample may lose together is left to mirrored and refracted ones.
+/// Computes a bound of the light along a ray, and from it the smallest weight of a path of indirect light. Such paths
+/// may lose a quarter of the light that all rays of a sample may lose together. The rest is left to mirrored and
+/// refracted rays.
 static void bound_light(glint_plan *plan)
 {
     double most = 0, depth = plan->desc.max_depth + plan->indirect.bounces;
@@ -146,7 +147,8 @@ static void bound_light(glint_plan *plan)
     plan->indirect.least = GLINT_BOUNCE_LOSS / (4 * plan->brightest * geometric(most, depth));
 }
 
-/// Below 1 in sum, mirror and transmission share a ray's weight out; above, the number of rays doubles at each surface.
+/// If mirror and transmission add up to less than 1, they divide a ray's weight; above, the number of rays doubles at
+/// each surface.
 static glint_status check_depth(const glint_plan *plan, double most, glint_error *error)
 {
     if (most <= 1 || plan->desc.max_depth <= GLINT_BOUNCE_DEPTH)

@@ -1,9 +1,10 @@
-/// Rays through holes: what a ray meets is cast, and where that is a hole, cast again from there on. A hole is left as any
-/// surface is, by what the cast knows of the primitive that a ray starts on.
+/// Rays through holes: if a ray hits a hole, it is cast again from there. A ray leaves a hole like any other surface,
+/// by the primitive that it starts on.
 ///
-/// The distance of what is seen at last is found once more from where the ray began: what stands behind holes is where it
-/// would be without them, to the last bit. A first hole in what is flat is ignored from the eye, too, so that a surface
-/// in the same plane shows in it; surfaces in the plane of a later hole are passed with it.
+/// The distance of the surface finally hit is computed once more from the ray's first origin: surfaces behind holes
+/// are where they would be without the holes, to the last bit. If the first hole is in a flat surface, the surface is
+/// ignored from the eye on, so that another surface in the same plane shows in it. Surfaces in the plane of a later
+/// hole are passed together with it.
 #include "engine/effects/cut_out/cut_out.h"
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
@@ -14,15 +15,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define HOLES_MAX 4096 ///< that one ray goes through; the one after is met
+#define HOLES_MAX 4096 ///< holes that one ray passes; the next one is hit
 
 struct glint_cut_out {
-    _Alignas(64) double origin[3][GLINT_TILE_SAMPLES]; ///< real, as all that kernels read
+    _Alignas(64) double origin[3][GLINT_TILE_SAMPLES]; ///< real, like all arrays that kernels read
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double t[GLINT_TILE_SAMPLES];
-    _Alignas(64) double way[GLINT_TILE_SAMPLES]; ///< t from where the ray began at first
+    _Alignas(64) double way[GLINT_TILE_SAMPLES]; ///< t from the ray's first origin
     _Alignas(64) double opacity[GLINT_PROGRAM_LANES];
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t material[GLINT_TILE_SAMPLES];
@@ -30,8 +31,8 @@ struct glint_cut_out {
     uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS];
     uint16_t hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
     uint16_t holes[GLINT_TILE_GROUPS];
-    uint16_t passed[GLINT_TILE_GROUPS]; ///< lanes that have gone through some
-    uint16_t begun[GLINT_TILE_GROUPS]; ///< lanes whose ray still starts where it began
+    uint16_t passed[GLINT_TILE_GROUPS]; ///< lanes that have passed a hole
+    uint16_t begun[GLINT_TILE_GROUPS]; ///< lanes whose ray still starts at its first origin
 };
 
 struct glint_cut_out *glint_cut_out_create(void) { return glint_alloc(1, sizeof(struct glint_cut_out)); }
@@ -55,7 +56,7 @@ static void find_material_holes(glint_tile *tile, const glint_tile_frame *frame,
     uint16_t wanted[GLINT_PROGRAM_GROUPS];
     for (uint32_t k = 0; k < count; k++) {
         wanted[k] = entries[k].lanes;
-        holes[entries[k].group] |= program ? 0 : entries[k].lanes; // its number is below one half
+        holes[entries[k].group] |= program ? 0 : entries[k].lanes; // its opacity is below one half
     }
     if (!program)
         return;
@@ -93,7 +94,7 @@ static bool choose_cut(struct glint_cut_out *cut, const glint_tile *tile, const 
     return any;
 }
 
-/// Finds which of cut->hits are holes. seen: the tile's rays have come there.
+/// Selects those of cut->hits that are holes. seen: the hits are those of the tile's rays.
 static void find_holes(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame, bool seen)
 {
     glint_surface_args surfaces = { .group_count = tile->group_count,
@@ -129,7 +130,8 @@ static void find_holes(struct glint_cut_out *cut, glint_tile *tile, const glint_
 
 // ---- Rays ----
 
-/// Not a part of a combined solid: what a ray that starts on a part has ahead is told from its very point.
+/// Returns whether the primitive is not a part of a combined solid. For a ray that starts on a part, the rest of its
+/// path is decided from its exact origin.
 static bool stands_alone(const glint_geometry_table *geometry, uint32_t prim) { return prim < geometry->prim_count; }
 
 static bool is_flat(const glint_geometry_table *geometry, const glint_prim *prim)
@@ -138,7 +140,7 @@ static bool is_flat(const glint_geometry_table *geometry, const glint_prim *prim
            (prim->kind == GLINT_PRIM_SOLID && geometry->solids[prim->item].form == GLINT_FORM_DISK);
 }
 
-/// Starts lane i at the hole that it is in, or over it where it began.
+/// Starts lane i at its hole or, with from_origin, at its first origin.
 static void leave_hole(struct glint_cut_out *cut, const glint_tile_frame *frame, uint32_t i, bool from_origin)
 {
     const uint16_t bit = (uint16_t)(1u << i % GLINT_GROUP);
@@ -173,7 +175,7 @@ static void cast(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_f
     frame->stages->geometry[frame->plan->desc.precision].cast_rays(&args);
 }
 
-/// Lanes that no ray is in have some ray all the same, which ends at once.
+/// Gives lanes without a ray a dummy ray that ends at once.
 static void clear_rays(struct glint_cut_out *cut, const glint_tile *tile, glint_precision precision)
 {
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
@@ -187,7 +189,7 @@ static void clear_rays(struct glint_cut_out *cut, const glint_tile *tile, glint_
         cut->active[g] = cut->inward[g] = cut->passed[g] = cut->begun[g] = 0;
 }
 
-// ---- What the tile's rays see ----
+// ---- Visible surfaces ----
 
 static void put_first_origin(struct glint_cut_out *cut, const glint_tile *tile, const glint_tile_frame *frame,
                              uint32_t i)
@@ -199,7 +201,7 @@ static void put_first_origin(struct glint_cut_out *cut, const glint_tile *tile, 
                                                    : frame->plan->camera.eye[c]);
 }
 
-/// The tile's rays that met something with holes. Returns whether there are any.
+/// Selects the tile's rays that hit a material with holes. Returns whether there are any.
 static bool begin_seeing(struct glint_cut_out *cut, const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_precision precision = frame->plan->desc.precision;
@@ -222,11 +224,11 @@ static bool begin_seeing(struct glint_cut_out *cut, const glint_tile *tile, cons
     return true;
 }
 
-/// The rays in holes go on: to the next surface, which is put into the tile.
+/// Continues the rays in holes to the next surface, which is stored in the tile.
 static void see_next(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_precision precision = frame->plan->desc.precision;
-    const bool eye = tile->batch == NULL; // whose rays leave no surface
+    const bool eye = tile->batch == NULL; // its rays do not leave a surface
     for (uint32_t g = 0; g < tile->group_count; g++) {
         for (unsigned left = cut->holes[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
@@ -251,7 +253,7 @@ static void see_next(struct glint_cut_out *cut, glint_tile *tile, const glint_ti
         }
 }
 
-/// Takes the distances that a cast has found where they are nearer to the known distance than the ones taken before.
+/// Takes the distances of a cast that are nearer to the known distance than those taken before.
 static void take_nearer(const struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame, bool any,
                         double off[GLINT_TILE_SAMPLES])
 {
@@ -267,9 +269,9 @@ static void take_nearer(const struct glint_cut_out *cut, glint_tile *tile, const
     }
 }
 
-/// Finds the distance of primitive `prim`, which the lanes in `active` see through holes, from where their rays began: as the
-/// first side of it that they meet there, or as the other one. A sphere's point follows from any distance, that of other shapes
-/// from one of the two; that of a torus, which may be hit twice more, starts from any near hit.
+/// Computes the distance of primitive `prim`, which the lanes in `active` see through holes, from the origins of
+/// their rays: as the first hit on it, or as the other one. For a sphere, any of the distances gives the point; for
+/// other shapes, one of the two does. For a torus, which may be hit twice more, the search starts from any near hit.
 static void see_from_origin(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame, uint32_t prim,
                             double off[GLINT_TILE_SAMPLES])
 {
@@ -278,7 +280,7 @@ static void see_from_origin(struct glint_cut_out *cut, glint_tile *tile, const g
     const bool torus = seen.kind == GLINT_PRIM_SOLID && frame->geometry.solids[seen.item].form == GLINT_FORM_TORUS;
     const bool any = seen.kind != GLINT_PRIM_SPHERE && !torus;
     glint_geometry_table one = frame->geometry;
-    seen.filter_bound = HUGE_VALF; // parts of combined solids have no filter, and these rays meet it
+    seen.filter_bound = HUGE_VALF; // parts of combined solids have no filter, and these rays hit the primitive
     one.prims = &seen;
     one.prim_count = one.unbounded_count = 1;
     one.unbounded = &only;
@@ -294,7 +296,7 @@ static void see_from_origin(struct glint_cut_out *cut, glint_tile *tile, const g
     take_nearer(cut, tile, frame, any, off);
 }
 
-/// The same for all that is seen through holes.
+/// Does the same for all surfaces seen through holes.
 static void see_all_from_origin(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame)
 {
     double off[GLINT_TILE_SAMPLES];
@@ -320,7 +322,7 @@ static void see_all_from_origin(struct glint_cut_out *cut, glint_tile *tile, con
     }
 }
 
-/// After a cast: rays that met holes go on, and tile->at is what they meet at last.
+/// After a cast: continues the rays that hit holes. tile->at then has the surfaces finally hit.
 static void see_through(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     (void)walk;
@@ -341,7 +343,7 @@ static void see_through(glint_tile *tile, const glint_tile_frame *frame, glint_s
     see_all_from_origin(cut, tile, frame);
 }
 
-// ---- What lights reach ----
+// ---- Lights ----
 
 /// Starts sample i's ray to a light at the hole that it is in, or at its point.
 static void aim(struct glint_cut_out *cut, const glint_tile_frame *frame, const glint_plan_light *light,
@@ -387,7 +389,7 @@ static bool begin_lighting(struct glint_cut_out *cut, const glint_tile *tile, co
     return any;
 }
 
-/// The rays in holes go on from there; those behind which there is nothing more up to the light arrive.
+/// Continues the rays in holes. Rays without a further surface before the light arrive.
 static bool go_on(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame,
                   const glint_plan_light *light, bool middle, uint16_t *open)
 {
@@ -425,7 +427,8 @@ static bool go_on(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_
     return any;
 }
 
-/// After occlude: lit points that only holes are in the way of become open. middle: the light's, for all samples.
+/// After occlude: opens lit points that are only occluded by surfaces with holes in these places. middle: towards the
+/// light's centre, for all samples.
 static void open_holes(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle, const uint16_t *lit,
                        uint16_t *open)
 {

@@ -1,4 +1,4 @@
-/// Cut-outs: surfaces that are not there where the opacity of their material is below one half. Internal.
+/// Cut-outs: surfaces have holes where the opacity of their material is below one half. Internal.
 #ifndef GLINT_PATTERN_CUT_OUT_H
 #define GLINT_PATTERN_CUT_OUT_H
 

@@ -7,7 +7,8 @@
 
 #include <string.h>
 
-// ---- Where rays go on -------------------------------------------------------------------------------------------------
+// ---- Continued rays
+// -----------------------------------------------------------------------------------------------------
 
 /// A ray at a surface, with its slopes for one derivative.
 typedef struct turning {

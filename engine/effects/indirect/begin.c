@@ -154,7 +154,8 @@ static bool choose_points(struct glint_indirect *indirect, uint32_t path)
     return any;
 }
 
-/// Draws for the points with a path number `path`. A seed lasts for 2^32 points; when it changes, draws only for those before.
+/// Draws for the points that have a path number `path`. A seed lasts for 2^32 points of a sequence. When it changes,
+/// only the points before the change are drawn.
 static void draw_first(struct glint_indirect *indirect, const glint_plan *plan, uint32_t path, uint64_t number)
 {
     const bool lasting = (uint64_t)plan->indirect.samples * (uint64_t)plan->desc.samples <= UINT32_MAX / GLINT_GROUP;

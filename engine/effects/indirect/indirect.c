@@ -1,14 +1,16 @@
-/// Indirect light: from each matt point, paths of light are followed backwards, in directions with the density of their
-/// cosine. The mean light of these paths, times kd, is the indirect light of the point.
+/// Indirect light: from each matt point, paths of light are followed backwards, in directions with the density of
+/// their cosine. The mean light of these paths, times kd, is the indirect light of the point.
 ///
-/// Paths do not branch. Where a path hits a surface, it takes the light that the lamps send there, and continues in one
-/// directions the surface sends light on to: scattered, mirrored, refracted or straight on, chosen with probability as the shares, and
-/// divided by it. So the memory is a batch and three sets of rays, however long paths are. The light of a path depends on
-/// its pixel, on the numbers of its sample and of its steps, and on the seed. Paths stay in the lane of their point, because
-/// the lane selects the point of an area light.
+/// Paths do not branch. Where a path hits a surface, it takes the light that the lamps send there, and continues in
+/// one of the directions that the surface sends light to: scattered, mirrored, refracted or straight on, chosen with
+/// a probability proportional to their shares, by which the light is divided. So the memory is a batch and three sets
+/// of rays, however long paths are. The light of a path depends on its pixel, on the numbers of its sample and of its
+/// steps, and on the seed. Paths stay in the lane of their point, because the lane selects the point of an area
+/// light.
 ///
-/// At each point, a path takes one sample of an area light, a different one for each path. Light that is computed at each point
-/// must not be hit by chance as well, or it would count twice: paths do not see lamps, even if the eye does.
+/// At each point, a path takes one sample of an area light, a different one for each path. Light that is computed at
+/// each point must not be hit by chance as well, or it would count twice: paths do not see lamps, even if the eye
+/// does.
 ///
 /// A path too weak to be seen ends. On average, a sample loses at most a quarter of GLINT_BOUNCE_LOSS this way.
 #include "engine/base/alloc.h"
@@ -20,7 +22,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GOLDEN 0x1.9e3779b97f4a8p-1 ///< multiples of it, less their whole part, fill 0 .. 1 evenly from the first on
+#define GOLDEN 0x1.9e3779b97f4a8p-1 ///< multiples of it, without their integer part, fill 0 .. 1 evenly from the first
+    ///< on
 #define STRENGTH_MAX 1e150
 
 typedef enum turn { TURN_NONE, TURN_SCATTERED, TURN_MIRRORED, TURN_REFRACTED, TURN_STRAIGHT, TURNS } turn;
@@ -106,7 +109,7 @@ void glint_indirect_find_ways(struct glint_indirect *indirect, const glint_tile_
         glint_batch_find_ways(batch, &batch->tile, frame);
 }
 
-/// Draws the turn that a path takes, with probability as the shares of its light.
+/// Draws the turn that a path takes, with a probability proportional to the shares of its light.
 static int choose_way(const struct glint_indirect *indirect, uint64_t number, const glint_rays *rays, uint32_t ray,
                       const double share[CHOICES], double all)
 {
@@ -258,7 +261,7 @@ static void collect_group(const glint_batch *batch, const glint_plan *plan, uint
     }
 }
 
-/// The first rays of the eye's points belong to the point's own pixel.
+/// Adds the background. The first rays of the eye's points belong to the point's own pixel.
 void glint_indirect_collect_missed(const struct glint_indirect *indirect, const glint_tile_frame *frame,
                                    const uint16_t *missed, const double background[3], glint_tile *to)
 {

@@ -1,6 +1,7 @@
-/// Ambient occlusion: casts rays from each point, in directions with the density of their cosine. The share of rays that
-/// leave the scene is the open sky, which multiplies the ambient light. Surfaces within the scene's distance block rays;
-/// scene says, but for what transmits or is translucent: there rays go on, weaker by what the surface takes.
+/// Ambient occlusion: casts rays from each point, in directions with the density of their cosine. The share of rays
+/// that leave the scene is the open sky, which multiplies the ambient light. Surfaces within the scene's distance
+/// block rays, except surfaces that transmit or are translucent: there rays go on, with a weight reduced by the
+/// surface.
 #include "engine/effects/indirect/paths.h"
 #include "engine/effects/pattern/pattern.h"
 #include "engine/effects/light_groups/light_groups.h"

@@ -5,7 +5,7 @@ typedef struct outliner {
     const glint_plan *plan;
     glint_extent extent;
     glint_image *image;
-    double offset[2]; ///< of the pixels' centres, which the planes hold
+    double offset[2]; ///< position in a pixel: the centres, for which the planes are computed
 } outliner;
 
 /// The object, point and normal of a pixel.

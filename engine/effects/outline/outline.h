@@ -1,12 +1,14 @@
-/// The pass `outline`: 1 where a line is drawn, else 0; computed from the finished planes depth, normal and object_id. Internal.
+/// The pass `outline`: 1 where a line is drawn, otherwise 0; computed from the finished planes depth, normal and
+/// object_id. Internal.
 ///
-/// There is an edge between two adjacent pixels if one hits nothing, if they show different objects, or if no
-/// single smooth surface contains both their points P, Q with their normals m, n. With e = (Q - P) / |Q - P|: on an arc, e.m and -e.n
-/// are the sine of half the angle between the normals. It bends towards the eye, or one point hides in front of the other,
-/// where the larger of e.m and -e.n is positive: an edge above GLINT_OUTLINE_VALLEY; it bends away, an edge above
-/// GLINT_OUTLINE_RIDGE, where that much could also be a small ball. Where m.n is above GLINT_OUTLINE_SMOOTH, a mesh with
-/// normals between those of its corners may be so far from them that GLINT_OUTLINE_STEP is needed: one surface behind the
-/// other. The line is one pixel wide, on the nearer side.
+/// There is an edge between two adjacent pixels if one hits nothing, if they show different objects, or if no single
+/// smooth surface contains both their points P, Q with their normals m, n. With e = (Q - P) / |Q - P|: on an arc, e.m
+/// and -e.n are the sine of half the angle between the normals. If the larger of e.m and -e.n is positive, the
+/// surface bends towards the eye, or one point hides in front of the other: an edge above GLINT_OUTLINE_VALLEY. If it
+/// is negative, the surface bends away: an edge above GLINT_OUTLINE_RIDGE, as smaller values could also be a small
+/// ball. If m.n is above GLINT_OUTLINE_SMOOTH, the surface may be a mesh whose interpolated normals are far from the
+/// geometric ones, and GLINT_OUTLINE_STEP is needed: one surface behind the other. The line is one pixel wide, on the
+/// nearer side.
 #ifndef GLINT_OUTLINE_H
 #define GLINT_OUTLINE_H
 

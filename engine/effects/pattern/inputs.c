@@ -103,8 +103,8 @@ static int face_of(const gathering *g, const glint_pattern_place *place, uint32_
     return axis;
 }
 
-/// Sets the coordinate of points on axis-aligned faces to the exact coordinate of the face. Otherwise rounding would decide
-/// on which side of a whole number a pattern sees the point.
+/// Sets the coordinate of points on axis-aligned faces to the exact coordinate of the face. Otherwise rounding would
+/// decide on which side of an integer a pattern sees the point.
 static void put_exact(const gathering *g, const glint_pattern_place *place, unsigned lanes)
 {
     if (place->kind == GLINT_SHAPE_BOX) {
@@ -348,7 +348,7 @@ void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *
                           const glint_pattern_points *points, uint32_t reads, const glint_pattern_lanes *entries,
                           uint32_t count)
 {
-    inputs->used &= inputs->same; // numbers stay
+    inputs->used &= inputs->same; // constant inputs stay
     for (uint32_t rest = reads; rest; rest &= rest - 1)
         glint_pattern_row(inputs, (glint_input)__builtin_ctz(rest));
     uint32_t left = read_in_place(inputs, frame, points, reads, entries, count);

@@ -16,7 +16,7 @@ static glint_pattern_room room_for(const glint_plan *plan)
     const glint_plan_patterns *patterns = plan->patterns;
     return (glint_pattern_room) { .planes = (size_t)patterns->plane_count * GLINT_TILE_SAMPLES,
                                   .samples = plan->together ? (size_t)plan->desc.samples : 1,
-                                  // all cached values of a first part may live to its end
+                                  // all cached values of a first part may be live until its end
                                   .rows = patterns->row_count + GLINT_PROGRAM_OUTPUTS_MAX,
                                   .bumps = patterns->bumps,
                                   .cut_outs = patterns->cut_outs };

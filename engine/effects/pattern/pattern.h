@@ -101,7 +101,7 @@ bool glint_tile_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t 
 /// The input of shaders for one light: the lanes that it reaches, and its strength there.
 typedef struct glint_shader_light {
     const glint_plan_light *light;
-    const uint16_t *lit; ///< a bit a lane
+    const uint16_t *lit; ///< one bit per lane
     const float *weight[3]; ///< factor of its colour, per channel; NULL: 1
     const float *visible; ///< visible share, times the weight of red; NULL: 1
 } glint_shader_light;

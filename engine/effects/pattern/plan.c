@@ -14,7 +14,7 @@
 
 #define PROGRAM(field, member) [GLINT_FIELD_##field] = offsetof(glint_material_desc, program.member)
 
-/// Where the descriptions of materials have the programs.
+/// The offsets of programs in the descriptions of materials.
 static const size_t program_offsets[GLINT_FIELD_COUNT] = {
     PROGRAM(DIFFUSE, diffuse),     PROGRAM(AMBIENT, ambient),     PROGRAM(REST, ambient), PROGRAM(SPECULAR, specular),
     PROGRAM(MIRROR, mirror),       PROGRAM(TRANSMISSION, transmission), PROGRAM(SHININESS, shininess),
@@ -202,7 +202,7 @@ static void invert(glint_pattern_place *place, const glint_transform *map)
     place->mapped = true;
 }
 
-/// Two unit vectors across a unit one (Duff et al., JCGT 6(1), 2017).
+/// Computes two unit vectors perpendicular to a unit vector (Duff et al., JCGT 6(1), 2017).
 static void sides_of(const double n[3], double side[2][3])
 {
     const double sign = copysign(1, n[2]), a = -1 / (sign + n[2]), b = n[0] * n[1] * a;

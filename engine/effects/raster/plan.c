@@ -144,7 +144,7 @@ static inline float depth_of(const picture *screen, const seen_corner corner[3])
     return (float)lower(depth - 0x1p-20 * fabs(depth), FLT_MAX);
 }
 
-/// Computes the whole numbers within a range, clipped to 0 .. size - 1. Returns false if there are none.
+/// Computes the integers within a range, clipped to 0 .. size - 1. Returns false if there are none.
 static inline bool pixels_of(double low, double high, double size, uint16_t *first, uint16_t *last)
 {
     if (low > size - 1 || high < 0)
@@ -299,7 +299,7 @@ static picture make_screen(const glint_plan *plan, double scale)
 static glint_status enter_all(scanning *s, glint_pool *pool, glint_error *error)
 {
     glint_raster *raster = s->raster;
-    const size_t placed = place_entries(s), total = placed ? placed : 1; // an allocation even if empty
+    const size_t placed = place_entries(s), total = placed ? placed : 1; // an allocation, even if empty
     if (total > ENTRIES_MAX)
         return GLINT_OK;
     if (total > raster->entry_room) {
@@ -352,15 +352,15 @@ void glint_raster_clear(glint_raster *raster)
     *raster = (glint_raster) { 0 };
 }
 
-// ---- Whether it pays ----
+// ---- Scan or cast ----
 
-// Nanoseconds on one core of an EPYC (Zen 4), 1280x720, spheres and terrains of 1,000 to 1,000,000 triangles. A wrong guess
-// costs a few of them a triangle or pixel.
-#define PROJECT_NS 45 ///< a triangle, in view or not
-#define VISIT_NS 20 ///< additional time of casting for a triangle in view ...
-#define PIXEL_NS 1 ///< ... and for a sample
-#define MERGE_NS 4 ///< a sample, if other primitives are cast as well
-#define BUILD_NS 500 ///< an index, for each primitive
+// Nanoseconds on one core of an EPYC (Zen 4), at 1280x720, for spheres and terrains of 1,000 to 1,000,000 triangles.
+// A wrong guess costs a few of them per triangle or pixel.
+#define PROJECT_NS 45 ///< per triangle, in view or not
+#define VISIT_NS 20 ///< additional time of casting per triangle in view ...
+#define PIXEL_NS 1 ///< ... and per sample
+#define MERGE_NS 4 ///< per sample, if other primitives are cast as well
+#define BUILD_NS 500 ///< to build an index, per primitive
 #define FRAMES_WITHOUT 8 ///< frames after which the projections cost as much as building an index
 
 /// Facts about a geometry, which other threads may be arranging or indexing.

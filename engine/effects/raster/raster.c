@@ -1,4 +1,5 @@
-/// Scan conversion of a tile: its triangles from the frame's list, the rest cast beside them, and the nearer of both.
+/// Scan conversion of a tile: its triangles come from the frame's list, the other primitives are cast, and the nearer
+/// hit wins.
 #include "engine/base/alloc.h"
 #include "engine/tile/tile.h"
 

@@ -26,7 +26,7 @@ glint_render_desc glint_shutter_desc(const glint_render_desc *frame)
     return desc;
 }
 
-// ---- Do only lights differ? ----
+// ---- Whether only lights differ ----
 
 static bool vec_equal(const double a[3], const double b[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 
@@ -58,7 +58,7 @@ bool glint_plan_adds_up(const glint_plan *plan, glint_plan *const *times, size_t
 
 // ---- The lights of all times ----
 
-/// The rows of the light that begins at row `first`.
+/// Returns the number of rows of the light that begins at row `first`.
 static uint32_t rows_of(const glint_plan *plan, uint32_t first)
 {
     uint32_t end = first + 1;
@@ -90,7 +90,7 @@ static bool same_rows(glint_plan *const *times, size_t count)
     return true;
 }
 
-/// Light samples of a row.
+/// Returns the number of light samples of a row.
 static size_t samples_of(const glint_plan_light *light)
 {
     return light->cap ? 1 : light->light_samples ? light->turn_count : 0;

@@ -35,14 +35,14 @@ static glint_status weigh(glint_translucent *out, const glint_share *share, doub
     return status;
 }
 
-/// Multiplies all fields that a surface gives light by. resolved: the description with the numbers that follow others.
+/// Multiplies all fields that contribute to a surface's light. resolved: the description with all derived values.
 static glint_status weigh_all(glint_translucent *out, const glint_material_desc *resolved, const glint_share *share,
                               glint_error *error)
 {
     glint_material_desc *d = &out->desc;
     glint_material_programs *programs = &d->program;
     glint_status status = weigh(out, share, d->diffuse, &programs->diffuse, error);
-    if (!status && (d->has_ambient || programs->ambient)) // else it follows what is weighed
+    if (!status && (d->has_ambient || programs->ambient)) // otherwise it follows fields that are multiplied
         status = weigh(out, share, d->ambient, &programs->ambient, error);
     for (int c = 0; c < 3; c++) {
         d->specular[c] = resolved->specular[c];

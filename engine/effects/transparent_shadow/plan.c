@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/// Of the lengths that a ray is made of: its places may be off by so much, in either precision, with room for what the test
-/// below rounds.
+/// Bound of the error of a ray's points, relative to the lengths that it is computed from, in either precision, with
+/// a margin for the rounding of the test below.
 #define SLACK 0x1p-20
 
 // ---- Balls ----
@@ -22,7 +22,7 @@ static bool transmits(const glint_plan *plan, const glint_geometry_table *table,
     return false;
 }
 
-/// A box, and the one primitive in it; `only` NULL: there are several.
+/// A box around primitives, and the only one in it; `only` NULL: there are several.
 typedef struct tint_box {
     double lower[3], upper[3];
     const glint_prim *only;
@@ -41,7 +41,7 @@ static void add_prim(tint_box *box, const glint_geometry_table *table, const gli
     box->count++;
 }
 
-/// The ball around a box, or the sphere that is alone in it; the box is empty then.
+/// Adds the ball around a box, or the only sphere in it, and empties the box.
 static void add_ball(glint_tints *tints, tint_box *box)
 {
     glint_ball *ball = &tints->of[tints->count++];
@@ -83,15 +83,16 @@ void glint_tints_find(glint_tints *tints, const glint_plan *plan, const glint_ge
 
 // ---- Rays ----
 
-/// A light seen from some points: its largest distance, and the rounding error along the segments.
+/// Returns a bound of the rounding error along the segments from some points to a light, at its largest distance.
 static double slack_of(const glint_tints *tints, double points, const glint_tint_light *light)
 {
     const double far = light->directional ? tints->extent : sqrt(vec_dot(light->place, light->place)) + light->radius;
     return SLACK * (4 * tints->extent + points + far);
 }
 
-/// Whether rays from a ball of points around p to the light's ball are clear of the ball q for certain: the distance of p + t d
-/// from q less the radii, squared, is c + 2 b t + a t^2, above 0 for all t in 0 .. 1, or, directional, from 0 on.
+/// Returns whether rays from a ball of points around p to the light's ball certainly miss the ball q. The squared
+/// distance of p + t d from q minus the radii is c + 2 b t + a t^2. It must be above 0 for all t in 0 .. 1, or, for a
+/// directional light, for all t >= 0.
 static inline int is_clear(const double p[3], double points, const glint_ball *q, double slack,
                            const glint_tint_light *light)
 {

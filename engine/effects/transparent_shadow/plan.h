@@ -10,29 +10,30 @@ typedef struct glint_ball {
     double center[3], radius;
 } glint_ball;
 
-/// Balls around all that transmits light in a frame.
+/// Balls around all transparent primitives of a frame.
 typedef struct glint_tints {
     uint32_t count;
-    bool everywhere; ///< some of it has no end: the balls mean nothing
+    bool everywhere; ///< some of them are unbounded: the balls are not used
     double extent; ///< of the geometry
     glint_ball of[GLINT_TINTS_MAX];
 } glint_tints;
 
-/// For a plan with `tints`: one ball for each primitive, or for neighbours in the order of the table if there are more.
+/// Computes the balls of a plan with `tints`: one for each primitive, or for neighbours in the order of the table if
+/// there are more.
 void glint_tints_find(glint_tints *tints, const glint_plan *plan, const glint_geometry_table *table);
 
-/// Where a point's rays to one light go.
+/// The target of the rays from points to one light.
 typedef struct glint_tint_light {
     bool directional;
     double place[3]; ///< directional: the direction
-    double radius; ///< around the place, of an area light's samples
+    double radius; ///< of an area light's samples around `place`
 } glint_tint_light;
 
-/// Returns the lanes of a group whose rays to a light may meet one of `count` balls that `chosen` lists. point: sixteen of each
-/// coordinate.
+/// Returns the lanes of a group whose rays to a light may hit one of `count` balls listed in `chosen`. point: sixteen
+/// of each coordinate.
 uint16_t glint_tints_lanes(const glint_tints *tints, const uint16_t *chosen, uint32_t count,
                            const double point[3][GLINT_GROUP], uint16_t lanes, const glint_tint_light *light);
-/// Fills `chosen` with the balls that a ray from any point of a ball to the light may meet. Returns how many.
+/// Lists in `chosen` the balls that a ray from any point of a ball to the light may hit. Returns their number.
 uint32_t glint_tints_choose(const glint_tints *tints, const glint_ball *points, const glint_tint_light *light,
                             uint16_t chosen[GLINT_TINTS_MAX]);
 

@@ -1,10 +1,10 @@
-/// Light through transparent objects. Points that a light does not reach freely are tested again: a ray towards the light
-/// is followed straight through whatever transmits or is translucent, and takes its colour at each surface. No light is bent. What
-/// absorbs takes its part of the whole distance: where the light stands in it, or the point, or both.
+/// Light through transparent objects. Points that a light does not reach freely are tested again. A ray towards the
+/// light goes straight through all surfaces that transmit or are translucent, and is tinted by each. Light is not
+/// refracted. An absorbing medium absorbs over its whole distance, also if the light or the point is inside of it.
 ///
-/// What parts a point from a light for good is decided by `occlude` alone: where the ray meets nothing that transmits, the
-/// point stays dark. Rays that are clear of all that does are not followed (tints.h). The others of all samples of a light are
-/// packed into full groups, as many as fit, and packed again after each surface.
+/// Only `occlude` decides which points stay dark: a point stays dark if its ray hits nothing that transmits. Rays
+/// that certainly miss all transparent objects are not followed (tints.h). The other rays, of all samples of a light,
+/// are packed into full groups, as many as fit, and packed again after each surface.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/tile/batch.h"
@@ -15,11 +15,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CROSSINGS_MAX 4096 ///< surfaces that one ray crosses; a point behind more is dark
+#define CROSSINGS_MAX 4096 ///< maximum number of surfaces that one ray crosses; points behind more surfaces are dark
 
 struct glint_transparent_shadow {
-    uint16_t dim[GLINT_TILE_GROUPS]; ///< points inside what absorbs; first: see glint_tile_dim_lanes
-    // rays that are on their way, packed into the first places
+    uint16_t dim[GLINT_TILE_GROUPS]; ///< points inside an absorbing medium; first: see glint_tile_dim_lanes
+    // unfinished rays, packed from the start
     _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
@@ -30,21 +30,23 @@ struct glint_transparent_shadow {
     _Alignas(64) uint32_t leaving[GLINT_TILE_SAMPLES];
     uint16_t hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
     uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS];
-    uint16_t holes[GLINT_TILE_GROUPS]; ///< rays that have come to one; 0 in frames without
-    uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< which of the following is in a place
+    uint16_t holes[GLINT_TILE_GROUPS]; ///< rays that have hit a hole; 0 in frames without holes
+    uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< index, in the following arrays, of the ray in each slot
     uint32_t group_count;
-    // all rays of a call of `follow`, row of the light by row
+    // all rays of a call of `follow`, one row of the light after the other
     double target[3][GLINT_TILE_SAMPLES]; ///< the light's position; directional: the direction
     double color[3][GLINT_TILE_SAMPLES];
-    glint_media media[GLINT_TILE_SAMPLES]; ///< in frames where something absorbs
-    uint16_t sample[GLINT_TILE_SAMPLES]; ///< the point they began at
-    bool crossed[GLINT_TILE_SAMPLES], arrived[GLINT_TILE_SAMPLES]; ///< something; through something
-    uint32_t count, first[GLINT_LIGHT_CHUNK + 1]; ///< the first ray of each row, and one beyond
+    glint_media media[GLINT_TILE_SAMPLES]; ///< in frames with absorption
+    uint16_t sample[GLINT_TILE_SAMPLES]; ///< the point at which the ray started
+    bool crossed[GLINT_TILE_SAMPLES], arrived[GLINT_TILE_SAMPLES]; ///< the ray has crossed a surface; has reached the
+        ///< light after crossing one
+    uint32_t count, first[GLINT_LIGHT_CHUNK + 1]; ///< the first ray of each row, and the end
     // of the tile's samples
-    _Alignas(64) float attenuation[3][GLINT_TILE_SAMPLES]; ///< the light's, times the colour, for each channel
+    _Alignas(64) float attenuation[3][GLINT_TILE_SAMPLES]; ///< the light's attenuation times its colour, for each
+        ///< channel
     uint16_t reached[GLINT_TILE_GROUPS];
     uint16_t tinted[GLINT_TILE_GROUPS]; ///< points whose rays to the light are followed
-    float *planes; ///< planes of programs; NULL: the plan has none for transmission and opacity
+    float *planes; ///< results of programs; NULL: the plan has no programs for transmission and opacity
 };
 
 static void *create(const glint_plan *plan)
@@ -75,7 +77,8 @@ static bool absorbs(const glint_plan *plan, const glint_media *media)
     return a && (a[0] > 0 || a[1] > 0 || a[2] > 0);
 }
 
-/// Whether points of a group may be inside what absorbs: behind surfaces that transmit, or where the viewer is.
+/// Returns the lanes of a group that may be inside an absorbing medium: behind surfaces that transmit, or in the
+/// viewer's medium.
 static unsigned lanes_within(const glint_tile *tile, const glint_plan *plan, uint32_t g)
 {
     return tile->batch || absorbs(plan, &plan->eye_media) ? tile->at.hits[g] : tile->at.hits[g] & tile->hit.back[g];
@@ -114,7 +117,7 @@ bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint
     return false;
 }
 
-// ---- Which rays are followed ----
+// ---- The choice of rays ----
 
 static glint_tint_light light_seen(const glint_tile *tile, const glint_plan_light *light)
 {
@@ -124,7 +127,7 @@ static glint_tint_light light_seen(const glint_tile *tile, const glint_plan_ligh
     return seen;
 }
 
-/// A ball around the tile's points. False: it is not known.
+/// Computes a ball around the tile's points. Returns false if it is unknown.
 static bool ball_around(const glint_tile *tile, glint_ball *ball)
 {
     double half[3];
@@ -171,7 +174,7 @@ bool glint_tile_may_be_tinted(const glint_tile *tile, const glint_tile_frame *fr
     return find_tinted(tile, frame, light, tile->at.hits, own_of(tile)->tinted);
 }
 
-/// Whether a material shows nothing of the light that falls on it.
+/// Returns whether a material does not reflect any light from lamps.
 static bool is_black(const glint_plan *plan, uint32_t material)
 {
     const glint_shade_material *m = &plan->materials[material];
@@ -192,7 +195,8 @@ static bool choose_points(glint_tile *tile, const glint_tile_frame *frame, uint3
     return find_tinted(tile, frame, &frame->plan->lights[index], lanes, own_of(tile)->tinted);
 }
 
-/// Of a row of the light: rays that are followed, and those that arrive at once, from points inside what absorbs.
+/// Return the lanes whose rays to a row of the light are followed, and those whose light arrives directly, at points
+/// inside an absorbing medium.
 static unsigned followed(const glint_tile *tile, uint32_t slot, uint32_t g)
 {
     const unsigned lit = tile->at.light[slot].lit[g];
@@ -206,7 +210,7 @@ static unsigned dimmed(const glint_tile *tile, const glint_plan *plan, uint32_t 
 
 // ---- Rays ----
 
-/// Puts ray `ray` into place `to`: at a point in place i of `point`, on primitive `prim`.
+/// Puts ray `ray` into slot `to`: from point i of `point`, on primitive `prim`.
 static void aim(struct glint_transparent_shadow *transparent_shadow, glint_precision precision, bool directional,
                 const double (*point)[GLINT_TILE_SAMPLES], uint32_t i, uint32_t prim, bool inward, uint32_t ray,
                 uint32_t to)
@@ -238,7 +242,8 @@ static double direction_length(const struct glint_transparent_shadow *transparen
     return sqrt(vec_dot(d, d));
 }
 
-/// The rest of the distance to the light, on which there is nothing more; directional light has none that ends.
+/// Applies the absorption over the rest of the distance to the light, without further surfaces. A directional light
+/// is infinitely far away.
 static void arrive(struct glint_transparent_shadow *transparent_shadow, const glint_plan *plan,
                    const glint_plan_light *light, uint32_t i)
 {
@@ -252,7 +257,7 @@ static void arrive(struct glint_transparent_shadow *transparent_shadow, const gl
         transparent_shadow->color[c][ray] *= left_of(plan, medium, c, way);
 }
 
-/// Returns the share of light that goes straight on through the surface in place i.
+/// Returns the share of light that goes straight on through the surface in slot i.
 static double clear_at(const struct glint_transparent_shadow *transparent_shadow, const glint_plan *plan, uint32_t material,
                        uint32_t i)
 {
@@ -261,7 +266,8 @@ static double clear_at(const struct glint_transparent_shadow *transparent_shadow
     return (double)glint_plane_of(transparent_shadow->planes, plan, GLINT_FIELD_CLEAR, 0)[i];
 }
 
-/// Takes the colour of one surface, and of the distance up to it, with the ray in place i. Returns whether any light is left.
+/// Multiplies the ray in slot i by the colour of one surface, and by the absorption up to it. Returns whether any
+/// light is left.
 static bool cross(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
                   const glint_tile_frame *frame, uint32_t i)
 {
@@ -295,9 +301,9 @@ static bool cross(struct glint_transparent_shadow *transparent_shadow, const gli
     return any;
 }
 
-// ---- Their way ----
+// ---- Following the rays ----
 
-/// Begins a ray at sample i, in place `to`.
+/// Starts a ray at sample i, in slot `to`.
 static void begin_ray(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
                       const glint_tile_frame *frame, const glint_plan_light *light, uint32_t i, bool inward,
                       uint32_t to)
@@ -317,7 +323,7 @@ static void begin_ray(struct glint_transparent_shadow *transparent_shadow, const
         inward, ray, to);
 }
 
-/// Fills the active lanes; the others of the last group begin nowhere.
+/// Sets the active lanes. The other lanes of the last group get dummy rays.
 static void close_places(struct glint_transparent_shadow *transparent_shadow, glint_precision precision, uint32_t count)
 {
     transparent_shadow->group_count = (count + GLINT_GROUP - 1) / GLINT_GROUP;
@@ -333,7 +339,7 @@ static void close_places(struct glint_transparent_shadow *transparent_shadow, gl
     }
 }
 
-/// Begins the rays of rows `slot` and on, from groups `from` to `end`.
+/// Starts the rays of `count` rows from `slot` on, from groups `from` to `end`.
 static void begin(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
                   const glint_tile_frame *frame, uint32_t index, uint32_t slot, uint32_t count, uint32_t from,
                   uint32_t end)
@@ -423,7 +429,7 @@ static bool lets_through(const glint_plan *plan, uint32_t material)
     return plan->bouncing[material].transmits || plan->bouncing[material].clears;
 }
 
-/// One surface further with every ray; those that go on are packed.
+/// Advances every ray by one surface, and packs the rays that go on.
 static void step(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile, const glint_tile_frame *frame,
                  const glint_plan_light *light)
 {
@@ -453,7 +459,7 @@ static void step(struct glint_transparent_shadow *transparent_shadow, glint_tile
     close_places(transparent_shadow, precision, next);
 }
 
-// ---- The light they bring ----
+// ---- The light of the rays ----
 
 /// Shades with the coloured light: as three lights, one for each channel.
 static void shade(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile, const glint_tile_frame *frame,
@@ -520,7 +526,7 @@ static void add_row(struct glint_transparent_shadow *transparent_shadow, glint_t
         glint_tile_derive_tinted(tile, frame, light, slot, transparent_shadow->reached);
 }
 
-/// The rays of groups `from` to `end`, which fit. False: cancelled.
+/// Follows the rays of groups `from` to `end`, which must fit. Returns false if cancelled.
 static bool follow(glint_tile *tile, const glint_tile_frame *frame, uint32_t index, uint32_t slot, uint32_t count,
                    uint32_t from, uint32_t end)
 {
@@ -540,7 +546,7 @@ static bool follow(glint_tile *tile, const glint_tile_frame *frame, uint32_t ind
     return true;
 }
 
-/// How many rays begin at a group's points.
+/// Returns the number of rays that start at a group's points.
 static uint32_t rays_from(const glint_tile *tile, const glint_plan *plan, uint32_t slot, uint32_t count, uint32_t g)
 {
     uint32_t rays = 0;
@@ -549,7 +555,7 @@ static uint32_t rays_from(const glint_tile *tile, const glint_plan *plan, uint32
     return rays;
 }
 
-/// One light, or samples of it that follow each other in a chunk.
+/// Adds one light, or consecutive samples of one in a chunk.
 static void add_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t index, uint32_t slot, uint32_t count)
 {
     const glint_plan *plan = frame->plan;

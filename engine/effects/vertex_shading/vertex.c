@@ -1,9 +1,9 @@
-/// The stage vertex: computes the light of faces and vertices on first use, and gives each sample of their
-/// triangles its share.
+/// The stage vertex: computes the light of faces and vertices on first use, and interpolates it at each sample of
+/// their triangles.
 ///
-/// A shading point lies on a surface, but on none of its triangles. Surfaces that touch the point do not shadow it, so
-/// that neighbours never shadow the middle of a face or a common vertex by rounding. Surfaces at a distance
-/// do, as for any point.
+/// A shading point lies on a surface, but on none of its triangles. Surfaces that touch the point do not shadow it,
+/// so that neighbours never shadow the middle of a face or a common vertex by rounding. Surfaces at a distance do, as
+/// for any point.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/tile/batch.h"
@@ -78,7 +78,7 @@ static void put_on(shading_point *s, const glint_prim *prim, const double w[2])
     s->slack = (vec_max_abs(f) + vec_max_abs(g)) + vec_max_abs(s->point);
 }
 
-/// Returns the number of triangles of a face; they follow each other.
+/// Returns the number of triangles of a face, which are consecutive.
 static uint32_t face_size(const glint_geometry *geometry, uint32_t first, uint32_t number)
 {
     uint32_t count = 1;
@@ -92,7 +92,8 @@ static uint32_t face_size(const glint_geometry *geometry, uint32_t first, uint32
     return count;
 }
 
-/// Computes the weights, as for put_on, of a point projected onto a triangle along the normal of a face. Returns the least of all three.
+/// Computes the weights, as for put_on, of a point projected onto a triangle along the normal of a face. Returns the
+/// smallest of all three weights.
 static double weights_of(const glint_prim *prim, double scale, const double point[3], const double normal[3],
                          double w[2])
 {
@@ -160,7 +161,7 @@ static void find_corner(const glint_geometry *geometry, const glint_prim *prim, 
     put_on(s, prim, corners[j]);
     vec_copy(s->point, prim->corner[j]);
     const double length2 = vec_dot(normal, normal), side = vec_dot(normal, s->normal) < 0 ? -1 : 1;
-    if (length2 > 0) // normals of length 1 up to rounding stay as they are
+    if (length2 > 0) // normals of length 1 within rounding are unchanged
         vec_scale(s->normal, normal, fabs(length2 - 1) < 1e-12 ? side : side / sqrt(length2));
 }
 
