@@ -56,7 +56,8 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
 
 // ---- Hits of the rays ----
 
-/// Returns whether stages between cast and surface need all rays in their original places, including those that hit nothing.
+/// Returns whether stages between cast and surface need all rays in their original places, including those that hit
+/// nothing.
 static bool needs_all(const glint_plan *plan)
 {
     return glint_plan_cuts(plan) || plan->runs[GLINT_STAGE_VISIBLE_LIGHT];
@@ -170,8 +171,8 @@ static void pack_lanes(glint_batch *batch, glint_precision precision)
     mark_hits(&batch->tile, next);
 }
 
-/// Gives hits the first samples, without gaps. In scenes with few primitives, hits are sorted by primitive, so that most
-/// groups show only one.
+/// Gives hits the first samples, without gaps. In scenes with few primitives, hits are sorted by primitive, so that
+/// most groups show only one.
 static void pack(glint_batch *batch, const glint_tile_frame *frame)
 {
     const uint32_t last = frame->geometry.prim_count <= SORTED_PRIMS ? SORTED_PRIMS - 1 : 0; // kind
@@ -271,8 +272,8 @@ bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
     return any;
 }
 
-/// Computes the light of one light, of consecutive samples of one, or of several similar lights. Returns the number of rows of the plan
-/// that were handled.
+/// Computes the light of one light, of consecutive samples of one, or of several similar lights. Returns the number
+/// of rows of the plan that were handled.
 static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot, uint32_t end)
 {
     const glint_plan_light *lights = &frame->plan->lights[first];
@@ -444,8 +445,8 @@ void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, con
         ray->origin[c] = glint_real_at(tile->surface.point[c], frame->plan->desc.precision, i);
 }
 
-/// Fills the share of totally reflected light. It has not crossed the surface, so all of it goes on, except for the share that a mirror
-/// sends already and the share that goes straight on.
+/// Fills the share of totally reflected light. It has not crossed the surface, so all of it goes on, except for the
+/// share that a mirror sends already and the share that goes straight on.
 static void total_share(const glint_bounce_material *m, double share[3])
 {
     const double all = 1 - m->clear;
@@ -477,16 +478,16 @@ static bool crosses(const glint_batch *batch, uint32_t i, glint_way way)
     return way == GLINT_WAY_STRAIGHT || (way == GLINT_WAY_REFRACTED && !glint_has_lane(batch->total, i));
 }
 
-/// Updates the media of a ray that crosses the surface of sample i. A material that transmits has an inside; any other translucent
-/// surface has none.
+/// Updates the media of a ray that crosses the surface of sample i. A material that transmits has an inside; any
+/// other translucent surface has none.
 static void cross(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, glint_media *media)
 {
     if (frame->plan->bouncing[tile->surface.material[i]].transmits)
         glint_media_cross(media, medium_of(tile, frame, i), glint_has_lane(tile->hit.back, i));
 }
 
-/// Computes the unit direction of the straight ray of sample i. It has the bits of a secondary ray's direction, which is unit; a ray of the
-/// eye is normalised.
+/// Computes the unit direction of the straight ray of sample i. It has the bits of a secondary ray's direction, which
+/// is unit; a ray of the eye is normalised.
 static void straight_direction(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double out[3])
 {
     for (int c = 0; c < 3; c++)

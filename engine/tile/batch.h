@@ -67,7 +67,8 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
 bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame);
 /// After the cast: finds the rays that hit nothing.
 void glint_batch_find_missed(const glint_batch *batch, uint16_t missed[GLINT_TILE_GROUPS]);
-/// Computes the sums of the batch's tile: the light that surfaces, and in a whole batch the background, send back along the rays.
+/// Computes the sums of the batch's tile: the light that surfaces, and in a whole batch the background, send back
+/// along the rays.
 void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, bool any);
 /// Does the same for hits that are shaded per sample.
 void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool any);
@@ -96,8 +97,8 @@ static inline bool glint_batch_uncovers(const glint_batch *batch, const glint_pl
                       (glint_has_lane(batch->tile.at.hits, i) || (plan->visible_light_count && glint_tile_sees_light(&batch->tile, i)));
     return batch->rays->sight[ray] && !seen;
 }
-/// Computes the reflected and refracted directions at the samples of `tile` in batch->wanted. `tile` is the batch's own, or
-/// one that the eye sees.
+/// Computes the reflected and refracted directions at the samples of `tile` in batch->wanted. `tile` is the batch's
+/// own, or one that the eye sees.
 void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame);
 /// Starts a ray at the hit of sample `i` of the tile. Direction and weight are set later,
 /// and the media only in frames with transparent materials.
@@ -111,8 +112,8 @@ void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const g
 /// the first two have the same direction.
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        glint_ray rays[GLINT_WAYS]);
-/// Does the same for many samples: makes `rays` of the rays in `sent`, from ray 0 on, except for weights and slopes. Rays from a tile
-/// seen by the eye get their term, too.
+/// Does the same for many samples: makes `rays` of the rays in `sent`, from ray 0 on, except for weights and slopes.
+/// Rays from a tile seen by the eye get their term, too.
 void glint_batch_send(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
                       const glint_sent *sent, glint_rays *rays);
 /// Returns the medium that a cast ray of the batch crossed since its last surface.

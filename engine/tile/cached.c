@@ -129,8 +129,9 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
         prefetch_last_codes(tile, frame->last);
 }
 
-/// Sets the sample's results to cache memory if this frame stores or reads them there, otherwise to the tile's own. Memory is
-/// allocated only at the first sample: all samples of a tile are cached, or none. Returns whether the hits are known.
+/// Sets the sample's results to cache memory if this frame stores or reads them there, otherwise to the tile's own.
+/// Memory is allocated only at the first sample: all samples of a tile are cached, or none. Returns whether the hits
+/// are known.
 bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     glint_reuse *reuse = frame->reuse;
@@ -332,8 +333,8 @@ static bool are_like(const glint_film_stamp *a, const glint_film_stamp *b)
     return glint_key_equal(a->key, b->key) && a->base == b->base;
 }
 
-/// Returns whether the tile's pixels equal those of the last picture. They are then copied, unless this picture's memory has them
-/// already.
+/// Returns whether the tile's pixels equal those of the last picture. They are then copied, unless this picture's
+/// memory has them already.
 bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;

@@ -59,8 +59,8 @@ bool glint_tile_wants_geometry(const glint_plan *plan)
     return plan->is_base || plan->desc.passes & GLINT_CENTRE_PASSES;
 }
 
-/// Returns the buffer for normals and object numbers before they are stored: for a base the buffer where they are compared, with
-/// consecutive arrays; otherwise `own`.
+/// Returns the buffer for normals and object numbers before they are stored: for a base the buffer where they are
+/// compared, with consecutive arrays; otherwise `own`.
 static float *geometry_of(const glint_tile *tile, const glint_tile_frame *frame, int value, float *own)
 {
     return frame->plan->is_base ? glint_differ_values(tile->differ, value) : own;
@@ -135,7 +135,8 @@ static float object_of(const glint_tile_frame *frame, uint32_t prim)
     return (float)(glint_geometry_object(frame->plan->geometry, frame->geometry.prims[prim].id) + 1);
 }
 
-/// Writes the object numbers of a group that shows several primitives or the background. last: the last primitive, and `object` its number.
+/// Writes the object numbers of a group that shows several primitives or the background. last: the last primitive,
+/// and `object` its number.
 static void part_ids(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, uint32_t *last, float *object, float *id)
 {
     const uint32_t *prim = tile->at.prim + (size_t)g * GLINT_GROUP;
@@ -176,7 +177,8 @@ static double opacity_of(const glint_tile *tile, const glint_plan *plan, uint32_
     return plan->clears ? 1 - glint_tile_bouncing(tile, plan, i, &room)->clear : 1;
 }
 
-/// Stores diffuse reflectances. Reflectances of translucent materials are divided by the opacity again; at an opacity of 0 they are 0.
+/// Stores diffuse reflectances. Reflectances of translucent materials are divided by the opacity again; at an opacity
+/// of 0 they are 0.
 static void store_albedo(const glint_tile *tile, const glint_tile_frame *frame)
 {
     float albedo[3][GLINT_TILE_SAMPLES];

@@ -1,5 +1,5 @@
-/// Calls shade and resolve: for one sample, whose terms are added to sums if there are several samples, or for all samples
-/// of a tile together, so that the sums stay in registers.
+/// Calls shade and resolve: for one sample, whose terms are added to sums if there are several samples, or for all
+/// samples of a tile together, so that the sums stay in registers.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/effects/pattern/pattern.h"
@@ -95,8 +95,8 @@ bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
     return false;
 }
 
-/// Returns whether one call of shade computes all light of the tile's only sample: no visible material needs secondary rays, and no light is
-/// hidden by a transparent surface. Hits, materials and shadows must be known.
+/// Returns whether one call of shade computes all light of the tile's only sample: no visible material needs
+/// secondary rays, and no light is hidden by a transparent surface. Hits, materials and shadows must be known.
 static bool is_direct(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;

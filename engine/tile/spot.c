@@ -4,8 +4,8 @@
 
 #define SPOT_SLACK 1e-3 ///< for a cosine: far more than its rounding error, also in float
 
-/// Returns whether certainly no point of a box is in a spot's cone. Tests the direction from the apex to the ball around the box that is nearest
-/// to the axis.
+/// Returns whether certainly no point of a box is in a spot's cone. Tests the direction from the apex to the ball
+/// around the box that is nearest to the axis.
 static bool is_past(const glint_spot *spot, const double apex[3], const glint_point_box *box)
 {
     double way[3], half[3], size = 0;

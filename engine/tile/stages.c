@@ -131,8 +131,8 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_count_stage(tile, frame, GLINT_STAGE_CAST, false);
 }
 
-/// Returns whether the box of the tile's points is known from an earlier frame. Only with one sample per pixel, because each of several samples
-/// has its own, smaller box.
+/// Returns whether the box of the tile's points is known from an earlier frame. Only with one sample per pixel,
+/// because each of several samples has its own, smaller box.
 static bool has_box(const glint_tile *tile, const glint_tile_frame *frame)
 {
     return tile->cached && frame->plan->desc.samples == 1 &&
@@ -349,7 +349,8 @@ void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *fra
         vec_copy(out, light->position);
 }
 
-/// Computes the visible share of a light, times its attenuation. Inside its radius, a light with radiance is as strong as on its surface.
+/// Computes the visible share of a light, times its attenuation. Inside its radius, a light with radiance is as
+/// strong as on its surface.
 static void weaken(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot)
 {
     const glint_precision precision = frame->plan->desc.precision;

@@ -176,7 +176,8 @@ typedef struct glint_tile {
     uint32_t x0, y0, width, height; ///< the part of the tile inside the image
     uint32_t group_count, groups_across;
     uint16_t own_light[GLINT_TILE_GROUPS]; ///< target of at.sampled in frames with the stage vertex
-    const uint32_t *owner; ///< for occlude: the primitives that the points are on, for faces and vertices; NULL: the primitives hit
+    const uint32_t *owner; ///< for occlude: the primitives that the points are on, for faces and vertices; NULL: the
+        ///< primitives hit
     const void *viewed[3]; ///< for occlude: the rays that hit the points; NULL: the tile's rays
     void *own[GLINT_STAGE_COUNT]; ///< the memory of each stage; NULL until a frame needs it
     struct glint_samples *samples; ///< memory of tile/shade.c; likewise
@@ -231,8 +232,8 @@ typedef struct glint_sample_walk {
     bool shows; ///< its geometry is stored in the picture when normals are known
     bool any; ///< something is hit
     bool shines; ///< some hit is shaded per sample
-    uint32_t from, count; ///< the current chunk of the plan's light rows; at GLINT_AT_LIGHT: the rows in `count` slots from
-        ///< `slot` on, of the chunk from `from` on
+    uint32_t from, count; ///< the current chunk of the plan's light rows; at GLINT_AT_LIGHT: the rows in `count` slots
+        ///< from `slot` on, of the chunk from `from` on
     uint32_t slot;
 } glint_sample_walk;
 
@@ -269,8 +270,8 @@ void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t
 /// tile/cached.c: sets the results of the light in `slot` to the tile's own memory.
 void glint_tile_use_own_light(glint_tile *tile, uint32_t slot);
 /// Sets the results of sample k to cache memory if this frame stores or reads them there, otherwise to the tile's
-/// own. Memory is allocated only at the first sample: all samples of a tile are cached, or none. Returns whether the hits are
-/// known.
+/// own. Memory is allocated only at the first sample: all samples of a tile are cached, or none. Returns whether the
+/// hits are known.
 bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 /// Does the same for light `light` of the plan, in `slot`.
 void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot,
@@ -284,8 +285,8 @@ void glint_tile_note_nothing(const glint_tile *tile, uint32_t k);
 void glint_tile_note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bool shadows, uint32_t k);
 /// Adds the points of the current sample to the cached box; NULL: it has none.
 void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box);
-/// Returns whether the tile's pixels equal those of the last picture. They are then copied, unless this picture's memory
-/// has them already.
+/// Returns whether the tile's pixels equal those of the last picture. They are then copied, unless this picture's
+/// memory has them already.
 bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame);
 /// The worker's counts before a tile.
 typedef struct glint_film_counts {
@@ -311,13 +312,14 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
 /// Computes only points, for some of the hits, if all hits are spheres and planes.
 void glint_tile_find_points(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *hits);
-/// Computes surfaces and light number `light` of the plan, a plain one, in slot 0. Writes all normals only with `normals`.
+/// Computes surfaces and light number `light` of the plan, a plain one, in slot 0. Writes all normals only with
+/// `normals`.
 void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light, bool normals);
 /// Returns whether a spot light certainly misses all points of the tile, by the box around them.
 bool glint_tile_is_past_spot(const glint_tile *tile, const glint_plan_light *light);
 
-/// Compute one light, samples of one, or similar lights: light `first + slot[i]` of the plan, for each of `count` slots of the
-/// chunk.
+/// Compute one light, samples of one, or similar lights: light `first + slot[i]` of the plan, for each of `count`
+/// slots of the chunk.
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                       uint32_t count);
 void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
@@ -327,12 +329,12 @@ glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame 
                                        const uint32_t *slot, uint32_t count);
 glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
                                            const uint32_t *slot, uint32_t count);
-/// effects/area_light/soft_shadow.c: computes light and shadow of all samples of a light together, in slots from `slot` on, if only
-/// their sum is read. Returns whether that is so, and marks the slots. The points must be known.
+/// effects/area_light/soft_shadow.c: computes light and shadow of all samples of a light together, in slots from
+/// `slot` on, if only their sum is read. Returns whether that is so, and marks the slots. The points must be known.
 bool glint_tile_sum_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot,
                           uint32_t count);
-/// Returns the arguments of shade except the outputs, for `count` lights of the plan from `from` on. Fills in the lights and the
-/// planes, if there are any.
+/// Returns the arguments of shade except the outputs, for `count` lights of the plan from `from` on. Fills in the
+/// lights and the planes, if there are any.
 glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_frame *frame, uint32_t from,
                                        uint32_t count, glint_shade_light *lights, glint_shade_planes *planes);
 /// Sets pointers to the requested planes of the picture.
@@ -398,7 +400,8 @@ bool glint_tile_sees_environment(const glint_tile *tile);
 /// Adds the background of such rays to the sums.
 void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame);
 
-/// effects/adaptive/differ.c: compares the stored pixels of a base, and keeps the pixels that neighbouring tiles compare.
+/// effects/adaptive/differ.c: compares the stored pixels of a base, and keeps the pixels that neighbouring tiles
+/// compare.
 struct glint_differ_work *glint_differ_work_create(void);
 void glint_differ_work_destroy(struct glint_differ_work *work); ///< NULL: nothing
 /// Returns the buffer for object numbers and normals, in the order of groups.
@@ -427,8 +430,8 @@ static inline uint32_t glint_tile_most_gathered(const glint_plan *plan)
 {
     return GLINT_TILE_GROUPS / glint_tile_gathered_samples(plan) * GLINT_GROUP;
 }
-/// Fills the groups of the tile with `samples` samples, from number `first` on, of `count` listed pixels, sample by sample, and computes their
-/// rays.
+/// Fills the groups of the tile with `samples` samples, from number `first` on, of `count` listed pixels, sample by
+/// sample, and computes their rays.
 void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
                        uint32_t samples);
 /// Adds the light of faces and vertices, if any are visible. The points must be known.
@@ -446,8 +449,9 @@ bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
 bool glint_tile_is_base(glint_tile *tile, const glint_tile_frame *frame);
 /// Copies the lanes that are not refined from a plane of the base (4-byte numbers) into an array of the tile.
 void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame, const void *plane, void *groups);
-/// Copies the other pixels' light, and all pixels' geometry, from the base, and makes all pixels active. If the picture has only pixel values and no light
-/// is clipped or not finite, copies nothing, and the refined pixels stay active: see glint_refine.in_codes.
+/// Copies the other pixels' light, and all pixels' geometry, from the base, and makes all pixels active. If the
+/// picture has only pixel values and no light is clipped or not finite, copies nothing, and the refined pixels stay
+/// active: see glint_refine.in_codes.
 void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
 
 /// effects/indirect/: follows paths of light from the hits of `seen`, and adds their light to the sums of `tile`.
@@ -465,7 +469,8 @@ static inline uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g)
 {
     return ((const uint16_t *)tile->own[GLINT_STAGE_TINT])[g]; // it begins with them
 }
-/// Computes the position of a light sample as seen from sample i. `scale`: see glint_light_args. Point (and normal for GLINT_EMIT_CONE) must be known.
+/// Computes the position of a light sample as seen from sample i. `scale`: see glint_light_args. Point (and normal
+/// for GLINT_EMIT_CONE) must be known.
 void glint_tile_sample_place(const glint_tile *tile, glint_precision precision, const glint_light_sample *light_sample,
                              double scale, uint32_t i, double out[3]);
 /// Computes the target of sample i's ray to a light, relative to its point; for a directional light the direction.
@@ -475,8 +480,8 @@ void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *fra
 bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t first, uint32_t count);
 /// Returns whether the light may cross a transparent surface before one of the tile's points. The points must be known.
 bool glint_tile_may_be_tinted(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light);
-/// Adds the light of `count` lights of the plan, from number `first` on, at points that they reach through transparent surfaces, or
-/// partly. The points must be known.
+/// Adds the light of `count` lights of the plan, from number `first` on, at points that they reach through
+/// transparent surfaces, or partly. The points must be known.
 void glint_tile_transparent_shadows(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t count);
 
 /// Returns whether origins and directions of rays are in arrays: for orthographic cameras, lenses
@@ -567,8 +572,8 @@ bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *
 /// `args`: as for casting all primitives.
 void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args);
 
-/// effects/derivative/derivative.c: how fast the light of the current sample changes with parameters.
-/// At the first call of a sample, adds the part without lights; then the part of `count` lights of the plan from `from` on, whose
+/// effects/derivative/derivative.c: how fast the light of the current sample changes with parameters. At the first
+/// call of a sample, adds the part without lights; then the part of `count` lights of the plan from `from` on, whose
 /// shadows must be known. The points must be known.
 void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 /// For light through transparent surfaces, these are called: before the first step of its rays; when ray `ray`
@@ -581,8 +586,8 @@ void glint_tile_put_tint(const glint_tile *tile, const glint_plan *plan, uint32_
                          const double (*color)[GLINT_TILE_SAMPLES]);
 void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
                               const uint16_t *reached);
-/// effects/derivative/vertex.c: stores the slopes of a block of faces and vertices; interpolates them for samples of their
-/// triangles, after their light.
+/// effects/derivative/vertex.c: stores the slopes of a block of faces and vertices; interpolates them for samples of
+/// their triangles, after their light.
 void glint_derive_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
 void glint_derive_vertex(const glint_tile *tile, const glint_tile_frame *frame, const uint16_t *wanted);
 /// effects/derivative/fade.c: after a sample of the eye's hits, if light fades.
@@ -603,8 +608,8 @@ bool glint_tile_wants_coverage(const glint_plan *plan);
 /// Counts the hits of sample k, from 0.
 void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k);
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame);
-/// Prefetches the tile's pixel values and planes, which are written at its end; for planes of derivatives those of group g, a few lines at a
-/// time, because a core stalls on too many outstanding requests.
+/// Prefetches the tile's pixel values and planes, which are written at its end; for planes of derivatives those of
+/// group g, a few lines at a time, because a core stalls on too many outstanding requests.
 void glint_tile_prefetch_output(const glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_prefetch_derivatives(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g);
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame);

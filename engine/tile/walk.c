@@ -37,7 +37,8 @@ static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, glint
     glint_tile_keep_pattern(tile, frame, w->sample);
 }
 
-/// Returns whether this walk stores the picture's geometry: the walk through the pixels' centres, or sample 0 if it is the same ray.
+/// Returns whether this walk stores the picture's geometry: the walk through the pixels' centres, or sample 0 if it
+/// is the same ray.
 static bool shows_geometry(const glint_tile_frame *frame, const glint_sample_walk *w)
 {
     if (w->sample > 0 || !glint_tile_wants_geometry(frame->plan))
@@ -100,8 +101,8 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, glint_sam
     return any;
 }
 
-/// Returns whether the fused kernel should also write normals: if a later stage is likely to read them, and for triangles and solids, where they
-/// cost little.
+/// Returns whether the fused kernel should also write normals: if a later stage is likely to read them, and for
+/// triangles and solids, where they cost little.
 static bool wants_normals(const glint_tile_frame *frame, const glint_sample_walk *w)
 {
     const glint_plan *plan = frame->plan;
@@ -135,7 +136,8 @@ static light_work find_light_work(glint_tile *tile, const glint_tile_frame *fram
     return work;
 }
 
-/// Computes light and shadow of one light, or of similar lights, for this sample: `count` rows of the plan from `first + slot` on.
+/// Computes light and shadow of one light, or of similar lights, for this sample: `count` rows of the plan from
+/// `first + slot` on.
 static void find_light(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w, uint32_t first, uint32_t slot,
                        uint32_t count)
 {
@@ -303,8 +305,8 @@ static void tone(glint_tile *tile, const glint_tile_frame *frame)
     tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - start;
 }
 
-/// Stores the tile in the image. A base of pixel values stores light only where it is clipped or not finite: such pixels are counted again
-/// when the tile is refined.
+/// Stores the tile in the image. A base of pixel values stores light only where it is clipped or not finite: such
+/// pixels are counted again when the tile is refined.
 static void store(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before)
 {
     const bool in_codes = frame->plan->is_base && frame->refine->in_codes;

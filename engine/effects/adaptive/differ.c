@@ -1,4 +1,5 @@
-/// Finds the pixels of a base that differ from a neighbour in their tile, and stores the pixels that neighbouring tiles compare.
+/// Finds the pixels of a base that differ from a neighbour in their tile, and stores the pixels that neighbouring
+/// tiles compare.
 #include "engine/base/alloc.h"
 #include "engine/film/tone.h"
 #include "engine/effects/adaptive/refine.h"
@@ -11,7 +12,8 @@
 _Static_assert(GLINT_TILE_WIDTH <= GLINT_DIFFER_PAIRS && GLINT_TILE_HEIGHT <= GLINT_DIFFER_PAIRS, "a bit a pixel");
 
 struct glint_differ_work {
-    _Alignas(64) float group[GLINT_DIFFER_VALUES][GLINT_TILE_SAMPLES]; ///< in the order of groups; first: see glint_differ_values
+    _Alignas(64) float group[GLINT_DIFFER_VALUES][GLINT_TILE_SAMPLES]; ///< in the order of groups; first: see
+        ///< glint_differ_values
     float row[GLINT_DIFFER_VALUES][GLINT_TILE_HEIGHT][GLINT_DIFFER_LENGTH];
 };
 

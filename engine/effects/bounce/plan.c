@@ -39,8 +39,9 @@ static void bounce_material_init(glint_bounce_material *out, const glint_plan *p
     out->transmits = glint_material_transmits(desc);
 }
 
-/// Returns a bound of a translucent material as if it were opaque. A ray finds o times the light of the surface and 1 - o times the light
-/// beyond, at most the larger of the two. So the bound holds however many translucent surfaces a ray crosses.
+/// Returns a bound of a translucent material as if it were opaque. A ray finds o times the light of the surface and
+/// 1 - o times the light beyond, at most the larger of the two. So the bound holds however many translucent surfaces
+/// a ray crosses.
 static double opaque(const glint_bounce_material *m, double bound) { return bound / (1 - m->clear); }
 
 /// Bounds the share of its rays' light that a material sends on, without total reflection.

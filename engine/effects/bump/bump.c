@@ -142,8 +142,8 @@ static void load(void *const array[3], glint_precision precision, uint32_t i, do
         out[c] = glint_real_at(array[c], precision, i);
 }
 
-/// Returns whether light along `d` continues with the normal `n` as with the surface's own normal: reflected on this side of it,
-/// refracted beyond. ratio: see glint_bounce_args.
+/// Returns whether light along `d` continues with the normal `n` as with the surface's own normal: reflected on this
+/// side of it, refracted beyond. ratio: see glint_bounce_args.
 static bool goes_on(const double d[3], const double n[3], const double own[3], double ratio)
 {
     double u[3], reflected[3], refracted[3];

@@ -1,6 +1,6 @@
-/// Fading by the distance from the eye to the first surface of a sample. A medium around the eye transmits exp(-absorption x distance) of the
-/// light; a depth cue then fades it towards a colour. Every term is scaled, and the colour's share is added to
-/// the background term, so that passes still add up.
+/// Fading by the distance from the eye to the first surface of a sample. A medium around the eye transmits
+/// exp(-absorption x distance) of the light; a depth cue then fades it towards a colour. Every term is scaled, and
+/// the colour's share is added to the background term, so that passes still add up.
 ///
 /// Everything is computed in double, by the same code for every instruction set.
 #include "engine/base/alloc.h"

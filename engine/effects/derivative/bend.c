@@ -125,7 +125,7 @@ static void curve_triangle(const glint_corner_normals *corners, const glint_prim
         turn_unit(hit->normal, length, turned, out);
 }
 
-// ---- A hit ------------------------------------------------------------------------------------------------------------
+// ---- A hit --------------------------------------------------------------------------------------------------------
 
 /// Computes a vector perpendicular to the surface, of any length.
 static void find_across(const bent_hit *hit, const glint_prim *prim, double out[3])
@@ -169,7 +169,8 @@ static void hold(const bent_hit *hit, const glint_geometry_table *table, const g
         curve_triangle(&table->corner_normals[prim->item], prim, gradient, hit, out->point, out->normal);
 }
 
-/// Computes the position of a sample in the picture, in half pixels from the middle: to the right and up. See the stage camera.
+/// Computes the position of a sample in the picture, in half pixels from the middle: to the right and up. See the
+/// stage camera.
 static void find_place(const glint_tile *tile, uint32_t i, double out[2])
 {
     const glint_camera_args *c = &tile->camera;
@@ -291,7 +292,7 @@ bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, si
     return true;
 }
 
-// ---- Hits of a group on one sphere or plane: as above, lanes side by side ------------------------------------------------
+// ---- Hits of a group on one sphere or plane: as above, lanes side by side -----------------------------------------
 
 void glint_bend_aim(const glint_tile *tile, const glint_plan *plan)
 {
@@ -367,8 +368,8 @@ static unsigned bend_each(const glint_tile *tile, const glint_tile_frame *frame,
     return bent;
 }
 
-/// Prepares those of `lanes` that hit the same primitive as the first one. Returns these lanes. *moves: they move; *seen: the kernel
-/// bends them, otherwise they are bent one by one.
+/// Prepares those of `lanes` that hit the same primitive as the first one. Returns these lanes. *moves: they move;
+/// *seen: the kernel bends them, otherwise they are bent one by one.
 static unsigned begin(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
                       const glint_derivative_points *points, bend_room *out, bool *seen, bool *moves)
 {

@@ -126,7 +126,7 @@ void glint_derive_split(const glint_batch *batch, const glint_tile *tile, const 
         split(batch, tile, frame, k, i, slopes);
 }
 
-// ---- Light of the rays -----------------------------------------------------------------------------------------------------
+// ---- Light of the rays --------------------------------------------------------------------------------------------
 
 void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *frame)
 {

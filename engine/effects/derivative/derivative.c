@@ -1,4 +1,5 @@
-/// The stage derivative: how fast the light of each sample changes with parameters, with hits and shadows held constant.
+/// The stage derivative: how fast the light of each sample changes with parameters, with hits and shadows held
+/// constant.
 #include "engine/effects/derivative/work.h"
 
 #include "engine/base/alloc.h"
@@ -51,7 +52,8 @@ static unsigned lanes_of_material(const glint_tile *tile, uint32_t g, unsigned l
     return glint_lanes_alike(of, left);
 }
 
-/// Returns whether the derivatives of a group read the viewer's direction: for highlights, moving views and secondary rays.
+/// Returns whether the derivatives of a group read the viewer's direction: for highlights, moving views and secondary
+/// rays.
 static bool reads_eyes(const glint_tile *tile, const glint_plan *plan, uint32_t g)
 {
     const glint_plan_derivatives *all = plan->derivatives;
@@ -95,7 +97,8 @@ void glint_derivative_find_points(const glint_tile *tile, const glint_tile_frame
 
 // ---- Lights -------------------------------------------------------------------------------------------------------
 
-/// Returns a light in the form for all groups, except for GLINT_EMIT_CONE. The position of a plain light is copied to every lane.
+/// Returns a light in the form for all groups, except for GLINT_EMIT_CONE. The position of a plain light is copied to
+/// every lane.
 static glint_derivative_source source_of(glint_tile *tile, const glint_plan_light *light)
 {
     glint_derivative_work *work = glint_derivative_of(tile);
@@ -174,7 +177,8 @@ static const glint_derivative_planes *planes_of(const glint_tile *tile, const gl
     return room;
 }
 
-/// Returns a program's result for the ambient reflectance of sample i in channel c; 1 if the material has only a number.
+/// Returns a program's result for the ambient reflectance of sample i in channel c; 1 if the material has only a
+/// number.
 static double ambient_plane(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c)
 {
     const uint32_t planes = plan->materials[tile->surface.material[i]].planes;
@@ -203,7 +207,8 @@ static void add_ambient(const glint_tile *tile, const glint_plan *plan, size_t i
 
 // ---- One light ----------------------------------------------------------------------------------------------------
 
-/// Adds the derivatives of one light in a group. `reached`: lanes that the light reaches; `tinted`: through transparent surfaces.
+/// Adds the derivatives of one light in a group. `reached`: lanes that the light reaches; `tinted`: through
+/// transparent surfaces.
 static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
                          glint_derivative_source source, uint32_t g, unsigned reached,
                          bool tinted)

@@ -1,4 +1,5 @@
-/// The derivatives of materials' programs by their numbers: for each plane of the tile, one double per sample and derivative.
+/// The derivatives of materials' programs by their numbers: for each plane of the tile, one double per sample and
+/// derivative.
 #include "engine/base/alloc.h"
 #include "engine/base/dual.h"
 #include "engine/program/program.h"
@@ -37,7 +38,7 @@ static double *painted_at(const glint_tile *tile, const glint_plan *plan, size_t
     return (double *)(uintptr_t)glint_derivative_painted(tile, plan, index, field, channel);
 }
 
-// ---- Planes derived from the results of programs; see `finish` in effects/pattern/pattern.c ---------------------------------
+// ---- Planes derived from the results of programs; see `finish` in effects/pattern/pattern.c -----------------------
 
 /// Returns the normalising factor of Phong's and Blinn-Phong's highlights.
 static glint_dual even_factor(const glint_material_desc *desc, glint_dual s)
@@ -106,8 +107,8 @@ static bool is_bounded(const glint_tile *tile, const glint_plan *plan, int field
     return any;
 }
 
-/// Stores the slopes of one entry, number e of its call. A value that was clamped to 0 has the slope 0, and so has a value without a
-/// slope, such as the root of a constant 0.
+/// Stores the slopes of one entry, number e of its call. A value that was clamped to 0 has the slope 0, and so has a
+/// value without a slope, such as the root of a constant 0.
 static void put_slopes(const glint_tile *tile, const glint_plan *plan, size_t index, int field, bool one, bool bounded,
                        const glint_pattern_lanes *entry, uint32_t e)
 {

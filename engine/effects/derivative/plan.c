@@ -56,8 +56,8 @@ static void set_constant(double value[3], double slope[3])
     }
 }
 
-/// For a constant whose product with a program's result is in planes: sets it to 1 and scales its slope to match. A constant 0 has no
-/// slope here; see is_lost in derivative_fields.c.
+/// For a constant whose product with a program's result is in planes: sets it to 1 and scales its slope to match. A
+/// constant 0 has no slope here; see is_lost in derivative_fields.c.
 static void set_share(double value[3], double slope[3])
 {
     for (int c = 0; c < 3; c++) {
@@ -83,7 +83,8 @@ static void take_planes(uint32_t planes, glint_material_desc *d, glint_material_
         slope->roughness = 0;
 }
 
-/// Computes f0 and its slope from a resolved description. If f0 is not set, it follows ior; see glint_material_desc_resolve.
+/// Computes f0 and its slope from a resolved description. If f0 is not set, it follows ior; see
+/// glint_material_desc_resolve.
 static void fill_f0(glint_dual out[3], const glint_material_desc *d, const glint_material_desc *slope, bool is_own)
 {
     const double up = d->ior + 1, by_ior = is_own || !(d->ior < 1e300) ? 0 : 4 * (d->ior - 1) / up / up / up * slope->ior;

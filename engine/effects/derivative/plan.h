@@ -44,7 +44,8 @@ typedef struct glint_plan_derivatives {
     bool moves, bends, weighs, fades, everywhere, repaints;
     glint_plan_derivative of[GLINT_DERIVATIVES_MAX];
     glint_gradient *gradients; ///< gradients of shaders, one for each material of the plan; NULL: no shaders
-    glint_plan_derivative level[GLINT_DERIVATIVES_MAX]; ///< the same with all zero slopes set to 1: shows what depends on the parameter
+    glint_plan_derivative level[GLINT_DERIVATIVES_MAX]; ///< the same with all zero slopes set to 1: shows what depends
+        ///< on the parameter
 } glint_plan_derivatives;
 
 void glint_plan_derivatives_free(glint_plan_derivatives *derivatives); ///< NULL: nothing

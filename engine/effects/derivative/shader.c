@@ -1,5 +1,5 @@
-/// The derivatives of shaders: slopes of the inputs times the gradient of the program, plus the slopes of the shader's own
-/// numbers.
+/// The derivatives of shaders: slopes of the inputs times the gradient of the program, plus the slopes of the
+/// shader's own numbers.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
@@ -24,7 +24,8 @@ typedef struct input_slopes {
 /// The memory for the groups of a call.
 struct glint_shader_slopes {
     _Alignas(64) double value[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< results of the shader
-    _Alignas(64) double tangent[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< derivatives of the results by the shader's numbers
+    _Alignas(64) double tangent[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< derivatives of the results by the
+        ///< shader's numbers
     float share[GLINT_PROGRAM_LANES]; ///< visible share of a light that may be partly covered
     uint16_t wanted[GLINT_PROGRAM_GROUPS], odd[GLINT_PROGRAM_GROUPS];
     glint_program_sums sums[GLINT_DERIVATIVES_MAX]; ///< one for each derivative that changes something
@@ -159,8 +160,8 @@ static bool find_number(const shading *s, size_t index, glint_field field, int c
     return true;
 }
 
-/// Computes the slopes of the shader's inputs by derivative number `index`; the first call also computes the light's inputs. Returns the
-/// inputs that have slopes, one bit each.
+/// Computes the slopes of the shader's inputs by derivative number `index`; the first call also computes the light's
+/// inputs. Returns the inputs that have slopes, one bit each.
 static uint32_t find_inputs(const shading *s, size_t index)
 {
     const glint_plan_derivative *d = &s->frame->plan->derivatives->of[index];
@@ -205,7 +206,8 @@ static void add_light(const shading *s, uint32_t terms)
             }
 }
 
-/// Lists the derivatives among first .. end - 1 that need a part of a gradient, namely its slopes from `from` on. Returns their number.
+/// Lists the derivatives among first .. end - 1 that need a part of a gradient, namely its slopes from `from` on.
+/// Returns their number.
 static uint32_t list_sums(const shading *s, const glint_gradient *gradient, uint32_t from, size_t first, size_t end)
 {
     uint32_t count = 0;
@@ -302,8 +304,8 @@ static bool begin(const shading *s, const glint_pattern_points *points)
     return true;
 }
 
-/// Adds the derivative of the light by the shader's inputs, in one forward sweep for derivative number `index`. Returns whether that was all:
-/// for the lanes that remain wanted, nothing was added.
+/// Adds the derivative of the light by the shader's inputs, in one forward sweep for derivative number `index`.
+/// Returns whether that was all: for the lanes that remain wanted, nothing was added.
 static bool sweep(const shading *s, size_t index, const glint_program *forward)
 {
     input_slopes *own = &s->slopes->of[index];

@@ -18,8 +18,8 @@ typedef struct glint_scene_slopes {
 glint_status glint_derivative_add(const glint_plan *plan, const glint_scene *scene, const glint_derivative *d,
                                   const glint_slope *s, glint_scene_slopes *out, glint_error *error);
 
-/// effects/derivative/plan_translucent.c: multiplies the slopes of translucent materials out, see glint_plan_material. Fails if such a
-/// material has no derivative.
+/// effects/derivative/plan_translucent.c: multiplies the slopes of translucent materials out, see
+/// glint_plan_material. Fails if such a material has no derivative.
 glint_status glint_derivative_weigh(const glint_plan *plan, const glint_derivative *d, glint_scene_slopes *slopes,
                                     glint_error *error);
 

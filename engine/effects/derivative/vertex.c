@@ -1,5 +1,6 @@
-/// Derivatives of light that is computed once per face or vertex. Each has its slopes next to its light, and a sample interpolates
-/// between those of its triangle, with weights that change as the sample moves. See effects/vertex_shading/vertex.c.
+/// Derivatives of light that is computed once per face or vertex. Each has its slopes next to its light, and a sample
+/// interpolates between those of its triangle, with weights that change as the sample moves. See
+/// effects/vertex_shading/vertex.c.
 #include "engine/base/vec.h"
 #include "engine/effects/derivative/work.h"
 
@@ -35,7 +36,8 @@ static void find_share(const glint_tile_frame *frame, const glint_prim *prim, co
     out[0] += 1;
 }
 
-/// Adds the value interpolated between three corners. change: the slopes of their weights; NULL: the sample does not move.
+/// Adds the value interpolated between three corners. change: the slopes of their weights; NULL: the sample does not
+/// move.
 static void spread(const glint_tile *tile, double *const at[3], const double share[3],
                    const double *change, size_t index, uint32_t i)
 {

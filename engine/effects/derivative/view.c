@@ -23,7 +23,8 @@ static void put_slopes(double out[3], const glint_dual v[3])
         out[c] = v[c].slope;
 }
 
-/// Computes the unit axes across the view; see view_axes in plan/camera.c. If `up` is parallel to the view, a constant axis replaces it.
+/// Computes the unit axes across the view; see view_axes in plan/camera.c. If `up` is parallel to the view, a
+/// constant axis replaces it.
 static void find_axes(const glint_plan *plan, const glint_camera_desc *desc, const glint_camera_desc *slope,
                       const glint_dual forward[3], glint_dual right[3], glint_dual up[3])
 {

@@ -14,13 +14,15 @@ typedef struct glint_ray_slope {
 
 typedef struct glint_derivative_work {
     _Alignas(64) double sum[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
-    _Alignas(64) double light[3][GLINT_TILE_SAMPLES]; ///< light of hits in double, if ray weights have slopes or light fades
+    _Alignas(64) double light[3][GLINT_TILE_SAMPLES]; ///< light of hits in double, if ray weights have slopes or light
+        ///< fades
     _Alignas(64) double eye[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES], normal[3][GLINT_TILE_SAMPLES]; ///< used if the tile's are float
     _Alignas(64) double position[3][GLINT_GROUP], weight[GLINT_GROUP]; ///< direction and weight of the current light
     _Alignas(64) double bend[3][3][GLINT_GROUP]; ///< slopes of a group's points, normals and eyes
     glint_bend_camera camera[GLINT_DERIVATIVES_MAX]; ///< cameras of the eye, one per derivative
-    _Alignas(64) double tint[3][GLINT_TILE_SAMPLES]; ///< transmitted share of a light's colours, and its slopes, for samples and rays
+    _Alignas(64) double tint[3][GLINT_TILE_SAMPLES]; ///< transmitted share of a light's colours, and its slopes, for
+        ///< samples and rays
     _Alignas(64) double tint_slope[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
     _Alignas(64) double ray_tint[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
     _Alignas(64) double planes[GLINT_DERIVED_COUNT][GLINT_GROUP]; ///< results of programs for the current material
@@ -29,9 +31,11 @@ typedef struct glint_derivative_work {
     struct glint_shader_slopes *shader; ///< memory of shader.c; NULL: there are no shaders
     size_t painted_count; ///< capacity of `painted`, in numbers
     float plane[GLINT_TILE_SAMPLES];
-    uint32_t shadows[GLINT_TILE_SAMPLES]; ///< hashes of the lights hidden from each pixel, in the first sample and in this one
+    uint32_t shadows[GLINT_TILE_SAMPLES]; ///< hashes of the lights hidden from each pixel, in the first sample and in
+        ///< this one
     uint32_t first[GLINT_TILE_SAMPLES];
-    uint16_t kept[GLINT_TILE_GROUPS], given[GLINT_TILE_GROUPS]; ///< lanes that some samples of the current light do not reach, and do reach
+    uint16_t kept[GLINT_TILE_GROUPS], given[GLINT_TILE_GROUPS]; ///< lanes that some samples of the current light do not
+        ///< reach, and do reach
     uint16_t mixed[GLINT_TILE_GROUPS]; ///< lanes that a light reaches partly
 } glint_derivative_work;
 
@@ -51,7 +55,8 @@ static inline bool glint_derivatives_weigh(const glint_plan_derivatives *all)
 /// Returns whether the samples of a tile are faces and vertices.
 static inline bool glint_derives_sites(const glint_tile *tile) { return tile->owner; }
 
-/// Returns whether the slopes of a tile depend on the amount of light: for rays that left surfaces, and with a depth cue.
+/// Returns whether the slopes of a tile depend on the amount of light: for rays that left surfaces, and with a depth
+/// cue.
 static inline bool glint_derivatives_read_light(const glint_tile *tile, const glint_plan *plan)
 {
     return (tile->batch || plan->runs[GLINT_STAGE_DEPTH_CUE]) && glint_derivatives_weigh(plan->derivatives);
@@ -69,8 +74,8 @@ static inline unsigned glint_lanes_alike(const uint32_t of[GLINT_GROUP], unsigne
     return same;
 }
 
-/// derivative.c: fills `out` with pointers to the samples of group g, after glint_tile_derive; their slopes are 0. In place, because
-/// copying so many pointers just written would stall.
+/// derivative.c: fills `out` with pointers to the samples of group g, after glint_tile_derive; their slopes are 0. In
+/// place, because copying so many pointers just written would stall.
 void glint_derivative_find_points(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, glint_derivative_points *out);
 
 /// Computes the sample of a sphere light for each lane of a group, within the cone in which the lane sees the sphere.
@@ -114,16 +119,17 @@ bool glint_derive_fade_fits(glint_derivative_work *work, const glint_plan *plan)
 bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
                        const glint_derivative_points *points, glint_bend *out);
 
-/// Computes the slopes of the points of `lanes` that derivative number `index` moves, and returns these lanes. slope: of
-/// points, of normals, of eyes, sixteen each.
+/// Computes the slopes of the points of `lanes` that derivative number `index` moves, and returns these lanes. slope:
+/// of points, of normals, of eyes, sixteen each.
 unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
                            const glint_derivative_points *points, double *const slope[9]);
 
 /// Prepares the part of the current sample's camera that is the same for all hits.
 void glint_bend_aim(const glint_tile *tile, const glint_plan *plan);
 
-/// Computes the barycentric weights of the point `at`, relative to the first corner of a triangle, less the 1 that the first weight has at
-/// the corner. With the slope of a point for `at`, these are the slopes of its weights. scale: that of the table.
+/// Computes the barycentric weights of the point `at`, relative to the first corner of a triangle, less the 1 that
+/// the first weight has at the corner. With the slope of a point for `at`, these are the slopes of its weights.
+/// scale: that of the table.
 void glint_bend_shares(double scale, const glint_prim *prim, const double at[3], double out[3]);
 
 /// Allocates the other memory of the plan's derivatives; false: out of memory.

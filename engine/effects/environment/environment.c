@@ -1,5 +1,5 @@
-/// A background computed by a program, which runs for the rays of a tile or batch that hit nothing, at the point where `shade`
-/// would add a plain background.
+/// A background computed by a program, which runs for the rays of a tile or batch that hit nothing, at the point
+/// where `shade` would add a plain background.
 ///
 /// Directions are normalised in double, by the same code for every instruction set; a kernel runs the programs.
 #include "engine/base/alloc.h"
@@ -139,7 +139,8 @@ static void note_odd(glint_tile *tile, const struct glint_environment *environme
     }
 }
 
-/// Loads the light of group `from` of the rows, 0 in other lanes. channels: the number that the program computes; one stands for all.
+/// Loads the light of group `from` of the rows, 0 in other lanes. channels: the number that the program computes; one
+/// stands for all.
 static void light_of(glint_tile *tile, const struct glint_environment *environment, uint32_t channels, uint32_t from,
                      unsigned lanes, double light[3][GLINT_GROUP])
 {

@@ -58,8 +58,8 @@ static uint32_t paths_of(const glint_plan *plan, const glint_batch *from, uint32
     return from ? (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples) : (uint32_t)plan->indirect.samples;
 }
 
-/// Begins the paths of point i, with the factor `found`. Their first rays differ only in the direction. Returns the number of
-/// paths.
+/// Begins the paths of point i, with the factor `found`. Their first rays differ only in the direction. Returns the
+/// number of paths.
 static uint32_t begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
                             const glint_tile *seen, const glint_batch *from, uint32_t i, const double *found,
                             pixel_block *block)

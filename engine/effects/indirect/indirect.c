@@ -82,7 +82,8 @@ static void take_lights(struct glint_indirect *indirect, const glint_plan *plan,
 
 // ---- Continuing ----
 
-/// Returns whether the surface of sample i may also mirror, refract or let through a path, and the path has not reached its end.
+/// Returns whether the surface of sample i may also mirror, refract or let through a path, and the path has not
+/// reached its end.
 static bool goes_on(const glint_batch *batch, const glint_plan *plan, uint32_t i)
 {
     const glint_bounce_material *m = &plan->bouncing[batch->tile.surface.material[i]];
@@ -238,8 +239,8 @@ static void found_in(const glint_batch *batch, uint32_t g, double found[3][GLINT
         }
 }
 
-/// Adds the light of rays that hit in some samples of a group. Paths that end there take the ambient light instead of the
-/// indirect light of further steps.
+/// Adds the light of rays that hit in some samples of a group. Paths that end there take the ambient light instead of
+/// the indirect light of further steps.
 static void collect_group(const glint_batch *batch, const glint_plan *plan, uint32_t g, unsigned lanes, glint_tile *to)
 {
     const glint_rays *rays = batch->rays;

@@ -1,11 +1,11 @@
 /// Indirect light: light from other surfaces and from the background.
 ///
-/// A material's ambient light is ka Ia. The part kd Ia represents the light of its surroundings, where Ia is
-/// the mean light from all directions. Indirect light replaces this part by kd times the light of paths; it is used only where a
-/// path ends. The excess of ka over kd is light of the surface's own.
+/// A material's ambient light is ka Ia. The part kd Ia represents the light of its surroundings, where Ia is the mean
+/// light from all directions. Indirect light replaces this part by kd times the light of paths; it is used only where
+/// a path ends. The excess of ka over kd is light of the surface's own.
 ///
-/// Ambient occlusion is the same with paths of one step: that part of the ambient light, times the share of the sky that
-/// is open.
+/// Ambient occlusion is the same with paths of one step: that part of the ambient light, times the share of the sky
+/// that is open.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -17,8 +17,8 @@ static bool is_matt(const glint_plan *plan, uint32_t i)
     return kd[0] > 0 || kd[1] > 0 || kd[2] > 0;
 }
 
-/// Splits a material's ambient light. If a program computes it or the diffuse reflectance, the stages pattern and indirect
-/// split it.
+/// Splits a material's ambient light. If a program computes it or the diffuse reflectance, the stages pattern and
+/// indirect split it.
 static void part_ambient(glint_plan *plan, uint32_t i, double rest[3])
 {
     glint_shade_material *material = &plan->materials[i];

@@ -153,8 +153,8 @@ void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, con
     frame->stages->shade(&own);
 }
 
-/// Selects the lights of a call that belong to a group, and finds the next group. If the sum of a light's samples is stored in its
-/// first row, its other rows are not in the call.
+/// Selects the lights of a call that belong to a group, and finds the next group. If the sum of a light's samples is
+/// stored in its first row, its other rows are not in the call.
 static uint32_t choose_lights(const glint_tile *tile, const glint_plan_light *rows, uint32_t count,
                               const glint_shade_light *lights, uint32_t group, glint_shade_light *chosen,
                               uint32_t *next)

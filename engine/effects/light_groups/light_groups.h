@@ -1,8 +1,9 @@
 /// Light passes: the light of each group of lights, summed in addition to the picture's own sums. Internal.
 ///
-/// Each place that adds light to the sums of a tile also adds it to the sums of the light's group: shade, shaders, transparent
-/// shadows, visible lights, mirrors and glass, indirect light, and the light of faces and vertices. Rays, hits, shadows and
-/// weights are those of the picture. The light that comes from no lamp is the difference to the picture's sums.
+/// Each place that adds light to the sums of a tile also adds it to the sums of the light's group: shade, shaders,
+/// transparent shadows, visible lights, mirrors and glass, indirect light, and the light of faces and vertices. Rays,
+/// hits, shadows and weights are those of the picture. The light that comes from no lamp is the difference to the
+/// picture's sums.
 #ifndef GLINT_LIGHT_GROUPS_H
 #define GLINT_LIGHT_GROUPS_H
 
@@ -16,9 +17,11 @@ bool glint_group_sums_fit(const struct glint_group_sums *sums,
 /// Returns the sums for a batch of a tile; sites: for faces and vertices. NULL: the frame has no light passes.
 struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool sites);
 
-/// Clears a tile's sums. Then, for each call of shade, adds the light of its lights, and the lights' share of ambient light if it has `first`.
+/// Clears a tile's sums. Then, for each call of shade, adds the light of its lights, and the lights' share of ambient
+/// light if it has `first`.
 void glint_groups_begin(glint_tile *tile, const glint_plan *plan);
-/// The lights of the call are `count` rows of the plan from row `from` on, by glint_tile_shade_args; or all of one group.
+/// The lights of the call are `count` rows of the plan from row `from` on, by glint_tile_shade_args; or all of one
+/// group.
 void glint_groups_shade(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from,
                         uint32_t count);
 void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args,
@@ -35,7 +38,8 @@ void glint_groups_add_ambient(const glint_tile *to, const glint_plan *plan, uint
 /// Fades the sums of the current sample, in each pixel and channel; see effects/depth_cue/.
 void glint_groups_fade(const glint_tile *tile, const glint_plan *plan, const double (*left)[GLINT_TILE_SAMPLES]);
 
-/// Caches the light of a block of faces or vertices, and adds it to the samples that show them; see effects/vertex_shading/.
+/// Caches the light of a block of faces or vertices, and adds it to the samples that show them; see
+/// effects/vertex_shading/.
 void glint_groups_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
 void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, glint_vertex_args *args);
 

@@ -7,8 +7,8 @@
 #define GLINT_NO_GROUP UINT32_MAX
 #define GLINT_LIGHT_REST "ambient" ///< the pass of the light that no lamp sends
 
-/// Light is also summed for each group of lights. Passes come first among the groups. If the rest is requested, all lights
-/// without a pass form one more group.
+/// Light is also summed for each group of lights. Passes come first among the groups. If the rest is requested, all
+/// lights without a pass form one more group.
 struct glint_light_groups {
     uint32_t pass_count, count; ///< passes of the frame; groups
     uint32_t rest; ///< the pass of the rest, whose group stays empty; GLINT_NO_GROUP: none

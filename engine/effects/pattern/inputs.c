@@ -85,7 +85,8 @@ static const glint_pattern_place *next_place(const gathering *g, unsigned left, 
     return &g->frame->plan->patterns->places[part];
 }
 
-/// Returns the axis of the box face that a lane is on, from the normal in the shape's own space. *upper: it is the face at `max`.
+/// Returns the axis of the box face that a lane is on, from the normal in the shape's own space. *upper: it is the
+/// face at `max`.
 static int face_of(const gathering *g, const glint_pattern_place *place, uint32_t lane, bool *upper)
 {
     const size_t i = g->at + lane;

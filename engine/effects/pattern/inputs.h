@@ -17,8 +17,8 @@ typedef struct glint_pattern_inputs {
     double uv_slope[2][3][GLINT_PROGRAM_LANES]; ///< the gradients of u and v in the shape's own space
 } glint_pattern_inputs;
 
-/// Computes the inputs in `reads` (one bit each) for the lanes of `count` entries, one group each: entry k has the lanes from 16 k on.
-/// Other lanes are undefined.
+/// Computes the inputs in `reads` (one bit each) for the lanes of `count` entries, one group each: entry k has the
+/// lanes from 16 k on. Other lanes are undefined.
 void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *frame,
                           const glint_pattern_points *points, uint32_t reads, const glint_pattern_lanes *entries,
                           uint32_t count);

@@ -171,8 +171,8 @@ static bool run_field(glint_tile *tile, const glint_tile_frame *frame, glint_pat
     return !glint_pattern_any_odd(batch);
 }
 
-/// Runs the second parts of a batch's programs and computes the derived planes. Returns false if one gave an invalid reflectance,
-/// which has to be reported with its point.
+/// Runs the second parts of a batch's programs and computes the derived planes. Returns false if one gave an invalid
+/// reflectance, which has to be reported with its point.
 static bool run_second(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_pattern_batch *batch, const kept_sample *from)
 {

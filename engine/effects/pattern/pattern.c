@@ -207,8 +207,8 @@ static void finish_exponent(const glint_plan_pattern *own, const glint_pattern_p
     }
 }
 
-/// Computes the ambient light that remains if indirect light replaces a part of it as large as the diffuse reflectance; for a
-/// program's ambient also that part.
+/// Computes the ambient light that remains if indirect light replaces a part of it as large as the diffuse
+/// reflectance; for a program's ambient also that part.
 static void finish_ambient(const glint_plan_pattern *own, const glint_pattern_points *points, const glint_plan *plan,
                            uint32_t i)
 {
@@ -323,8 +323,8 @@ bool glint_pattern_any_odd(const glint_pattern_batch *batch)
     return any;
 }
 
-/// Records the points where the last call, of `code`, gave an invalid reflectance. Planes do not distinguish NaN from a negative number, so
-/// the program is run again for its outputs.
+/// Records the points where the last call, of `code`, gave an invalid reflectance. Planes do not distinguish NaN from
+/// a negative number, so the program is run again for its outputs.
 static void note_odd(struct glint_pattern *pattern, const glint_pattern_batch *batch, const glint_tile_frame *frame,
                      const glint_pattern_points *points, int field, const glint_program_code *code, glint_tile_counts *counts)
 {

@@ -42,20 +42,22 @@ float *glint_pattern_planes(struct glint_pattern *pattern, glint_walk walk);
 bool glint_pattern_needs_normals(const glint_plan *plan);
 /// Returns the fields that programs compute for the visible materials, one bit each. tile->material must be known.
 uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan);
-/// Lists the lanes whose materials have programs that fill planes. Returns whether there are any. tile->material must be known.
+/// Lists the lanes whose materials have programs that fill planes. Returns whether there are any. tile->material must
+/// be known.
 bool glint_tile_find_painted(glint_tile *tile, const glint_tile_frame *frame);
 /// Writes the listed lanes of each group.
 void glint_tile_painted_lanes(const glint_tile *tile, uint16_t painted[GLINT_TILE_GROUPS]);
 /// Sets the planes of sample k to their place in the cache. Returns whether they are there already.
 bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
-/// kept.c: for the lanes listed by glint_tile_find_painted, if the results of the programs' first parts are cached for sample k: runs the second
-/// parts into the tile's planes. Returns false if nothing is cached or an error needs its point; the list is then unchanged.
+/// kept.c: for the lanes listed by glint_tile_find_painted, if the results of the programs' first parts are cached
+/// for sample k: runs the second parts into the tile's planes. Returns false if nothing is cached or an error needs
+/// its point; the list is then unchanged.
 bool glint_tile_recall_pattern(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 /// Like glint_tile_pattern, and caches the results of first parts for later frames.
 void glint_tile_keep_pattern(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 
-/// Runs the programs of the lanes listed by glint_tile_find_painted into the tile's planes, and counts the stage. The points must be
-/// known, and the normals if programs read them.
+/// Runs the programs of the lanes listed by glint_tile_find_painted into the tile's planes, and counts the stage. The
+/// points must be known, and the normals if programs read them.
 void glint_tile_pattern(glint_tile *tile, const glint_tile_frame *frame);
 /// Does both for all hits, if any of their materials has programs.
 void glint_tile_find_patterns(glint_tile *tile, const glint_tile_frame *frame);
@@ -80,7 +82,8 @@ static inline const float *glint_plane_of(const float *planes, const glint_plan 
     return start < 0 ? NULL : planes + start;
 }
 
-/// Returns a colour of material `m` at sample i: the program's result, written to `room`, or `number` without a program.
+/// Returns a colour of material `m` at sample i: the program's result, written to `room`, or `number` without a
+/// program.
 static inline const double *glint_color_at(const float *planes, const glint_plan *plan, glint_field field, uint32_t m,
                                            uint32_t i, const double *number, double room[3])
 {
@@ -91,8 +94,8 @@ static inline const double *glint_color_at(const float *planes, const glint_plan
     return room;
 }
 
-/// Computes the normals used for reflection and refraction. If the bumped normal would send light through the surface of a mirror, or
-/// not through the surface of glass, the unbumped normal is used. ratio: see glint_bounce_args.
+/// Computes the normals used for reflection and refraction. If the bumped normal would send light through the surface
+/// of a mirror, or not through the surface of glass, the unbumped normal is used. ratio: see glint_bounce_args.
 void glint_tile_bounce_normals(const glint_tile *tile, const glint_plan *plan, const uint16_t *wanted,
                                const void *ratio, const void *normal[3]);
 /// Returns whether a direction scattered around a bumped normal leaves the surface.
@@ -111,8 +114,8 @@ static inline bool glint_tile_shows_shader(const glint_tile *tile, const glint_p
 {
     return plan->runs[GLINT_STAGE_SHADER] && glint_tile_fields_shown(tile, plan) >> GLINT_FIELD_SHADER & 1;
 }
-/// Adds the shaders' results for some lights to the sums. In a frame without sums, writes them into the planes that shade reads; `lights`
-/// are then all lights. Points and normals must be known, and patterns must have run.
+/// Adds the shaders' results for some lights to the sums. In a frame without sums, writes them into the planes that
+/// shade reads; `lights` are then all lights. Points and normals must be known, and patterns must have run.
 void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const glint_shader_light *lights, uint32_t count);
 
 /// Returns the diffuse reflectance of a tile's sample.
@@ -126,8 +129,8 @@ static inline const double *glint_tile_diffuse(const glint_tile *tile, const gli
 /// Returns mirror, transmission and absorption of a tile's sample; `room` holds them if programs compute any.
 const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
                                                  glint_bounce_material *room);
-/// Returns the part of a sample's ambient light that indirect light replaces, in channel c: for materials whose diffuse reflectance
-/// a program computes, and for all others.
+/// Returns the part of a sample's ambient light that indirect light replaces, in channel c: for materials whose
+/// diffuse reflectance a program computes, and for all others.
 double glint_tile_pattern_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c);
 static inline double glint_tile_ambient_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c)
 {

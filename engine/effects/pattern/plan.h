@@ -62,11 +62,13 @@ typedef struct glint_pattern_place {
     double face; ///< plane and disk: the common coordinate of all points on that axis
     double lower[3], upper[3]; ///< box
     double origin[3], along[3],
-        side[2][3]; ///< of s.uv: plane and disk: a point, and two tangents; cylinder and cone: the
-    ///< base, its axis divided by its squared length, and two unit vectors across it; torus: its centre, its unit axis, alike
+        side[2][3]; ///< of s.uv: plane and disk: a point, and two tangents; cylinder and cone: the base, its axis
+    ///< divided by its squared length, and two unit vectors across it; torus: its centre, its unit axis, alike
     double shrink; ///< ratio of own lengths to world lengths
-    double radius, length; ///< cylinder and cone; torus: radius of its tube, length of the circle in the middle of the tube
-    const struct glint_mesh *mesh; ///< the mesh whose coordinates are read; its triangles are the primitives from `first_prim` on
+    double radius, length; ///< cylinder and cone; torus: radius of its tube, length of the circle in the middle of the
+        ///< tube
+    const struct glint_mesh *mesh; ///< the mesh whose coordinates are read; its triangles are the primitives from
+        ///< `first_prim` on
     uint32_t first_prim; ///< by id
 } glint_pattern_place;
 

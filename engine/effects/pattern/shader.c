@@ -1,7 +1,7 @@
 /// The stage shader: programs that compute the light reflected by a material, instead of the built-in models.
 ///
-/// The groups that show a material are taken sixteen at a time. The inputs of the surface are gathered once, then those of each light,
-/// and the program's results are added up in double before the next sixteen come.
+/// The groups that show a material are taken sixteen at a time. The inputs of the surface are gathered once, then
+/// those of each light, and the program's results are added up in double before the next sixteen come.
 #include "engine/program/program.h"
 #include "engine/effects/pattern/work.h"
 #include "engine/effects/light_groups/light_groups.h"
@@ -162,7 +162,8 @@ static void gather_share(const batch *b, const reached *lit, const glint_shader_
 
 // ---- Results ----
 
-/// Adds the contribution of one light to the sums or to the totals of a batch; with a single light, writes it into planes.
+/// Adds the contribution of one light to the sums or to the totals of a batch; with a single light, writes it into
+/// planes.
 static void add_light(glint_tile *tile, const glint_tile_frame *frame, const batch *b, const reached *lit,
                       const glint_shader_light *from, result to)
 {

@@ -64,7 +64,8 @@ static void axis_uv(const glint_pattern_place *place, const double p[3], glint_s
     vec_copy(out->slope[1], place->along);
 }
 
-/// Torus: u around its axis like a cylinder, v around its tube, 0 .. 1 from the inside of the ring through its lower side.
+/// Torus: u around its axis like a cylinder, v around its tube, 0 .. 1 from the inside of the ring through its lower
+/// side.
 static void torus_uv(const glint_pattern_place *place, const double p[3], glint_surface_uv *out)
 {
     double d[3];
@@ -81,7 +82,8 @@ static void torus_uv(const glint_pattern_place *place, const double p[3], glint_
     }
 }
 
-/// Computes two sides of a triangle from its first corner, and the vector from there to p, scaled by a power of two. Returns the scale.
+/// Computes two sides of a triangle from its first corner, and the vector from there to p, scaled by a power of two.
+/// Returns the scale.
 static double sides_of(const glint_mesh *mesh, uint32_t triangle, const double p[3], double side[3][3])
 {
     const uint32_t *at = mesh->triangles[triangle];
@@ -95,8 +97,9 @@ static double sides_of(const glint_mesh *mesh, uint32_t triangle, const double p
     return scale;
 }
 
-/// Mesh: interpolated between the corners, u0 + (w1 (u1 - u0) + w2 (u2 - u0)). The result is clamped to the range of the corners,
-/// because rounding can move a point beyond an edge. If the corners agree, the result is exactly their value.
+/// Mesh: interpolated between the corners, u0 + (w1 (u1 - u0) + w2 (u2 - u0)). The result is clamped to the range of
+/// the corners, because rounding can move a point beyond an edge. If the corners agree, the result is exactly their
+/// value.
 static void mesh_uv(const glint_pattern_place *place, const glint_uv_point *point, glint_surface_uv *out)
 {
     const glint_mesh *mesh = place->mesh;

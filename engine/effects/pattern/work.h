@@ -19,10 +19,13 @@ typedef struct glint_pattern_room {
 struct glint_pattern {
     glint_pattern_inputs inputs;
     _Alignas(64) double slopes[GLINT_BUMP_SLOPES][GLINT_PROGRAM_LANES];
-    _Alignas(64) float shaded[GLINT_SHADER_TERMS][GLINT_TILE_SAMPLES]; ///< results of shaders for all lights; see glint_shade_planes
-    _Alignas(64) double total[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< the same for the groups of a call, before rounding
+    _Alignas(64) float shaded[GLINT_SHADER_TERMS][GLINT_TILE_SAMPLES]; ///< results of shaders for all lights; see
+        ///< glint_shade_planes
+    _Alignas(64) double total[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< the same for the groups of a call, before
+        ///< rounding
     _Alignas(64) double bounced[3][GLINT_TILE_SAMPLES]; ///< real: see glint_tile_bounce_normals
-    _Alignas(64) double values[GLINT_PROGRAM_OUTPUTS_MAX][GLINT_PROGRAM_LANES]; ///< passed from the first part of a program to the second
+    _Alignas(64) double values[GLINT_PROGRAM_OUTPUTS_MAX][GLINT_PROGRAM_LANES]; ///< passed from the first part of a
+        ///< program to the second
     double *rows; ///< scratch of the kernel
     float *planes[GLINT_WALK_COUNT]; ///< the first walk has a set for each sample shaded together
     double *normals[GLINT_WALK_COUNT]; ///< normals of bumped surfaces, before the bump; NULL: no bumps
@@ -49,13 +52,14 @@ typedef struct glint_pattern_batch {
     glint_program_args args; ///< arguments of a call for all these groups
 } glint_pattern_batch;
 
-/// Takes a batch off the list of glint_pattern_find_lanes. The first batch must be zeroed. Returns false if the list is empty.
+/// Takes a batch off the list of glint_pattern_find_lanes. The first batch must be zeroed. Returns false if the list
+/// is empty.
 bool glint_pattern_next(struct glint_pattern *pattern, const glint_tile_frame *frame, glint_pattern_batch *batch);
 /// Runs the batch's programs for points->fields. Their inputs must be gathered.
 void glint_pattern_run_batch(struct glint_pattern *pattern, const glint_tile_frame *frame,
                              const glint_pattern_points *points, glint_pattern_batch *batch, glint_tile_counts *counts);
-/// Sets the batch's outputs to the planes of a field. Returns the program; if the program gives one number for several planes, a copy
-/// in `room` that gives it for each plane.
+/// Sets the batch's outputs to the planes of a field. Returns the program; if the program gives one number for
+/// several planes, a copy in `room` that gives it for each plane.
 const glint_program_code *glint_pattern_point_planes(glint_pattern_batch *batch, const glint_tile_frame *frame,
                                                      const glint_pattern_points *points, int field,
                                                      const glint_program_code *code, glint_program_code *room);
@@ -70,10 +74,11 @@ glint_pattern_points glint_pattern_points_of(const glint_tile *tile);
 void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
                               const glint_pattern_points *points,
                               bool (*wants)(const glint_plan_pattern *own, uint32_t fields));
-/// Takes the first remaining entry and the following ones with the same material off the list, as many as fit into one call.
-/// Returns their number; 0 if the list is empty.
+/// Takes the first remaining entry and the following ones with the same material off the list, as many as fit into
+/// one call. Returns their number; 0 if the list is empty.
 uint32_t glint_pattern_take(struct glint_pattern *pattern, const glint_pattern_lanes **entries);
-/// shader.c: lists those of `lanes` (one bit each) whose materials have shaders. Returns the points with the normals for shaders.
+/// shader.c: lists those of `lanes` (one bit each) whose materials have shaders. Returns the points with the normals
+/// for shaders.
 glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint_plan *plan, const uint16_t *lanes);
 /// Gathers the inputs of a shader for some entries and their material. The caller sets the inputs in `known` (one bit
 /// each).

@@ -34,7 +34,8 @@ typedef struct scanning {
     uint32_t across; ///< tiles
     size_t tile_count, chunk_count;
     extent *extents; ///< of each primitive
-    uint32_t *counts; ///< entries of each tile, chunk after chunk; then the position of the chunk's first entry of the tile
+    uint32_t *counts; ///< entries of each tile, chunk after chunk; then the position of the chunk's first entry of the
+        ///< tile
     glint_raster *raster;
 } scanning;
 
@@ -127,7 +128,8 @@ static inline bool cover_triangle(const picture *screen, const seen_corner corne
     return true;
 }
 
-/// Returns a lower bound of t * scale; -inf if the triangle is so close to edge-on that rounding may put a hit anywhere.
+/// Returns a lower bound of t * scale; -inf if the triangle is so close to edge-on that rounding may put a hit
+/// anywhere.
 static inline float depth_of(const picture *screen, const seen_corner corner[3])
 {
     const double edge_on = screen->is_float ? 1e-3 : 1e-9, margin = screen->is_float ? 1e-3 : 1e-6;

@@ -1,8 +1,8 @@
 /// A frame with an open shutter: the mean of its light at several times.
 ///
-/// Light adds up. If only lights differ between the times, the frame is one plan, which contains a changing light once
-/// for each time with its share of the strength; nothing else is done twice. If surfaces, materials or the camera differ, each
-/// time is rendered, and effects/shutter/shutter.c takes the mean, also of derivatives.
+/// Light adds up. If only lights differ between the times, the frame is one plan, which contains a changing light
+/// once for each time with its share of the strength; nothing else is done twice. If surfaces, materials or the
+/// camera differ, each time is rendered, and effects/shutter/shutter.c takes the mean, also of derivatives.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"

@@ -1,5 +1,5 @@
-/// The mean of a frame's times, if more than lights differ between them. Each time is rendered as a frame of its own, with
-/// reuse between them, and added up in double.
+/// The mean of a frame's times, if more than lights differ between them. Each time is rendered as a frame of its own,
+/// with reuse between them, and added up in double.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/film/tone.h"

@@ -1,4 +1,5 @@
-/// Finds shadow rays that may hit something transparent, using only bounds, so that other rays are not followed. Internal.
+/// Finds shadow rays that may hit something transparent, using only bounds, so that other rays are not followed.
+/// Internal.
 #ifndef GLINT_TINTS_H
 #define GLINT_TINTS_H
 

@@ -181,7 +181,8 @@ static bool is_black(const glint_plan *plan, uint32_t material)
     return !plan->patterns && !plan->derivatives && m->highlight == GLINT_HIGHLIGHT_NONE && vec_max_abs(m->diffuse) == 0;
 }
 
-/// Returns the lanes whose rays to the light are followed: from points that show light, and that some row does not reach freely.
+/// Returns the lanes whose rays to the light are followed: from points that show light, and that some row does not
+/// reach freely.
 static bool choose_points(glint_tile *tile, const glint_tile_frame *frame, uint32_t index, uint32_t slot, uint32_t count)
 {
     uint16_t lanes[GLINT_TILE_GROUPS] = { 0 };

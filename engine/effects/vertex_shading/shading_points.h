@@ -1,8 +1,8 @@
 /// The light of faces and vertices, computed once for flat and Gouraud shading. Internal.
 ///
-/// A shading point has two sides. Sides are computed in blocks, when a sample first needs one of them. The points of a
-/// block and their lanes are fixed, so every side gets the same light, in whatever order tiles run. The worker that claims a
-/// block computes it; others wait for it.
+/// A shading point has two sides. Sides are computed in blocks, when a sample first needs one of them. The points of
+/// a block and their lanes are fixed, so every side gets the same light, in whatever order tiles run. The worker that
+/// claims a block computes it; others wait for it.
 #ifndef GLINT_SHADING_POINTS_H
 #define GLINT_SHADING_POINTS_H
 
@@ -22,7 +22,8 @@ typedef struct glint_shading_points_cached {
     uint32_t ready; ///< blocks computed before this frame
     glint_shading_point_light *light; ///< fronts, then backs; then the same for each group of light passes
     size_t group_count; ///< of light passes
-    double *slopes; ///< for each point its light (three numbers) and three slopes for each derivative; NULL: no derivatives
+    double *slopes; ///< for each point its light (three numbers) and three slopes for each derivative; NULL: no
+        ///< derivatives
     size_t slope_count; ///< derivatives
     atomic_uchar *state; ///< of each block: a glint_block_state
     size_t reserved; ///< bytes of the budget

@@ -113,7 +113,8 @@ static double weights_of(const glint_prim *prim, double scale, const double poin
     return fmin(fmin(w[0], w[1]), 1 - w[0] - w[1]);
 }
 
-/// Finds the middle of a polygon, on the triangle that contains it; if the middle is outside, the middle of the largest triangle.
+/// Finds the middle of a polygon, on the triangle that contains it; if the middle is outside, the middle of the
+/// largest triangle.
 static void find_polygon_middle(const glint_geometry *geometry, uint32_t first, uint32_t count, shading_point *s)
 {
     const double scale = geometry->table.scale;

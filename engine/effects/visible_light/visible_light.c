@@ -1,5 +1,5 @@
-/// Visible lights: finds the rays that hit a light before any surface. For the following stages except `shade`, such a ray
-/// misses; in `shade` the light replaces the background.
+/// Visible lights: finds the rays that hit a light before any surface. For the following stages except `shade`, such
+/// a ray misses; in `shade` the light replaces the background.
 ///
 /// All of it is double, and the same code for every instruction set: few pixels see a light.
 #include "engine/base/alloc.h"
@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// The largest distance by which rounding moves a point off a plane, relative to the lengths involved, by the precision of hits.
+/// The largest distance by which rounding moves a point off a plane, relative to the lengths involved, by the
+/// precision of hits.
 static const double plane_slack[] = { [GLINT_DOUBLE] = 0x1p-46, [GLINT_FLOAT] = 0x1p-18 };
 
 struct glint_visible_light {
@@ -52,7 +53,8 @@ typedef struct visible_light_ray {
     double slack; ///< of the frame's precision
 } visible_light_ray;
 
-/// Returns the first hit of a ray with a sphere, or its exit if the ray begins inside; 0: none. The formula is that of cast.
+/// Returns the first hit of a ray with a sphere, or its exit if the ray begins inside; 0: none. The formula is that
+/// of cast.
 static double meet_ball(const glint_plan_visible_light *visible_light, const visible_light_ray *ray)
 {
     double f[3], x[3];
@@ -117,7 +119,8 @@ static bool lies_in(const glint_plan_visible_light *visible_light, const visible
     return height_over(visible_light, p, vec_max_abs(way) + vec_max_abs(ray->origin), ray->slack) == 0;
 }
 
-/// Returns the light that a ray hits before its surface at `*t`; GLINT_MISS: none. At equal distance, the light defined first.
+/// Returns the light that a ray hits before its surface at `*t`; GLINT_MISS: none. At equal distance, the light
+/// defined first.
 static uint32_t see(const struct glint_visible_light *visible_light, const glint_plan *plan,
                     const visible_light_ray *ray, double *t)
 {

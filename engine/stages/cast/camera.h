@@ -44,7 +44,8 @@ static void R(camera_perspective)(const glint_camera_args *args)
     }
 }
 
-/// For pixels at any position: each row of groups has complete directions, and the column adds nothing, not even a sign.
+/// For pixels at any position: each row of groups has complete directions, and the column adds nothing, not even a
+/// sign.
 static void R(camera_pixels)(const glint_camera_args *args)
 {
     _Alignas(64) real s[GLINT_GROUP], t[GLINT_GROUP];

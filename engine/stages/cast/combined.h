@@ -100,7 +100,8 @@ static inline unsigned R(vector_lanes)(const uint32_t *list, uint32_t wanted)
     return lanes;
 }
 
-/// Makes the program for a vector of rays: the program of the whole without parts that none of the rays enters. Often few parts remain.
+/// Makes the program for a vector of rays: the program of the whole without parts that none of the rays enters. Often
+/// few parts remain.
 static void R(leave_parts)(const glint_combined *whole, uint64_t live, R(stretches) * s)
 {
     uint32_t begin[GLINT_PARTS_MAX]; // where the code of each set so far begins; a set without code is empty

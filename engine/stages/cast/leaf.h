@@ -104,7 +104,8 @@ static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_scree
     return mask | edge_on;
 }
 
-/// Finds the cells that a triangle may show in, for pixels at any position; edge-on, the cells of its box. Returns false if there are none.
+/// Finds the cells that a triangle may show in, for pixels at any position; edge-on, the cells of its box. Returns
+/// false if there are none.
 static inline bool R(cells_of_triangle)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, const node_on_screen *seen, int slot,
                                         screen_cells *out)
 {

@@ -51,7 +51,8 @@ static inline rm R(way_back)(const glint_solid *solid, const glint_prim *prim, c
     return R(meet_torus)(solid, f, e, start, t);
 }
 
-/// Returns whether a ray that passes through the surface may hit it again. A part of a combined solid is hit only through that solid.
+/// Returns whether a ray that passes through the surface may hit it again. A part of a combined solid is hit only
+/// through that solid.
 static inline bool R(has_inside)(const glint_geometry_table *table, uint32_t id)
 {
     if (id >= table->prim_count)

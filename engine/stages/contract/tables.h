@@ -123,8 +123,8 @@ typedef struct glint_shading_points {
     uint32_t at[3];
 } glint_shading_points;
 
-/// The unit shapes: x^2 + y^2 + z^2 <= 1; all of x, y, z in -1 .. 1; x^2 + y^2 <= 1 with z in -1 .. 1; x^2 + y^2 <= z^2 with
-/// z in 0 .. 1; x^2 + y^2 <= 1 with z = 0; (sqrt(x^2 + y^2) - 1)^2 + z^2 <= tube^2.
+/// The unit shapes: x^2 + y^2 + z^2 <= 1; all of x, y, z in -1 .. 1; x^2 + y^2 <= 1 with z in -1 .. 1; x^2 + y^2 <=
+/// z^2 with z in 0 .. 1; x^2 + y^2 <= 1 with z = 0; (sqrt(x^2 + y^2) - 1)^2 + z^2 <= tube^2.
 typedef enum glint_form {
     GLINT_FORM_BALL,
     GLINT_FORM_BOX,

@@ -99,7 +99,8 @@ static inline void tone_clamp(const glint_tone_args *args, const vf beauty[3], v
     *args->nonfinite += (unsigned)__builtin_popcount(~fm_bits(sound) & active);
 }
 
-/// Returns whether a lane is negative (also -0), above top or NaN: its bits, as an unsigned number, are above those of top.
+/// Returns whether a lane is negative (also -0), above top or NaN: its bits, as an unsigned number, are above those
+/// of top.
 static inline bool tone_is_outside(const vf x[3], vf top)
 {
     return fm_bits(i_any_above(f_bits(x[0]), f_bits(x[1]), f_bits(x[2]), f_bits(top))) != 0;

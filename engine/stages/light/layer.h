@@ -68,7 +68,8 @@ static inline layer_lanes lanes_of_layer(const layer_frame *frame, uint32_t s, s
     return out;
 }
 
-/// Computes axes along the line from the middle of the points to the middle of the light. Returns false if these coincide.
+/// Computes axes along the line from the middle of the points to the middle of the light. Returns false if these
+/// coincide.
 static bool make_layer_axes(const float lower[3], const float upper[3], const light_place *light, layer_frame *frame)
 {
     double way[3], across[3], down[3], least[3] = { 0, 0, 0 };

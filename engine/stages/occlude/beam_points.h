@@ -59,7 +59,8 @@ typedef struct R(beam) {
     _Alignas(64) float far[BEAM_DOWN][SCREEN_ACROSS]; ///< maximum w of each cell's open points
     R(beam_batch) batch;
     R(beam_leaf) leaf;
-    R(near_points) run[GLINT_BEAM_RUNS + 1 + GLINT_TILE_SAMPLES / VF + BEAM_DOWN]; ///< found, and not yet paired with their occluders
+    R(near_points) run[GLINT_BEAM_RUNS + 1 + GLINT_TILE_SAMPLES / VF + BEAM_DOWN]; ///< found, and not yet paired with
+        ///< their occluders
     int runs;
 } R(beam);
 

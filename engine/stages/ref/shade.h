@@ -1,4 +1,5 @@
-// The specification of shade in plain C: Phong, Blinn-Phong and microfacets, lights added in their order. Contract: stages.h.
+// The specification of shade in plain C: Phong, Blinn-Phong and microfacets, lights added in their order. Contract:
+// stages.h.
 
 /// Returns a material's value at a sample: its own, or that of the plane that replaces it.
 static float number_at(const glint_shade_material *material, unsigned which, float number, const float *plane,

@@ -157,7 +157,8 @@ INNER void add_lights(const light_factors *factors, const light_colors *colors, 
     }
 }
 
-/// Computes one vector of the rounded sum of all lights' contributions; for one light, its contribution. `facets` is a constant.
+/// Computes one vector of the rounded sum of all lights' contributions; for one light, its contribution. `facets` is
+/// a constant.
 INNER void sum_lights(const light_factors *factors, const light_colors *colors, const bool facets, int term, int i, vf sum[3])
 {
     const uint32_t lights = sharing_lights(factors, term), more = lights & (lights - 1);

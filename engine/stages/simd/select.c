@@ -1,4 +1,5 @@
-/// The only reader of the processor's flags. The Makefile defines GLINT_KERNEL_x for each instruction set that it compiles.
+/// The only reader of the processor's flags. The Makefile defines GLINT_KERNEL_x for each instruction set that it
+/// compiles.
 #include "engine/stages/stages.h"
 
 #include <stdlib.h>
