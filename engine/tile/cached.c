@@ -370,8 +370,7 @@ void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint
     for (uint32_t i = 0; sampled && i < frame->reuse->light_count && cached->shown_count > 0; i++)
         cached->lights[i].place = frame->plan->lights[i].place_key;
     glint_film_stamp stamp = stamp_of(tile, frame);
-    const bool has_last = frame->last && frame->last != frame->image && frame->last->film; // its pixel values are still
-        // there
+    const bool has_last = frame->last && frame->last != frame->image && frame->last->film; // pixel values still there
     const glint_film_stamp *last = has_last ? &frame->last->film[tile->index] : NULL;
     const bool moved = tile->counts.runs[GLINT_STAGE_LIGHT] != before.lights; // then pixel values rarely stay the same
     if (last && last->codes && !moved && glint_tile_has_codes_of(tile, frame->image, frame->last))

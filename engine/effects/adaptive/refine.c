@@ -109,8 +109,7 @@ void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_image *base = frame->base;
     const glint_refine_tile *own = &frame->refine->tiles[tile->index];
-    if (frame->refine->in_codes && !own->clipped && !own->nonfinite) { // only the refined pixels' values must be
-        // computed
+    if (frame->refine->in_codes && !own->clipped && !own->nonfinite) { // only refined pixels' values are missing
         mark_refined(tile, frame);
         return;
     }

@@ -72,8 +72,7 @@ static bool fit(void *memory, const glint_plan *plan)
     if (!plan->derivatives)
         return true;
     if (!bounce->slopes)
-        bounce->slopes = malloc((LEVELS + 1) * each * sizeof *bounce->slopes); // the system allocates pages on first
-            // use
+        bounce->slopes = malloc((LEVELS + 1) * each * sizeof *bounce->slopes); // the system allocates pages when used
     for (size_t i = 0; bounce->slopes && i < LEVELS; i++)
         bounce->room[i].slopes = bounce->slopes + i * each;
     if (bounce->slopes)

@@ -56,8 +56,7 @@ static void axis_uv(const glint_pattern_place *place, const double p[3], glint_s
         return;
     }
     out->at[0] = around(x, -y);
-    out->at[1] = fmin(fmax(vec_dot(d, place->along), 0), BELOW_1); // so that a cap shows one row of a texture despite
-        // rounding
+    out->at[1] = fmin(fmax(vec_dot(d, place->along), 0), BELOW_1); // a cap shows one row of a texture despite rounding
     out->unit = fmin(TURN * place->radius, place->length);
     for (int c = 0; c < 3; c++)
         out->slope[0][c] = (x * place->side[1][c] - y * place->side[0][c]) / turn;

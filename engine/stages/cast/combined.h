@@ -371,8 +371,7 @@ static unsigned R(next_change)(const glint_geometry_table *table, const glint_co
     *t = R(first_change)(s, *from);
     const unsigned told = rm_bits(rm_or(r_lt(*t, s->known), r_eq(s->known, r_set(HUGE_VAL))));
     *hit = rm_bits(r_lt(*t, r_set(HUGE_VAL))) & lanes & told;
-    *from = s->known * r_set(GLINT_REAL == 64 ? 1 - 0x1p-53 : 1 - 0x1p-24); // the largest number below it; it is a
-        // normal number
+    *from = s->known * r_set(GLINT_REAL == 64 ? 1 - 0x1p-53 : 1 - 0x1p-24); // the next smaller number, as it is normal
     return lanes & ~told;
 }
 

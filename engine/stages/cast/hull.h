@@ -120,8 +120,7 @@ static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out,
     for (unsigned left = out | in; left; left &= left - 1) {
         const int i = __builtin_ctz(left), turns = out >> i & 1 ? 1 : -1;
         const bool on_surface = rays->on && rays->on[i] != GLINT_MISS, on_hull = R(starts_on_hull)(rays, i);
-        bool begun = t[i] == 0; // only exact for planes that triangles share; at an edge, where rays may start,
-            // rounding decides
+        bool begun = t[i] == 0; // only exact for shared planes; at an edge, where rays may start, rounding decides
         if (rays->on && rays->on[i] == index)
             continue;
         if ((!prim->face || on_hull) && t[i] <= near && -near <= t[i]) {

@@ -61,8 +61,7 @@ INNER vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
     if (!rm_bits(near))
         return R(discriminant_afar)(f, d, ar2);
     vr inner = bb - a * c;
-    if (rm_bits(near) == (1u << VR) - 1) // for example, a ground sphere seen from above: the cross product is not
-        // needed
+    if (rm_bits(near) == (1u << VR) - 1) // as for a ground seen from above: no cross product is needed
         return inner;
     return r_select(near, inner, R(discriminant_afar)(f, d, ar2));
 }
@@ -211,8 +210,7 @@ INNER void R(keep_nearest)(const glint_cast_args *args, size_t at, uint32_t id, 
     real *best_t = (real *)args->t + at;
     uint32_t *best_id = args->prim + at;
     const vr old_t = r_load(best_t);
-    const rm tie = rm_and(rm_and(hit, r_eq(t, old_t)), r_lt(t, r_set(HUGE_VAL))); // at infinity there is no current hit
-        // to tie with
+    const rm tie = rm_and(rm_and(hit, r_eq(t, old_t)), r_lt(t, r_set(HUGE_VAL))); // at infinity there is nothing to tie
     hit = rm_and(hit, r_lt(t, old_t));
     if (rm_bits(tie))
         hit = rm_or(hit, rm_from_bits(R(wins_tie)(args->geometry->prims, id, best_id, rm_bits(tie))));

@@ -282,8 +282,7 @@ static inline unsigned R(boxes_of_lone_ray)(const glint_node *node, const R(lone
         for (int k = 0; k < 3; k++) {
             const float *first = (const float *)node + ray->first[k], *last = (const float *)node + ray->last[k];
             const vf inverse = f_set(ray->inverse[k]);
-            enter = f_max((f_load(first + i) - f_set(ray->enter[k])) * inverse, enter); // NaN, from 0 times infinity,
-                // keeps
+            enter = f_max((f_load(first + i) - f_set(ray->enter[k])) * inverse, enter); // NaN (0 times inf) keeps
             leave = f_min((f_load(last + i) - f_set(ray->leave[k])) * inverse, leave); // the previous value
         }
         f_store(depth + i, enter);

@@ -95,8 +95,7 @@ static inline unsigned R(boxes_on_way)(const glint_node *node, const R(common_wa
             const float *first = (const float *)node + way->first[k], *last = (const float *)node + way->last[k];
             const vf gentle = f_set(way->gentle[k]), steep = f_set(way->steep[k]);
             const vf x = f_load(first + i) - f_set(way->enter[k]), y = f_load(last + i) - f_set(way->leave[k]);
-            enter = f_max(f_min(x * gentle, x * steep), enter); // NaN, from 0 times infinity, as the second operand
-                // keeps the previous value
+            enter = f_max(f_min(x * gentle, x * steep), enter); // a NaN (0 times inf) keeps the previous value
             leave = f_min(f_max(y * gentle, y * steep), leave);
         }
         f_store(depth + i, enter);

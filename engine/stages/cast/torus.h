@@ -298,8 +298,7 @@ static rm R(meet_torus)(const glint_solid *solid, const vr f[3], const vr e[3], 
 /// of it.
 static void R(torus_ends)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr ends[4])
 {
-    R(torus_line) l = { .near = rm_from_bits(0) }; // if no line comes near the tube, the other fields stay as they are
-        // here
+    R(torus_line) l = { .near = rm_from_bits(0) }; // the other fields stay if no line comes near the tube
     R(along_torus)(solid, f, e, start, &l);
     const vr zero = r_set(0), none = r_set(-HUGE_VAL);
     for (int stretch = 0; stretch < 4; stretch++) {

@@ -72,8 +72,7 @@ INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const 
     }
     const vd further = rest / DOT(gradient, rays->way);
     const vd side = d_select(d_lt(DOT(gradient, normal), d_set(0)), d_set(-1), d_set(1));
-    const vd shorter = d_set(-1) / DOT(rays->way, eye), away = DOT(rays->turned, eye); // the eye vector is opposite to
-        // the ray
+    const vd shorter = d_set(-1) / DOT(rays->way, eye), away = DOT(rays->turned, eye); // eye is opposite to the ray
     const vd curved = side * d_set(round ? 1 / prim->radius : 1);
     for (int c = 0; c < 3; c++) {
         const vd moved = carried[c] + further * rays->way[c];

@@ -129,8 +129,7 @@ static inline void tone_groups(const glint_tone_args *args, bool exposed)
     const tone_fit fit = tone_load_fit(args->fit);
     uint32_t column = 0;
     uint8_t *codes = args->codes;
-    vf seen[3] = { f_set(NAN), f_set(NAN), f_set(NAN) }; // NaN equals nothing: clamped vectors are never reused,
-        // because each is counted
+    vf seen[3] = { f_set(NAN), f_set(NAN), f_set(NAN) }; // NaN: clamped vectors are never reused, as each is counted
     vi rgb = i_set(0);
     for (uint32_t g = 0; g < args->group_count; g++) {
         const bool last = ++column == args->groups_across;

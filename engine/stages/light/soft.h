@@ -122,8 +122,7 @@ static inline R(soft_lanes) R(sort_by_ball)(const R(whole_light) * light, const 
     R(soft_lanes) out = { 0, 0 };
     const vf radius = f_set(light->radius), bound = f_set(prim->filter_bound), slack = f_set(occluder->slack);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vf way[3], e[3], off[3]; // from the point to the light, from the point to the occluder, and the perpendicular
-            // between both
+        vf way[3], e[3], off[3]; // from the point to the light; to the occluder; the perpendicular between both
         for (int k = 0; k < 3; k++) {
             const vf x = f_load(local[k] + i);
             way[k] = f_set(light->middle[k]) - x;
@@ -174,8 +173,7 @@ static R(soft_group)
         const uint32_t id = tile->occluders[k].id;
         const glint_prim *prim = &args->geometry->prims[id];
         const unsigned own = lanes_equal(args->prim + group->at, id) & lanes;
-        unsigned near = own; // the primitive that a point is on does not block it, except from behind, and except for
-            // triangles and tori
+        unsigned near = own; // a point's own primitive only blocks from behind, except triangles and tori
         if (prim->kind == GLINT_PRIM_PLANE)
             near = 0;
         else if (prim->kind != GLINT_PRIM_TRIANGLE && !is_torus(args->geometry, prim))

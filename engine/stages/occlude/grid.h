@@ -14,10 +14,8 @@
 
 #if GLINT_REAL == 64
 
-#define GRID_FAR 0x1p20 // for directional light, in the index's units: from farther away a projected position is not
-    // exact enough
-#define GRID_REACH (GLINT_GRID_RADIUS * GLINT_GRID_RADIUS * (1 + 0x1p-20f)) // steps^2 per squared unit of radius, with
-    // the rounding error
+#define GRID_FAR 0x1p20 // directional light, in the index's units: from farther away, projection is not exact enough
+#define GRID_REACH (GLINT_GRID_RADIUS * GLINT_GRID_RADIUS * (1 + 0x1p-20f)) // steps^2 per unit radius^2, plus rounding
 #define GRID_BIAS 0x1p23f // integers below this are the lower bits of floats from this on
 
 /// Points that may be blocked, and their state.

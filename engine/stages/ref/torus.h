@@ -77,8 +77,7 @@ static void NAME(begin_on_torus)(NAME(torus_line) * l, const glint_solid *solid,
     const REAL *turn = l->inward ? l->turn : l->turn + 1;
     l->stretch = (l->inward ? 0 : 1) + (l->begin < (REAL)0.5 * turn[0] + (REAL)0.5 * turn[1] ? 0 : 2);
     REAL *next =
-        l->stretch < 3 ? &l->gap[l->stretch] : NULL; // on this side of it, however rounding has moved the next turning
-            // point
+        l->stretch < 3 ? &l->gap[l->stretch] : NULL; // on this side, however rounding moved the next turning point
     if (next && l->inward && *next > 0)
         *next = 0;
     if (next && !l->inward && *next <= 0)

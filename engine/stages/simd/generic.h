@@ -81,8 +81,7 @@ static inline vf f_abs(vf x) { return (vf)((fm)x & INT32_MAX); }
 static inline vd d_sqrt(vd x) { return (vd) { sqrt(x[0]), sqrt(x[1]) }; }
 static inline vd d_select(dm m, vd a, vd b)
 {
-#ifdef __SSE2__ // GCC 12 fails to compile a select whose mask comes from several branches; plain SSE2 has no
-    // instruction for it
+#ifdef __SSE2__ // GCC 12 fails on a select whose mask comes from several branches: plain SSE2 has no instruction for it
     __asm__("" : "+x"(m));
 #endif
     return (vd)(((dm)a & m) | ((dm)b & ~m));
