@@ -1,19 +1,19 @@
-/// The contract of every stage: what it reads and writes. The exact order of its arithmetic is that of ref/. What
-/// holds for all stands here, each stage in one of contract/tables.h, contract/hits.h, contract/light.h and
-/// contract/film.h, in the order of work.
+/// The contract of every stage: what it reads and writes. This file has the rules for all stages. The single stages
+/// are in contract/tables.h, contract/hits.h, contract/light.h and contract/film.h, in the order of work, with those
+/// of derivatives and programs in contract/derivative.h and contract/program.h.
 ///
-/// A stage takes plain arrays in and gives plain arrays out; it has never heard of a scene. Each is written once in
-/// the vector vocabulary (simd_*.h) and compiled for every instruction set, and once more, on its own, as the scalar
-/// reference (ref.c). All of them give the same bits: + - * / sqrt, compares and selects in the order written here,
-/// no contraction, no reassociation. `min(a, b)` is `a < b ? a : b` and `max(a, b)` is `a > b ? a : b`, NaN included.
-/// dot(a, b) is (a.x b.x + a.y b.y) + a.z b.z. length2(a) is dot(a, a).
+/// A stage takes plain arrays in and gives plain arrays out. It knows nothing about scenes. Each stage is written
+/// once in the vector vocabulary (simd/) and compiled for every instruction set, and once more, independently, as the
+/// scalar reference (ref/). All of them give the same bits: + - * / sqrt, compares and selects in the order of ref/,
+/// without contraction or reassociation. `min(a, b)` is `a < b ? a : b` and `max(a, b)` is `a > b ? a : b`, also for
+/// NaN. dot(a, b) is (a.x b.x + a.y b.y) + a.z b.z. length2(a) is dot(a, a).
 ///
-/// Samples of a tile travel in groups of 16: a block of 4 x 4 pixels, row by row. `real` is double or float by the
-/// frame's precision; arrays of real are `void *` here and every kernel of geometry exists for both. Where a table
-/// (which is double) meets float arithmetic, its numbers are first rounded to float.
+/// Samples of a tile are stored in groups of 16: a block of 4 x 4 pixels, row by row. `real` is double or float, by
+/// the frame's precision. Arrays of real are `void *` here, and every kernel of geometry exists for both. Numbers of
+/// tables, which are double, are rounded to float before they are used in float arithmetic.
 ///
-/// Arrays are aligned to 64 bytes and as long as the groups; indices of primitives and materials are below 2^31.
-/// Where a result is NaN, its sign and payload are not part of the promise.
+/// Arrays are aligned to 64 bytes and as long as the groups. Indices of primitives and materials are below 2^31. The
+/// sign and payload of NaN results are not defined.
 #ifndef GLINT_STAGES_H
 #define GLINT_STAGES_H
 
@@ -67,8 +67,9 @@ extern const glint_stages glint_stages_ref, glint_stages_generic, glint_stages_a
 /// The instruction sets of this build, NULL-terminated, best last.
 extern const glint_stages *const glint_stages_built[];
 bool glint_stages_usable(const glint_stages *stages);
-/// By name, "sse2" for generic; NULL takes the environment's GLINT_ISA, else the best usable. Returns NULL with
-/// *unknown telling whether the name is unknown (true) or the machine lacks it (false); *requested is that name.
+/// Returns an instruction set by name, with "sse2" for generic. NULL selects that of the environment's GLINT_ISA,
+/// otherwise the best usable one. Returns NULL if the name is unknown (*unknown true) or the machine lacks the
+/// instruction set (false); *requested is that name.
 const glint_stages *glint_stages_select(const char *name, const char **requested, bool *unknown);
 
 #endif

@@ -194,7 +194,7 @@ static void pack(glint_batch *batch, const glint_tile_frame *frame)
     mark_hits(&batch->tile, next);
 }
 
-/// Makes samples of the rays' hits.
+/// Turns the rays' hits into samples.
 static void take_hits(glint_batch *batch, const glint_tile_frame *frame)
 {
     memcpy(batch->met, batch->tile.at.hits, batch->rays->group_count * sizeof *batch->met);
@@ -549,7 +549,8 @@ static void direct(const glint_batch *batch, const glint_tile *tile, const glint
     }
 }
 
-/// Notes which rays went straight through a surface, which does not add to their depth, and along which the eye looks.
+/// Records the rays that went straight through a surface, which does not add to their depth, and the rays along which
+/// the eye looks.
 static void note_passes(const glint_batch *batch, const glint_tile *tile, const glint_sent *sent, glint_rays *rays)
 {
     const glint_rays *from = tile == &batch->tile ? batch->rays : NULL;

@@ -1,4 +1,4 @@
-/// Sums the samples of an area light where they are found, without storing each.
+/// Sums the samples of an area light as they are computed, without storing each.
 #include "engine/effects/pattern/pattern.h"
 
 #include <string.h>

@@ -253,7 +253,8 @@ static void see_next(struct glint_cut_out *cut, glint_tile *tile, const glint_ti
         }
 }
 
-/// Takes the distances of a cast that are nearer to the known distance than those taken before.
+/// Takes the distances of a cast that are nearer to the known distance than those taken before; without `any`, only
+/// distances within rounding of the known one.
 static void take_nearer(const struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame, bool any,
                         double off[GLINT_TILE_SAMPLES])
 {
@@ -270,8 +271,9 @@ static void take_nearer(const struct glint_cut_out *cut, glint_tile *tile, const
 }
 
 /// Computes the distance of primitive `prim`, which the lanes in `active` see through holes, from the origins of
-/// their rays: as the first hit on it, or as the other one. For a sphere, any of the distances gives the point; for
-/// other shapes, one of the two does. For a torus, which may be hit twice more, the search starts from any near hit.
+/// their rays. The candidates are the first hit on it and the other one; the nearer to the known distance is taken.
+/// For a sphere, whose point is exact from any distance, and for a torus, which may be hit twice more, it must be
+/// within rounding of the known one.
 static void see_from_origin(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame, uint32_t prim,
                             double off[GLINT_TILE_SAMPLES])
 {

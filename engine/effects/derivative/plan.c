@@ -57,7 +57,7 @@ static void set_constant(double value[3], double slope[3])
 }
 
 /// For a constant whose product with a program's result is in planes: sets it to 1 and scales its slope to match. A
-/// constant 0 has no slope here; see is_lost in derivative_fields.c.
+/// constant 0 has no slope here; see is_lost in fields.c.
 static void set_share(double value[3], double slope[3])
 {
     for (int c = 0; c < 3; c++) {

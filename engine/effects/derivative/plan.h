@@ -35,7 +35,7 @@ typedef struct glint_plan_derivative {
     bool bends; ///< some surface moves, or the eye, or an index of refraction turns rays
     bool weighs; ///< some mirror, transmission or absorption changes
     bool fades; ///< the depth cue changes
-    bool everywhere; ///< light that comes from no lamp has a slope
+    bool everywhere; ///< light without a lamp has a slope
     bool repaints; ///< some program changes
 } glint_plan_derivative;
 
@@ -44,8 +44,8 @@ typedef struct glint_plan_derivatives {
     bool moves, bends, weighs, fades, everywhere, repaints;
     glint_plan_derivative of[GLINT_DERIVATIVES_MAX];
     glint_gradient *gradients; ///< gradients of shaders, one for each material of the plan; NULL: no shaders
-    glint_plan_derivative level[GLINT_DERIVATIVES_MAX]; ///< the same with all zero slopes set to 1: shows what depends
-        ///< on the parameter
+    glint_plan_derivative level[GLINT_DERIVATIVES_MAX]; ///< the same with all zero slopes replaced by 1: shows what
+        ///< depends on the parameter
 } glint_plan_derivatives;
 
 void glint_plan_derivatives_free(glint_plan_derivatives *derivatives); ///< NULL: nothing

@@ -30,7 +30,7 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
 
 static bool called(const glint_plan *plan) { return plan->derivatives; }
 
-/// How fast what was shaded changes with parameters.
+/// Computes how fast the shaded light changes with parameters.
 static void derive(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     if (walk->any)

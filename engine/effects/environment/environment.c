@@ -40,7 +40,7 @@ static void destroy(void *memory)
     free(environment);
 }
 
-/// Lanes of a group whose rays leave the scene.
+/// Returns the lanes of a group whose rays leave the scene.
 static uint16_t leaving(const glint_tile *tile, const glint_plan *plan, uint32_t g)
 {
     uint16_t lanes = (uint16_t)(tile->active[g] & ~tile->at.hits[g]);

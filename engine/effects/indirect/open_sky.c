@@ -31,8 +31,8 @@ static void find_shares(glint_tile *tile, const glint_tile_frame *frame)
         glint_tile_find_patterns(tile, frame);
 }
 
-/// Returns the ray that goes on from sample i: the refracted one or, at a translucent surface, the straight one with
-/// the weight of both.
+/// Returns the continued ray of sample i: the refracted one or, at a translucent surface, the straight one with the
+/// weight of both.
 static glint_ray ray_beyond(const glint_batch *batch, const glint_tile_frame *frame, uint32_t i)
 {
     const bool ends = !(batch->rays->depth[batch->ray_of[i]] < frame->plan->desc.max_depth);

@@ -30,7 +30,7 @@ struct glint_indirect {
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES]; ///< directions of scattered paths
 };
 
-/// As fmax: of a NaN and a number the number.
+/// Returns the maximum like fmax: for NaN and a number, the number.
 static inline double glint_larger(double a, double b) { return a > b || b != b ? a : b; }
 
 static inline double glint_largest(const double c[3]) { return glint_larger(c[0], glint_larger(c[1], c[2])); }

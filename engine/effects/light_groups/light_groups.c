@@ -276,7 +276,7 @@ static void add_light(const double *restrict light, uint32_t count, double sampl
         mean[i] = (float)(light[i] / samples);
 }
 
-/// Computes the mean of the light that comes from no lamp, in one channel. lamps: the sums of all groups.
+/// Computes the mean of the light without a lamp, in one channel. lamps: the sums of all groups.
 static void find_rest(const glint_tile *tile, const glint_plan *plan, int c, const double *lamps, float *mean)
 {
     const double rounding = plan->runs[GLINT_STAGE_VERTEX] ? ROUNDING_OF_SITES : ROUNDING;

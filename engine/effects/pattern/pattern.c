@@ -465,7 +465,7 @@ bool glint_tile_find_painted(glint_tile *tile, const glint_tile_frame *frame)
                                           .hits = tile->at.hits,
                                           .material = tile->surface.material,
                                           .only = tile->at.only,
-                                          .fields = GLINT_FIELDS_PLANES }; // the list depends on nothing else
+                                          .fields = GLINT_FIELDS_PLANES }; // the list only depends on these
     glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, has_planes);
     return tile->pattern->count > 0;
 }

@@ -62,8 +62,9 @@ typedef struct glint_pattern_place {
     double face; ///< plane and disk: the common coordinate of all points on that axis
     double lower[3], upper[3]; ///< box
     double origin[3], along[3],
-        side[2][3]; ///< of s.uv: plane and disk: a point, and two tangents; cylinder and cone: the base, its axis
-    ///< divided by its squared length, and two unit vectors across it; torus: its centre, its unit axis, alike
+        side[2][3]; ///< for surface coordinates: plane and disk: a point, and two tangents; cylinder and cone: the
+    ///< base, its axis divided by its squared length, and two unit vectors perpendicular to it; torus: likewise, with
+    ///< its centre and its unit axis
     double shrink; ///< ratio of own lengths to world lengths
     double radius, length; ///< cylinder and cone; torus: radius of its tube, length of the circle in the middle of the
         ///< tube

@@ -1,4 +1,4 @@
-/// Scan conversion: which triangles each tile of a frame may show, found by projecting all of them. Internal.
+/// Scan conversion: finds the triangles that each tile of a frame may show, by projecting all triangles. Internal.
 ///
 /// The reverse of casting: no index is traversed. A triangle is entered in each tile that its image may touch,
 /// conservatively; hits are decided as in casting. Other primitives are cast, and the nearer hit wins.

@@ -13,7 +13,8 @@
 
 typedef struct glint_translucent {
     glint_material_desc
-        desc; ///< of a translucent material multiplied by its opacity, which is 1 here; else the material's own
+        desc; ///< translucent material: multiplied by the opacity, which is 1 here; otherwise the material's own
+            ///< description
     bool blends; ///< true if the material is translucent
     double clear; ///< 1 - o; 0 if a program gives it
     glint_program *program; ///< pattern of 1 - o, owned; NULL: a number

@@ -3,7 +3,7 @@
 /// refracted. An absorbing medium absorbs over its whole distance, also if the light or the point is inside of it.
 ///
 /// Only `occlude` decides which points stay dark: a point stays dark if its ray hits nothing that transmits. Rays
-/// that certainly miss all transparent objects are not followed (tints.h). The other rays, of all samples of a light,
+/// that certainly miss all transparent objects are not followed (plan.h). The other rays, of all samples of a light,
 /// are packed into full groups, as many as fit, and packed again after each surface.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"

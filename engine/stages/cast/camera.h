@@ -4,7 +4,7 @@
 
 #include "engine/stages/simd/real.h"
 
-/// 2 (first + step) - size for the lanes of a group, in double, rounded to real. `mirrored`: size - 2 (...).
+/// Computes 2 (first + step) - size for the lanes of a group, in double, rounded to real. `mirrored`: size - 2 (...).
 static inline void R(pixel_axis)(double first, const double step[GLINT_GROUP], double offset, double size,
                                  bool mirrored, real out[GLINT_GROUP])
 {
@@ -79,7 +79,7 @@ static void R(camera_orthographic)(const glint_camera_args *args)
     }
 }
 
-/// A group of a perspective camera, through its lens.
+/// Computes a group of a perspective camera, through its lens.
 INNER void R(lens_perspective)(const glint_camera_args *args, const real *shift, const real *bend, uint32_t g)
 {
     const size_t at = (size_t)g * GLINT_GROUP, x = g % args->groups_across, y = g / args->groups_across;
@@ -142,7 +142,7 @@ INNER void R(load3)(const void *const v[3], size_t at, vr out[3])
         out[k] = r_load((const real *)v[k] + at);
 }
 
-/// A group, and where it stands among the camera's.
+/// A group, and its position among the camera's groups.
 typedef struct R(group_place) {
     uint32_t g, x, y;
 } R(group_place);
@@ -156,7 +156,7 @@ INNER void R(next_group)(const glint_camera_args *camera, R(group_place) * place
     }
 }
 
-/// Where the directions of one group are: the sums of a column's and a row's numbers, or (both NULL) in arrays.
+/// The directions of one group: the sums of a column's and a row's numbers, or (both NULL) in arrays.
 typedef struct R(group_directions) {
     const real *across, *down;
 } R(group_directions);
@@ -169,7 +169,8 @@ INNER R(group_directions) R(directions_of)(const glint_camera_args *camera, uint
                                    (const real *)camera->down + (size_t)y * 3 * GLINT_GROUP };
 }
 
-/// Lanes i .. of the group; `direction`, `at`: the arrays and the group's place in them, where they are needed.
+/// Loads the directions of the lanes from i on. `direction`, `at`: the arrays and the group's offset in them; only
+/// read if the directions are in arrays.
 INNER void R(load_direction)(R(group_directions) from, const void *const direction[3], size_t at, int i, vr out[3])
 {
     for (int k = 0; k < 3; k++) {

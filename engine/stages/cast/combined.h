@@ -39,7 +39,7 @@ static void R(stretch_behind)(const glint_prim *plane, const vr o[3], const vr d
     t[1] = r_select(across, r_select(out, at, high), r_select(under, high, low));
 }
 
-/// Returns whether any ray is inside the part ahead of where it starts.
+/// Computes the interval inside the part, ahead of the rays' origins. Returns whether any ray has one.
 static bool R(stretch_within)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
                               vr t[2])
 {

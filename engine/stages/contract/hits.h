@@ -61,10 +61,10 @@ typedef struct glint_cast_args {
     const void *origin[3], *direction[3]; ///< cast_rays only: real, one per ray
     const uint32_t *leaving; ///< cast_rays only: the primitive that each ray starts on, or GLINT_MISS; NULL: no ray
         ///< starts on one
-    const uint16_t *inward; ///< with `leaving`, one bit per lane: the ray starts into the inside of that primitive
+    const uint16_t *inward; ///< with `leaving`, one bit per lane: the ray goes into the primitive that it starts on
     void *t; ///< out, real: point = origin + t direction; +inf where nothing is hit
     uint32_t *prim; ///< out: index in prims, or GLINT_MISS
-    uint16_t *hits; ///< out: a bit a lane
+    uint16_t *hits; ///< out: one bit per lane
     uint64_t
         *tests; ///< added to: pairs of a ray and a primitive that are decided by the formulas below. The number depends
         ///< on index and filter. May be NULL

@@ -25,7 +25,7 @@ typedef struct glint_instruction { ///< no padding: its bytes are hashed
         ///< are 0
 } glint_instruction;
 
-/// A picture at one size. Texels are red, green, blue, alpha, linear, row by row from the top.
+/// A picture at one size. Texels are red, green, blue, alpha; linear; row by row from the top.
 typedef struct glint_texture_level {
     uint32_t width, height; ///< 1 .. 65535
     const float *texels;

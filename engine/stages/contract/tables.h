@@ -152,7 +152,8 @@ typedef struct glint_solid {
         ///< forms: of low z, high z (the same for a disk); ball, torus: NULL. Normals point from low to high
     double places; ///< sphere, cylinder, cone: bound of the terms of x^2 + y^2 - 1 (or similar) for points on the side;
         ///< torus: bound of the terms of the distance from the circle in the middle of its tube
-    double tube; ///< torus: radius of its tube where that circle's is 1, above 0 and below 1
+    double tube; ///< torus: radius of its tube in the space in which the radius of that circle is 1; above 0 and below
+        ///< 1
     float lower[3], upper[3]; ///< a bounding box in the index's frame, rounded outwards; undefined for a part
     float axis[3], thick; ///< cylinder, cone and open forms that are longer than wide: no point is further than
                           ///< `thick`, in the index's units, from the line through the centre along `axis`, which is
@@ -261,7 +262,7 @@ typedef struct glint_geometry_table {
         ///< in space are neighbours in memory. After them, not counted: the parts of combined solids, and the triangles
         ///< of parts that are meshes
     uint32_t prim_count, triangles; ///< triangles: of prims[0 .. triangles)
-    const double (*corners)[3][3]; ///< of these
+    const double (*corners)[3][3]; ///< of the triangles
     const glint_node *nodes; ///< nodes[0] is the root; NULL: no primitive is bounded
     const uint32_t *unbounded; ///< the primitives that are not in the tree: planes, and combined solids without bounds
     uint32_t unbounded_count;

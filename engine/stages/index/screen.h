@@ -226,7 +226,7 @@ static inline bool find_behind(const float (*far)[SCREEN_ACROSS], screen_entry e
 }
 
 /// Returns the slots of `mask` whose boxes are in front of any of these cells; the first row is in the lowest bits of
-/// `four`. Taller boxes are not tested.
+/// `four`. Boxes taller than four rows are always included.
 static inline unsigned slots_before(const rows_behind *rows, const node_on_screen *seen, unsigned mask)
 {
     unsigned before = 0;

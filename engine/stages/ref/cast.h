@@ -86,7 +86,7 @@ static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3)
     return true;
 }
 
-/// Returns where ray i hits a primitive; 0: nowhere. *met: the primitive. eye: no ray starts on a surface.
+/// Returns t where ray i hits a primitive; 0: a miss. *met: the primitive. eye: no ray starts on a surface.
 static REAL NAME(meets)(const glint_cast_args *args, bool eye, uint32_t index, NAME(vec3) origin, NAME(vec3) direction,
                         uint32_t i, uint32_t *met)
 {

@@ -60,7 +60,7 @@ static double op_clamp(double x, double a, double b)
 
 // ---- elementary --------------------------------------------------------------------------------------------------
 
-/// Sine (turn 0) and cosine (turn 1): x = q pi/2 + r, |r| <= pi/4.
+/// Returns sine (turn 0) or cosine (turn 1): x = q pi/2 + r, |r| <= pi/4.
 static double op_sine(double x, unsigned turn)
 {
     static const double sine[] = GLINT_SINE, cosine[] = GLINT_COSINE;
@@ -73,7 +73,7 @@ static double op_sine(double x, unsigned turn)
     return quadrant & 2 ? -y : y;
 }
 
-/// 2^y. The power is applied in two halves, so that small results are subnormal.
+/// Returns 2^y. The power is applied in two halves, so that small results can be subnormal.
 static double op_exp2(double y)
 {
     static const double series[] = GLINT_POWER_OF_2;
@@ -85,7 +85,7 @@ static double op_exp2(double y)
     return (HORNER(series, x - n) * ldexp(1, (int)half)) * ldexp(1, (int)(n - half));
 }
 
-/// log2 of x: m 2^e with m in [sqrt(1/2), sqrt(2)).
+/// Returns log2 of x = m 2^e, with m in [sqrt(1/2), sqrt(2)).
 static double op_log2(double x)
 {
     static const double ratio[] = GLINT_LOG2_RATIO;
