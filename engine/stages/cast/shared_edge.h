@@ -1,6 +1,6 @@
-// beside: rays that leave a triangle by an edge or corner, and the triangles that share it. Rounding puts the ray's
-// origin on either side of those triangles. The relative position of the two triangles decides whether the ray hits
-// them. Contract: stages.h.
+// shared_edge: rays that leave a triangle by an edge or corner, and the triangles that share it. Rounding puts the
+// ray's origin on either side of those triangles. The relative position of the two triangles decides whether the ray
+// hits them. Contract: stages.h.
 #ifndef GLINT_CAST_SHARED_EDGE_H
 #define GLINT_CAST_SHARED_EDGE_H
 

@@ -1,4 +1,5 @@
-// lamp: spot and area lights: their additions to a light's arithmetic. Contract: stages.h, at glint_light_args.
+// light_sample: the additions of spot and area lights to a light's arithmetic. Contract: stages.h, at
+// glint_light_args.
 #ifndef GLINT_LIGHT_LIGHT_SAMPLE_H
 #define GLINT_LIGHT_LIGHT_SAMPLE_H
 

@@ -1,6 +1,6 @@
 // The reference of the geometry stages, for one type of real. ref.c includes this twice, with
-//   REAL the type: double or float
-//   NAME(x) x_double or x_float; ref.c defines square_root, exact_c and PLANE_GRAZING for each type
+//   REAL: the type, double or float
+//   NAME(x): x_double or x_float; ref.c defines square_root, exact_c and PLANE_GRAZING for each type
 // Every function follows stages.h line by line, for one sample. The loops over samples come last. The larger stages
 // have their own files, which are included here.
 

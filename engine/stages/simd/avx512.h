@@ -1,7 +1,10 @@
 /// The vector vocabulary for AVX-512 (F, DQ, VL, BW) and FMA.
 ///
-///   vf 16 floats vd 8 doubles vi 32-bit integers, as many as vf vq 64-bit integers, as many as vd
-///   fm, dm masks of vf and vd
+///   vf: 16 floats
+///   vd: 8 doubles
+///   vi: 32-bit integers, as many as vf
+///   vq: 64-bit integers, as many as vd
+///   fm, dm: masks of vf and vd
 ///
 /// An index is a 32-bit number below 2^31 (or GLINT_MISS) in a lane of either width: a double's value in vd, the raw
 /// bits in vf. Arithmetic is written with operators. fma appears only in two_prod; in unit, where it gives the bits
