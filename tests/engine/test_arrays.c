@@ -1,11 +1,11 @@
-// Light as files of floats: .npy against its format, .exr against what its library reads back, each against the planes; regions and
-// black pictures against the planes of the whole.
+// Float image files: .npy against its format, .exr against what the OpenEXR library reads back, both against the
+// planes; and crops and black pictures against the planes of the whole image.
 #include "tests/engine/cases/image_case.h"
 
 #include <stdlib.h>
 
 #define WIDTH 37
-#define HEIGHT 41 // more than two blocks of rows of an .exr
+#define HEIGHT 41 // more than two blocks of .exr rows
 #define PIXELS (WIDTH * HEIGHT)
 
 static float random_float(uint32_t *state)
@@ -14,7 +14,7 @@ static float random_float(uint32_t *state)
     return (float)((double)(*state >> 8) / (1 << 20) - 4);
 }
 
-/// Numbers of either sign, infinite ones and NaN among them, in these passes.
+/// An image with random planes of either sign in these passes, including infinities and NaN.
 static glint_image *make_planes(uint32_t passes)
 {
     glint_image *image = NULL;
@@ -27,7 +27,7 @@ static glint_image *make_planes(uint32_t passes)
     return image;
 }
 
-/// The value as stored in a file: colours are finite, distances unchanged.
+/// The value as stored in a file: colours are made finite, distances stay unchanged.
 static float expected(glint_pass pass, float value)
 {
     if (glint_pass_channels(pass) == 1)
@@ -101,7 +101,7 @@ static int64_t read_bytes(exr_const_context_t context, void *user, void *to, uin
     return (int64_t)count;
 }
 
-/// Reads the channel of this name as floats, top row first. False: there is none.
+/// Reads the channel with this name as floats, top row first. Returns false when there is none.
 static bool read_channel(const memory *file, const char *name, float *out, uint16_t *type)
 {
     exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -151,7 +151,7 @@ static void check_channel(const memory *file, const glint_image *image, const ch
         const float want = expected(pass, image->plane[pass][c][i]);
         if (half && fabsf(want) > 65520)
             assert_true(isinf(read[i]) && (read[i] > 0) == (want > 0));
-        else if (half && isfinite(want)) // 11 bits, and 2^-24 below them
+        else if (half && isfinite(want)) // half: 11 significant bits, and a spacing of 2^-24 among the subnormals
             assert_true(fabsf(read[i] - want) <= fabsf(want) * 0x1p-11f + 0x1p-25f);
         else
             assert_true(same(read[i], want));
@@ -265,7 +265,7 @@ static void test_black(void **state)
     assert_true(glint_image_is_black(image));
     glint_image_release(image);
     image = make_planes(1u << GLINT_PASS_DEPTH);
-    assert_false(glint_image_is_black(image)); // nothing is known of its light
+    assert_false(glint_image_is_black(image)); // without a beauty pass, its light is unknown
     glint_image_release(image);
 }
 

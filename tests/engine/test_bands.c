@@ -1,4 +1,4 @@
-/// Deflate in bands of rows: whatever was cached from the picture before, the file equals that of a fresh encoder.
+/// Deflate in bands of rows: whatever the cache holds from earlier pictures, the file equals that of a fresh encoder.
 #include "tests/engine/cases/image_case.h"
 #include "tests/engine/cases/random.h"
 
@@ -19,7 +19,8 @@ static size_t row_bytes(const glint_image *image)
     return (size_t)image->width * 3 * (image->code_tone.bits == 16 ? 2 : 1);
 }
 
-/// New codes for a row of tiles: often few different ones, so that bands deflate to a few bytes or to many.
+/// Writes new pixel values into a row of tiles: often few different ones, so that the size of deflated bands varies
+/// widely.
 static void paint(glint_image *image, size_t tile_row)
 {
     size_t first = tile_row * GLINT_TILE_HEIGHT, end = first + GLINT_TILE_HEIGHT;
@@ -48,7 +49,7 @@ static glint_image *random_picture(void)
     return new_picture(width, 1 + (int)below(width > 100 ? 150 : 1000), &tone);
 }
 
-/// The same picture with some rows of tiles painted anew.
+/// A copy of the picture in which some rows of tiles are painted again.
 static glint_image *edited(const glint_image *old)
 {
     glint_image *image = NULL;
@@ -72,7 +73,7 @@ static glint_bytes encode_ok(const glint_image *image, glint_encode encode, glin
     return bytes;
 }
 
-/// Encodes in `bands` and afresh; returns the share that was reused.
+/// Encodes the picture with `bands` and with a fresh encoder. Returns the reused share.
 static double check_same(const glint_image *image, glint_encode encode, glint_bands *bands)
 {
     double reused = -1, fresh = -1;
@@ -92,7 +93,7 @@ static void drive(glint_bands *bands, glint_encode encode)
     uint32_t last = 0;
     picture[0] = random_picture();
     for (int step = 0; step < STEPS; step += (int)case_step()) {
-        uint32_t to = below(PICTURES), from = below(3) ? last : below(PICTURES); // often what was encoded last
+        uint32_t to = below(PICTURES), from = below(3) ? last : below(PICTURES); // often the picture encoded last
         glint_image *image = picture[from] && below(8) ? edited(picture[from]) : random_picture();
         glint_image_release(picture[to]);
         picture[to] = image;
@@ -124,7 +125,7 @@ static void test_bands_repeat(void **state)
     glint_bands_destroy(NULL);
 }
 
-/// A picture with equal size and stamps but another tone or encoding is another picture.
+/// A picture with the same size and stamps but another tone or encoding reuses nothing.
 static void test_bands_tone(void **state)
 {
     (void)state;
@@ -147,7 +148,7 @@ static void test_bands_tone(void **state)
     image->row_stamp[4] = next_stamp();
     double reused = check_same(image, GLINT_ENCODE_FAST, bands);
     assert_true(fabs(reused - 0.8) < 1e-9);
-    image->row_stamp[0] = 0; // nobody knows
+    image->row_stamp[0] = 0; // 0: unknown, never reused
     reused = check_same(image, GLINT_ENCODE_FAST, bands);
     assert_true(fabs(reused - 0.8) < 1e-9);
     reused = check_same(image, GLINT_ENCODE_FAST, bands);
@@ -156,7 +157,7 @@ static void test_bands_tone(void **state)
     glint_bands_destroy(bands);
 }
 
-/// Nor is one with an alpha that one without, whatever its stamps say.
+/// Pictures with and without an alpha channel never reuse each other's bands, even with equal stamps.
 static void test_bands_alpha(void **state)
 {
     (void)state;
@@ -182,7 +183,7 @@ static void test_bands_alpha(void **state)
     glint_bands_destroy(bands);
 }
 
-/// A pass without stamps in between neither uses the cache nor displaces it.
+/// A pass without stamps neither uses the cache nor evicts anything from it.
 static void test_bands_other_pass(void **state)
 {
     (void)state;
@@ -211,7 +212,7 @@ static void test_bands_other_pass(void **state)
     glint_bands_destroy(bands);
 }
 
-/// The bytes do not depend on where in memory the encoder works. Held blocks make it work elsewhere each time.
+/// The bytes do not depend on where the encoder's memory is. Blocks that the test holds move it each time.
 static void test_bands_places(void **state)
 {
     (void)state;
@@ -219,7 +220,7 @@ static void test_bands_places(void **state)
     void *held[HELD] = { NULL };
     glint_tone_desc tone = glint_tone_desc_default();
     random_state = 7;
-    (void)mallopt(M_MMAP_THRESHOLD, 1 << 16); // each block in a mapping of its own; a sanitizer places them as it likes
+    (void)mallopt(M_MMAP_THRESHOLD, 1 << 16); // puts each block in its own mapping; a sanitizer may override this
     for (int size = 8; size <= 40; size += 32) {
         glint_image *image = NULL;
         glint_bytes first = { 0 };
@@ -246,7 +247,7 @@ static void test_bands_places(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bands_places), // first, while the heap has no room for its blocks
+        cmocka_unit_test(test_bands_places), // must be first, while the heap has no free blocks of that size
         cmocka_unit_test(test_bands_repeat), cmocka_unit_test(test_bands_tone),
         cmocka_unit_test(test_bands_alpha),  cmocka_unit_test(test_bands_other_pass),
     };

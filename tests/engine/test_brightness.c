@@ -1,4 +1,4 @@
-/// The brightest light of pictures, what of it is clipped, and the exposure that keeps it.
+/// The brightest value of pictures, the number of clipped values, and the exposure that avoids clipping.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +14,7 @@
 #define WIDTH 4
 #define HEIGHT 3
 
-/// Red is `red`, the other channels are 0.25.
+/// An image whose red plane is `red`. Its other channels are 0.25.
 static glint_image *new_image(uint32_t passes, const float red[WIDTH * HEIGHT])
 {
     glint_image *image;
@@ -52,7 +52,7 @@ static void test_brightness(void **state)
     glint_image_release(image);
 }
 
-/// -log2 of the light, down to whole hundredths.
+/// -log2 of the brightest value, rounded down to hundredths.
 static void test_exposure(void **state)
 {
     static const double pairs[][2] = { { 1, 0 }, { 2, -1 },     { 0.5, 1 },    { 3, -1.59 }, { 2.31, -1.21 },

@@ -1,4 +1,5 @@
-/// The spatial index: whole, tight, the same for any number of threads, and good enough, for kind boxes and for others.
+/// The BVH: complete, tight, identical for any number of threads, and of good quality, for easy and hard sets of
+/// boxes.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,9 +15,9 @@
 
 #include "engine/geometry/bvh.h"
 
-// ---- memory that runs out ----
+// ---- Allocations that fail ----
 
-static long allocations_left = -1; ///< -1: no end
+static long allocations_left = -1; ///< -1: no limit
 
 static bool runs_out(void)
 {
@@ -25,7 +26,7 @@ static bool runs_out(void)
     return allocations_left == 0 || allocations_left-- == 0;
 }
 
-/// In place of the C library's, for this program: the build asks for memory through these three.
+/// Replace the C library's functions in this program. The build allocates only through these three.
 void *aligned_alloc(size_t alignment, size_t size)
 {
     void *(*real)(size_t, size_t);
@@ -50,7 +51,7 @@ void *mmap(void *at, size_t size, int protection, int flags, int file, off_t off
     return runs_out() ? MAP_FAILED : real(at, size, protection, flags, file, offset);
 }
 
-// ---- sets of boxes ----
+// ---- Sets of boxes ----
 
 static uint64_t state;
 
@@ -62,7 +63,7 @@ static double uniform(double low, double high)
 
 typedef void place_box(uint32_t i, uint32_t count, double center[3], double *radius);
 
-/// Spheres in the unit cube, whose mean distance is about three times their radius.
+/// The radius of spheres in the unit cube whose mean distance is about three times their radius.
 static double mean_radius(uint32_t count) { return 0.3 / cbrt(count); }
 
 static void scattered(uint32_t i, uint32_t count, double center[3], double *radius)
@@ -136,7 +137,7 @@ static void every_magnitude(uint32_t i, uint32_t count, double center[3], double
     *radius = center[0] / 100;
 }
 
-/// Zeros of both signs, which compare equal: the one stored in a box must not depend on the threads.
+/// Coordinates of +0 and -0, which compare equal: which one a box stores must not depend on the number of threads.
 static void signed_zeros(uint32_t i, uint32_t count, double center[3], double *radius)
 {
     points(i, count, center, radius);
@@ -178,16 +179,16 @@ static glint_box *make_boxes(place_box *place, uint32_t count)
     return boxes;
 }
 
-// ---- what a tree is ----
+// ---- Properties of a tree ----
 
 typedef struct walk {
     const glint_bvh *bvh;
     const glint_box *boxes;
     uint32_t count;
-    uint8_t *seen; ///< times each box was met
+    uint8_t *seen; ///< how often each box was found
     uint32_t nodes, slots;
-    int depth; ///< the longest path so far, in nodes
-    double visits; ///< sum of the nodes' areas
+    int depth; ///< longest path so far, in nodes
+    double visits; ///< sum of the nodes' surface areas
 } walk;
 
 static double box_area(const glint_box *box)
@@ -218,7 +219,7 @@ static bool same_box(const glint_box *a, const glint_box *b)
 
 static glint_box walk_node(walk *w, uint32_t index, int depth);
 
-/// Checks a slot that is not empty; returns the box of everything below it.
+/// Checks a non-empty slot. Returns the bounds of everything below it.
 static glint_box walk_slot(walk *w, uint32_t child, int depth)
 {
     if (!(child & GLINT_NODE_PRIM))
@@ -229,7 +230,7 @@ static glint_box walk_slot(walk *w, uint32_t child, int depth)
     return w->boxes[prim];
 }
 
-/// Checks a node and everything below it; returns the box of its contents.
+/// Checks a node and everything below it. Returns its bounds.
 static glint_box walk_node(walk *w, uint32_t index, int depth)
 {
     assert_true(index < w->bvh->node_count);
@@ -255,7 +256,8 @@ static glint_box walk_node(walk *w, uint32_t index, int depth)
     return box;
 }
 
-/// Every box once, every stored box exactly the box of everything below it, every node reached once, no path too long.
+/// Checks that each box occurs once, that each stored box is the exact bounds of its subtree, that each node is
+/// reached once and that no path is too long.
 static walk check_tree(const glint_bvh *bvh, const glint_box *boxes, uint32_t count)
 {
     walk w = { .bvh = bvh, .boxes = boxes, .count = count, .seen = calloc(count, 1) };
@@ -270,7 +272,7 @@ static walk check_tree(const glint_bvh *bvh, const glint_box *boxes, uint32_t co
     return w;
 }
 
-/// The boxes with their numbers, which the build sorts and frees.
+/// Boxes with their indices. The build sorts and frees them.
 static glint_box *numbered(const glint_box *boxes, uint32_t count)
 {
     glint_box *copy = glint_boxes_alloc(count);
@@ -289,7 +291,7 @@ static glint_bvh build(const glint_box *boxes, uint32_t count, glint_pool *pool)
     return bvh;
 }
 
-// ---- tests ----
+// ---- Tests ----
 
 static void test_no_boxes(void **unused)
 {
@@ -300,7 +302,7 @@ static void test_no_boxes(void **unused)
     glint_bvh_free(&bvh);
 }
 
-/// Up to 16 boxes are one node; 17 are two.
+/// Up to 16 boxes fit in one node; 17 need two.
 static void test_one_node(void **unused)
 {
     (void)unused;
@@ -314,7 +316,7 @@ static void test_one_node(void **unused)
     free(boxes);
 }
 
-/// Slots are filled from the first on, in the order of their centres along the node's widest axis.
+/// Slots are filled in the order of the centres along the node's widest axis, starting at the first slot.
 static void test_order(void **unused)
 {
     (void)unused;
@@ -377,7 +379,8 @@ static void test_threads(void **unused)
     }
 }
 
-/// The nodes that a random ray through the root visits in a tree whose nodes are cubes with 16^k boxes each.
+/// Expected number of nodes that a random ray through the root visits, in a tree whose nodes are cubes with 16^k
+/// boxes each.
 static double visits_of_cubes(uint32_t count)
 {
     double visits = 1;
@@ -388,7 +391,8 @@ static double visits_of_cubes(uint32_t count)
     return visits;
 }
 
-/// The fewest nodes are (count - 1) / 15, all full; the fewest visits are about as many as with cubes.
+/// The number of nodes is close to its minimum, (count - 1) / 15 full nodes, and the number of visits close to that
+/// of cubic nodes.
 static void test_quality(void **unused)
 {
     (void)unused;
@@ -408,7 +412,8 @@ static void test_quality(void **unused)
     }
 }
 
-/// A giant among small boxes is parted from them: nodes of its size are the root and one or two below it.
+/// A giant among small boxes is split off early: the only nodes of its size are the root and one or two below the
+/// root.
 static void test_giant(void **unused)
 {
     (void)unused;
@@ -420,7 +425,7 @@ static void test_giant(void **unused)
     free(boxes);
 }
 
-/// Each request for memory fails in turn: the build reports it, and does not touch its output.
+/// Each allocation fails in turn: the build reports the failure and leaves its output untouched.
 static void test_out_of_memory(void **unused)
 {
     (void)unused;
@@ -441,7 +446,7 @@ static void test_out_of_memory(void **unused)
         assert_null(bvh.nodes);
         assert_int_equal(bvh.node_count, 4711);
     }
-    assert_true(fails > 5); // else there are few that fail
+    assert_true(fails > 5); // otherwise too few allocations were tested
     check_tree(&bvh, boxes, count);
     glint_bvh_free(&bvh);
     free(boxes);

@@ -1,4 +1,4 @@
-/// Cameras by pixels: the rays of pixels against a projection by hand, in double.
+/// Cameras given in pixels: the rays of pixels against a projection computed here in double.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,7 +11,7 @@
 
 #include "engine/plan/plan.h"
 
-/// A rotation of whole numbers over 25: x to the right, y down, z away.
+/// A rotation with rational entries: x to the right, y down, z away from the eye.
 static const double ROTATION[3][3] = { { 0.8, 0, -0.6 }, { 0.36, 0.8, 0.48 }, { 0.48, -0.6, 0.64 } };
 
 static glint_camera_desc camera_at(const double shift[3])
@@ -26,7 +26,7 @@ static glint_camera_desc camera_at(const double shift[3])
     return desc;
 }
 
-/// Where the plan's camera sees a point, pixels.
+/// Projects a point with the plan's camera, to pixels.
 static void project(const glint_plan_camera *camera, const double point[3], double out[2])
 {
     double way[3], along = 0, across = 0, above = 0, right = 0, up = 0;

@@ -1,5 +1,5 @@
-/// Soft shadows in closed form: the covered part of a light against its integral, every instruction set, and lights that need rays
-/// all the same.
+/// Soft shadows in closed form: the covered share of a light against its integral, every instruction set, and lights
+/// that still need rays.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -57,9 +57,10 @@ static float diffuse_at(const glint_image *image, int x, int y)
     return p[0];
 }
 
-// ---- The covered part, by the integral ----
+// ---- The covered share, by integration ----
 
-/// The part of a light that a ball covers, seen from the origin: the light's disk in the sky, ring by ring.
+/// Share of a light that a ball covers, seen from the origin. Integrates over the light's disk in the sky, ring by
+/// ring.
 static long double covered(const double light[3], double light_radius, const double ball[3], double radius)
 {
     enum { RINGS = 20000 };
@@ -76,7 +77,7 @@ static long double covered(const double light[3], double light_radius, const dou
     const long double g = atan2l(sqrtl(cross2), dot);
     for (int i = 0; i < RINGS; i++) {
         const long double t = s * (i + 0.5L) / RINGS;
-        // sin^2 of half an angle's error: cos x = cos t cos g + sin t sin g cos f
+        // sin^2 of half the angle, without cancellation: cos x = cos t cos g + sin t sin g cos f
         const long double half = sinl((t - g) / 2), over = sinl(a / 2) * sinl(a / 2) - half * half;
         const long double share = over / (sinl(t) * sinl(g));
         const long double f = share <= 0 ? 0 : share >= 1 ? PI : 2 * asinl(sqrtl(share));
@@ -85,7 +86,7 @@ static long double covered(const double light[3], double light_radius, const dou
     return sum * s / RINGS / (2 * sinl(s / 2) * sinl(s / 2));
 }
 
-/// The share of a light that the floor's origin sees; the eye is next to it.
+/// Share of a light that is visible from the origin of the floor. The eye is next to the origin.
 static double share_seen(const double light[3], double light_radius, const double ball[3], double radius)
 {
     double got[2];
@@ -115,7 +116,8 @@ static void near_share(const double light[3], double light_radius, const double 
                  ball[0], ball[1], ball[2], radius, got, want);
 }
 
-/// Lights of any size, down to 1e-9 of their distance; balls as large as they look, smaller, larger, next to the point.
+/// Lights of any size, down to 1e-9 of their distance. Balls that look as large, smaller or larger, or are next to
+/// the point.
 static void parts_of_a_light(void **unused)
 {
     int partial = 0;
@@ -126,7 +128,7 @@ static void parts_of_a_light(void **unused)
         const double a = n % 5 < 3 ? s * pow(10, between(-0.7, 0.7)) : between(0.2, 1.2);
         const double g = a < 1.3 ? (a - s > 0 ? a - s : s - a) + between(0, 2) * (a < s ? a : s) : 0;
         const double tilt = between(0, 0.7), turn = between(0, 6.28);
-        // the light at an angle `tilt` from above, the ball `g` away from it
+        // the light is tilted by `tilt` from the vertical, the ball is at an angle `g` from the light
         const double light[3] = { d * sin(tilt) * cos(turn), d * cos(tilt), d * sin(tilt) * sin(turn) };
         const double right[3] = { -sin(turn), 0, cos(turn) };
         double ball[3];
@@ -134,7 +136,7 @@ static void parts_of_a_light(void **unused)
             ball[c] = e * (cos(g) * light[c] / d + sin(g) * right[c]);
         const double radius = e * sin(a < 1.4 ? a : 1.4), light_radius = d * sin(s);
         if (e + radius > d - light_radius)
-            continue; // not wholly before the light
+            continue; // not entirely in front of the light
         const double want = 1 - (double)covered(light, light_radius, ball, radius);
         partial += want > 0.01 && want < 0.99;
         near_share(light, light_radius, ball, radius, want);
@@ -146,19 +148,20 @@ static void one_in_the_other(void **unused)
 {
     (void)unused;
     const double light[3] = { 0, 4, 0 };
-    near_share(light, 0.5, (double[3]) { 0.1, 4.1, 0 }, 1.5, 0); // the light within the ball
-    near_share(light, 1.5, (double[3]) { 0.1, 4.1, 0 }, 0.5, 1); // the ball within the light
-    near_share(light, 0.5, (double[3]) { 0, 7, 0 }, 2, 1); // behind it
-    near_share(light, 5, (double[3]) { 0, 2, 0 }, 0.5, 1); // the point within the light
-    near_share(light, 4, (double[3]) { 0, 2, 0 }, 0.5, 1); // on it
-    near_share(light, 0.5, (double[3]) { 0, 0.5, 0 }, 2, 0); // the point within the ball, the light outside
-    near_share(light, 0.5, (double[3]) { 0, 0.5, 0 }, 5, 1); // both within
-    near_share(light, 0.5, (double[3]) { 0, 0.5, 0 }, 3.5, 0.5); // half of the light within
-    near_share(light, 1e-149, (double[3]) { 0, 2, 0 }, 0.25e-149, 0.75); // a quarter of it to the eye
-    near_share(light, 0.5, (double[3]) { 0, -40, 0 }, 2, 1); // below
+    near_share(light, 0.5, (double[3]) { 0.1, 4.1, 0 }, 1.5, 0); // the light inside the ball
+    near_share(light, 1.5, (double[3]) { 0.1, 4.1, 0 }, 0.5, 1); // the ball inside the light
+    near_share(light, 0.5, (double[3]) { 0, 7, 0 }, 2, 1); // the ball behind the light
+    near_share(light, 5, (double[3]) { 0, 2, 0 }, 0.5, 1); // the point inside the light
+    near_share(light, 4, (double[3]) { 0, 2, 0 }, 0.5, 1); // the point on the light
+    near_share(light, 0.5, (double[3]) { 0, 0.5, 0 }, 2, 0); // the point inside the ball, the light outside
+    near_share(light, 0.5, (double[3]) { 0, 0.5, 0 }, 5, 1); // both inside the ball
+    near_share(light, 0.5, (double[3]) { 0, 0.5, 0 }, 3.5, 0.5); // half of the light inside the ball
+    near_share(light, 1e-149, (double[3]) { 0, 2, 0 }, 0.25e-149, 0.75); // the ball covers a quarter of the light
+    near_share(light, 0.5, (double[3]) { 0, -40, 0 }, 2, 1); // the ball below the floor
 }
 
-/// Hard cases L12: a light of radius 0.5 at height 4 over a ball of 0.5 at 2: umbra 0.5, penumbra sqrt(3).
+/// Test case L12 in tests/hard: a light of radius 0.5 at height 4 above a ball of radius 0.5 at height 2: umbra 0.5,
+/// penumbra sqrt(3).
 static void umbra_and_penumbra(void **unused)
 {
     (void)unused;
@@ -217,7 +220,7 @@ static void every_way_gives_one_picture(void **unused)
         }
 }
 
-/// On the floor, where the light is far above its horizon: against 4096 samples.
+/// On the floor, where the light is high above the horizon, compares with 4096 samples.
 static void truth_by_samples(void **unused)
 {
     (void)unused;
@@ -250,13 +253,13 @@ static void truth_by_samples(void **unused)
             count++;
         }
     assert_true(count > SIDE * SIDE / 2);
-    if (most > 0.01 || sqrt(square / count) > 0.001) // of 1 or so
+    if (most > 0.01 || sqrt(square / count) > 0.001) // the full light is about 1
         fail_msg("off by %g at most, rms %g", most, sqrt(square / count));
     glint_image_release(image[0]);
     glint_image_release(image[1]);
 }
 
-// ---- What calls for it ----
+// ---- When the effect is used ----
 
 static void only_where_called_for(void **unused)
 {
@@ -273,7 +276,7 @@ static void only_where_called_for(void **unused)
     }
 }
 
-/// A box, or glass: rays, and the picture is theirs.
+/// A box or glass forces shadow rays, and the picture is identical to one with rays.
 static void other_shapes_have_rays(void **unused)
 {
     (void)unused;
@@ -304,14 +307,15 @@ static void other_shapes_have_rays(void **unused)
     }
 }
 
-/// Hard: dark where the middle of the light is hidden, elsewhere as without shadows; a ray for sixteen samples.
+/// Hard shadows: dark where the centre of the light is hidden, otherwise as without shadows. One ray replaces sixteen
+/// samples.
 static void hard_is_of_the_middle(void **unused)
 {
     static const char *const sets[] = { "ref", "generic", "avx2", "avx512" };
     static const double corners[3][3] = { { 0, 6, 0 }, { 3, 6, 0 }, { 0, 6, 3 } };
     (void)unused;
     for (int kind = GLINT_LIGHT_DISK; kind <= GLINT_LIGHT_SPHERE; kind++) {
-        glint_image *image[3]; // without shadows, hard, of a point in the middle
+        glint_image *image[3]; // without shadows, hard shadows, a point light at the centre
         glint_frame_stats stats;
         for (int way = 0; way < 3; way++) {
             glint_scene *scene = make_floor((double[3]) { 0, 8, 9 }, (double[3]) { 0, 0, 0 });

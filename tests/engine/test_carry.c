@@ -1,4 +1,5 @@
-/// A few of many things move, come or go, and results of the others are reused: frame after frame must have the bits of a fresh one.
+/// A few of many objects move, appear or disappear, and the results of the others are reused: each frame must equal a
+/// fresh one bit for bit.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -171,11 +172,11 @@ static void move_one(world *w)
     if (one_in(4))
         memcpy(to, w->home[i], sizeof to);
     if (one_in(20))
-        memcpy(to, w->at[below(SHAPES)], sizeof to); // into another, or onto one like it
+        memcpy(to, w->at[below(SHAPES)], sizeof to); // into another shape, or onto an identical one
     place(w, i, to);
 }
 
-/// Returns whether the places of shapes are all that it edits.
+/// Makes a random edit. Returns whether only positions of shapes changed.
 static bool edit(world *w)
 {
     const uint32_t kind = below(12);
@@ -242,7 +243,7 @@ static void render_both(const world *w, const glint_render_desc *desc, glint_ren
 static void some_things_move(void **unused)
 {
     (void)unused;
-    const char *other = getenv("GLINT_SEED"); // of `make soak`
+    const char *other = getenv("GLINT_SEED"); // set by `make soak`
     const uint64_t first = other ? 1000 * strtoull(other, NULL, 10) : 0;
     double casts = 0, shadows = 0;
     int frames = 0;
@@ -283,7 +284,7 @@ static void some_things_move(void **unused)
 
 // ---- Between a light and the points of a tile ----
 
-/// A place that a tile shows, in the box.
+/// Chooses a point that the tile shows. Returns whether it is inside the box.
 static bool random_seen(const glint_plan *plan, uint32_t column, uint32_t row, const glint_point_box *box, double out[3])
 {
     const glint_plan_camera *camera = &plan->camera;
@@ -298,7 +299,7 @@ static bool random_seen(const glint_plan *plan, uint32_t column, uint32_t row, c
     return inside;
 }
 
-/// How near to the ball's middle the way from a place to the light comes, in its radii.
+/// Squared distance of the segment between the point and the light from the ball's centre, in squared radii.
 static double way_past(const glint_ball *ball, const double from[3], const glint_plan_light *light)
 {
     double way[3], line[3], along = 0, length2 = 0, across2 = 0;
@@ -314,7 +315,8 @@ static double way_past(const glint_ball *ball, const double from[3], const glint
     return across2 / (ball->radius * ball->radius);
 }
 
-/// Where it is said that nothing is between, nothing is; of balls that are not, nearly all are said to be.
+/// A ball that glint_may_shade rules out never shades a visible point, and nearly all balls that shade nothing are
+/// ruled out.
 static void balls_between(void **unused)
 {
     (void)unused;

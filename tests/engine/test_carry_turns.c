@@ -1,5 +1,6 @@
-/// Cases that random edits seldom reach: reused results must have the bits of a fresh frame when cameras, scenes,
-/// other objects of the same triangles, distances beyond all measure, or more than memory has room for take turns.
+/// Cases that random edits seldom reach. Reused results must equal a fresh frame bit for bit when frames alternate
+/// between cameras, scenes, other objects with the same triangles, extreme distances, or more data than fits in
+/// memory.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,7 +17,7 @@ typedef struct stand {
     glint_scene *scene;
     glint_camera *camera;
     glint_material *paint[2];
-    glint_renderer *renderer; ///< that reuses
+    glint_renderer *renderer; ///< the renderer that reuses results
     glint_render_desc render;
 } stand;
 
@@ -68,7 +69,7 @@ static void free_stand(stand *s)
         glint_material_release(s->paint[i]);
 }
 
-/// Compares a frame of the renderer that reuses with a fresh one. Returns the share of its hits that were kept.
+/// Compares a frame of the reusing renderer with a fresh one. Returns the share of hits that were reused.
 static double check(const stand *s, glint_scene *scene)
 {
     glint_frame_stats stats;
@@ -98,14 +99,14 @@ static double check(const stand *s, glint_scene *scene)
     return kept;
 }
 
-/// Takes the caller's reference.
+/// Adds the shape and releases the caller's reference.
 static void add(glint_scene *scene, glint_shape *shape)
 {
     assert_int_equal(glint_scene_add_shape(scene, shape, NULL), GLINT_OK);
     glint_shape_release(shape);
 }
 
-/// The scene owns it.
+/// Adds a ball that the scene owns.
 static glint_shape *add_ball(glint_scene *scene, double x, double y, double z, double radius, glint_material *paint)
 {
     glint_shape *ball;
@@ -160,7 +161,7 @@ static void add_ground(stand *s)
     add(s->scene, ground);
 }
 
-/// A pass requests only the points of the first sample, while light is cached: they are not the box of the tile.
+/// While light is cached, a pass needs only the points of the first sample: they do not give the bounds of the tile.
 static void a_box_begun(void **unused)
 {
     (void)unused;
@@ -180,14 +181,15 @@ static void a_box_begun(void **unused)
         set_camera(s.scene, turn == 1 ? away : here);
         check(&s, s.scene);
     }
-    move(ball, 18, 18, 3); // into the light
+    move(ball, 18, 18, 3); // between the light and the floor
     check(&s, s.scene);
     glint_camera_release(away);
     glint_camera_release(here);
     free_stand(&s);
 }
 
-/// Two scenes of the same places: one has its primitives in the order of definition, one in that of its index.
+/// Two scenes with the same geometry: one stores its primitives in the order of definition, the other in the order of
+/// its BVH.
 static void another_order(void **unused)
 {
     (void)unused;
@@ -214,14 +216,14 @@ static void another_order(void **unused)
     check(&s, scene[0]);
     check(&s, scene[1]);
     paint(s.paint[0], 0.7);
-    check(&s, scene[1]); // keeps its hits
+    check(&s, scene[1]); // reuses its hits
     move(ball, 8, 2.5, 0);
     check(&s, scene[1]);
     glint_scene_release(scene[1]);
     free_stand(&s);
 }
 
-/// A nearby mesh underflows in the frame of a table that reaches so far.
+/// A nearby mesh underflows when the scene's extent becomes huge.
 static void far_beyond(void **unused)
 {
     (void)unused;
@@ -250,7 +252,7 @@ static void set_lights(stand *s, glint_light *const lamps[LAMPS], bool many)
         assert_int_equal((many ? glint_scene_add_light : glint_scene_remove_light)(s->scene, lamps[i], NULL), GLINT_OK);
 }
 
-/// Without room for the tiles' slots, what is put into a picture that is used again is signed by nobody.
+/// When memory does not suffice for the tiles' slots, tiles written into a recycled picture get no stamp.
 static void no_room_for_a_while(void **unused)
 {
     (void)unused;
@@ -269,19 +271,19 @@ static void no_room_for_a_while(void **unused)
         set_lights(&s, lamps, true);
         check(&s, s.scene);
         paint(s.paint[0], 0.6);
-        check(&s, s.scene); // into the first picture
+        check(&s, s.scene); // drawn into the first picture again
         set_lights(&s, lamps, false);
         paint(s.paint[0], 0.3);
         check(&s, s.scene);
         paint(s.paint[1], 0.6);
-        check(&s, s.scene); // tiles without the ball are as they were in the first
+        check(&s, s.scene); // tiles without the ball match the first picture
         for (int i = 0; i < LAMPS; i++)
             glint_light_release(lamps[i]);
         free_stand(&s);
     }
 }
 
-/// Two triangles that are one object, and then two.
+/// Two triangles in one object, then the same triangles in two objects.
 static void other_objects(void **unused)
 {
     (void)unused;
@@ -313,8 +315,8 @@ static void other_objects(void **unused)
     free_stand(&s);
 }
 
-/// The visible share of a light behind several balls, multiplied in the order of the index, is next to halfway between two floats: these of
-/// thirty were searched for. Another ball, far away, changes the order.
+/// The visible share of a light behind several balls, multiplied in BVH order, is close to a rounding boundary of
+/// float: these positions were searched for among thirty balls. Another ball, far away, changes the order.
 static void shares_in_another_order(void **unused)
 {
     (void)unused;
@@ -362,7 +364,8 @@ static void look_from_above(stand *s)
     assert_int_equal(glint_camera_set(s->camera, &desc, NULL), GLINT_OK);
 }
 
-/// One of very many moves: the others' hits are reused, with any camera. If all move and then one again, reuse starts again.
+/// When one of very many objects moves, the hits of the others are reused, with any camera. When all move and then
+/// only one, reuse starts again.
 static void one_of_a_crowd(void **unused)
 {
     (void)unused;

@@ -1,5 +1,5 @@
-/// Combined solids: the same pictures on every instruction set, hits against sets of points in 113 bits, faces that coincide,
-/// and wholes that are what one solid is.
+/// Constructive solid geometry (CSG): identical pictures on every instruction set, hits against point sets in 113-bit
+/// arithmetic, coincident faces, and CSG shapes that equal a single solid.
 #include "engine/glint.h"
 
 #include <math.h>
@@ -56,24 +56,24 @@ static glint_shape *new_whole(glint_shape_kind kind)
     return made(&d);
 }
 
-// ---- Random combined solids ----
+// ---- Random CSG trees ----------
 
 enum { MOST_NODES = 128 };
 
-/// A part, or a set of the nodes that are its children.
+/// A leaf solid, or a set operation on its child nodes.
 typedef struct node {
     glint_shape_kind kind;
     int children[4], count;
-    quad inverse[3][4]; ///< a part's: from the world to the unit shape
-    double normal[3], point[3]; ///< of a plane, in the world
-    int mesh; ///< index in meshes
+    quad inverse[3][4]; ///< of a leaf: from world space to the unit shape
+    double normal[3], point[3]; ///< of a plane, in world space
+    int mesh; ///< index into meshes
 } node;
 
 static node nodes[MOST_NODES];
 static int node_count, part_count;
-static bool with_tori; ///< parts may be: the sets of points do not know them
-static bool with_meshes; ///< parts may be
-static closed_mesh meshes[MOST_NODES]; ///< in the world
+static bool with_tori; ///< whether leaves may be tori, which in_part does not support
+static bool with_meshes; ///< whether leaves may be meshes
+static closed_mesh meshes[MOST_NODES]; ///< in world space
 static int mesh_count;
 
 static void invert(quad m[3][4], quad out[3][4])
@@ -94,7 +94,8 @@ static void invert(quad m[3][4], quad out[3][4])
     }
 }
 
-/// z of the unit shape is the axis from base to top of the cylinder, from the apex to the base of the cone: parts have it along y.
+/// Stores the leaf's inverse map. The unit shape's z axis is the cylinder's axis from base to top, or the cone's from
+/// apex to base. The leaves have it along y.
 static void note_part(node *n, const glint_shape_desc *d, const glint_transform *around)
 {
     const glint_transform map = glint_transform_product(around, &d->transform);
@@ -144,7 +145,7 @@ static int random_mesh(glint_shape *whole, const glint_transform *around)
     return node_count++;
 }
 
-/// Planes stand in no map but the identity.
+/// Adds a random leaf. Planes occur only under the identity map.
 static int random_part(glint_shape *whole, const glint_transform *around, bool plane)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER,
@@ -182,7 +183,7 @@ static int random_part(glint_shape *whole, const glint_transform *around, bool p
     return node_count++;
 }
 
-/// within: NULL, or what it is a child of. kind: of the set.
+/// kind: the set operation.
 static int random_set(glint_shape **out, const glint_transform *around, glint_shape_kind kind, int depth)
 {
     const int at = node_count++;
@@ -224,7 +225,7 @@ static glint_shape *random_whole(int depth)
 static bool in_part(const node *n, const quad p[3])
 {
     if (n->kind == GLINT_SHAPE_MESH) {
-        const int times = times_inside(&meshes[n->mesh], p); // below 0: under a map that mirrors
+        const int times = times_inside(&meshes[n->mesh], p); // negative under a mirroring map
         return times != 0;
     }
     quad k[3], height = 0;
@@ -264,10 +265,10 @@ static bool in_set(int at, const quad p[3])
     return in;
 }
 
-// ---- Every place where a ray may change sides ----
+// ---- All points where a ray can enter or leave ----
 
 static quad roots[(12 + CLOSED_TRIANGLES) * MOST_NODES];
-static bool near_edge; ///< a ray passes an edge closely
+static bool near_edge; ///< whether a ray passes close to an edge
 static int root_count;
 
 static void add_root(quad t)
@@ -284,7 +285,7 @@ static quad square_root(quad x)
     return s;
 }
 
-/// a t^2 + 2 b t + c = 0
+/// Adds the roots of a t^2 + 2 b t + c = 0.
 static void add_roots(quad a, quad b, quad c)
 {
     const quad disc = b * b - a * c;
@@ -350,7 +351,8 @@ static void at_way(const double o[3], const double d[3], quad t, quad p[3])
         p[c] = o[c] + t * d[c];
 }
 
-/// Where the ray goes in or out first; 0: nowhere. *sure: no other side is so near that rounding may take one for the other.
+/// Returns where the ray first enters or leaves the shape; 0: nowhere. *sure: no other root is so close that rounding
+/// could swap them.
 static quad first_change(const double o[3], const double d[3], bool *sure)
 {
     quad p[3], close = 1;
@@ -389,7 +391,8 @@ static void check_hit(uint64_t seed, const double o[3], const double d[3], const
         fail_msg("seed %d: the normal does not point outwards", (int)seed);
 }
 
-/// Random wholes against sets of points: the first change of side is the hit, its normal points out of the whole.
+/// Random CSG trees against point sets: the first change of inside to outside or back is the hit, and its normal
+/// points outwards.
 static void against_sets(uint64_t seeds)
 {
     int hits = 0, sure_rays = 0, rays = 0;
@@ -433,7 +436,7 @@ static void wholes_against_sets(void **unused)
     against_sets(3000);
 }
 
-/// A place is in a mesh by counting crossings in 113 bits.
+/// Leaves may be meshes. A point is inside a mesh by counting crossings in 113-bit arithmetic.
 static void meshes_against_sets(void **unused)
 {
     (void)unused;
@@ -494,7 +497,7 @@ static void add_light(glint_scene *scene)
     glint_light_release(lamp);
 }
 
-/// A floor under it, at times; many: so many that tiles walk the index.
+/// floor: adds a floor. many: adds so many objects that tiles traverse the BVH.
 static glint_scene *lit_scene(bool floor, bool many)
 {
     glint_scene *scene;
@@ -611,7 +614,7 @@ static void meshes_on_every_instruction_set(void **unused)
     same_on_every_set(60);
 }
 
-/// A box, ball or cylinder about the place; on a grid, so that faces coincide and eyes are between them.
+/// A box, ball or cylinder around a grid point. On the grid, faces coincide, and eyes are between them.
 static glint_shape *grid_part(const double place[3], glint_shape_kind kind)
 {
     glint_shape_desc d = glint_shape_desc_default(kind);
@@ -627,7 +630,8 @@ static glint_shape *grid_part(const double place[3], glint_shape_kind kind)
     return made(&d);
 }
 
-/// So many combined solids of few parts that tiles find them by the index, among boxes: data computed once for the eye holds for all rays.
+/// Many small CSG shapes among boxes, so that tiles find them through the BVH. Data computed once for the eye must
+/// hold for all rays.
 static void many_small_wholes(void **unused)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_BOX, GLINT_SHAPE_BOX, GLINT_SHAPE_SPHERE,
@@ -660,7 +664,7 @@ static void many_small_wholes(void **unused)
     }
 }
 
-// ---- Wholes that are one solid ----
+// ---- CSG shapes that equal one solid ----
 
 static const glint_shape_kind solids[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER, GLINT_SHAPE_CONE,
                                            GLINT_SHAPE_TORUS };
@@ -674,14 +678,14 @@ static glint_shape *random_solid(glint_shape_kind kind)
     d.radius = between(0.5, 1.2);
     d.major = between(0.5, 1);
     d.minor = d.major * between(0.1, 0.9);
-    d.transform = random_map(0.3); // of a ball it makes no sphere
+    d.transform = random_map(0.3); // turns a ball into an ellipsoid
     d.material = random_material();
     glint_shape *shape = made(&d);
     glint_material_release(d.material);
     return shape;
 }
 
-/// A box from -size to size in every direction, moved along x.
+/// A cube from -size to size on every axis, moved along x.
 static glint_shape *cube(double size, double x)
 {
     glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_BOX);
@@ -692,7 +696,8 @@ static glint_shape *cube(double size, double x)
     return made(&d);
 }
 
-/// Set operations that give the solid again: with itself, with everything, without something elsewhere, without the complement of everything.
+/// Returns a set operation that leaves the solid unchanged: union with itself, intersection with a larger box,
+/// difference with a distant box, or difference with a shell around it.
 static glint_shape *same_solid(glint_shape *solid, uint32_t way)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_UNION, GLINT_SHAPE_INTERSECTION, GLINT_SHAPE_DIFFERENCE,
@@ -703,7 +708,7 @@ static glint_shape *same_solid(glint_shape *solid, uint32_t way)
         put_in(whole, cube(50, 0));
     if (way == 2)
         put_in(whole, cube(1, 60));
-    if (way == 3) { // all but a cube around it
+    if (way == 3) { // a hollow box around the solid
         hollow = new_whole(GLINT_SHAPE_DIFFERENCE);
         put_in(hollow, cube(60, 0));
         put_in(hollow, cube(55, 0));
@@ -712,7 +717,7 @@ static glint_shape *same_solid(glint_shape *solid, uint32_t way)
     return whole;
 }
 
-/// In glass, mirrors, shadows and indirect light: the same picture, to the last bit.
+/// In glass, mirrors, shadows and indirect light, the picture is identical to the last bit.
 static void wholes_of_one_solid(void **unused)
 {
     (void)unused;
@@ -734,7 +739,8 @@ static void wholes_of_one_solid(void **unused)
     }
 }
 
-/// How many pixels differ by more than rounding makes of places and light: 2^-18 of the values. inside: of both, hits.
+/// Counts pixels that differ by more than rounding of positions and light explains: 2^-18 of the values. *hits: hits
+/// in `a`.
 static int unlike(const glint_image *a, const glint_image *b, int *hits)
 {
     static const glint_pass passes[] = { GLINT_PASS_BEAUTY, GLINT_PASS_DEPTH, GLINT_PASS_NORMAL };
@@ -755,7 +761,8 @@ static int unlike(const glint_image *a, const glint_image *b, int *hits)
     return count;
 }
 
-/// A box of triangles less a ball, cut by a block that ends in a face of it: what the box is by itself, in glass, mirrors and shadows.
+/// A mesh box minus a ball, cut by a block that ends in one of its faces, against the same with a plain box, in
+/// glass, mirrors and shadows.
 static void boxes_of_triangles(void **unused)
 {
     int hits = 0, off = 0;
@@ -797,7 +804,7 @@ static void boxes_of_triangles(void **unused)
     assert_true(hits * (int)case_step() > 50000);
 }
 
-// ---- Faces that coincide ----
+// ---- Coincident faces -------
 
 static glint_shape *block(double x0, double x1, double y0, double y1, double z0, double z1)
 {
@@ -816,7 +823,7 @@ static void turn(glint_shape *shape, bool turned)
     assert_int_equal(glint_shape_set(shape, &d, NULL), GLINT_OK);
 }
 
-/// Casts from above, in the shape's own space, at a place of height 1 within -1 .. 1.
+/// Casts a ray from above, in the shape's own space, at a point with y = 1 and x and z within -1 .. 1.
 static bool look_down(const glint_scene *scene, const glint_shape *shape, double at[3], glint_hit *hit)
 {
     double o[3], d[3], own[3], to[3];
@@ -835,7 +842,7 @@ static bool look_down(const glint_scene *scene, const glint_shape *shape, double
     return any;
 }
 
-/// A cutter that ends in the face it cuts, or beyond it, leaves the same hole: no ray meets a skin over it.
+/// A cutter that ends exactly in the face leaves the same hole as a longer one: no ray hits a skin over the hole.
 static void flush_cutters(void **unused)
 {
     int through = 0;
@@ -874,7 +881,7 @@ static void flush_cutters(void **unused)
     assert_true(through * (int)case_step() > 1000);
 }
 
-/// Two halves of a block are the block: nothing is between them, and the same is met from wherever.
+/// Two halves of a block equal the whole block: no ray sees a gap or a face between them.
 static void halves_are_whole(void **unused)
 {
     (void)unused;
@@ -895,12 +902,12 @@ static void halves_are_whole(void **unused)
             double o[3], d[3], at[3];
             glint_hit got[2];
             bool hit[2];
-            random_vector(at, n % 2 ? 1 : 5); // from within, too
+            random_vector(at, n % 2 ? 1 : 5); // also from inside
             for (int c = 0; c < 3; c++)
                 at[c] = one_in(4) ? (double)(int)at[c] : at[c];
             map_point(&glint_shape_get(whole[0])->transform, at, 1, o);
             random_vector(at, 1);
-            at[0] = one_in(3) ? 0 : at[0]; // in the plane between them
+            at[0] = one_in(3) ? 0 : at[0]; // in the plane between the halves
             map_point(&glint_shape_get(whole[0])->transform, at, 1, d);
             for (int c = 0; c < 3; c++)
                 d[c] -= o[c];
@@ -917,7 +924,7 @@ static void halves_are_whole(void **unused)
     }
 }
 
-/// A solid minus itself is empty, whatever it is and from wherever it is seen.
+/// A solid minus itself is empty, for every kind of solid and from every direction.
 static void nothing_is_left(void **unused)
 {
     (void)unused;

@@ -1,5 +1,5 @@
-/// The encoder's bytes depend only on the picture, wherever its memory lies: a bucket of ISA-L's hash table depends on the stream's
-/// address, and deflate.c takes addresses that all give the right one.
+/// The encoder's bytes depend only on the picture, not on where its memory is. A bucket of ISA-L's hash table depends
+/// on the stream's address, and deflate.c chooses addresses that all give the right bucket.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,15 +10,16 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#include "engine/file/deflate.c" // its functions of one place are its own
+#include "engine/file/deflate.c" // included as source: the tests call its static functions
 
-#ifdef BUCKET_BITS // of deflate.c: where a place matters and may be chosen
+#ifdef BUCKET_BITS // defined by deflate.c where the address matters and can be chosen
 #define OTHER_PLACES 32768 // each bucket about four times
 #define BAND_BYTES ((size_t)30000)
 
 static void put(uint8_t *at, const char *bytes) { memcpy(at, bytes, strlen(bytes)); }
 
-/// Zeros, and bytes that come again: where the bucket of the second position is the wrong one, they are not found again.
+/// Zeros and a repeated byte sequence: with a wrong bucket for the second position, the encoder does not find the
+/// repetition.
 static uint8_t *make_band(void)
 {
     uint8_t *data = calloc(1, BAND_BYTES);
@@ -27,7 +28,8 @@ static uint8_t *make_band(void)
     return data;
 }
 
-/// A stream at one of many scattered addresses, given back by munmap; NULL where something else is.
+/// Maps a stream at one of many scattered addresses. The caller frees it with munmap. Returns NULL when the address
+/// is in use.
 static void *stream_at(uint64_t number)
 {
     void *want = (void *)(uintptr_t)(UINT64_C(0x100000000000) + ((number * 0x9e3779b1 & 0x1fffffff) << 16));
@@ -39,7 +41,7 @@ static void *stream_at(uint64_t number)
     return NULL;
 }
 
-/// The bytes that a band gives with its stream here.
+/// The bytes of a band encoded with this stream.
 static glint_bytes band_at(const uint8_t *data, void *stream)
 {
     static uint8_t level[ISAL_DEF_LVL1_DEFAULT];
@@ -65,7 +67,7 @@ static void test_fast_places(void **state)
     void *stream[PLACES_TRIED];
     uint32_t third;
     memcpy(&third, data + 2, sizeof third);
-    for (int i = 0; i < PLACES_TRIED; i++) { // each has a place of its own
+    for (int i = 0; i < PLACES_TRIED; i++) { // each at its own address
         stream[i] = map_stream(bucket_of(third));
         assert_non_null(stream[i]);
     }
@@ -74,7 +76,7 @@ static void test_fast_places(void **state)
         assert_true(same_at(data, stream[i], &want));
     for (int i = 0; i < PLACES_TRIED; i++)
         munmap(stream[i], STREAM_BYTES);
-    size_t different = 0; // else this would be no test
+    size_t different = 0; // otherwise the test would prove nothing
     for (uint64_t number = 0; number < OTHER_PLACES; number++) {
         void *other = stream_at(number);
         if (!other)
@@ -88,7 +90,7 @@ static void test_fast_places(void **state)
     free(data);
 }
 
-/// Whatever the bytes, the address gives their bucket.
+/// For any bytes, the chosen address gives their bucket.
 static void test_buckets(void **state)
 {
     (void)state;
@@ -101,7 +103,7 @@ static void test_buckets(void **state)
     }
 }
 
-/// The state kept between bands affects none of them, with more buckets than streams.
+/// The state retained between bands does not affect the output, even with more buckets than streams.
 static void test_memory(void **state)
 {
     (void)state;
@@ -126,7 +128,7 @@ static void test_memory(void **state)
         free(want.data);
     }
     assert_int_equal(kept->placed.count, STREAMS);
-    assert_null(kept->anywhere); // each had its place
+    assert_null(kept->anywhere); // no stream needed an arbitrary address
     glint_deflate_memory_destroy(kept);
     free(data);
 }

@@ -1,5 +1,6 @@
-/// Derivatives by glint.h and by a script of the same scene have the same bits: of numbers of a material, a light, shapes, a camera, the
-/// scene and a pattern, in mirrors and glass, under an area light, over several samples.
+/// Derivatives through glint.h and through a script of the same scene are identical bit for bit: derivatives by
+/// parameters of a material, a light, shapes, a camera, the scene and a pattern, in mirrors and glass, under an area
+/// light, with several samples.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -47,7 +48,7 @@ typedef struct made {
     glint_material *shiny, *glass, *floor;
     glint_light *lamp, *soft;
     glint_shape *ball;
-    glint_program *stripes; ///< NULL: the floor is plain
+    glint_program *stripes; ///< NULL: the floor has no pattern
 } made;
 
 // ---- The scene ------------------------------------------------------------------------------------------------------
@@ -176,7 +177,7 @@ static void release(const made *m)
 
 // ---- The comparison -------------------------------------------------------------------------------------------------
 
-/// Writes the derivatives' pictures as NAME.d_DERIVATIVE.pfm.
+/// Writes the pictures of the derivatives as NAME.d_DERIVATIVE.pfm.
 static void write_pictures(const made *m, const char *name, const glint_derivative *derivatives, size_t count)
 {
     glint_render_desc desc = glint_render_desc_default();
@@ -228,7 +229,7 @@ static void write_places(void)
     release(&m);
 }
 
-/// The bytes of a file, at most `room`; fails where there is none.
+/// Reads at most `room` bytes of a file. Fails when there is no such file.
 static size_t bytes_of(const char *path, char *out, size_t room)
 {
     FILE *file = fopen(path, "rb");
@@ -254,14 +255,14 @@ static void test_same_bits(void **state)
         assert_true(count > WIDTH * HEIGHT * 12);
         assert_int_equal(bytes_of(path, c, sizeof c), count);
         assert_memory_equal(c, lua, count);
-        size_t zeros = 0; // at most half of a picture is level
+        size_t zeros = 0; // at most half of a picture may be zero
         for (size_t k = count - WIDTH * HEIGHT * 12; k < count; k++)
             zeros += c[k] == 0;
         assert_true(zeros < WIDTH * HEIGHT * 12 / 2);
     }
 }
 
-/// Renders the script in a folder of its own.
+/// Runs the script in its own folder.
 static int run_script(void **state)
 {
     static char folder[] = "/tmp/glint_derivatives_XXXXXX";

@@ -1,5 +1,5 @@
 /// Backgrounds computed by a program, through glint.h only: counts, stages that run again, refused values; and
-/// patterns that are plain numbers, within a field's range and beyond it.
+/// patterns that are constants, inside and outside a field's range.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -51,7 +51,7 @@ static glint_program *constant(glint_program_kind kind, double number)
     return out;
 }
 
-// ---- A ball before the background ------------------------------------------------------------------------------------
+// ---- A ball in front of the background -------------------------------------------------------------------------------
 
 typedef struct world {
     glint_scene *scene;
@@ -95,7 +95,7 @@ static void release_world(world *w)
     glint_light_release(w->lamp);
 }
 
-/// Gives the reference to the scene.
+/// Sets the background and releases the caller's reference.
 static glint_status set_background(world *w, glint_program *program)
 {
     glint_scene_desc desc = *glint_scene_get(w->scene);
@@ -105,7 +105,7 @@ static glint_status set_background(world *w, glint_program *program)
     return status;
 }
 
-/// The value of pixel x, y.
+/// Renders and returns the value of pixel x, y.
 static double render(world *w, int x, int y)
 {
     glint_render_desc desc = glint_render_desc_default();
@@ -130,9 +130,10 @@ static double share_reused(const glint_frame_stats *stats, const char *stage)
     return -1;
 }
 
-// ---- What a frame runs -----------------------------------------------------------------------------------------------
+// ---- Work of a frame -------------------------------------------------------------------------------------------------
 
-/// Every ray that meets nothing, and no other; with a mirror those that leave it, too. Without a program there is no stage.
+/// The stage runs for every ray that hits nothing, and for no other; with a mirror also for reflected rays that leave
+/// the scene. Without a program the stage does not exist.
 static void test_counts(void **state)
 {
     (void)state;
@@ -149,12 +150,12 @@ static void test_counts(void **state)
     mirror.mirror[0] = mirror.mirror[1] = mirror.mirror[2] = 0.5;
     OK(glint_material_set(w.material, &mirror, &error));
     render(&w, 0, 0);
-    assert_int_equal(w.stats.work.environment, WIDTH * HEIGHT); // each ray leaves in the end
+    assert_int_equal(w.stats.work.environment, WIDTH * HEIGHT); // every ray leaves the scene in the end
     release_world(&w);
 }
 
-/// A changed number of the background runs `shade` where it is seen, and leaves hits and lights; a moved lamp leaves the tiles that
-/// show nothing else.
+/// A changed parameter of the background runs only `shade`, where the background is visible. A moved light does not
+/// affect tiles that show only the background.
 static void test_reuse(void **state)
 {
     (void)state;
@@ -165,7 +166,7 @@ static void test_reuse(void **state)
     }
     assert_true(share_reused(&w.stats, "environment") == 1 && w.stats.work.environment == 0);
     double corner = 0;
-    for (int i = 0; i < 3; i++) { // the third frame has what the second kept
+    for (int i = 0; i < 3; i++) { // the third frame reuses the results of the second
         OK(set_background(&w, gradient(0.5, 0.125 * i)));
         corner = render(&w, 0, 0);
     }
@@ -180,7 +181,7 @@ static void test_reuse(void **state)
     release_world(&w);
 }
 
-/// NaN, and numbers out of range, are reported with a direction where they occur.
+/// NaN and values out of range are reported, with a direction where they occur.
 static void test_odd(void **state)
 {
     (void)state;
@@ -213,9 +214,9 @@ static void test_refused(void **state)
     release_world(&w);
 }
 
-// ---- Patterns of numbers alone ---------------------------------------------------------------------------------------
+// ---- Constant patterns -----------------------------------------------------------------------------------------------
 
-/// In range they are a plain colour; out of range they run, become 0, and are reported.
+/// In range they become a plain colour. Out of range they run as programs, give 0 and are reported.
 static void test_numbers(void **state)
 {
     (void)state;
@@ -245,7 +246,7 @@ static void test_material_numbers(void **state)
     assert_true(render(&w, WIDTH / 2, HEIGHT / 2) == 0 && w.stats.odd[GLINT_ODD_NEGATIVE].count > 0);
     assert_string_equal(w.stats.odd[GLINT_ODD_NEGATIVE].field, "diffuse");
     desc = plain;
-    desc.program.opacity = constant(GLINT_PROGRAM_PATTERN, -1); // a hole
+    desc.program.opacity = constant(GLINT_PROGRAM_PATTERN, -1); // fully transparent
     OK(glint_material_set(w.material, &desc, &error));
     assert_true(render(&w, WIDTH / 2, HEIGHT / 2) == 0);
     glint_program_release(desc.program.opacity);
@@ -254,7 +255,7 @@ static void test_material_numbers(void **state)
     assert_true(render(&w, WIDTH / 2, HEIGHT / 2) > 0.4);
     glint_program_release(desc.program.opacity);
     desc = plain;
-    desc.program.bump = constant(GLINT_PROGRAM_PATTERN, -3); // one height everywhere
+    desc.program.bump = constant(GLINT_PROGRAM_PATTERN, -3); // the same height everywhere
     OK(glint_material_set(w.material, &desc, &error));
     assert_null(glint_material_get(w.material)->program.bump);
     glint_program_release(desc.program.bump);

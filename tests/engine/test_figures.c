@@ -19,7 +19,7 @@ static void test_draft(void **state)
     assert_int_equal(access(path, F_OK), -1);
     assert_int_equal(access(glint_draft_name(draft), F_OK), 0);
     assert_int_equal(glint_draft_append(draft, "abc", 3, &error), GLINT_OK);
-    FILE *other = fopen(glint_draft_name(draft), "ab"); // another program
+    FILE *other = fopen(glint_draft_name(draft), "ab"); // another process
     assert_non_null(other);
     fputs("def", other);
     fclose(other);
@@ -30,7 +30,7 @@ static void test_draft(void **state)
     assert_memory_equal(bytes.data, "abcdef", 6);
     free(bytes.data);
     assert_int_equal(files_in(in_folder("deep/er")), 1);
-    // One that is dropped leaves what was there.
+    // Dropping a draft leaves the existing file as it was.
     assert_int_equal(glint_draft_create(path, &draft, &error), GLINT_OK);
     assert_int_equal(glint_draft_append(draft, "xyz", 3, &error), GLINT_OK);
     glint_draft_destroy(draft);
@@ -45,7 +45,7 @@ static void test_draft(void **state)
 
 // ---- Pictures -----------------------------------------------------------------------------------------------------
 
-/// Writes a PNG by libpng's own means.
+/// Writes a PNG with libpng.
 static void write_by_libpng(const char *path, int width, int height, int bits, int type, bool linear, uint8_t **rows)
 {
     FILE *file = fopen(path, "wb");
@@ -90,7 +90,7 @@ static void test_picture_alpha(void **state)
     assert_string_equal(glint_picture_text(picture, "Title"), "\xc3\xa4 b");
     assert_null(glint_picture_text(picture, "title"));
     glint_picture_row(picture, 0, 255, rgb);
-    const uint8_t want[] = { 200, 200, 200, 255, 255, 255, 224, 224, 224 }; // 100 at a fifth over 255
+    const uint8_t want[] = { 200, 200, 200, 255, 255, 255, 224, 224, 224 }; // 100 with alpha 1/5 over 255
     assert_memory_equal(rgb, want, sizeof want);
     glint_picture_destroy(picture);
     glint_picture_destroy(NULL);
@@ -110,7 +110,7 @@ static void test_picture_linear(void **state)
     assert_int_equal(glint_picture_bits(picture), 16);
     assert_int_equal(glint_picture_transfer(picture), GLINT_TRANSFER_LINEAR);
     glint_picture_row(picture, 0, 0, rgb);
-    for (int i = 0; i < 18; i++) // IEC 61966-2-1, by the C library
+    for (int i = 0; i < 18; i++) // IEC 61966-2-1, using the C library
     {
         double x = codes[i / 3] / 65535.0, y = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
         assert_int_equal(rgb[i], (int)(y * 255 + 0.5));
@@ -153,7 +153,7 @@ static void test_font(void **state)
     const char *unknown = "\xef\xbf\xbd";
     const uint8_t *box = glint_font_next(&unknown);
     assert_int_equal(*unknown, '\0');
-    for (char c = '!'; c <= '~'; c++) { // each is drawn, and unlike the next
+    for (char c = '!'; c <= '~'; c++) { // each glyph is drawn and differs from the previous one
         char text[] = { c, (char)(c + 1), '\0' };
         const char *at = text;
         const uint8_t *one = glint_font_next(&at), *next = glint_font_next(&at);
@@ -178,12 +178,12 @@ static void test_canvas(void **state)
     (void)state;
     glint_canvas canvas;
     assert_true(glint_canvas_init(&canvas, 30, 20, false));
-    glint_canvas_fill(&canvas, -5, -5, 6, 6, 0x010203); // cut off at the edges
+    glint_canvas_fill(&canvas, -5, -5, 6, 6, 0x010203); // clipped at the edges
     glint_canvas_fill(&canvas, 29, 19, 50, 50, 0x040506);
     glint_canvas_fill(&canvas, 40, 0, 5, 5, 0);
     assert_memory_equal(canvas.pixels, ((uint8_t[]) { 1, 2, 3, 255 }), 4);
     assert_memory_equal(canvas.pixels + 3 * (19 * 30 + 29), ((uint8_t[]) { 4, 5, 6 }), 3);
-    // Text turned a quarter has its pixels where text along the row has them.
+    // Text rotated by a quarter turn has the same pixels as horizontal text.
     glint_canvas along, down;
     assert_true(glint_canvas_init(&along, 20, 13, false) && glint_canvas_init(&down, 13, 20, true));
     const glint_typeface typeface = glint_typeface_open(NULL, 13);
@@ -193,7 +193,7 @@ static void test_canvas(void **state)
     for (int y = 0; y < 13; y++)
         for (int x = 0; x < 20; x++) {
             const bool inked = along.pixels[3 * (y * 20 + x)] == 0;
-            assert_int_equal(down.pixels[4 * (x * 13 + 12 - y) + 3], inked ? 255 : 0); // on paper that is not there
+            assert_int_equal(down.pixels[4 * (x * 13 + 12 - y) + 3], inked ? 255 : 0); // over transparent paper
             ink += inked;
         }
     assert_in_range(ink, 20, 80);
@@ -204,7 +204,7 @@ static void test_canvas(void **state)
 
 // ---- Sheets -------------------------------------------------------------------------------------------------------
 
-/// A picture of one colour, linear; returns its name.
+/// Writes a linear picture of one colour. Returns its name.
 static const char *write_plain(const char *name, int width, int height, float value)
 {
     const char *path = in_folder(name);
@@ -229,7 +229,7 @@ static glint_png decode_ok(const char *path)
 
 static int code_at(const glint_png *png, int x, int y) { return ((uint8_t *)png->codes)[3 * (y * png->width + x)]; }
 
-/// How many pixels of a rectangle are darker than the paper.
+/// Counts the pixels of a rectangle that are darker than the paper.
 static int ink_in(const glint_png *png, int x, int y, int width, int height)
 {
     int ink = 0;
@@ -250,14 +250,15 @@ static void test_sheet(void **state)
     if (glint_sheet_write(&desc, in_folder("sheet.png"), &error))
         fail_msg("%s", error.message);
     glint_png png = decode_ok(in_folder("sheet.png"));
-    // The columns are as wide as the longest part of a label, "long = 1234567890", 17 characters; labels of two lines.
+    // The columns are as wide as the longest part of a label, "long = 1234567890", 17 characters. Labels have two
+    // lines.
     int column = 17 * 8, band = 30 + 2 * 15 + 4 + 12, x = 12 + (column - 50) / 2, y = 12;
     assert_int_equal(code_at(&png, x + 25, y + 15), 255);
     assert_int_equal(code_at(&png, x + column + 12, y), 188);
     assert_int_equal(code_at(&png, x + column + 12 + 49, y + 29), 188);
     assert_int_equal(code_at(&png, x + column + 12 - 1, y), 255);
     assert_int_equal(code_at(&png, x, y + 2 * band), 0);
-    // Half of |188 - 255|, of |0 - 255|, and nothing below the chosen cell itself.
+    // Half of |188 - 255| and of |0 - 255|; 0 below the reference cell itself.
     assert_int_equal(code_at(&png, x + 25, y + band + 15), 0);
     assert_int_equal(code_at(&png, x + column + 12 + 25, y + band + 15), 34);
     assert_int_equal(code_at(&png, x + 25, y + 3 * band + 15), 128);
@@ -267,8 +268,8 @@ static void test_sheet(void **state)
     free(png.codes);
 }
 
-/// A colour bar of 256 pixels has the table's colours one by one, from the bottom up at the right of the pictures, or from left to
-/// right below them; the pictures are where they are without it.
+/// A colour bar of 256 pixels shows the table's colours one by one: from bottom to top at the right of the pictures,
+/// or from left to right below them. The pictures stay at the same position as without the bar.
 static void test_sheet_bar(void **state)
 {
     (void)state;
@@ -343,9 +344,9 @@ static uint32_t big_endian(const uint8_t *p)
     return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
 }
 
-/// A player: lays the frames of an APNG of RGB over each other, as a PNG each through the decoder.
+/// A player: composes the frames of an RGB APNG, decoding each as a separate PNG.
 typedef struct player {
-    uint8_t header[25], *canvas; ///< IHDR with its length and CRC; the codes shown
+    uint8_t header[25], *canvas; ///< IHDR with its length and CRC; the displayed pixel values
     size_t pixel_bytes;
     uint32_t width, sequence, frames;
     uint8_t control[26]; ///< of the frame being read
@@ -369,7 +370,7 @@ static void put_chunk(glint_bytes *out, const char *type, const uint8_t *body, s
     assert_true(glint_bytes_append(out, sum, 4));
 }
 
-/// A PNG that says it has this size, of RGBA at 16 bits, with `size` bytes of zeros for pixels; `frames` 0: not animated.
+/// A 16-bit RGBA PNG that claims this size, with `size` bytes of zeros as pixel data. frames: 0 for no animation.
 static glint_bytes claim(uint32_t width, uint32_t height, uint32_t frames, size_t size)
 {
     glint_bytes file = { 0 };
@@ -390,7 +391,7 @@ static glint_bytes claim(uint32_t width, uint32_t height, uint32_t frames, size_
     return file;
 }
 
-/// A file's claims are compared with its size before memory is allocated.
+/// The decoder checks a file's claimed size against the file's length before it allocates memory.
 static void test_claims(void **state)
 {
     (void)state;
@@ -401,13 +402,14 @@ static void test_claims(void **state)
     assert_int_equal(glint_png_decode(file.data, file.size, &png, &error), GLINT_ERR_FORMAT);
     assert_non_null(strstr(error.message, "too little data for its size"));
     assert_int_equal(glint_png_raw_bytes(file.data, file.size), raw);
-    assert_int_equal(glint_png_raw_bytes(file.data, 33), raw); // IHDR is enough
+    assert_int_equal(glint_png_raw_bytes(file.data, 33), raw); // enough to read IHDR
     assert_int_equal(glint_png_raw_bytes(file.data, 32), 0);
-    file.data[18] ^= 1; // its CRC is wrong now
+    file.data[18] ^= 1; // makes its CRC wrong
     assert_int_equal(glint_png_raw_bytes(file.data, file.size), 0);
     free(file.data);
     file = claim(2, 3, 5, 10);
-    assert_int_equal(glint_png_raw_bytes(file.data, file.size), 6 * (2 * 8 + 1) * 3); // five frames and a picture beside
+    // five frames and a separate default image
+    assert_int_equal(glint_png_raw_bytes(file.data, file.size), 6 * (2 * 8 + 1) * 3);
     free(file.data);
     const uint8_t pfm[] = "PF\n65535 2\n-1\n";
     assert_int_equal(glint_pfm_bytes(pfm, sizeof pfm - 1), sizeof pfm - 1 + 65535 * 2 * 3 * 4);
@@ -435,7 +437,7 @@ static void show_frame(player *p)
     p->frames++;
 }
 
-/// Plays a file, and checks each frame against the picture of its number.
+/// Plays a file and compares frame i with picture i.
 static void check_played(const char *path, const char *const *pictures, uint32_t count, unsigned above, unsigned below)
 {
     glint_bytes bytes = read_ok(path);
@@ -475,7 +477,7 @@ static void check_played(const char *path, const char *const *pictures, uint32_t
     free(bytes.data);
 }
 
-/// A frame with a bright square at a place; -1: the same as without it.
+/// Writes a frame with a bright square at a position; -1: no square.
 static const char *write_frame(const char *name, int bits, bool alpha, int square)
 {
     const char *path = in_folder(name);
@@ -560,7 +562,7 @@ static void test_apng_refuses(void **state)
     assert_int_equal(glint_apng_add(apng, small, &error), GLINT_ERR_INVALID);
     assert_int_equal(glint_apng_add(apng, unread, &error), GLINT_ERR_INVALID);
     assert_int_equal(glint_apng_add(apng, right, &error), GLINT_OK);
-    assert_int_equal(glint_apng_add(apng, right, &error), GLINT_ERR_INVALID); // one more than it has
+    assert_int_equal(glint_apng_add(apng, right, &error), GLINT_ERR_INVALID); // one more than declared
     glint_apng_destroy(apng); // unfinished
     glint_apng_destroy(NULL);
     assert_int_equal(files_in(folder), 4);
@@ -572,7 +574,7 @@ static void test_apng_refuses(void **state)
 
 int main(void)
 {
-    setenv("GLINT_FONT", "bitmap", 1); // the same pixels everywhere
+    setenv("GLINT_FONT", "bitmap", 1); // the same pixels on every machine
     const struct CMUnitTest tests[] = {
         WITH_FOLDER(test_draft),          WITH_FOLDER(test_picture_alpha), WITH_FOLDER(test_picture_linear),
         WITH_FOLDER(test_picture_broken), cmocka_unit_test(test_claims),

@@ -1,4 +1,4 @@
-/// Files of images: PNG, writes that appear whole or not at all, the writer.
+/// Image files: PNG, atomic writes, the writer.
 #include "tests/engine/cases/image_case.h"
 
 #include <png.h>
@@ -8,7 +8,7 @@
 
 // ---- PNG ----------------------------------------------------------------------------------------------------------
 
-/// Reads by libpng's own simple reader.
+/// Reads the file with libpng's simplified API and compares.
 static void check_by_libpng(const char *path, const glint_image *image, const glint_write_desc *desc)
 {
     glint_bytes bytes = read_ok(path);
@@ -28,7 +28,7 @@ static void check_by_libpng(const char *path, const glint_image *image, const gl
         unsigned got = png.bits == 16 ? ((uint16_t *)png.codes)[i] : ((uint8_t *)png.codes)[i];
         assert_int_equal(got, want);
     }
-    if (png.bits == 8 && desc->tone.transfer == GLINT_TRANSFER_SRGB) { // the simple reader converts other files
+    if (png.bits == 8 && desc->tone.transfer == GLINT_TRANSFER_SRGB) { // the simplified API converts other files
         png_image simple = {.version = PNG_IMAGE_VERSION};
         assert_true(png_image_begin_read_from_memory(&simple, bytes.data, bytes.size));
         simple.format = PNG_FORMAT_RGB;
@@ -204,7 +204,7 @@ static void test_file_write(void **state)
     assert_true(S_ISLNK(info.st_mode));
     assert_int_equal(stat(in_folder("one/two/three/f"), &info), 0);
     assert_int_equal(info.st_size, 4);
-    if (geteuid() != 0) { // root may write anywhere
+    if (geteuid() != 0) { // root can write anywhere
         chmod(in_folder("one"), 0555);
         check_refused(in_folder("one/g"), GLINT_ERR_IO, "Permission denied");
         chmod(in_folder("one"), 0755);
@@ -252,7 +252,7 @@ static void test_file_pipe(void **state)
     struct stat info;
     assert_int_equal(stat(path, &info), 0);
     assert_true(S_ISFIFO(info.st_mode));
-    refuses(path, "pipe: a file expected, got a pipe"); // without waiting for its writer
+    refuses(path, "pipe: a file expected, got a pipe"); // returns without waiting for a writer
     refuses("/dev/zero", "/dev/zero: a file expected, got a device");
     refuses(folder, "Is a directory");
     free(bytes.data);
@@ -275,7 +275,7 @@ static void test_file_limit(void **state)
     assert_non_null(strstr(error.message, "kept: File too large"));
     assert_int_equal(files_in(folder), 1);
     glint_bytes bytes = read_ok(in_folder("kept"));
-    assert_int_equal(bytes.size, 3); // as it was
+    assert_int_equal(bytes.size, 3); // unchanged
     free(bytes.data);
 }
 
@@ -302,7 +302,7 @@ static void test_writer_order(void **state)
             strcpy(path, "/dev/fu");
         glint_write_desc desc = describe(path);
         assert_int_equal(glint_writer_submit(writer, image, &desc, &number[i], NULL), GLINT_OK);
-        memset(path, 'x', strlen(path)); // the description was copied
+        memset(path, 'x', strlen(path)); // the writer must have copied the description
         free(path);
         while (glint_writer_collect(writer, false, &result))
             assert_ptr_equal(result.user, &number[collected++]);
@@ -312,14 +312,14 @@ static void test_writer_order(void **state)
         collected++;
     }
     assert_int_equal(collected, 20);
-    assert_int_equal(files_in(folder), 19); // one has a name without an ending
+    assert_int_equal(files_in(folder), 19); // one name has no extension
     glint_writer_destroy(writer);
     assert_int_equal(atomic_load(&image->references), 1);
     glint_image_release(image);
 }
 
-/// Files are brought to disk several at a time; of one place, however it is spelled, the last submitted is the one that stays,
-/// though it takes less time.
+/// Files are synced to disk several at a time. Of several submissions for one path, however spelled, the last one
+/// wins, even if it finishes first.
 static void test_writer_one_path(void **state)
 {
     (void)state;
@@ -333,7 +333,7 @@ static void test_writer_one_path(void **state)
     assert_int_equal(stat(in_folder("alone.png"), &info), 0);
     const long want = (long)info.st_size;
     static const char *const spellings[] = { "again.png", "./again.png", "link.png", "made/..//again.png" };
-    assert_int_equal(symlink("./again.png", in_folder("link.png")), 0); // to no file, at first
+    assert_int_equal(symlink("./again.png", in_folder("link.png")), 0); // a dangling link at first
     assert_int_equal(glint_writer_create(16, 1, &writer, NULL), GLINT_OK);
     for (int i = 0; i < 20; i++) {
         desc.path = in_folder("again.png");
@@ -381,7 +381,8 @@ static void test_writer_cancel(void **state)
     glint_image_release(image);
 }
 
-/// A picture that has not changed is written again, not deflated again; threads do not show in the file.
+/// An unchanged picture is written again without deflating it again. The file does not depend on the number of
+/// threads.
 static void test_writer_reuse(void **state)
 {
     (void)state;

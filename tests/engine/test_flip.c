@@ -1,5 +1,5 @@
-/// FLIP against a naive walk over the paper's formulas in two dimensions, values computed by hand, and properties;
-/// the other measures of a reference on pictures whose errors are known.
+/// FLIP against a direct implementation of the paper's formulas in two dimensions, values computed by hand, and
+/// properties; the other error measures on pictures with known errors.
 #include "engine/compare/flip.h"
 #include "tests/engine/cases/image_case.h"
 
@@ -7,7 +7,7 @@
 
 #define SIDE_MAX 40
 
-// ---- The oracle: doubles, every filter as a square of taps, cbrt, pow and exp of the C library --------------------
+// ---- The reference: doubles, full 2D filters, cbrt, pow and exp of the C library ----------------------------------
 
 #define PPD (0.7 * (3840 / 0.7) * (3.14159265358979323846 / 180))
 
@@ -37,7 +37,7 @@ static void opponent_at(const oracle *o, int x, int y, double out[3])
     out[2] = 200 * (w[1] - w[2]);
 }
 
-static double sensitivity(int channel, double d2) // d2: square of degrees
+static double sensitivity(int channel, double d2) // d2: squared degrees
 {
     static const double pi = 3.14159265358979323846;
     static const double a[3][2] = { { 1, 0 }, { 1, 0 }, { 34.1, 13.5 } };
@@ -48,7 +48,7 @@ static double sensitivity(int channel, double d2) // d2: square of degrees
     return sum;
 }
 
-static void solve3(const double w[3], double rgb[3]) // Cramer's rule on the matrix above
+static void solve3(const double w[3], double rgb[3]) // Cramer's rule for the matrix above
 {
     double m[3][3], det = 0, v[3];
     for (int i = 0; i < 3; i++)
@@ -181,7 +181,7 @@ static double random_unit(uint32_t *state)
     return (*state >> 8) / 16777216.0;
 }
 
-/// Patches of one colour with speckles: edges, points and plains.
+/// Patches of one colour with speckles: edges, points and flat areas.
 static oracle speckled(int width, int height, uint32_t seed)
 {
     oracle o = { .width = width, .height = height };
@@ -204,8 +204,8 @@ static void test_flip_by_hand(void **state)
     (void)state;
     oracle black = flat(24, 24, 0, 0, 0), white = flat(24, 24, 1, 1, 1);
     oracle green = flat(24, 24, 0, 1, 0), blue = flat(24, 24, 0, 0, 1);
-    // White is L* = 100, black 0: HyAB 100, 100^0.7 = 25.1189. Green and blue are furthest apart:
-    // 87.735, -75.61, 72.98 and 32.297, 25.58, -34.84 with Hunt: 55.438 + 147.86 = 203.30, ^0.7 = 41.276; the knee is
+    // White has L* = 100, black 0: HyAB 100, 100^0.7 = 25.1189. The largest distance is between green and blue,
+    // 87.735, -75.61, 72.98 and 32.297, 25.58, -34.84 with Hunt: 55.438 + 147.86 = 203.30, ^0.7 = 41.276. The knee is
     // at 16.510; 0.95 + 0.05 (25.1189 - 16.510) / (41.276 - 16.510) = 0.96738.
     assert_float_equal(flip_between(&black, &white), 0.96738, 2e-5);
     assert_float_equal(flip_between(&green, &blue), 1, 1e-5);
@@ -234,7 +234,7 @@ static void test_flip_grows(void **state)
     (void)state;
     oracle a = flat(30, 30, 0.3, 0.3, 0.3), b = a;
     double before = 0;
-    for (int i = 1; i <= 5; i++) { // a dot that gets brighter
+    for (int i = 1; i <= 5; i++) { // a dot of growing brightness
         b.rgb[1][15 * SIDE_MAX + 15] = 0.3 + 0.1 * i;
         double now = flip_between(&a, &b);
         assert_true(now > before && now < 1);
@@ -276,7 +276,8 @@ static void test_reference_known(void **state)
     assert_true(got.max_code == 10 && got.over1 == 0.01 && got.over8 == 0.01);
     assert_true(got.flip > 0 && got.flip < 0.2);
 
-    // As a file: codes exactly hit lose nothing at either depth; half a code off loses just that.
+    // Written to a file, exact pixel values lose nothing at either depth. A value off by 0.4 of an 8-bit step loses
+    // only that.
     glint_picture_error file;
     for (int bits = 8; bits <= 16; bits += 8) {
         assert_int_equal(glint_reference_measure(reference, test, bits, &file, NULL), GLINT_OK);
@@ -288,7 +289,7 @@ static void test_reference_known(void **state)
     assert_int_equal(glint_reference_measure(reference, test, 16, &file, NULL), GLINT_OK);
     assert_float_equal(file.rmse, glint_srgb_decode(100.4 / 255) - (double)code, 1e-5);
     assert_float_equal(file.max_code, 0.4, 0.003);
-    fill(test, 3, -1, 0); // brighter than white: no file keeps it, and it counts as it is
+    fill(test, 3, -1, 0); // brighter than white: a file cannot store it, and its own value counts
     assert_int_equal(glint_reference_measure(reference, test, 8, &file, NULL), GLINT_OK);
     assert_float_equal(file.rmse, 3 - (double)code, 1e-6);
 
@@ -299,7 +300,7 @@ static void test_reference_known(void **state)
     glint_reference_destroy(NULL);
 }
 
-// Exposure and curve change what a file keeps of the light, not the light: half a code is half a code.
+// Exposure and curve change how a file stores light, not the light itself: an error of 0.4 steps stays 0.4 steps.
 static void test_reference_tones(void **state)
 {
     (void)state;
@@ -319,11 +320,11 @@ static void test_reference_tones(void **state)
         assert_int_equal(glint_reference_measure(reference, test, 0, &got, NULL), GLINT_OK);
         assert_float_equal(got.rmse / light, off / light - 1, 1e-5);
         assert_int_equal(glint_reference_measure(reference, test, 16, &got, NULL), GLINT_OK);
-        assert_float_equal(got.rmse / light, off / light - 1, 1e-4); // half a code of 16 bits
+        assert_float_equal(got.rmse / light, off / light - 1, 1e-4); // off by half a 16-bit step at most
         assert_float_equal(got.max_code, 0.4, 0.003);
         assert_int_equal(glint_reference_measure(reference, test, 8, &got, NULL), GLINT_OK);
         assert_true(got.rmse < 1e-6 * light);
-        fill(test, (float)(1e5 * light), -1, 0); // white, whose code stands for no light at all under reinhard
+        fill(test, (float)(1e5 * light), -1, 0); // white, whose pixel value has no finite light under reinhard
         assert_int_equal(glint_reference_measure(reference, test, 8, &got, NULL), GLINT_OK);
         assert_float_equal(got.rmse / light, 1e5 - 1, 1);
         glint_image_release(base);

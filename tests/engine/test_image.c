@@ -49,7 +49,8 @@ static void check_code(const glint_tone_table *table, float x)
                  want);
 }
 
-/// Every float where the code could step: the inverse of each code, and the 20 floats on either side.
+/// Checks every float where the pixel value could step: the inverse of each value, and up to 20 floats on either
+/// side.
 static void check_every_step(const glint_tone_desc *desc)
 {
     const glint_tone_table *table;
@@ -65,7 +66,7 @@ static void check_every_step(const glint_tone_desc *desc)
         for (int i = 0; i <= 2 * reach; i++, x = nextafterf(x, INFINITY))
             check_code(table, x);
     }
-    for (uint32_t bits = 0; bits < 0x5a800000u; bits += 9973) { // and a walk over all of them
+    for (uint32_t bits = 0; bits < 0x5a800000u; bits += 9973) { // and a sample of all floats
         float x;
         memcpy(&x, &bits, sizeof x);
         check_code(table, x);
@@ -74,7 +75,8 @@ static void check_every_step(const glint_tone_desc *desc)
     assert_int_equal(code_of(table, INFINITY), max);
     assert_int_equal(code_of(table, -INFINITY), 0);
     const float limit = (float)glint_tone_curve_white(desc->curve);
-    const float white = desc->curve == GLINT_TONE_CLAMP ? 1 : nextafterf(limit, INFINITY); // 5.6 lies between two
+    // the filmic limit of about 5.6 is between two floats
+    const float white = desc->curve == GLINT_TONE_CLAMP ? 1 : nextafterf(limit, INFINITY);
     assert_int_equal(code_of(table, white), max);
     assert_int_equal(code_of(table, 1.0001f * white), max);
     assert_int_equal(code_of(table, -1), 0);
@@ -131,9 +133,10 @@ static void test_tone_counts(void **state)
     glint_tone_row8(table, 1, r, g, b, 6, rgb, &clipped, &nonfinite);
     assert_int_equal(clipped, 12);
     assert_int_equal(nonfinite, 23);
-    glint_tone_row8(table, 0.5f, r, g, b, 6, rgb, &clipped, &nonfinite); // 2 is white then, and no more
+    // 2 becomes exactly white, which is not clipped
+    glint_tone_row8(table, 0.5f, r, g, b, 6, rgb, &clipped, &nonfinite);
     assert_int_equal(clipped, 13);
-    desc.curve = GLINT_TONE_REINHARD; // cuts nothing off
+    desc.curve = GLINT_TONE_REINHARD; // clips nothing
     assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
     glint_tone_row8(table, 1, r, g, b, 6, rgb, &clipped, &nonfinite);
     assert_int_equal(clipped, 13);
@@ -152,7 +155,7 @@ static void check_near(double got, double want, double tolerance)
         fail_msg("%.17g, want %.17g", got, want);
 }
 
-/// The curves as they were published, in their own words, at light that scenes have.
+/// The tone curves against the published formulas, over the range of light in typical scenes.
 static void test_tone_curves(void **state)
 {
     (void)state;
@@ -174,7 +177,7 @@ static void test_tone_curves(void **state)
     }
 }
 
-/// A stop more is twice the light, in every code.
+/// One stop more equals twice the light, for every pixel value.
 static void test_tone_exposure(void **state)
 {
     (void)state;
@@ -279,7 +282,7 @@ static void test_compare(void **state)
     assert_true(fabs(r.mean_error - 0.375 / 3600) < 1e-8);
     assert_true(fabs(r.rms_error - sqrt(0.078125 / 3600)) < 1e-8);
     assert_true(fabs(r.peak_snr - 20 * log10(1 / r.rms_error)) < 1e-9);
-    desc.pass = GLINT_PASS_DEPTH; // one channel, infinities match
+    desc.pass = GLINT_PASS_DEPTH; // one channel, equal infinities
     desc.path = in_folder("depth.pfm");
     write_ok(image, &desc);
     assert_int_equal(glint_compare_files(desc.path, desc.path, NULL, &r, NULL), GLINT_OK);

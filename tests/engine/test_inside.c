@@ -1,6 +1,6 @@
-/// An eye and a light inside of clutter: balls, boxes, cylinders and triangles all around them, before, beside and behind. Every
-/// instruction set against the reference, which tests every primitive against every ray: nothing that reaches the eye is lost, through wide
-/// and narrow fields of view, through a lens, and of few pixels that are gathered.
+/// An eye and a light surrounded by clutter: balls, boxes, cylinders and triangles in front, at the sides and behind.
+/// Every instruction set is compared with the reference, which tests every primitive against every ray. No occluder
+/// is lost, for wide and narrow fields of view, a lens, and gathered groups of few pixels.
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -28,7 +28,7 @@ static void add(glint_scene *scene, glint_shape *shape)
     glint_shape_release(shape);
 }
 
-/// A ball, box, cylinder or cone; some go by the eye.
+/// Adds a ball, box, cylinder or cone; some extend past the eye.
 static void add_solid(glint_scene *scene, double reach)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER,
@@ -39,7 +39,7 @@ static void add_solid(glint_scene *scene, double reach)
     d.radius = reach * between(0.005, 0.08);
     place(reach, d.center);
     place(0.1 * reach, size);
-    if (one_in(3)) // from behind the eye far ahead
+    if (one_in(3)) // long enough to reach from behind the eye to far ahead
         size[below(3)] *= 20;
     for (int c = 0; c < 3; c++) {
         d.base[c] = d.min[c] = d.center[c];
@@ -50,7 +50,7 @@ static void add_solid(glint_scene *scene, double reach)
     add(scene, shape);
 }
 
-/// Triangles, each by itself.
+/// Adds unconnected triangles.
 static void add_triangles(glint_scene *scene, double reach)
 {
     static const glint_shading shadings[] = { GLINT_SHADING_PHONG, GLINT_SHADING_FACETED, GLINT_SHADING_FLAT };
@@ -87,7 +87,7 @@ static void aim(glint_scene *scene, double reach)
     glint_light *light;
     place(0.3 * reach, c.eye);
     place(reach, c.at);
-    if (below(2)) { // along an axis, where boxes are as tight on the screen as in the world
+    if (below(2)) { // looks along an axis, where boxes are equally tight on the screen and in the world
         memcpy(c.at, c.eye, sizeof c.at);
         c.at[2 * below(2)] += reach;
     }
@@ -126,7 +126,7 @@ static glint_scene *clutter(uint64_t seed)
     return scene;
 }
 
-/// samples: of each pixel; adaptive: of some.
+/// samples: per pixel. adaptive: threshold of adaptive sampling, or 0.
 static void same_as_reference(uint64_t seed, int samples, double adaptive)
 {
     static const char *const sets[] = { "generic", "avx2", "avx512" };
@@ -158,7 +158,7 @@ static void nothing_around_the_eye_is_lost(void **unused)
         same_as_reference(seed, 1, 0);
 }
 
-/// Groups of samples of a pixel, of a few pixels, and of parts of these.
+/// Groups that hold the samples of one pixel, of a few pixels, or of parts of pixels.
 static void gathered_pixels_are_the_same(void **unused)
 {
     static const int samples[] = { 16, 2, 4, 9, 16, 25 };

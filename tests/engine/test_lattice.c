@@ -1,20 +1,20 @@
-/// cast and occlude where nothing is a little off: places, directions and sizes are small whole numbers times one power of
-/// two, so that rays go exactly through corners and edges, in planes and along faces and axes, and numbers are exactly 0.
-/// Every instruction set against the scalar reference.
+/// cast and occlude in exactly degenerate cases. Positions, directions and sizes are small integers times one power
+/// of two, so that rays pass exactly through corners and edges, in planes and along faces and axes, and values are
+/// exactly 0. Every instruction set is compared with the scalar reference.
 #include "tests/engine/cases/stage_rays.h"
 
 enum { CASES = 1500, REACH = 3 };
 
-static double unit; ///< of a case
+static double unit; ///< grid spacing of the current case
 
-/// A place on the lattice.
+/// A point on the lattice.
 static void lattice3(double v[3])
 {
     for (int k = 0; k < 3; k++)
         v[k] = unit * ((double)below(2 * REACH + 1) - REACH);
 }
 
-/// Away from a place; not zero.
+/// A nonzero vector on the lattice.
 static void lattice_way(double v[3])
 {
     do
@@ -24,7 +24,7 @@ static void lattice_way(double v[3])
 
 // ---- Scenes ------------------------------------------------------------------------------------------------------
 
-/// Three corners that are not on one line; some share an edge with the triangle before.
+/// Three corners that are not collinear. Some triangles share an edge with the previous triangle.
 static void set_lattice_triangle(glint_prim *prim, const glint_prim *last)
 {
     double f[3], g[3], n[3];
@@ -41,7 +41,7 @@ static void set_lattice_triangle(glint_prim *prim, const glint_prim *last)
     } while (!(length3(n) > 0));
 }
 
-/// Upright, with axes parallel to the world's in any order.
+/// An axis-aligned solid, with its axes in any order.
 static void set_lattice_solid(test_scene *scene, uint32_t i)
 {
     glint_solid *solid = &scene->solids[i];
@@ -81,7 +81,7 @@ static test_scene *lattice_scene(void)
     return &scene;
 }
 
-/// A place on a triangle: a corner, the middle of an edge or a place inside.
+/// A point on a triangle: a corner or the midpoint of an edge.
 static void place_on(const glint_prim *prim, double point[3])
 {
     const uint32_t u = below(3), v = below(3 - u);
@@ -92,9 +92,9 @@ static void place_on(const glint_prim *prim, double point[3])
 
 // ---- cast --------------------------------------------------------------------------------------------------------
 
-static uint64_t met, on_solids; ///< rays that hit something; of them, a solid
+static uint64_t met, on_solids; ///< rays that hit something; rays that hit a solid
 
-/// How far a place is from the surface of a unit shape, nearly.
+/// Approximate distance of a point from the surface of a unit shape.
 static double off_unit(uint32_t form, double tube, const double k[3])
 {
     const double round = hypot(k[0], k[1]), z = k[2];
@@ -118,7 +118,7 @@ static double off_unit(uint32_t form, double tube, const double k[3])
     }
 }
 
-/// The reference's hits are where it says, so it is right on its own.
+/// Checks that the reference's hits on solids are on their surfaces, independently of the other instruction sets.
 static void check_hits(const ray_case *c)
 {
     const test_array *t = wanted_array("t"), *prim = wanted_array("prim");
@@ -159,7 +159,7 @@ static void cast_all(const ray_case *c)
     check_hits(c);
 }
 
-/// Some rays of their own leave a triangle.
+/// Some of the individual rays start on a triangle.
 static void shoot_lattice(ray_case *c)
 {
     uint32_t *leaving = input(KIND_U32, c->cast.group_count * GLINT_GROUP);
@@ -183,7 +183,7 @@ static void shoot_lattice(ray_case *c)
     }
 }
 
-/// The eye is on the lattice, and the ways of its rays are multiples of a part of the view's.
+/// The eye is on the lattice, and the camera's axes are parallel to its axes.
 static void look_along_lattice(ray_case *c)
 {
     glint_camera_args *camera = &c->camera;
@@ -236,7 +236,7 @@ static void test_cast(void **state)
 
 static uint64_t open_lanes, dark_lanes;
 
-/// Points anywhere and on triangles, as surface makes them, seen from anywhere.
+/// Points anywhere and on triangles, as surface makes them, with view directions from anywhere.
 static void place_points(glint_occlude_args *args, const test_scene *scene, int precision, uint32_t *prim,
                          const void *slack)
 {
@@ -273,7 +273,7 @@ static void occlude_case(int precision, bool odd)
                                 .slack = input(real_kind(precision), n) };
     args.lit[0] = masks(groups);
     lattice_way(args.position);
-    if (one_in(3)) // out of a plane by next to nothing
+    if (one_in(3)) // off a plane by a tiny amount
         args.position[below(3)] += either_sign(unit * power_of_ten(-17, -12));
     if (!args.directional)
         args.scale = ldexp(1, -ilogb(length3(args.position)));

@@ -1,5 +1,6 @@
-/// Meshes whose triangles are as small as pixels, or seen edge-on, or about the eye or the light: every instruction set
-/// against the reference, which asks every triangle about every ray. Neither eye nor light loses one, and each pixel is shaded as its own.
+/// Meshes whose triangles are as small as pixels, seen edge-on, or around the eye or the light. Every instruction set
+/// is compared with the reference, which tests every triangle against every ray. Neither the eye nor the light misses
+/// a triangle, and each pixel uses its own triangle's shading.
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -18,7 +19,7 @@ enum { SIDE = 22, SIZE = 40, SEEDS = 36 };
 
 // ---- Sheets ----
 
-/// How a scene's sheets lie: all coordinates are multiplied by `scale`, then moved.
+/// Placement of a scene's sheets: all coordinates are multiplied by `scale`, then moved.
 typedef struct place {
     double scale, move[3];
 } place;
@@ -29,8 +30,8 @@ static void put(const place *at, const double x[3], double out[3])
         out[c] = x[c] * at->scale + at->move[c];
 }
 
-/// A sheet of SIDE x SIDE quadrangles from `corner` along `across` and `down`, with bumps: two triangles each. Sheets have
-/// a material, a shading and one side or two of their own.
+/// A sheet of SIDE x SIDE quads from `corner` along `across` and `down`, with bumps, two triangles each. Each sheet
+/// has its own material and shading, and one or two sides.
 static void add_sheet(glint_scene *scene, const place *at, const double corner[3], const double across[3],
                       const double down[3], double bumps)
 {
@@ -108,8 +109,8 @@ static glint_scene *lit_scene(const place *at, const double eye[3], const double
     return scene;
 }
 
-/// Sheets one behind the other, some in planes that the eye or the light is in, some through the eye, some that shadow
-/// themselves in nothing but their bumps.
+/// Sheets behind each other: some coplanar with the eye or the light, some around the eye, some that shadow
+/// themselves only through their bumps.
 static glint_scene *sheets(uint64_t seed, glint_precision precision)
 {
     random_state = seed;
@@ -125,7 +126,7 @@ static glint_scene *sheets(uint64_t seed, glint_precision precision)
         double corner[3] = { -wide / 2, -wide / 2, z }, across[3] = { wide, 0, 0 }, down[3] = { 0, wide, 0 };
         const double *from = below(2) ? eye : light;
         switch (precision == GLINT_FLOAT ? 1 + below(4) : below(5)) {
-        case 0: // in a plane with the eye or the light; in float, anything may be met there
+        case 0: // coplanar with the eye or the light; not in float, where hits in the plane are arbitrary
             for (int c = 0; c < 3; c++)
                 down[c] = (from[c] - corner[c]) * (below(3) ? 0.5 : 1.5);
             break;
@@ -133,7 +134,7 @@ static glint_scene *sheets(uint64_t seed, glint_precision precision)
             for (int c = 0; c < 3; c++)
                 corner[c] = from[c] - across[c] / 2 - down[c] / 2 + (c == 2 ? between(-0.1, 0.1) : 0);
             break;
-        case 2: // a grid whose corners are seen at middles of pixels, more or less
+        case 2: // a grid whose corners project close to pixel centres
             across[0] = down[1] = SIDE * (8 - z) * 2 * tan(0.25) / SIZE;
             corner[0] = corner[1] = -across[0] / 2;
             break;

@@ -1,5 +1,5 @@
-/// Text by FreeType: what is there of a letter, that it is the same each time and wherever it is cut off, and which font it is. Skipped
-/// where there is no FreeType or no font.
+/// Text through FreeType: the coverage of a letter, reproducible and independent of clipping, and the choice of font.
+/// Skipped without FreeType or without a font.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -51,7 +51,7 @@ static void test_widths(void **state)
     glint_letters_close(letters);
 }
 
-/// A letter stands on its line, below what the typeface says is its highest point; Greek and signs are there, and are not alike.
+/// A letter stands on the baseline and stays below the typeface's height. Greek letters and signs exist and differ.
 static void test_shapes(void **state)
 {
     (void)state;
@@ -65,7 +65,7 @@ static void test_shapes(void **state)
         for (int k = 0; k < i; k++)
             assert_memory_not_equal(masks[i].coverage, masks[k].coverage, (size_t)60 * (size_t)face.height);
     }
-    for (int x = 0; x < 60; x++) { // nothing of an H lies below its line
+    for (int x = 0; x < 60; x++) { // no part of an H is below the baseline
         for (int y = face.above; y < face.height; y++)
             assert_int_equal(masks[0].coverage[y * 60 + x], 0);
     }
@@ -78,7 +78,7 @@ static void test_shapes(void **state)
     glint_letters_close(letters);
 }
 
-/// A window shows what all of it has there.
+/// A clipped window shows the same pixels as the whole text.
 static void test_cut(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/// glint_sin .. glint_pow against multiple precision, and their special cases.
+/// glint_sin .. glint_pow against multiple-precision arithmetic, and their special cases.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,10 +13,10 @@
 #include "engine/base/math.h"
 #include "tests/engine/cases/random.h"
 
-#define MAX_ULP 0.51 // results are sums of two doubles, relative error below 2^-60, rounded once
+#define MAX_ULP 0.51 // results are sums of two doubles with a relative error below 2^-60, rounded once
 #define MAX_ULP_SUBNORMAL 0.76 // rounded twice
 
-/// Any sign and mantissa, exponent uniform in low .. high.
+/// A random sign and mantissa, with the exponent uniform in low .. high.
 static double random_scaled(int low, int high)
 {
     double m = between(1, 2);
@@ -99,7 +99,7 @@ static void check_angle_function(const char *name, double (*ours)(double), mpfr_
         try_one(&worst, ours, theirs, near);
         try_one(&worst, ours, theirs, nextafter(near, 0));
     }
-    // The double nearest to a multiple of pi/2, and the greatest.
+    // The double closest to a multiple of pi/2, and the largest double.
     try_one(&worst, ours, theirs, 0x1.6ac5b262ca1ffp+849);
     try_one(&worst, ours, theirs, 0x1.fffffffffffffp+1023);
     try_one(&worst, ours, theirs, 0x1.921fb54442d18p-1);
@@ -164,7 +164,7 @@ static void test_pow(void **state)
         try_power(&worst, between(0, 1), 1 / 2.4);
     }
     check_worst("pow", &worst);
-    for (int base = -40; base <= 40; base++) { // exact where the power is a double
+    for (int base = -40; base <= 40; base++) { // exact when the power is representable
         double exact = 1;
         for (int n = 0; n <= 9; n++, exact *= base)
             assert_true(glint_pow(base, n) == exact);
@@ -204,7 +204,7 @@ static void test_pow_special(void **state)
                                     NAN };
     size_t count = sizeof cases / sizeof *cases;
     for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < count; k++) { // the C library follows annex F; an ulp apart elsewhere
+        for (size_t k = 0; k < count; k++) { // the C library follows annex F; other results may differ by an ulp
             double got = glint_pow(cases[i], cases[k]), want = pow(cases[i], cases[k]);
             bool same = isnan(want) ? isnan(got) : !memcmp(&got, &want, sizeof got);
             if (!same && isfinite(want) && want != 0)

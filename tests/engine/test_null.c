@@ -1,4 +1,4 @@
-/// NULL where a pointer is expected: an error that names the argument, and never a crash later.
+/// NULL for a required pointer gives an error that names the argument, and never a later crash.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,7 +10,7 @@
 
 #include "engine/glint.h"
 
-/// `call` must refuse `name`; the call fills `error`.
+/// `call` must refuse the argument `name`, and must fill `error`.
 #define REFUSES(name, call) \
     do { \
         glint_error error = { 0 }; \
@@ -86,7 +86,7 @@ static void test_null_of_scenes(void **state)
     REFUSES("group", glint_group_add(NULL, p.shape, &error));
     REFUSES("child", glint_group_add(p.group, NULL, &error));
     REFUSES("child", glint_group_remove(p.group, NULL, &error));
-    assert_int_equal(glint_scene_add_shape(p.scene, NULL, NULL), GLINT_ERR_INVALID); // without an error to fill
+    assert_int_equal(glint_scene_add_shape(p.scene, NULL, NULL), GLINT_ERR_INVALID); // without an error struct
     assert_int_equal(glint_scene_shape_count(p.scene), 0);
     assert_int_equal(glint_group_count(p.group), 0);
     destroy(&p);
@@ -149,9 +149,9 @@ static void test_null_of_frames(void **state)
     destroy(&p);
 }
 
-/// Calls every function of engine/glint.h that takes a pointer, with NULL for all of its pointers: a status is
-/// GLINT_ERR_INVALID, a transform the identity, any other result 0, NULL or false. tests/lua/check_header.lua finds functions that
-/// are missing here.
+/// Calls every function of engine/glint.h that takes a pointer, with NULL for all its pointers. A status must be
+/// GLINT_ERR_INVALID, a transform the identity, and any other result 0, NULL or false. tests/lua/check_header.lua
+/// finds functions that are missing here.
 static void test_null_of_every_function(void **state)
 {
 #define INVALID(call) assert_int_equal(call, GLINT_ERR_INVALID)

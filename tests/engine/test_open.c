@@ -1,4 +1,4 @@
-/// Open cylinders and cones against 113-bit arithmetic: hits of rays, from outside and within, and light.
+/// Open cylinders and cones against 113-bit arithmetic: hits from outside and inside, and light.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -35,9 +35,9 @@ static quad root(quad x)
     return y;
 }
 
-/// The side of a cylinder or cone as described, before it is stretched and moved.
+/// The side of a cylinder or cone as described, before stretch and translation.
 typedef struct side {
-    quad from[3], along[3]; ///< the middle of one end or the apex, and the unit vector to the other end
+    quad from[3], along[3]; ///< the centre of one end or the apex, and the unit vector to the other end
     quad length, radius, slope; ///< radius at z is radius + slope z
     quad stretch[3], move[3];
 } side;
@@ -70,8 +70,8 @@ static glint_shape *random_shape(side *s)
     return shape;
 }
 
-/// Where the line o + t d meets the side, both ends of it included; *close: at one of them, or so nearly along the side
-/// that rounding decides. Returns how many times.
+/// Intersects the line o + t d with the side, including both ends. *close: a hit is at an end, or the line is so
+/// nearly tangent that rounding decides. Returns the number of hits.
 static int meet(const side *s, const quad o[3], const quad d[3], quad t[2], bool *close)
 {
     quad f[3], e[3];
@@ -99,7 +99,7 @@ static int meet(const side *s, const quad o[3], const quad d[3], quad t[2], bool
     return count;
 }
 
-/// The outward slope at a point of the side.
+/// The outward normal at a point of the side, not normalised.
 static void slope_at(const side *s, const quad p[3], quad n[3])
 {
     quad f[3];
@@ -131,7 +131,7 @@ static glint_scene *scene_of(glint_shape *shape, const double eye[3], const doub
     return scene;
 }
 
-/// A picture of one pixel: whether what it shows has light.
+/// Returns whether a picture of one pixel is lit.
 static bool is_lit(const glint_scene *scene)
 {
     glint_renderer *renderer;
@@ -156,7 +156,7 @@ typedef struct tally {
     int hits, misses, within, shadows, lights;
 } tally;
 
-/// Whether light reaches the point from where it shines; *close: rounding decides.
+/// Returns whether light reaches the visible side of the point. *close: rounding decides.
 static bool reached(const side *s, const quad p[3], const quad n[3], const double eye[3], const double light[3],
                     bool *close)
 {
@@ -172,7 +172,7 @@ static bool reached(const side *s, const quad p[3], const quad n[3], const doubl
     bool open = facing > 0;
     for (int i = 0; i < count; i++) {
         if (fabs((double)t[i]) < 1e-12)
-            continue; // where it begins
+            continue; // the starting point
         *close = *close || fabs((double)t[i]) < 1e-6 || fabs((double)t[i] - 1) < 1e-6;
         open = open && !(t[i] > 0 && t[i] < 1);
     }
@@ -238,8 +238,7 @@ static void rays_and_shadows(void **unused)
     assert_true(sum.hits > 2000 && sum.misses > 500 && sum.within > 500 && sum.lights > 500 && sum.shadows > 500);
 }
 
-/// A mirror within meets itself on the other side, and its own ends are open: of an upright tube with a mirror inside,
-/// seen from above along a slant, every bounce is a radius further down.
+/// A ray reflected inside a mirror shape hits the other side of the same shape, and leaves through the open ends.
 static void leaving_within(void **unused)
 {
     (void)unused;
@@ -255,13 +254,14 @@ static void leaving_within(void **unused)
         m.has_mirror = true;
         assert_int_equal(glint_material_create(&m, &material, NULL), GLINT_OK);
         d.material = material;
-        d.base[1] = cone ? 4 : 0; // the cone stands on its apex
+        d.base[1] = cone ? 4 : 0; // stands on its apex
         d.top[1] = cone ? 0 : 4;
         d.radius = cone ? 4 : 1;
         d.capped = false;
         assert_int_equal(glint_shape_create(&d, &shape, NULL), GLINT_OK);
-        // in the tube: down and across at 45 degrees; meets x = 1 at y = 3.5, x = -1 at 1.5, leaves below: half of a half
-        // in the cone, of right angle: level; up by a mirror of 45 degrees, out through the base: half
+        // The tube, looking down at 45 degrees: hits x = 1 at y = 3.5 and x = -1 at y = 1.5, then leaves at the
+        // bottom: 0.5 * 0.5. The cone, with a right angle at its apex, looking horizontally: reflected upwards at 45
+        // degrees, leaves through the base: 0.5.
         const double eye[3] = { 0, cone ? 2 : 4.5, 0 }, at[3] = { 1, cone ? 2 : 3.5, 0 };
         glint_scene *scene = scene_of(shape, eye, at, (double[3]) { 0, 50, 0 });
         glint_scene_desc s = *glint_scene_get(scene);

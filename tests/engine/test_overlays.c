@@ -1,4 +1,5 @@
-/// Labels, colour bars and axes: the pixel values that they write, where, and those that they do not touch.
+/// Labels, colour bars and axes: the pixel values that they write, their positions, and the pixels that they leave
+/// untouched.
 #include "tests/engine/cases/image_case.h"
 
 #include "engine/overlay/overlay.h"
@@ -6,7 +7,7 @@
 
 #define WIDTH 160
 #define HEIGHT 120
-#define MIDDLE_X (WIDTH / 2 - 1) // of what is an odd number of pixels wide, at 0.5
+#define MIDDLE_X (WIDTH / 2 - 1) // centre of an item with an odd width, placed at 0.5
 #define MIDDLE_Y (HEIGHT / 2 - 1)
 
 typedef struct world {
@@ -48,7 +49,7 @@ static void drop_world(world *w)
     glint_renderer_destroy(w->renderer);
 }
 
-/// Renders, writes and reads again.
+/// Renders a picture, writes it and reads it back.
 static glint_picture *show(world *w, const char *name, glint_frame_stats *stats)
 {
     glint_plan *plan = NULL;
@@ -65,7 +66,7 @@ static glint_picture *show(world *w, const char *name, glint_frame_stats *stats)
     return picture;
 }
 
-/// The code of a pixel of a grey picture on a grey backdrop of 0.
+/// The value of a pixel in a grey picture over a backdrop of 0.
 static int grey(const glint_picture *picture, int x, int y)
 {
     uint8_t row[3 * WIDTH];
@@ -83,7 +84,8 @@ static glint_overlay_desc label_at(double x, double y, const char *text)
     return desc;
 }
 
-/// Every pixel is white where the glyph has a bit, else the picture's. 13 pixels are the font's own size; at 144 dpi a point has two.
+/// A pixel is white where the glyph has a bit, otherwise the picture shows. 13 pixels are the font's own size; at 144
+/// dpi a point has two pixels.
 static void test_letters(void **state)
 {
     (void)state;
@@ -108,12 +110,13 @@ static void test_letters(void **state)
     }
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         all += grey(picture, i % WIDTH, i / WIDTH) > 0;
-    assert_int_equal(all, lit); // and nothing else
+    assert_int_equal(all, lit); // and no other pixels
     glint_picture_destroy(picture);
     drop_world(&w);
 }
 
-/// A background of opacity o over code c leaves (c (255 - a) + b a) / 255, a = 255 o; with alpha it covers what is not there.
+/// A background of opacity o and value b over a pixel value c gives (c (255 - a) + b a) / 255, a = 255 o. With alpha
+/// it also covers transparent pixels.
 static void test_background(void **state)
 {
     (void)state;
@@ -140,14 +143,14 @@ static void test_background(void **state)
     picture = show(&w, "alpha.png", NULL);
     assert_int_equal(glint_picture_channels(picture), 4);
     uint8_t row[3 * WIDTH];
-    glint_picture_row(picture, 10, 255, row); // white shows through 0.4
+    glint_picture_row(picture, 10, 255, row); // a white backdrop shows through by 0.4
     assert_true(abs(row[3 * 20] - (255 * (255 - a) + ink * a) / 255) <= 1);
     assert_int_equal(row[3 * 19], 255);
     glint_picture_destroy(picture);
     drop_world(&w);
 }
 
-/// The bar's middle column has the table's colours, bottom to top, code by code, in a length of 512 pixels a map of 256.
+/// The bar's centre line has the table's 256 colours in order, from bottom to top or left to right, over 512 pixels.
 static void test_colors(void **state)
 {
     (void)state;
@@ -167,7 +170,7 @@ static void test_colors(void **state)
         for (int y = 0; y < 600; y++)
             glint_picture_row(picture, y, 0, rgb + (size_t)y * 600 * 3);
         int found = 0;
-        for (int start = 0; start < 600 * 600 && !found; start++) { // where the first colour is
+        for (int start = 0; start < 600 * 600 && !found; start++) { // searches for the first colour
             const size_t step = horizontal ? 3 : 600 * 3;
             int i = 0;
             while (i < 512 && (horizontal ? start % 600 : start / 600) + i < 600) {
@@ -186,8 +189,8 @@ static void test_colors(void **state)
     }
 }
 
-/// From straight ahead x is to the right, red, and y up, green, both of the length said; turned by a quarter about y, z is to
-/// the left.
+/// Seen from the front, x points right in red and y up in green, both with the given length. After a quarter turn
+/// about y, z points left.
 static void test_axes(void **state)
 {
     (void)state;
@@ -216,14 +219,15 @@ static void test_axes(void **state)
     drop_world(&w);
 }
 
-/// From straight ahead the lowest edge is the axis of x and the leftmost that of y, at the pixels that they project to, with marks
-/// at round numbers; z, which points at the eye, has none. `values` moves the marks, and nothing else has colour.
+/// Seen from the front, the lowest edge is the x axis and the leftmost edge the y axis, at their projected pixels,
+/// with marks at round numbers. The z axis, which points at the eye, has none. `values` moves the marks. No other
+/// pixel has colour.
 static void test_box_axes(void **state)
 {
     (void)state;
     glint_overlay_desc desc = glint_overlay_desc_default(GLINT_OVERLAY_AXES);
     desc.has_box = desc.has_size = true;
-    desc.size = 8; // room for a number every 19 pixels
+    desc.size = 8; // space for a number every 19 pixels
     const double box[2][3] = { { -4, -3, 0 }, { 4, 3, 2 } };
     memcpy(desc.box, box, sizeof box);
     for (int named = 0; named < 2; named++) {
@@ -233,29 +237,30 @@ static void test_box_axes(void **state)
         world w = make_world(&desc, 0);
         glint_camera_desc view = glint_camera_desc_default();
         view.projection = GLINT_ORTHOGRAPHIC;
-        view.height = 12; // a unit is 10 pixels
+        view.height = 12; // one unit is 10 pixels
         assert_int_equal(glint_camera_set(glint_scene_get(w.scene)->camera, &view, NULL), GLINT_OK);
         glint_picture *picture = show(&w, "box.png", NULL);
-        for (int x = 42; x < 118; x++) // the edge is at y = 90, half of a line of 1 to each side
+        for (int x = 42; x < 118; x++) // the edge is at y = 90, with half of the line's width on each side
             assert_true(grey(picture, x, 89) > 100 && grey(picture, x, 90) > 100);
         for (int y = 32; y < 88; y++)
             assert_true(grey(picture, 39, y) > 100 && grey(picture, 40, y) > 100);
         for (int y = 0; y < 89; y++)
             for (int x = 41; x < WIDTH; x++)
-                assert_int_equal(grey(picture, x, y), 0); // nothing within, above or at the right
+                assert_int_equal(grey(picture, x, y), 0); // nothing inside, above or at the right
         int marks = 0;
         for (int x = 42; x < 118; x++)
             marks += grey(picture, x, 92) > 100 && grey(picture, x - 1, 92) <= 100;
-        const int at[2][2] = { { 60, 100 }, { 56, 104 } }; // -2 and 2; of 0 .. 10, 2 and 8
+        const int at[2][2] = { { 60, 100 }, { 56, 104 } }; // -2 and 2; for the range 0 .. 10, 2 and 8
         for (int i = 0; i < 2; i++)
             assert_true(grey(picture, at[named][i], 92) > 100 && grey(picture, at[named][i] - 3, 92) == 0);
-        assert_int_equal(marks, named ? 4 : 3); // 2, 4, 6 and 8; -2, 0 and 2: those at the ends are not among these columns
+        // 2, 4, 6 and 8; or -2, 0 and 2: marks at the ends are outside these columns
+        assert_int_equal(marks, named ? 4 : 3);
         glint_picture_destroy(picture);
         drop_world(&w);
     }
 }
 
-/// Whether a point is within one of the triangles of three of eight points, and so within what bounds all of them.
+/// Returns whether a point is inside a triangle of three of the eight points, and so inside their convex hull.
 static bool is_within(double at[8][2], double x, double y)
 {
     for (int a = 0; a < 8; a++)
@@ -270,7 +275,7 @@ static bool is_within(double at[8][2], double x, double y)
     return false;
 }
 
-/// Corners of `box` in the picture of a camera at `eye` that looks at 0, y up.
+/// Projects the corners of `box` with a camera at `eye` that looks at the origin, y up.
 static void project_box(const glint_overlay_desc *desc, const glint_camera_desc *view, double at[8][2])
 {
     double forward[3], length = 0;
@@ -295,7 +300,8 @@ static void project_box(const glint_overlay_desc *desc, const glint_camera_desc 
     }
 }
 
-/// Wherever the eye is, outside of the box, no axis, mark, number or name lies over what is seen of the box; and some lie around it.
+/// For every eye outside the box, no axis, mark, number or name covers the box in the picture, and some appear around
+/// the box.
 static void test_box_outside(void **state)
 {
     (void)state;
@@ -325,7 +331,7 @@ static void test_box_outside(void **state)
             glint_picture_row(picture, y, 0, row);
             for (int x = 0; x < WIDTH; x++) {
                 const double dx = x + 0.5 - middle[0], dy = y + 0.5 - middle[1], away = sqrt(dx * dx + dy * dy) + 1e-9;
-                const double farther = 1 + 3 / away; // where a line's own thickness has an end
+                const double farther = 1 + 3 / away; // allows for the lines' own width
                 if (row[3 * x] > 0 && is_within(at, middle[0] + dx * farther, middle[1] + dy * farther))
                     fail_msg("view %d: a pixel at %d, %d lies over the box", i, x, y);
                 lit += row[3 * x] > 0;
@@ -337,7 +343,7 @@ static void test_box_outside(void **state)
     drop_world(&w);
 }
 
-/// A region shows what the whole picture has there.
+/// A region shows the same pixels as that part of the whole picture.
 static void test_region(void **state)
 {
     (void)state;
@@ -360,8 +366,8 @@ static void test_region(void **state)
     drop_world(&w);
 }
 
-/// Another text: another key of beauty, no stage that runs again, other bytes; the planes, other passes and their keys are as
-/// they were. The picture before is left as it was.
+/// A changed text gives another key of beauty and other bytes, and runs no stage again. The planes, the other passes
+/// and their keys stay the same. The earlier picture is unchanged.
 static void test_reuse(void **state)
 {
     (void)state;
@@ -403,7 +409,8 @@ static void test_reuse(void **state)
     drop_world(&w);
 }
 
-/// Pictures of a job through the writer, which keeps bands of the one before, are those that are written alone.
+/// Pictures of a job through the writer, which caches bands of the previous picture, equal pictures written
+/// separately.
 static void test_writer(void **state)
 {
     (void)state;
@@ -438,7 +445,7 @@ static void test_writer(void **state)
     drop_world(&w);
 }
 
-/// Each field is in the key.
+/// The key depends on each field.
 static void test_key(void **state)
 {
     (void)state;
@@ -483,7 +490,7 @@ static void test_key(void **state)
 
 int main(void)
 {
-    setenv("GLINT_FONT", "bitmap", 1); // the same pixels everywhere
+    setenv("GLINT_FONT", "bitmap", 1); // the same pixels on every machine
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_letters), cmocka_unit_test(test_background), cmocka_unit_test(test_colors),
         cmocka_unit_test(test_axes),    cmocka_unit_test(test_box_axes), cmocka_unit_test(test_box_outside),

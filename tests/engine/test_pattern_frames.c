@@ -1,4 +1,5 @@
-/// Frames whose materials have programs, against the same functions in plain C at the points that the contracts give.
+/// Frames whose materials have programs, against the same functions in plain C at the points that the contracts
+/// define.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -93,7 +94,7 @@ static void release_world(world *w) { glint_scene_release(w->scene); }
 
 static const double white[3] = { 0.9, 0.9, 0.9 }, blue[3] = { 0.1, 0.1, 0.2 };
 
-/// A floor at y = 0 with a checker, as a renderer would show a million pixels of it.
+/// A checkered floor at y = 0: a million pixels against the colours computed here.
 static void test_floor(void **state)
 {
     (void)state;
@@ -136,9 +137,10 @@ static void test_floor(void **state)
     release_world(&w);
 }
 
-// ---- Properties: every way to one picture gives the same bits ---------------------------------------------------------
+// ---- Properties: every configuration gives the same bits --------------------------------------------------------------
 
-/// A program of one or three numbers, of the point, the normal, the view and the surface, some of them odd.
+/// A program with one or three outputs that depend on the point, the normal, the view and the surface, some with
+/// special values.
 static glint_program *random_program(size_t count, double low, double high)
 {
     glint_value out[3];
@@ -150,14 +152,14 @@ static glint_program *random_program(size_t count, double low, double high)
         const glint_value x = mul(in(inputs[below(9)]), num(between(1, 5))), y = in(inputs[below(9)]);
         const glint_value wave = op(GLINT_OP_SIN, op(GLINT_OP_ADD, x, y, 0), 0, 0);
         out[i] = op(GLINT_OP_MULADD, wave, num((high - low) / 2), num((high + low) / 2));
-        if (below(6) == 0) // below 0, and NaN
+        if (below(6) == 0) // negative, or NaN
             out[i] = op(GLINT_OP_SELECT, op(GLINT_OP_LESS, wave, num(-0.9), 0), op(GLINT_OP_SQRT, wave, 0, 0),
                         op(GLINT_OP_SUB, out[i], num(low + 0.1), 0));
     }
     return end_program(out, count);
 }
 
-/// Steps of n.l, and a highlight of half of the colour.
+/// A shader with steps of n.l, and a highlight with half of the colour.
 static glint_program *random_shader(void)
 {
     glint_value out[6];
@@ -242,7 +244,7 @@ static void random_shape(world *w, glint_material *material)
 
 #define SHEET 6 // quads along a side of a mesh
 
-/// A bent sheet of quads, whose coordinates belong to vertices, or to corners and are torn.
+/// A curved sheet of quads with texture coordinates per vertex, or per corner with seams.
 static glint_shape *new_sheet(const glint_mesh_desc *like, bool torn, double first)
 {
     double vertices[SHEET + 1][SHEET + 1][3], uv[4 * SHEET * SHEET][2];
@@ -376,8 +378,8 @@ static void test_same_bits(void **state)
 
 // ---- Bumps ------------------------------------------------------------------------------------------------------------
 
-/// h = a sin(k . p), under a map that turns, stretches and mirrors: the normal against the formula, with the map's inverse
-/// solved for; and no light from below the surface itself.
+/// h = a sin(k . p) under a map that rotates, stretches and mirrors. The normal is compared with the formula, using
+/// the inverse of the map. Light from below the geometric surface does not count.
 static void test_bump(void **state)
 {
     (void)state;
@@ -407,7 +409,7 @@ static void test_bump(void **state)
     OK(glint_scene_add_light(w.scene, sun, &error));
     w.render.passes = (1u << GLINT_PASS_COUNT) - 1;
     glint_image *image = render(&w, NULL, 0);
-    // columns of the linear part: x_world = m p + t, so that p and the gradient come from its adjugate
+    // Columns of the linear part: x_world = m p + t, so p and the gradient follow from the adjugate.
     double m[3][3], cross[3][3], t[3];
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
@@ -470,7 +472,7 @@ static void test_bump(void **state)
 
 // ---- Shaders ----------------------------------------------------------------------------------------------------------
 
-/// Lambert's law and Phong's as a program, against the built-in ones.
+/// Lambert's and Phong's models as a program, against the built-in models.
 static void test_shader(void **state)
 {
     (void)state;
@@ -537,7 +539,7 @@ static void test_shader(void **state)
 
 // ---- Reuse ------------------------------------------------------------------------------------------------------------
 
-/// a sin(b p.x) + c p.y, or with another operation instead of the sine: numbers changed one by one.
+/// a sin(b p.x) + c p.y, or another operation instead of the sine. The tests change one number at a time.
 typedef struct wave {
     double a, b, c;
     bool other;
@@ -553,7 +555,7 @@ static glint_program *wave_program(const wave *v)
     return end_program(&out, 1);
 }
 
-/// The programs of one material's fields, in their order.
+/// The number of programs of a material, one per field.
 enum { WAVES = 8 };
 
 static void set_waves(glint_material *material, const wave waves[WAVES])
@@ -578,7 +580,7 @@ static glint_image *render_with(glint_renderer *renderer, const world *w, glint_
     return image;
 }
 
-/// Every number and the operation of every program, one after the other; a place that turns where it stands; a light.
+/// Changes one number or the operation of one program, rotates the ball in place, or moves a light, in turn.
 static void edit(uint32_t turn, wave waves[WAVES], glint_material *material, world *w)
 {
     wave *v = &waves[turn / 4 % WAVES];
@@ -600,7 +602,7 @@ static void edit(uint32_t turn, wave waves[WAVES], glint_material *material, wor
     default:
         v->other = !v->other;
     }
-    if (turn % 5 == 4) { // the surface stays where it is
+    if (turn % 5 == 4) { // the surface stays the same
         desc.transform = glint_transform_rotate(axis, 37.0 * turn);
         OK(glint_shape_set(ball, &desc, &error));
     } else if (turn % 5 == 3) {
@@ -638,7 +640,7 @@ static void test_reuse(void **state)
         OK(glint_renderer_create(&options, &renderer, &error));
         for (uint32_t turn = 0; turn < 5 * WAVES * 4; turn += case_step()) {
             edit(turn, waves, material, &w);
-            for (int again = 0; again < 2; again++) { // unchanged results are cached from the second frame on
+            for (int again = 0; again < 2; again++) { // results are cached when a frame repeats unchanged
                 glint_image *reused = render_with(renderer, &w, NULL), *fresh = render(&w, NULL, 2);
                 check_same(reused, fresh, "reused", (int)turn);
                 glint_image_release(reused);
@@ -651,7 +653,7 @@ static void test_reuse(void **state)
     }
 }
 
-/// One number among the coordinates of a mesh, whose surface stays as it is.
+/// Changes one texture coordinate of a mesh whose surface stays the same.
 static void test_reuse_uv(void **state)
 {
     (void)state;
@@ -689,7 +691,7 @@ static void test_reuse_uv(void **state)
     release_world(&w);
 }
 
-/// NaN and numbers below 0 are taken as 0, and counted, with a place.
+/// NaN and values below 0 are replaced by 0, counted, and reported with a point.
 static void test_odd(void **state)
 {
     (void)state;
@@ -737,8 +739,8 @@ static double share_reused(const glint_frame_stats *stats, const char *stage)
     return -1;
 }
 
-/// A moved light does not run the pattern; a changed number does not affect hits, light and shadows; without a program there is no
-/// such stage.
+/// A moved light does not run the pattern. A changed number does not affect hits, light and shadows. Without a
+/// program the stage does not exist.
 static void test_stages(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-// Options of a picture: alpha, outline. Compared with their definitions, and with the picture without them.
+// Options of a picture: alpha and outline, compared with their definitions and with the picture without them.
 #include "tests/engine/cases/image_case.h"
 
 #include <stdlib.h>
@@ -32,7 +32,7 @@ static glint_shape *ball(double x, double z, double radius, const double diffuse
     return out;
 }
 
-/// Two balls before a bright background, one of them a mirror for it.
+/// Two balls in front of a bright background; `mirror`: reflectance of one of them.
 static void make_world(world *w, double mirror)
 {
     static const double red[3] = { 0.8, 0.2, 0.1 }, blue[3] = { 0.1, 0.2, 0.9 };
@@ -86,7 +86,7 @@ static glint_render_desc small_frame(double samples, uint32_t passes)
 
 // ---- Alpha ----------------------------------------------------------------------------------------------------------
 
-/// Every sample that hits nothing takes its share of the background away, and nothing else.
+/// Alpha removes the background's share of every sample that hits nothing, and nothing else.
 static void test_alpha_passes(void **state)
 {
     (void)state;
@@ -117,7 +117,7 @@ static void test_alpha_passes(void **state)
     free_world(&w);
 }
 
-/// The background in a mirror stays.
+/// The background's reflection in a mirror stays.
 static void test_alpha_mirror(void **state)
 {
     (void)state;
@@ -156,7 +156,8 @@ static glint_png decode(const glint_image *image, const glint_render_desc *desc)
     return png;
 }
 
-/// Codes by definition: of beauty / alpha, and of alpha. They are the same made while rendering and made of the planes.
+/// Pixel values by definition: beauty / alpha, and alpha. They are identical when made while rendering or from the
+/// planes.
 static void test_alpha_codes(void **state)
 {
     (void)state;
@@ -195,7 +196,7 @@ static void test_alpha_codes(void **state)
     free_world(&w);
 }
 
-/// Where all samples hit, the picture is the opaque one.
+/// Where all samples hit, the picture equals the opaque one.
 static void test_alpha_opaque(void **state)
 {
     (void)state;
@@ -220,7 +221,7 @@ static void test_alpha_opaque(void **state)
     free_world(&w);
 }
 
-/// The bytes of a picture, read back, are its codes; what is cut off is no picture, wherever.
+/// The bytes of a picture, read back, give its pixel values. Truncated bytes are refused wherever they are cut.
 static void test_bytes_again(void **state)
 {
     (void)state;
@@ -254,7 +255,8 @@ static void test_bytes_again(void **state)
 
 // ---- Outline --------------------------------------------------------------------------------------------------------
 
-/// A pixel's line from the hits of it and its neighbours: only right for smooth shapes that hide nothing of themselves.
+/// Returns whether a pixel has a line, from its own hit and those of its neighbours. Only valid for smooth shapes
+/// that do not occlude themselves.
 static bool ends_here(const glint_image *image, int x, int y)
 {
     static const int steps[4][2] = { { 1, 0 }, { 0, 1 }, { -1, 0 }, { 0, -1 } };
@@ -269,7 +271,7 @@ static bool ends_here(const glint_image *image, int x, int y)
     return false;
 }
 
-/// The outlines of two balls, and nothing inside them.
+/// The outlines of two balls, and no lines inside them.
 static void test_outline_objects(void **state)
 {
     (void)state;
@@ -289,7 +291,7 @@ static void test_outline_objects(void **state)
     free_world(&w);
 }
 
-/// One shape alone before the eye, as wide as the picture is high.
+/// One shape in front of an orthographic camera. height: of the view, in scene units.
 static glint_image *outline_of(glint_shape *shape, double height)
 {
     world w;
@@ -314,7 +316,7 @@ static glint_image *outline_of(glint_shape *shape, double height)
     return image;
 }
 
-/// Lines that no end of the shape explains.
+/// Counts the lines that are not at the silhouette of the shape.
 static int inner_lines(const glint_image *image)
 {
     int count = 0;
@@ -345,14 +347,15 @@ static glint_shape *two_quads(const double *vertices, size_t count, const uint32
     return out;
 }
 
-/// Edges of a box, its three that are seen; none on a ball of four pixels and more, nor on a smooth mesh of few triangles,
-/// nor on a plane towards the horizon; of one mesh those where a sheet hides another, and where two meet.
+/// Lines appear on the three visible inner edges of a box, and in a mesh where one sheet occludes another and where
+/// two meet. No lines appear on a ball of at least four pixels, on a smooth mesh with few triangles or on a plane
+/// towards the horizon.
 static void test_outline_edges(void **state)
 {
     (void)state;
     glint_shape_desc box = glint_shape_desc_default(GLINT_SHAPE_BOX);
     glint_image *image = outline_of(make(&box), 5);
-    const int edges = inner_lines(image); // 2 units each, some 10 pixels a unit, and seen at a slant
+    const int edges = inner_lines(image); // 2 units each, at about 10 pixels per unit, seen at an angle
     assert_true(edges > 30 && edges < 75);
     glint_image_release(image);
     for (double pixels = 4; pixels <= 25; pixels += 0.7) {
@@ -382,7 +385,7 @@ static void test_outline_edges(void **state)
                                          { -3, -2, -2 }, { 3, -2, -2 }, { 3, 2, -2 }, { -3, 2, -2 } };
     static const double valley[6][3] = { { -2, -1, 2 }, { 0, -1, 0 }, { 0, 1, 0 }, { -2, 1, 2 }, { 2, -1, 2 }, { 2, 1, 2 } };
     image = outline_of(two_quads(&sheets[0][0], 8, (const uint32_t[]) { 0, 1, 2, 3, 4, 5, 6, 7 }), 5);
-    const int steps = inner_lines(image); // above the front sheet and beside it down to where the other ends: 4 units
+    const int steps = inner_lines(image); // along the top and the side of the front sheet: 4 units
     assert_true(steps > 36 && steps < 50);
     glint_image_release(image);
     image = outline_of(two_quads(&valley[0][0], 6, (const uint32_t[]) { 0, 1, 2, 3, 1, 4, 5, 2 }), 5);
@@ -391,7 +394,8 @@ static void test_outline_edges(void **state)
     glint_image_release(image);
 }
 
-/// In the file the lines cover, and nothing else is touched: of codes and of planes, with alpha and without.
+/// In the file, the lines cover the picture and leave all other pixels untouched: for pixel values and planes, with
+/// and without alpha.
 static void test_outline_drawn(void **state)
 {
     (void)state;

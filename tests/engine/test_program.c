@@ -64,7 +64,7 @@ static void test_listing(void **state)
     const glint_value sum = op2(b, GLINT_OP_ADD, op2(b, GLINT_OP_MUL, x, half), y);
     const glint_value again = op2(b, GLINT_OP_ADD, op2(b, GLINT_OP_MUL, x, half), y);
     assert_int_equal(sum, again);
-    op2(b, GLINT_OP_SIN, x, 0); // which no output needs
+    op2(b, GLINT_OP_SIN, x, 0); // not needed by any output
     assert_int_equal(glint_builder_length(b), 3);
     const glint_value out = op2(b, GLINT_OP_SQRT, sum, 0);
     glint_program *p = finish(b, &out, 1);
@@ -81,7 +81,7 @@ static void test_listing(void **state)
     glint_builder_destroy(b);
 }
 
-/// The listing of a program of one output.
+/// Checks the listing of a program with one output.
 static void check_listing(glint_builder *b, glint_value out, const char *want)
 {
     glint_program *p = finish(b, &out, 1);
@@ -110,9 +110,9 @@ static void test_pairs(void **state)
     const glint_value square = op2(b, GLINT_OP_MUL, z, z), two = op2(b, GLINT_OP_ADD, product, op2(b, GLINT_OP_MUL, y, z));
     check_listing(b, op2(b, GLINT_OP_ADD, two, square), "r0 = dot p.x p.y p.y p.z p.z p.z\nreturn r0\n");
     check_listing(b, op2(b, GLINT_OP_ADD, square, two), "r0 = dot p.x p.y p.y p.z p.z p.z\nreturn r0\n");
-    check_listing(b, op2(b, GLINT_OP_ADD, two, op2(b, GLINT_OP_MUL, two, z)), // a part that is needed twice
+    check_listing(b, op2(b, GLINT_OP_ADD, two, op2(b, GLINT_OP_MUL, two, z)), // a subexpression used twice
                   "r0 = mul p.x p.y\nr0 = muladd p.y p.z r0\nr0 = muladd r0 p.z r0\nreturn r0\n");
-    const glint_value outputs[] = { op2(b, GLINT_OP_ADD, z, product), product, z }; // which is needed by itself, too
+    const glint_value outputs[] = { op2(b, GLINT_OP_ADD, z, product), product, z }; // which is also an output
     glint_program *p = finish(b, outputs, 3);
     assert_int_equal(glint_program_length(p), 2);
     glint_program_release(p);
@@ -129,7 +129,7 @@ static void test_numbers(void **state)
     assert_true(glint_builder_is_number(b, sum, &got) && got == 0.1 + 0.2);
     assert_int_equal(op2(b, GLINT_OP_MUL, x, number(b, 1)), x);
     assert_int_equal(op2(b, GLINT_OP_SUB, x, number(b, 0)), x);
-    assert_int_not_equal(op2(b, GLINT_OP_ADD, x, number(b, 0)), x); // which makes 0 of -0
+    assert_int_not_equal(op2(b, GLINT_OP_ADD, x, number(b, 0)), x); // would turn -0 into 0
     assert_int_equal(op3(b, GLINT_OP_SELECT, number(b, 2), tenth, x), tenth);
     assert_int_not_equal(number(b, 0.0), number(b, -0.0));
     const glint_value outputs[] = { tenth, sum, op2(b, GLINT_OP_SIN, fifth, 0) };
@@ -163,8 +163,8 @@ static void expect_failure(glint_status status, const char *part)
         fail_msg("'%s' has no '%s'", error.message, part);
 }
 
-/// Written all before they are added up, they need rows for all; ordered by need, two. Where all are needed after the sum,
-/// no order helps.
+/// A sum of sines in the order of definition needs a row for each; ordered by use, it needs two. When all sines are
+/// used again after the sum, no order helps, and the builder refuses.
 static void test_rows(void **state)
 {
     (void)state;
@@ -253,7 +253,7 @@ static void test_keys(void **state)
         glint_program_release(p[i]);
 }
 
-/// Only the second of the three results of noise3; and a row reused after its last reader.
+/// Only the second of the three results of noise3 is used; a row is reused after its last reader.
 static void test_results(void **state)
 {
     (void)state;
@@ -279,7 +279,7 @@ static const glint_input chain_inputs[CHAIN_INPUTS] = { GLINT_INPUT_N_X, GLINT_I
 
 static double chain_factor(int i) { return 1 + i % 7; }
 
-/// The light times `length` factors 1 + c x, of each input in turn.
+/// The light times `length` factors 1 + c x, cycling through the inputs x.
 static glint_program *make_chain(int length)
 {
     glint_builder *b = new_builder(GLINT_PROGRAM_SHADER);
@@ -295,7 +295,7 @@ static glint_program *make_chain(int length)
     return program;
 }
 
-/// The slopes of the chain's light, as a lane's sums have them, where input k changes by weight[k].
+/// Sums the derivatives of the chain's light over its inputs in the first lane; input k changes by weight[k].
 static void sum_gradient(const glint_gradient *gradient, double (*inputs)[GLINT_GROUP], double (*weights)[GLINT_GROUP],
                          double (*sum)[GLINT_GROUP])
 {
@@ -334,7 +334,8 @@ static void check_chain(int length, const glint_gradient *gradient)
         assert_true(fabs(sum[c][0] / ((c + 1) * product * slope) - 1) < 1e-12);
 }
 
-/// One program gives all slopes; where that were too long a program, several do, and then there is none.
+/// One program computes all derivatives. If it would be too long, several programs do, and beyond that the gradient
+/// is refused.
 static void test_gradients(void **state)
 {
     (void)state;

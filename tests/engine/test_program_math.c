@@ -1,4 +1,5 @@
-/// The elementary functions of programs against multiple precision, and derivatives against differences at 113 bits.
+/// The elementary functions of programs against multiple-precision arithmetic, and derivatives against differences at
+/// 113 bits.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -31,9 +32,9 @@ static int truth_acos(mpfr_t r, mpfr_srcptr a, mpfr_srcptr b, mpfr_rnd_t m) { re
 static int truth_pow(mpfr_t r, mpfr_srcptr a, mpfr_srcptr b, mpfr_rnd_t m) { return mpfr_pow(r, a, b, m); }
 static int truth_atan2(mpfr_t r, mpfr_srcptr a, mpfr_srcptr b, mpfr_rnd_t m) { return mpfr_atan2(r, a, b, m); }
 
-// ---- How far they are off -----------------------------------------------------------------------------------------
+// ---- Errors -------------------------------------------------------------------------------------------------------
 
-/// |got - truth| / max(|truth|, floor); an infinity or NaN that is right is 0.
+/// |got - truth| / max(|truth|, least). A correct infinity or NaN counts as 0.
 static double error_of(glint_op op, mpfr_function *truth, double a, double b, double least)
 {
     mpfr_t x, y, want;
@@ -69,8 +70,8 @@ typedef struct function_case {
     glint_op op;
     mpfr_function *truth;
     draw *a, *b;
-    double bound; ///< as program/elementary.h states it
-    double least; ///< the error is relative to the truth, or to this where the truth is smaller
+    double bound; ///< as stated in program/elementary.h
+    double least; ///< the error is relative to the truth, or to this value where the truth is smaller
 } function_case;
 
 static const function_case functions[] = {
@@ -108,7 +109,7 @@ static void test_stated_errors(void **state)
     assert_true(good);
 }
 
-/// Where C99, annex F, says what comes out, that comes out.
+/// Results follow C99 annex F where it specifies them.
 static void test_special_values(void **state)
 {
     (void)state;
@@ -131,9 +132,9 @@ static void test_special_values(void **state)
         }
 }
 
-/// x^s as shading has it: seven digits, and 0 below 2^-40, which changes no code of 16 bits.
-/// The logarithm of the result is a product of floats: s and x are rounded, each by 2^-24 of itself at most, the logarithm is within
-/// three of these, and so is the product by one.
+/// x^s as used in shading: seven digits, and 0 below 2^-40, which changes no 16-bit pixel value. The logarithm of the
+/// result is a product of floats: s and x are each rounded by a relative 2^-24 at most, the logarithm is within three
+/// such errors, and the product adds one.
 static void test_highlight(void **state)
 {
     (void)state;
@@ -174,7 +175,7 @@ static glint_value constant(double x)
     return out;
 }
 
-/// One operation at 113 bits. x: what it is of.
+/// Computes one operation at 113 bits. x: operands.
 static void truth_of(glint_op op, mpfr_t r, mpfr_t *x)
 {
     mpfr_t t;
@@ -234,7 +235,7 @@ static void truth_of(glint_op op, mpfr_t r, mpfr_t *x)
     mpfr_clear(t);
 }
 
-/// A program's first output at p, at 113 bits.
+/// Computes a program's first output at p, at 113 bits.
 static void truth_at(const glint_program *program, mpfr_t *p, mpfr_t out)
 {
     const glint_program_code *code = &program->code;
@@ -262,7 +263,8 @@ static void truth_at(const glint_program *program, mpfr_t *p, mpfr_t out)
     }
 }
 
-/// The slope along an axis, by a central difference of 2^-36: off by its square times the third derivative.
+/// Derivative along an axis by a central difference with step 2^-36. The error is the step squared times the third
+/// derivative.
 static double difference(const glint_program *program, const double at[3], int axis)
 {
     mpfr_t p[3], low, high;
@@ -282,7 +284,7 @@ static double difference(const glint_program *program, const double at[3], int a
 
 static const glint_input axes[3] = { GLINT_INPUT_P_X, GLINT_INPUT_P_Y, GLINT_INPUT_P_Z };
 
-/// Slopes of an expression at random points, each within 1e-11 of its size.
+/// Checks the derivatives of an expression at random points, each to a relative 1e-11.
 static void check_slopes(const char *name, glint_value root, double low, double high)
 {
     glint_program *program, *slope;
@@ -329,7 +331,7 @@ static void test_slopes_of_operations(void **state)
     }
 }
 
-/// Things people use as bumps.
+/// Typical bump functions.
 static void test_slopes_of_programs(void **state)
 {
     (void)state;
@@ -352,9 +354,10 @@ static void test_slopes_of_programs(void **state)
     glint_builder_destroy(building);
 }
 
-// ---- Slopes that have kernels of their own ------------------------------------------------------------------------
+// ---- Derivatives with their own kernels ---------------------------------------------------------------------------
 
-/// Noise by its definition: gradients, which are its slopes at whole numbers, times the way from there, faded.
+/// Noise by its definition: gradients at integer points (the derivatives there) times the offset from each, blended
+/// by the fade.
 static long double noise_by_definition(uint32_t k, const long double p[3])
 {
     long double sum = 0;
@@ -396,7 +399,7 @@ static void test_noise_slopes(void **state)
     }
 }
 
-/// Distances grow as fast as one moves: slopes of length 1, equal to differences.
+/// Distances grow at unit rate: the gradients have length 1 and equal the differences.
 static void test_cell_slopes(void **state)
 {
     (void)state;
@@ -420,7 +423,8 @@ static void test_cell_slopes(void **state)
                 kinks += fabs((high[n] - low[n]) / 2e-5 - slope[3 * n + axis]) > 1e-6;
         }
     }
-    assert_true(kinks < 60); // of 30000: where two distances are the same between the two points
+    // of 30000: where two feature points are equally far between the two points of the difference
+    assert_true(kinks < 60);
 }
 
 int main(void)

@@ -1,4 +1,4 @@
-/// Noise, cells, hash and parity: range, continuity, evenness. Results are the reference kernels'.
+/// Noise, cells, hash and parity: range, continuity, uniformity. Tests the reference kernels.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -44,7 +44,8 @@ static void test_noise_range(void **state)
     assert_true(fabs(sum / count) < 0.001 && fabs(sqrt(square / count) - 0.25) < 0.05);
 }
 
-/// Where it is highest of all, were all gradients as they would have to be: Perlin's sum times the scale.
+/// The highest value that Perlin noise could reach if every gradient were the best one, times the scale, is just
+/// below 1.
 static void test_noise_scale(void **state)
 {
     (void)state;
@@ -63,7 +64,8 @@ static void test_noise_scale(void **state)
     assert_true(sum * 0.9649 <= 1 && sum * 0.9649 > 0.9999);
 }
 
-/// Continuous with its slope across the faces of cubes; 0 at whole numbers; far from the origin as near it.
+/// Noise and its slope are continuous across the faces of cubes. Noise is 0 at integers, and works far from the
+/// origin.
 static void test_noise_continuity(void **state)
 {
     (void)state;
@@ -84,7 +86,7 @@ static void test_noise_continuity(void **state)
     assert_true(isnan(pattern(GLINT_OP_NOISE, NAN, 0, 0)) && isnan(pattern(GLINT_OP_NOISE, 0, INFINITY, 0)));
 }
 
-/// The gradients of neighbours, and of the three noises, have nothing to do with each other.
+/// The gradients of neighbours and of the three noises are uncorrelated.
 static void test_noise_unlike(void **state)
 {
     (void)state;
@@ -106,7 +108,7 @@ static void test_noise_unlike(void **state)
         assert_true(fabs(product[k] / square) < 0.02);
 }
 
-/// Chi-square of 64 boxes with 63 degrees of freedom: below 120 but once in 100000.
+/// Chi-square of 64 boxes, with 63 degrees of freedom: above 120 only once in 100000.
 static double chi_square(const uint32_t box[64], double count)
 {
     double sum = 0;
@@ -139,7 +141,7 @@ static void test_hash(void **state)
     assert_true(pattern(GLINT_OP_HASH, 1, 2, 3) != pattern(GLINT_OP_HASH, 2, 1, 3));
 }
 
-/// Gradients are drawn evenly: 16 kinds, of which the slopes at whole numbers tell 12.
+/// Gradients are uniformly distributed: 12 of the 16 kinds can be distinguished by their slopes at integers.
 static void test_gradients(void **state)
 {
     (void)state;
@@ -156,13 +158,13 @@ static void test_gradients(void **state)
         }
     }
     assert_int_equal(count, 2 * 64000);
-    assert_true(fabs(zero[0] / 64000.0 - 6.0 / 16) < 0.01); // x is in 10 of Perlin's 16
+    assert_true(fabs(zero[0] / 64000.0 - 6.0 / 16) < 0.01); // x is nonzero in 10 of Perlin's 16
     for (int k = 0; k < 3; k++)
         assert_true(fabs(sum[k]) < 800);
 }
 
-/// A distance grows no faster than one moves, and the next point is no nearer than the nearest: this holds where no point
-/// is overlooked, and fails at the borders of the search if one is.
+/// A distance grows no faster than the point moves, and the second distance is no smaller than the first. This holds
+/// when no feature point is overlooked, and fails at the borders of the search otherwise.
 static void test_cells(void **state)
 {
     (void)state;

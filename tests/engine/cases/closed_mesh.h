@@ -1,4 +1,4 @@
-/// Random closed meshes with a hollow here and a peak there, and places within them by counting crossings in 113 bits.
+/// Random closed meshes with dents and peaks, and point-in-mesh tests that count crossings in 113-bit arithmetic.
 #ifndef GLINT_TESTS_CLOSED_MESH_H
 #define GLINT_TESTS_CLOSED_MESH_H
 
@@ -24,10 +24,10 @@ static inline void add_closed_triangle(closed_mesh *mesh, const double a[3], con
     memcpy(corner[2], c, 3 * sizeof *c);
 }
 
-/// A ball of 32 triangles around the middle. Its corners, those of an octahedron and the middles of its sides, have random distances.
+/// A closed mesh of 32 triangles around `middle`: a subdivided octahedron whose 18 vertices have random distances.
 static inline void make_star(closed_mesh *mesh, const double middle[3], double low, double high)
 {
-    double at[3][3][3][3]; // by -1, 0, 1 along each axis
+    double at[3][3][3][3]; // indexed by -1, 0, 1 along each axis, plus 1
     for (int i = 0; i < 27; i++) {
         const double way[3] = { i / 9 - 1.0, i / 3 % 3 - 1.0, i % 3 - 1.0 };
         const double far = between(low, high) / (1 + 0.4 * (way[0] * way[0] + way[1] * way[1] + way[2] * way[2] - 1));
@@ -45,7 +45,7 @@ static inline void make_star(closed_mesh *mesh, const double middle[3], double l
     }
 }
 
-/// Boxes have faces square to the axes.
+/// An axis-aligned box.
 static inline void make_box(closed_mesh *mesh, const double low[3], const double high[3])
 {
     static const int faces[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
@@ -73,14 +73,15 @@ static inline void random_closed_mesh(closed_mesh *mesh)
         return;
     }
     make_star(mesh, middle, 0.3, 1.4);
-    if (one_in(3)) { // another one, apart or within each other
+    if (one_in(3)) { // a second one, separate or overlapping
         for (int c = 0; c < 3; c++)
             middle[c] += between(-1.5, 1.5);
         make_star(mesh, middle, 0.2, 0.8);
     }
 }
 
-/// inverted: its triangles are taken the other way round. Every corner is a vertex of its own: places alone join them.
+/// inverted: reverses the winding of the triangles. Every corner has its own vertex: only equal positions join
+/// triangles.
 static inline glint_shape *closed_mesh_shape(const closed_mesh *mesh, bool inverted, glint_shading shading, const glint_transform *map)
 {
     glint_shape *shape;
@@ -106,7 +107,8 @@ static inline quad corner_side(const quad p[3], const quad q[3], const double d[
     return (p[1] * q[2] - p[2] * q[1]) * d[0] + (p[2] * q[0] - p[0] * q[2]) * d[1] + (p[0] * q[1] - p[1] * q[0]) * d[2];
 }
 
-/// 1: the ray goes out through the triangle, -1: in, 0: it passes beside, or within 1e-9 of an edge: *sure turns false. *t: where.
+/// 1: the ray leaves through the triangle, -1: it enters, 0: no crossing. *t: distance. Within 1e-9 of an edge, *sure
+/// becomes false.
 static inline int quad_crossing(double corner[3][3], const quad from[3], const double d[3], quad *t, bool *sure)
 {
     quad p[3][3], side[3], n[3], f[3], g[3], volume = 0, rise = 0;
@@ -133,7 +135,8 @@ static inline int quad_crossing(double corner[3][3], const quad from[3], const d
     return side[0] < 0 && side[1] < 0 && side[2] < 0 ? -1 : 0;
 }
 
-/// How often a place is inside, by a ray that passes no edge closely; map: of the corners.
+/// Returns how many meshes contain the point (negative for inverted winding), using a ray that passes close to no
+/// edge.
 static inline int times_inside(closed_mesh *mesh, const quad place[3])
 {
     for (int attempt = 0; attempt < 64; attempt++) {

@@ -46,7 +46,7 @@ static inline glint_scene *make_floor(const double eye[3], const double at[3])
     return scene;
 }
 
-/// How many pixels differ in any bit of the beauty.
+/// Counts the pixels whose beauty differs in any bit.
 static inline int differing(const glint_image *a, const glint_image *b)
 {
     int count = 0;
@@ -60,7 +60,7 @@ static inline int differing(const glint_image *a, const glint_image *b)
     return count;
 }
 
-/// Whether the scene calls for an effect of this name.
+/// Returns whether the scene uses an effect with this name.
 static inline bool has_effect(const glint_scene *scene, const char *effect)
 {
     glint_render_desc desc = glint_render_desc_default();

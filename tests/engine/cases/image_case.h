@@ -1,4 +1,4 @@
-/// Shared by the tests of images: a folder for a test's files, a picture with every pass.
+/// Shared by the tests of images: a folder for a test's files, and a picture with every pass.
 #ifndef GLINT_TESTS_IMAGE_CASE_H
 #define GLINT_TESTS_IMAGE_CASE_H
 

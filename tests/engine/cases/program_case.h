@@ -1,4 +1,5 @@
-/// Random programs for the tests: a recipe that can be built more than once, with and without what the builder saves.
+/// Random programs for the tests: a recipe that can be built several times, with and without the builder's
+/// optimisations.
 #ifndef GLINT_PROGRAM_CASE_H
 #define GLINT_PROGRAM_CASE_H
 
@@ -21,7 +22,7 @@ typedef struct recipe {
 
 static glint_texture *recipe_texture; ///< NULL: no texels
 
-/// A number as people write them, or an odd one.
+/// A typical decimal number, or a special one.
 static inline double recipe_number(bool odd)
 {
     static const double usual[] = { 0, 1, 2, 0.5, -1, 3, 10, 0.1, 0.25, -0.5, 100, 1e7 };
@@ -39,7 +40,7 @@ static inline void recipe_add(recipe *r, recipe_step step, uint32_t results)
     r->value_count += results;
 }
 
-/// Inputs, numbers, then operations on earlier values; often only on numbers.
+/// Inputs, then numbers, then operations on earlier values, often on numbers.
 static inline recipe random_recipe(bool odd)
 {
     recipe r = { .output_count = one_in(2) ? 1 : 3 };
@@ -80,7 +81,7 @@ static inline glint_status recipe_op(glint_builder *b, const recipe_step *step, 
     return glint_builder_add(b, step->op, texture, operands, out, error);
 }
 
-/// plain: nothing folded, shared or fused.
+/// plain: builds without folding, sharing or fusing.
 static inline glint_program *recipe_build(const recipe *r, bool plain)
 {
     glint_builder *b;
@@ -110,7 +111,7 @@ static inline glint_program *recipe_build(const recipe *r, bool plain)
     return program;
 }
 
-/// The arguments of the stage for a program, with random points; outputs are the caller's.
+/// Stage arguments for a program, with random points. The caller provides the outputs.
 static inline glint_program_args program_inputs(const glint_program *program, uint32_t groups, bool odd)
 {
     glint_program_args args = { .code = &program->code, .group_count = groups };

@@ -1,4 +1,4 @@
-/// Random numbers that are the same everywhere (splitmix64): a test sets `random_state` to a seed.
+/// Random numbers that are identical on every platform (splitmix64). A test sets `random_state` to a seed.
 #ifndef GLINT_TESTS_RANDOM_H
 #define GLINT_TESTS_RANDOM_H
 
@@ -16,15 +16,16 @@ static inline uint64_t random_bits(void)
     return z ^ z >> 31;
 }
 
-/// 0 .. n - 1.
+/// A random integer in 0 .. n - 1.
 static inline uint32_t below(uint32_t n) { return (uint32_t)((random_bits() >> 32) * n >> 32); }
 
 static inline bool one_in(uint32_t n) { return below(n) == 0; }
 
 static inline double between(double a, double b) { return a + (b - a) * ((double)(random_bits() >> 11) * 0x1p-53); }
 
-/// One of so many cases is run: 1, or GLINT_CASE_STEP where all of them would take too long (on an emulated machine, under a
-/// sanitizer). Coprime to the periods of a test's kinds of cases, 5 and 6, or some kinds would never run.
+/// Returns n: the tests run every n-th case. n is 1, or GLINT_CASE_STEP where all cases would take too long (on an
+/// emulated machine, under a sanitizer). It must be coprime to 5 and 6, the periods of the kinds of cases, or some
+/// kinds would never run.
 static inline uint32_t case_step(void)
 {
     const char *step = getenv("GLINT_CASE_STEP");

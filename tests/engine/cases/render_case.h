@@ -1,4 +1,4 @@
-/// A picture of a scene by one instruction set on one thread, and how many pixels of two pictures differ.
+/// Renders a scene with one instruction set on one thread, and counts the pixels that differ between two pictures.
 #ifndef GLINT_RENDER_CASE_H
 #define GLINT_RENDER_CASE_H
 
@@ -12,7 +12,7 @@
 
 #include "engine/glint.h"
 
-/// NULL: this machine lacks the instruction set.
+/// Returns NULL when this machine lacks the instruction set.
 static inline glint_image *render_with(const glint_scene *scene, const char *isa, const glint_render_desc *desc)
 {
     glint_renderer *renderer;
@@ -31,7 +31,7 @@ static inline glint_image *render_with(const glint_scene *scene, const char *isa
     return image;
 }
 
-/// Hashes the pixels of a square, by their bits.
+/// Counts the pixels of a square whose bits differ.
 static inline int differing(const glint_image *a, const glint_image *b, glint_pass pass, int size)
 {
     int count = 0;

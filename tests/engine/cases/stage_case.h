@@ -1,4 +1,4 @@
-/// Tools of the stages' tests: random numbers with special ones among them, and outputs between guard bytes
+/// Tools for the tests of the stages: random numbers that include special values, and outputs between guard bytes
 /// that are compared bit for bit. Every stage runs on every instruction set against the scalar reference.
 #ifndef GLINT_STAGE_CASE_H
 #define GLINT_STAGE_CASE_H
@@ -35,10 +35,10 @@ static inline double odd_number(void)
     return odd[below(COUNT_OF(odd))];
 }
 
-/// `x`, or where the case is an odd one, now and then something nobody expects.
+/// Returns `x`, or in odd cases sometimes a special value.
 static inline double maybe_odd(bool odd_case, double x) { return odd_case && one_in(12) ? odd_number() : x; }
 
-/// A mask of lanes: all, none, or some of them.
+/// A mask of lanes: all, none or some.
 static inline uint16_t random_mask(void)
 {
     uint32_t kind = below(8);
@@ -57,7 +57,7 @@ typedef struct test_array {
     unsigned char *bytes; ///< guard, elements, guard
 } test_array;
 
-/// Arrays of the case at hand: what the stage reads, what the reference wrote, what the other instruction set wrote.
+/// Arrays of the current case: inputs of the stage, outputs of the reference, outputs of the other instruction set.
 static test_array inputs[MOST_ARRAYS], wanted[MOST_ARRAYS], gotten[MOST_ARRAYS];
 static uint32_t input_count, wanted_count, gotten_count;
 
@@ -65,7 +65,7 @@ static inline size_t element_size(array_kind kind) { return kind == KIND_U16 ? 2
 
 static inline size_t array_bytes(const test_array *a) { return element_size(a->kind) * a->count + 2 * GUARD_BYTES; }
 
-/// Where the elements start: 64-byte aligned, as a tile's arrays are.
+/// The first element: 64-byte aligned, like the arrays of a tile.
 static inline void *array_elements(const test_array *a) { return a->bytes + GUARD_BYTES; }
 
 static inline void *new_array(test_array *list, uint32_t *list_count, const char *name, array_kind kind, uint32_t count)
@@ -118,9 +118,9 @@ static inline double get(const void *array, int precision, uint32_t i)
 
 // ---- Every instruction set in turn -------------------------------------------------------------------------------
 
-static const glint_stages *tested[8]; ///< the reference, then every other that this machine can run
+static const glint_stages *tested[8]; ///< the reference, then all others that this machine can run
 static uint32_t tested_count;
-static const glint_stages *running; ///< whose outputs new_output makes
+static const glint_stages *running; ///< the stages that new_output allocates for
 static uint32_t mismatches;
 static uint64_t case_seed;
 
@@ -135,7 +135,7 @@ static inline void find_tested(void)
     }
 }
 
-/// The last lines of a run: what it could not test, so that it is never silent.
+/// Prints, at the end of a run, the instruction sets that could not be tested, so that no gap goes unnoticed.
 static inline void print_skipped(void)
 {
     for (const glint_stages *const *isa = glint_stages_built; *isa; isa++)
@@ -155,8 +155,8 @@ static inline void output3(void *array[3], const char *name, array_kind kind, ui
         array[c] = output(name, kind, count);
 }
 
-/// The same bits; for numbers, any NaN is as good as another: which one comes out depends on the order of operands
-/// that the compiler chose.
+/// Compares bits, except that all NaNs are equal: the payload depends on the order of operands that the compiler
+/// chose.
 static inline bool same_element(const test_array *a, const test_array *b, uint32_t i)
 {
     size_t size = element_size(a->kind);
@@ -199,7 +199,7 @@ static inline void compare_array(const char *stage, const test_array *want, cons
     }
 }
 
-/// After a stage ran on `running`: compares its outputs with the reference's, which ran first.
+/// Compares the outputs of `running` with the reference's. The reference must have run first.
 static inline void compare_outputs(const char *stage)
 {
     for (uint32_t k = 0; k < gotten_count; k++)
@@ -216,7 +216,7 @@ static inline void end_case(void)
 
 #define FOR_EACH_TESTED for (uint32_t isa_ = 0; isa_ < tested_count && (running = tested[isa_]); isa_++)
 
-/// Where the reference keeps `want` of the case at hand; NULL: the stage has no such output.
+/// The reference's output called `name` in the current case; NULL when the stage has no such output.
 static inline const test_array *wanted_array(const char *name)
 {
     for (uint32_t k = 0; k < wanted_count; k++)
@@ -228,7 +228,7 @@ static inline const test_array *wanted_array(const char *name)
 static inline void run_cases(uint32_t cases, uint64_t seed, void (*one)(int precision, bool odd))
 {
     mismatches = 0;
-    end_case(); // what a failed test left
+    end_case(); // after a failed test
     for (uint32_t i = 0; i < cases; i += case_step()) {
         random_state = case_seed = seed + i;
         one(i & 1 ? GLINT_FLOAT : GLINT_DOUBLE, i % 3 == 2);
@@ -280,7 +280,7 @@ static inline void random_unit(double v[3])
         v[c] /= length;
 }
 
-/// A unit vector at right angles to `v`.
+/// A unit vector perpendicular to `v`.
 static inline void random_across(const double v[3], double out[3])
 {
     double any[3], length;

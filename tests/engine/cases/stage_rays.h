@@ -1,5 +1,5 @@
-/// Rays for the tests of the stages, as a frame has them: a camera's tile, parallel rays, rays of their own; and scenes
-/// in which these rays pass close by everything.
+/// Rays for the tests of the stages, as a frame has them: a camera's tile, parallel rays, individual rays; and scenes
+/// with primitives close to these rays.
 #ifndef GLINT_STAGE_RAYS_H
 #define GLINT_STAGE_RAYS_H
 
@@ -7,32 +7,32 @@
 
 typedef enum ray_kind {
     RAYS_OF_EYE, ///< cast_bundle
-    RAYS_OF_PIXELS, ///< likewise, of pixels wherever they are
+    RAYS_OF_PIXELS, ///< likewise, for pixels at arbitrary positions
     RAYS_OF_ORTHOGRAPHIC_CAMERA, ///< cast_rays, parallel
-    RAYS_OF_LENS, ///< cast_rays, of either projection
-    RAYS_PARALLEL, ///< likewise, another direction for each group
-    RAYS_ALIKE, ///< likewise, nearly along one direction
+    RAYS_OF_LENS, ///< cast_rays, for either projection
+    RAYS_PARALLEL, ///< likewise, one direction for each group
+    RAYS_ALIKE, ///< likewise, nearly the same direction for all
     RAYS_FREE, ///< cast_rays
     RAY_KINDS
 } ray_kind;
 
-/// A case of cast: arrays are inputs of stage_case.h.
+/// A case for cast. The arrays are inputs of stage_case.h.
 typedef struct ray_case {
     ray_kind kind;
     int precision;
     scene_plan plan;
     test_scene *scene;
     glint_camera_args camera;
-    glint_lens lens; ///< of RAYS_OF_LENS: what camera.lens points to
+    glint_lens lens; ///< for RAYS_OF_LENS: camera.lens points to it
     glint_cast_args cast;
-    const void *origin[3], *direction[3]; ///< of rays that are in arrays
+    const void *origin[3], *direction[3]; ///< for rays stored in arrays
 } ray_case;
 
 static inline bool is_from_eye(ray_kind kind) { return kind == RAYS_OF_EYE || kind == RAYS_OF_PIXELS; }
 
 // ---- Cameras -----------------------------------------------------------------------------------------------------
 
-/// Where the tile is in the image, and how much of it there is. Returns the height of the image.
+/// Chooses the tile's position in the image, and its size. Returns the height of the image.
 static inline double random_tile(glint_camera_args *camera)
 {
     const uint32_t most = one_in(3) ? 20000 : 300, width = 1 + below(most), height = 1 + below(most);
@@ -52,17 +52,18 @@ static inline double random_tile(glint_camera_args *camera)
     return height;
 }
 
-/// A camera that looks at the middle of the scene from within, from nearby or from up to 1e7 sizes away. Returns the
-/// distance to the middle.
+/// A camera that looks at the middle of the scene from inside, from nearby or from up to 1e7 scene sizes away.
+/// Returns the distance to the middle.
 static inline double random_camera(const scene_plan *plan, bool orthographic, glint_camera_args *camera)
 {
     *camera = (glint_camera_args) { .orthographic = orthographic };
     const double height = random_tile(camera), size = plan->size;
     const double distance = size * (one_in(4) ? power_of_ten(4, 7) : one_in(5) ? between(0, 1) : between(1, 10));
-    const double seen = size * (one_in(4) ? power_of_ten(-4, 0) : between(0.3, 3)); // from the axis up to the edge
+    // from the axis to the edge of the picture
+    const double seen = size * (one_in(4) ? power_of_ten(-4, 0) : between(0.3, 3));
     random_unit(camera->forward);
     random_across(camera->forward, camera->right);
-    if (one_in(3)) { // upright: what touches a box touches the border of a group
+    if (one_in(3)) { // axis-aligned: the edges of boxes coincide with the borders of groups
         const uint32_t axis = below(3);
         memset(camera->forward, 0, sizeof camera->forward);
         memset(camera->right, 0, sizeof camera->right);
@@ -79,8 +80,8 @@ static inline double random_camera(const scene_plan *plan, bool orthographic, gl
     return distance;
 }
 
-/// A lens of a camera that looks at the middle of the scene: next to nothing or larger than the scene, in focus there or
-/// anywhere. Its points are the middle, at the rim and in between.
+/// A lens of a camera that looks at the middle of the scene: from tiny to larger than the scene, focused on the
+/// middle or at any distance. Its points include the centre and the rim.
 static inline void random_lens(double size, double distance, glint_camera_args *camera, glint_lens *lens)
 {
     const double focus = one_in(3) ? size * power_of_ten(-6, 7) : fmax(distance, 1e-3 * size) * power_of_ten(-1, 1);
@@ -98,7 +99,7 @@ static inline void random_lens(double size, double distance, glint_camera_args *
     camera->lens = lens;
 }
 
-/// Some pixels of a tile in any order, one a lane.
+/// Chooses pixels of the tile in random order, one per lane.
 static inline void scatter_pixels(glint_camera_args *camera)
 {
     const double first[2] = { camera->x0, camera->y0 };
@@ -113,7 +114,7 @@ static inline void scatter_pixels(glint_camera_args *camera)
     }
 }
 
-/// Pixels of the tile that are in the image; now and then any.
+/// Marks the pixels of the tile that are inside the image; sometimes a random mask.
 static inline uint16_t *active_pixels(const glint_camera_args *camera)
 {
     uint16_t *active = masks(camera->group_count);
@@ -135,7 +136,7 @@ static inline void make_axes(glint_camera_args *camera, int precision)
     camera->down = input(real_kind(precision), 3 * GLINT_GROUP * (camera->group_count / camera->groups_across));
 }
 
-/// Makes the camera's rays, anew after a change of it.
+/// Generates the camera's rays again after a change of the camera.
 static inline void shoot_camera(ray_case *c)
 {
     glint_camera_args args = c->camera;
@@ -172,7 +173,7 @@ static inline void get_ray(const ray_case *c, uint32_t i, double origin[3], doub
     }
 }
 
-/// Rays from around one place, or from everywhere, most of them towards the scene.
+/// Rays from around one point or from everywhere, most of them towards the scene.
 static inline void shoot_free(ray_case *c)
 {
     const scene_plan *plan = &c->plan;
@@ -191,7 +192,7 @@ static inline void shoot_free(ray_case *c)
             random_unit(way);
             for (int k = 0; k < 3 && !one_in(5); k++)
                 way[k] = (target[k] - origin[k]) * length;
-            if (one_in(6)) // along an axis or two
+            if (one_in(6)) // along an axis or in a coordinate plane
                 way[below(3)] = way[below(3)] = either_sign(0);
             if (!(length3(way) > 0))
                 random_unit(way);
@@ -204,7 +205,7 @@ static inline void shoot_free(ray_case *c)
     }
 }
 
-/// Some of the case's rays become lines that the scene is built around; half of them at the border of the tile.
+/// Picks rays as the lines that the scene is built around; half of them are at the border of the tile.
 static inline void choose_lines(ray_case *c, double length)
 {
     const uint32_t across = c->camera.groups_across, down = c->cast.group_count / across;

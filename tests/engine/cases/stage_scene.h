@@ -1,6 +1,6 @@
-/// Scenes for the tests of the stages that look at geometry: primitives placed where it is hard to tell whether a ray
-/// meets them, and the tables that stages.h promises the kernels, made only from its words. The index is the engine's
-/// tree over boxes that are made here.
+/// Scenes for the tests of the geometry stages: primitives placed where a hit is hard to decide, and the tables that
+/// stages.h promises the kernels, built only from its specification. The index is the engine's BVH over boxes that
+/// are made here.
 #ifndef GLINT_STAGE_SCENE_H
 #define GLINT_STAGE_SCENE_H
 
@@ -9,19 +9,19 @@
 
 enum { MOST_PRIMS = 3000, MOST_LINES = 256 };
 
-/// A ray, or the way from a point to a light, around which primitives are placed.
+/// A ray, or the segment from a point to a light, that primitives are placed around.
 typedef struct test_line {
     double origin[3];
     double direction[3]; ///< unit
-    double length; ///< how far away it matters; of a segment, all of it
+    double length; ///< length that matters; of a segment, its whole length
 } test_line;
 
 /// The properties of a random scene.
 typedef struct scene_plan {
-    double middle[3], size; ///< where primitives are that no line attracts
-    double spread; ///< radii are smaller than `size` by up to so many powers of ten
-    bool triangles, solids; ///< some are
-    uint32_t count; ///< of primitives; 0: any
+    double middle[3], size; ///< where primitives are placed that are not near a line
+    double spread; ///< radii are up to this many powers of ten smaller than `size`
+    bool triangles, solids; ///< whether some primitives are triangles, solids
+    uint32_t count; ///< number of primitives; 0: random
     uint32_t line_count;
     test_line lines[MOST_LINES];
 } scene_plan;
@@ -39,7 +39,7 @@ typedef struct test_scene {
 
 // ---- Primitives --------------------------------------------------------------------------------------------------
 
-/// Room for what a primitive has beside itself, for as long as a few scenes are made.
+/// Storage for a primitive's corners or normal, reused after a few scenes.
 static inline double (*corner_room(void))[3]
 {
     static double room[8 * MOST_PRIMS][3][3];
@@ -62,17 +62,17 @@ static inline void set_plane(glint_prim *prim, const double point[3], const doub
     prim->normal[3] = 0;
 }
 
-/// 0, or anything down to the last digit of 1.
+/// 0, or a random magnitude down to the last digit of 1.
 static inline double slight(void) { return one_in(5) ? 0 : either_sign(power_of_ten(-16, -1)); }
 
-/// A sphere whose outline the line passes within 1e-1 .. 1e-16 of its radius.
+/// A sphere whose silhouette the line touches, or misses by 1e-16 .. 1e-1 radii.
 static inline void set_grazing(glint_prim *prim, const test_line *line, double radius)
 {
     double center[3], across[3];
     double distance = one_in(2) ? line->length * between(-0.2, 1.3) : line->length + radius * between(-2, 2);
     random_across(line->direction, across);
     along3(line->origin, distance, line->direction, center);
-    if (one_in(4)) { // to the side, along an axis
+    if (one_in(4)) { // sideways, along an axis
         memset(across, 0, sizeof across);
         across[below(3)] = either_sign(1);
     }
@@ -80,7 +80,7 @@ static inline void set_grazing(glint_prim *prim, const test_line *line, double r
     set_sphere(prim, center, radius);
 }
 
-/// A sphere with the place `distance` along the line on its surface, or nearly.
+/// A sphere whose surface contains the point at `distance` along the line, exactly or nearly.
 static inline void set_touching(glint_prim *prim, const test_line *line, double distance, double radius)
 {
     double place[3], center[3], outwards[3];
@@ -94,7 +94,7 @@ static inline void set_touching(glint_prim *prim, const test_line *line, double 
     set_sphere(prim, center, radius);
 }
 
-/// A plane through some place of the line or of the scene; one in a few holds the line.
+/// A plane through a point of the line or of the scene; some contain the line.
 static inline void set_random_plane(glint_prim *prim, const scene_plan *plan, const test_line *line)
 {
     double point[3], normal[3];
@@ -113,8 +113,8 @@ static inline void set_random_plane(glint_prim *prim, const scene_plan *plan, co
     set_plane(prim, point, normal);
 }
 
-/// Three corners around a place on the line or anywhere; some share an edge with the triangle before, or lie in its plane, or
-/// have the line in theirs.
+/// Three corners around a point on the line or anywhere. Some triangles share an edge with the previous triangle, lie
+/// in its plane or have an edge parallel to the line.
 static inline void set_random_triangle(glint_prim *prim, const glint_prim *last, const test_line *line,
                                        const double center[3], double size)
 {
@@ -133,13 +133,14 @@ static inline void set_random_triangle(glint_prim *prim, const glint_prim *last,
             out.corner[2][k] = last->corner[0][k] + (last->corner[1][k] - last->corner[2][k]);
     else if (one_in(6))
         along3(out.corner[0], size, line->direction, out.corner[1]);
-    if (!joined && one_in(4)) // square to an axis
+    if (!joined && one_in(4)) // perpendicular to an axis
         for (int j = 0, c = (int)below(3); j < 3; j++)
             out.corner[j][c] = out.corner[0][c];
     *prim = out;
 }
 
-/// An affine image of any unit shape: turned, stretched and leaning; some are thin, some as round as the unit shape.
+/// An affine image of a random unit shape: rotated, stretched and sheared. Some are thin; half have a round
+/// cross-section perpendicular to the axis.
 static inline void set_random_solid(test_scene *scene, uint32_t i, const double center[3], double size)
 {
     glint_solid *solid = &scene->solids[i];
@@ -187,7 +188,7 @@ static inline void set_random_solid(test_scene *scene, uint32_t i, const double 
     memcpy(scene->prims[i].center, center, sizeof scene->prims[i].center);
 }
 
-/// A place on the unit torus.
+/// A random point on the unit torus.
 static inline void place_on_torus(double tube, double k[3])
 {
     const double around = between(-4, 4), across = one_in(4) ? 1.5707963267948966 : between(-4, 4);
@@ -197,7 +198,7 @@ static inline void place_on_torus(double tube, double k[3])
     k[2] = tube * sin(across);
 }
 
-/// A place on a solid, in the world.
+/// A random point on a solid, in world space.
 static inline void place_on_solid(const test_scene *scene, const glint_prim *prim, double point[3])
 {
     const glint_solid *solid = &scene->solids[prim->item];
@@ -221,7 +222,8 @@ static inline void place_on_solid(const test_scene *scene, const glint_prim *pri
             prim->center[c] + (solid->forward[c][0] * k[0] + solid->forward[c][1] * k[1] + solid->forward[c][2] * k[2]);
 }
 
-/// Moves a solid to where the line passes its side within 1e-1 .. 1e-16 of how wide that is, if it is a cylinder's.
+/// Moves a solid so that the line touches its silhouette, or misses it by 1e-16 .. 1e-1 of its radius, if it is a
+/// cylinder.
 static inline void graze_solid(const test_scene *scene, glint_prim *prim, const test_line *line)
 {
     const glint_solid *solid = &scene->solids[prim->item];
@@ -242,13 +244,13 @@ static inline void random_prim(const scene_plan *plan, test_scene *scene, uint32
 {
     glint_prim *prim = &scene->prims[i];
     const test_line *line = &plan->lines[below(plan->line_count)];
-    // of many, most are small: else nothing but the nearest would ever be met
+    // with many primitives most are small, or rays would only ever hit the nearest few
     double radius = plan->size * power_of_ten(-plan->spread, 0.2) / (one_in(50) ? 1 : cbrt(count));
     double center[3];
     for (int c = 0; c < 3; c++)
         center[c] = plan->middle[c] + plan->size * between(-1, 1);
     const uint32_t kind = below(20);
-    const double largest = plan->size * 1e15; // volumes are within the range of double
+    const double largest = plan->size * 1e15; // volumes stay within the range of double
     if (plan->triangles && one_in(2))
         set_random_triangle(prim, i ? prim - 1 : NULL, line, center, radius);
     else if (plan->solids && one_in(2) && largest < 1e60 && largest > 1e-30) {
@@ -261,7 +263,7 @@ static inline void random_prim(const scene_plan *plan, test_scene *scene, uint32
         set_touching(prim, line, 0, radius);
     else if (kind == 7)
         set_touching(prim, line, line->length, radius);
-    else if (kind == 8) // hits at one distance
+    else if (kind == 8) // several hits at the same distance
         set_touching(prim, line, line->length - plan->size / 4, radius);
     else if (kind == 9 && i > 0 && scene->prims[i - 1].kind == GLINT_PRIM_SPHERE)
         *prim = scene->prims[i - 1];
@@ -273,7 +275,7 @@ static inline void random_prim(const scene_plan *plan, test_scene *scene, uint32
         set_sphere(prim, center, radius);
 }
 
-/// The ground many scenes stand on: so large that one can take it for a plane.
+/// The ground that many scenes stand on: a sphere so large that it is almost a plane.
 static inline void set_ground(const scene_plan *plan, glint_prim *prim)
 {
     double center[3] = { plan->middle[0], plan->middle[1] - plan->size * (1 + 1e7), plan->middle[2] };
@@ -295,12 +297,12 @@ static inline bool is_torus(const test_scene *scene, const glint_prim *prim)
     return prim->kind == GLINT_PRIM_SOLID && scene->solids[prim->item].form == GLINT_FORM_TORUS;
 }
 
-/// The ends of a primitive, which has some, in the world.
+/// The bounds of a bounded primitive, in world space.
 static inline void ends_of(const test_scene *scene, const glint_prim *prim, long double lower[3], long double upper[3])
 {
     for (int c = 0; c < 3; c++) {
         const double *m = scene->solids[prim->kind == GLINT_PRIM_SOLID ? prim->item : 0].forward[c];
-        const bool torus = is_torus(scene, prim); // 1 + tube across
+        const bool torus = is_torus(scene, prim); // reaches 1 + tube, which is below 2
         const long double reach =
             prim->kind == GLINT_PRIM_SOLID ? (torus ? 2 : 1) * ((fabsl(m[0]) + fabsl(m[1])) + fabsl(m[2])) : prim->radius;
         lower[c] = (long double)prim->center[c] - reach;
@@ -312,7 +314,7 @@ static inline void ends_of(const test_scene *scene, const glint_prim *prim, long
     }
 }
 
-/// Any frame will do; most are around the scene, in its own units.
+/// Any frame is valid; most are around the scene, in its own units.
 static inline void choose_frame(const scene_plan *plan, test_scene *scene)
 {
     glint_geometry_table *table = &scene->table;
@@ -361,7 +363,7 @@ static inline glint_box place_sphere(const glint_geometry_table *table, glint_pr
     return box;
 }
 
-/// The same for primitives without a radius.
+/// Likewise, for primitives without a radius.
 static inline glint_box place_corners_of(const test_scene *scene, glint_prim *prim)
 {
     const glint_geometry_table *table = &scene->table;
@@ -385,7 +387,8 @@ static inline glint_box place_corners_of(const test_scene *scene, glint_prim *pr
     return box;
 }
 
-/// The axis of a solid that has one, and the largest distance of its surface from it: the perpendicular parts of the columns across.
+/// The axis of a solid that has one, and the largest distance of its surface from the axis: the perpendicular parts
+/// of the other two columns.
 static inline void place_axis(const glint_geometry_table *table, glint_solid *solid)
 {
     const bool has_axis = solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_CONE ||
@@ -446,7 +449,7 @@ static inline void build_index(test_scene *scene)
     table->solids = scene->solids;
 }
 
-/// reach: of the surface on it, about `center`.
+/// reach: how far the surface on the plane extends from `center`.
 static inline void set_face(glint_face *face, const double normal[3], const double at[3], const double center[3],
                             double reach)
 {
@@ -482,7 +485,7 @@ static inline void set_solid_faces(test_scene *scene, const glint_prim *prim)
     }
 }
 
-/// Some triangles share their planes, of which one that is square to an axis has an exact one.
+/// Gives some triangles a plane. Triangles perpendicular to an axis get an exact normal.
 static inline void set_triangle_face(test_scene *scene, glint_prim *prim)
 {
     double f[3], g[3], n[3];
@@ -499,7 +502,7 @@ static inline void set_triangle_face(test_scene *scene, glint_prim *prim)
     prim->face = scene->face_count;
 }
 
-/// The planes of flat primitives, after all have their places.
+/// Computes the planes of flat primitives, once all have their positions.
 static inline void set_faces(test_scene *scene)
 {
     scene->face_count = 0;
@@ -515,7 +518,7 @@ static inline void set_faces(test_scene *scene)
     scene->table.faces = scene->faces;
 }
 
-/// Puts triangles first, and their corners in a row.
+/// Puts triangles first, with their corners in consecutive memory.
 static inline void order_prims(test_scene *scene)
 {
     static glint_prim others[MOST_PRIMS];
@@ -536,7 +539,7 @@ static inline void order_prims(test_scene *scene)
     scene->table.corners = (const double(*)[3][3])scene->corners;
 }
 
-/// The order of definition: the array's, or any other.
+/// Numbers the primitives in the array's order, or in any other order of definition.
 static inline void number_prims(test_scene *scene)
 {
     const bool shuffled = one_in(2);
@@ -547,7 +550,7 @@ static inline void number_prims(test_scene *scene)
     }
 }
 
-/// Fills what follows from kind, centre, normal and radius of the primitives; prim_count is set.
+/// Derives the other fields from kind, centre, normal and radius of the primitives. prim_count is set.
 static inline void finish_scene(const scene_plan *plan, test_scene *scene)
 {
     order_prims(scene);
@@ -569,7 +572,7 @@ static inline uint32_t random_count(void)
     return 1 + below(one_in(8) ? MOST_PRIMS : one_in(3) ? 300 : one_in(2) ? 40 : 8);
 }
 
-/// A scene around the lines of the plan. free_scene belongs to it.
+/// Builds a scene around the lines of the plan. The caller frees it with free_scene.
 static inline test_scene *random_scene(const scene_plan *plan)
 {
     static test_scene scene;
@@ -584,10 +587,10 @@ static inline test_scene *random_scene(const scene_plan *plan)
 
 static inline void free_scene(test_scene *scene) { glint_bvh_free(&scene->bvh); }
 
-// ---- Where scenes are --------------------------------------------------------------------------------------------
+// ---- Positions of scenes -----------------------------------------------------------------------------------------
 
-/// Ordinary sizes, at the origin or up to 1e7 away; one in a few of sizes whose squares leave the range of float. With
-/// `beyond`, some are themselves out of that range.
+/// Ordinary sizes, at the origin or up to 1e7 away. Some sizes have squares outside the range of float; with
+/// `beyond`, some sizes are themselves outside that range.
 static inline void random_place(scene_plan *plan, bool beyond)
 {
     const bool extreme = one_in(6);
