@@ -1,5 +1,5 @@
-/// The choice of adaptive sampling: its kernels on every instruction set against the scalar reference, and the choice by estimates
-/// of codes against what is chosen by the codes.
+/// The pixel choice of adaptive sampling: its kernels on every instruction set against the scalar reference, and the
+/// choice by estimated pixel values against the choice by exact ones.
 #include "tests/engine/cases/stage_case.h"
 
 #include "engine/film/tone.h"
@@ -18,7 +18,8 @@ static glint_render_desc desc_of(double exposure, double threshold)
     return glint_plan_base(&desc);
 }
 
-/// Each row has a colour in every second pixel, and between them colours that are about the threshold from it; some are none.
+/// Each row has one colour in its even pixels, and colours that differ by about the threshold in between. Some pixels
+/// have special values.
 static void paint(glint_image *image, double threshold)
 {
     const float odd[4] = { NAN, HUGE_VALF, -1, 0x1p-140F };
@@ -33,7 +34,7 @@ static void paint(glint_image *image, double threshold)
     }
 }
 
-/// A row of the picture as a line: by its codes, or by estimates of them.
+/// Compares neighbours in a row of the picture, by its pixel values or by estimates.
 static uint32_t compare_row(const glint_refine *refine, size_t y)
 {
     _Alignas(64) float light[48] = { 0 }, code[4][48], id[48] = { 0 };
@@ -55,7 +56,7 @@ static uint32_t compare_row(const glint_refine *refine, size_t y)
     return differ[GLINT_DIFFER_ALONG];
 }
 
-/// Returns how many pairs differ.
+/// Returns the number of differing pairs.
 static long try(double exposure, double threshold)
 {
     glint_render_desc desc = desc_of(exposure, threshold), coded = desc;
@@ -122,7 +123,7 @@ static void estimate_case(int precision, bool odd)
     }
 }
 
-/// Numbers of a line that often equal another line's, and pixel values near the bounds.
+/// Values of a line that often equal another line's, and pixel values near the bounds.
 static void fill_line(float *const line[GLINT_DIFFER_VALUES], bool odd)
 {
     for (uint32_t i = 0; i < GLINT_DIFFER_LENGTH; i++) {
@@ -144,7 +145,7 @@ static void differ_case(int precision, bool odd)
     for (int line = 0; line < 2; line++) {
         for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
             float *array = input(KIND_FLOAT, GLINT_DIFFER_LENGTH + 1);
-            lines[line][v] = array + 1; // aligned to nothing
+            lines[line][v] = array + 1; // an unaligned address
         }
         fill_line(lines[line], odd);
     }
@@ -192,7 +193,7 @@ static void test_kernels(void **unused)
 
 // ---- A picture with pixel values only, whose base stores no light ----
 
-/// Balls over a floor, under a lamp of this strength.
+/// Balls over a floor, under a light of this intensity.
 static glint_scene *make_balls(double strength)
 {
     glint_scene *scene = make_floor((const double[3]) { 0, 3, 9 }, (const double[3]) { 0, 0.8, 0 });
@@ -231,7 +232,8 @@ static glint_image *render_codes(const glint_scene *scene, uint32_t passes, int 
     return image;
 }
 
-/// It has the codes and the counts of one with its light: none clipped, some, nearly all, and infinite light.
+/// A picture without stored light has the pixel values and counts of one with its light: with no, some or nearly all
+/// values clipped, and with infinite light.
 static void test_codes_alone(void **unused)
 {
     static const double strength[4] = { 0.4, 1.9, 30, 1e39 };

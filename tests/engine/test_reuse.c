@@ -1,4 +1,4 @@
-/// Random edits of a scene, one after the other: the frame that reuses what it can must have the bits of a fresh one.
+/// Random successive edits of a scene: a frame with reused results must equal a fresh one bit for bit.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -52,7 +52,7 @@ typedef enum kind {
     COLOR, ///< three numbers, some of them 0
     VECTOR,
     NUMBER,
-    WHOLE, ///< a whole number in a double
+    WHOLE, ///< a whole number stored as a double
     FLAG,
     CHOICE, ///< an enumeration or int below `high`
     BITS, ///< a mask of `high` bits
@@ -60,7 +60,7 @@ typedef enum kind {
     TRANSFORM,
     REGION, ///< x, y, width, height; or none
     SKY, ///< one of the patterns below, or none
-    FIXED ///< not a field to set here: a name, a kind, what is set another way
+    FIXED ///< not set here: a name, a kind, or a field that is set in another way
 } kind;
 
 typedef struct field {
@@ -88,8 +88,8 @@ static void add_field(field *list, size_t *count, field f)
     list[(*count)++] = f;
 }
 
-/// Adds the fields of an object's table, with the flags that say that they are set and with the places of programs, once each. Numbers
-/// without a narrow range go to four times the default.
+/// Adds each field of an object's table once, with its has_ flag and its program. Numbers without a narrow range go
+/// up to four times the default.
 static void add_rows(glint_object_kind object, field *list, size_t *count)
 {
     static const struct {
@@ -181,14 +181,14 @@ static const field render_fields[] = {
     R(outline, CHOICE, 0, 3),       R(tone.curve, CHOICE, 0, 3),
     R(tone.transfer, CHOICE, 0, 3), R(tone.rounding, CHOICE, 0, 2),
     R(tone.bits, DEPTH, 0, 0),      R(tone.exposure, NUMBER, -2, 3),
-    R(region, REGION, 0, 0),        R(light_passes, FIXED, 0, 0), // see tests/lua for these
+    R(region, REGION, 0, 0),        R(light_passes, FIXED, 0, 0), // see tests/lua for light passes
     R(derivatives, FIXED, 0, 0),    R(derivative_count, FIXED, 0, 0),
 #undef R
 };
 
 #define COUNT(fields) (sizeof(fields) / sizeof *(fields))
 
-/// The identity, a similarity, or one that makes ellipsoids.
+/// The identity, a similarity, or a map that makes ellipsoids.
 static void set_transform(glint_transform *out)
 {
     const double axis[3] = { uniform(-1, 1), uniform(-1, 1), 1 }, by[3] = { uniform(0.5, 1.5), -1, uniform(0.5, 1.5) };
@@ -197,7 +197,7 @@ static void set_transform(glint_transform *out)
     *out = which == 0 ? glint_transform_identity() : which == 1 ? turn : glint_transform_product(&turn, &scale);
 }
 
-/// Within the smallest frame, or none.
+/// A region inside the smallest frame, or none.
 static void set_region(double out[4])
 {
     const double region[4] = { draw(30), draw(20), 1 + draw(30), 1 + draw(20) };
@@ -207,10 +207,10 @@ static void set_region(double out[4])
         out[i] = out[2] > 0 && out[3] > 0 ? out[i] : 0;
 }
 
-#define SKIES 3 ///< the first two differ in a number alone
+#define SKIES 3 ///< the first two differ only in a number
 static glint_program *skies[SKIES];
 
-/// From a direction's height, and from its position in a picture of all directions.
+/// Backgrounds that depend on the direction's height and on its position in a panorama.
 static void make_skies(void)
 {
     for (int k = 0; k < SKIES; k++) {
@@ -268,7 +268,7 @@ static void set_field(const field *f, void *desc)
     }
 }
 
-/// A field that can be set, at random.
+/// Picks a random settable field.
 static const field *pick(const field *fields, size_t count)
 {
     const field *f;
@@ -278,8 +278,8 @@ static const field *pick(const field *fields, size_t count)
     return f;
 }
 
-/// The tables must name every byte of every description except padding: a field without a row is found here, and the edits below
-/// find out whether the plan's keys know of a field.
+/// The tables must name every byte of every description except padding. This check finds a field without a row; the
+/// edits below check that the plan's keys include each field.
 static void table_names_all(const char *what, const field *fields, size_t count, size_t size)
 {
     char *named = calloc(1, size);
@@ -307,7 +307,7 @@ static void tables_name_every_field(void **unused)
     table_names_all("render", render_fields, COUNT(render_fields), sizeof(glint_render_desc));
 }
 
-// ---- Edits: a value that is refused leaves the object as it was ------------------------------------------------------
+// ---- Edits: a refused value leaves the object unchanged --------------------------------------------------------------
 
 static void edit_material(world *w)
 {
@@ -346,7 +346,7 @@ static void edit_shape(world *w)
 {
     uint32_t i = draw(SHAPES);
     glint_shape *shape = w->shapes[i];
-    if (glint_group_count(shape) && draw(2)) // what is in a group changes too
+    if (glint_group_count(shape) && draw(2)) // sometimes edits a child of the group
         shape = glint_group_child(shape, draw((uint32_t)glint_group_count(shape)));
     glint_shape_desc d = *glint_shape_get(shape);
     if (draw(6) == 0) {
@@ -364,7 +364,7 @@ static void edit_shape(world *w)
     glint_shape_set(shape, &d, NULL);
 }
 
-/// The focus must not be behind the eye: such a camera becomes a pinhole.
+/// The focus must not be behind the eye: such a camera becomes a pinhole camera.
 static void keep_focus(glint_camera_desc *c)
 {
     const double *point = c->has_focus_point ? c->focus_point : c->at;
@@ -405,7 +405,7 @@ static glint_shape *new_mesh(const glint_shape_desc *like)
     return shape;
 }
 
-/// Every solid, and, smaller, all again.
+/// A group with every solid, and a smaller copy of all of them.
 static glint_shape *new_group(const glint_shape_desc *like)
 {
     glint_shape *outer, *inner, *part;
@@ -429,7 +429,7 @@ static glint_shape *new_group(const glint_shape_desc *like)
     return outer;
 }
 
-/// A box less a cylinder and less what is in a ball and before a plane.
+/// A box minus a cylinder and minus the intersection of a ball and a half-space.
 static glint_shape *new_combined(const glint_shape_desc *like)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER, GLINT_SHAPE_SPHERE, GLINT_SHAPE_PLANE };
@@ -458,7 +458,7 @@ static void make_world(world *w)
     make_skies();
     glint_camera_desc c = glint_camera_desc_default();
     c.eye[1] = 2;
-    c.w = c.h = 40; // which have to be set together
+    c.w = c.h = 40; // which must be set together
     assert_int_equal(glint_camera_create(&c, &w->camera, NULL), GLINT_OK);
     assert_int_equal(glint_scene_create(&w->scene, NULL), GLINT_OK);
     glint_scene_desc s = {
@@ -537,7 +537,7 @@ static bool same_codes(const glint_image *a, const glint_image *b)
            memcmp(a->codes, b->codes, (size_t)a->width * (size_t)a->height * glint_image_pixel_bytes(a)) == 0;
 }
 
-/// Rows of tiles with equal stamps hold equal codes.
+/// Returns whether rows of tiles with equal stamps hold equal pixel values.
 static bool stamps_hold(const glint_image *a, const glint_image *b)
 {
     if (!a->codes || !b->codes || a->width != b->width || a->height != b->height || a->channels != b->channels ||
@@ -554,7 +554,7 @@ static bool stamps_hold(const glint_image *a, const glint_image *b)
     return true;
 }
 
-/// One that keeps what it finds, as `desc` has it, and one that keeps nothing.
+/// Creates a renderer that reuses results as `desc` says, and one that reuses nothing.
 static void open_both(glint_renderer_desc desc, glint_renderer *both[2])
 {
     for (int i = 0; i < 2; i++) {
@@ -563,7 +563,7 @@ static void open_both(glint_renderer_desc desc, glint_renderer *both[2])
     }
 }
 
-/// Renders a frame with both, which must give the same picture. stats: of the first; may be NULL.
+/// Renders a frame with both renderers, which must give the same picture. stats: of the first renderer; may be NULL.
 static void render_both(const world *w, glint_renderer *const both[2], glint_frame_stats *stats, int frame)
 {
     glint_plan *plan;
@@ -591,8 +591,8 @@ static double seconds(void)
     return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-/// Renders after each of many edits with two renderers, one of which forgets everything. adaptive: most frames take all samples of
-/// only some pixels.
+/// Renders after each of many edits with two renderers, one of which reuses nothing. adaptive: most frames take all
+/// samples only for some pixels.
 static void edits(size_t memory, int threads, bool adaptive, double limit_s)
 {
     world w;
@@ -606,10 +606,10 @@ static void edits(size_t memory, int threads, bool adaptive, double limit_s)
     make_world(&w);
     const double start = seconds();
     uint64_t reused = 0, edit = 0;
-    glint_image *last = NULL; ///< held, so that the renderer may not write into it again
+    glint_image *last = NULL; ///< retained, so that the renderer must not write into it again
     void (*const kinds[])(world *) = { edit_material, edit_material, edit_light, edit_light, edit_shape, edit_frame };
     for (; seconds() - start < limit_s; edit++) {
-        if (draw(8)) // now and then nothing changes
+        if (draw(8)) // sometimes nothing changes
             kinds[draw(edit % 4 ? 4 : 6)](&w);
         if (adaptive) {
             w.render.adaptive = edit / 16 % 4 == 3 ? 0 : edit / 64 % 2 ? 0.02 : 0.2;
@@ -640,7 +640,7 @@ static void edits(size_t memory, int threads, bool adaptive, double limit_s)
     glint_renderer_destroy(fresh);
 }
 
-/// A seed of its own for each test; `make soak` takes others than the check.
+/// A separate seed for each test. `make soak` uses other seeds than `make check`.
 static uint64_t seed(uint64_t test)
 {
     const char *other = getenv("GLINT_SEED");
@@ -683,8 +683,8 @@ static void reused_equals_fresh_with_little_memory(void **unused)
         edits(memory, 8, false, limit_s(2) / 14);
 }
 
-/// The samples of an area light are added up a call of shade at a time: a lamp before it that shines into a closed ball,
-/// and so reaches nothing that is seen, still moves where the calls begin.
+/// Each call of shade sums a chunk of an area light's samples. An earlier light that reaches nothing visible, because
+/// it is inside a closed ball, still shifts the start of these chunks.
 static void a_lamp_that_reaches_nothing(void **unused)
 {
     (void)unused;
@@ -717,7 +717,7 @@ static void a_lamp_that_reaches_nothing(void **unused)
         glint_plan *plan;
         glint_image *a, *b;
         glint_material_desc paint = *glint_material_get(w.materials[1]);
-        paint.diffuse[0] = frame / 12.0; // some tiles change, the others do not
+        paint.diffuse[0] = frame / 12.0; // some tiles change, others do not
         glint_material_set(w.materials[1], &paint, NULL);
         if (both)
             glint_scene_add_light(w.scene, hidden, NULL);
@@ -742,7 +742,8 @@ static void a_lamp_that_reaches_nothing(void **unused)
     glint_renderer_destroy(fresh);
 }
 
-/// Changes one or two of a lamp's place, a ball's and a colour, each to one of few, and whether there is a second lamp.
+/// Changes one or two of a light's position, a ball's position and a colour, each among a few values, and whether
+/// there is a second light.
 static void go_back(world *w)
 {
     glint_material_desc paint = *glint_material_get(w->materials[1]);
@@ -766,7 +767,8 @@ static void go_back(world *w)
     assert_int_equal(glint_shape_set(w->shapes[4], &place, NULL), GLINT_OK);
 }
 
-/// Frames of a few places and colours that come back in any order, so that all cached results of one are used again.
+/// Frames with a few positions and colours that return in any order, so that all cached results of a frame are used
+/// again.
 static void frames_that_come_back(void **unused)
 {
     (void)unused;
@@ -776,7 +778,7 @@ static void frames_that_come_back(void **unused)
         open_both(glint_renderer_desc_default(), both);
         state = 700 + (uint64_t)round;
         make_world(&w);
-        for (int i = 1; i < LIGHTS && round >= 2; i++) { // where one lamp is all light, little changes what is chosen
+        for (int i = 1; i < LIGHTS && round >= 2; i++) { // with a single light, edits hardly change the chosen pixels
             assert_int_equal(glint_scene_remove_light(w.scene, w.lights[i], NULL), GLINT_OK);
             w.shining[i] = false;
         }
@@ -801,9 +803,9 @@ static double reused_share(const glint_frame_stats *stats, const char *stage)
     return 0;
 }
 
-/// A sweep of shininess runs the tiles that the highlight is in: of a ball before the eye lit from beside it, a few. Where
-/// the exponent is so low that the highlight is wherever light is, the others do not stay. adaptive: the threshold, of four samples a
-/// pixel, whose first frame keeps no base; 0: none.
+/// A sweep of shininess runs only the tiles with the highlight, a few of a ball lit from the side. With an exponent
+/// so low that the highlight covers all lit tiles, the others run too. adaptive: the threshold, with four samples per
+/// pixel, where the first frame caches no base; 0: off.
 static void sweep_shininess(double adaptive)
 {
     static const double shininess[] = { 2000, 2500, 3000, 1, 2 };
@@ -879,8 +881,8 @@ static void a_highlight_that_a_tile_does_not_show(void **unused)
     sweep_shininess(0.1);
 }
 
-/// Frames of a lamp that moves: their hits are kept, and the pictures are those of a renderer that keeps nothing. adaptive: the
-/// threshold, of four samples a pixel; 0: none.
+/// Moves a light over several frames: hits are reused, and the pictures equal those of a renderer that reuses
+/// nothing. adaptive: the threshold, with four samples per pixel; 0: off.
 static void move_the_light(double adaptive, int frames, glint_frame_stats *stats)
 {
     world w;
@@ -911,7 +913,7 @@ static void hits_under_a_moved_light_are_kept(void **unused)
     glint_frame_stats stats;
     move_the_light(0, 5, &stats);
     assert_true(reused_share(&stats, "cast") == 1);
-    move_the_light(0.1, 9, &stats); // the hits of the first sample of each pixel
+    move_the_light(0.1, 9, &stats); // reuses the hits of the first sample of each pixel
     assert_true(reused_share(&stats, "cast") > 0);
 }
 

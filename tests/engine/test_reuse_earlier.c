@@ -1,5 +1,5 @@
-/// Results of frames before the last: a lamp that goes around and cameras in turn run no stage again that they have run before, and
-/// whatever comes back, in any order, with little memory or much, each frame equals the same frame rendered afresh.
+/// Results of frames before the last one. Lights and cameras that cycle through positions run no stage again.
+/// Whatever returns, in any order, with little or much memory, each frame equals the same frame rendered afresh.
 #include "engine/glint.h"
 
 #include <setjmp.h>
@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-enum { LIGHTS = 2, CROWD = 400 }; // CROWD: spheres behind the eye, so that lights are worth setting aside
+enum { LIGHTS = 2, CROWD = 400 }; // CROWD: spheres behind the eye, so that caching lights is worthwhile
 
 typedef struct stand {
     glint_scene *scene;
@@ -18,14 +18,14 @@ typedef struct stand {
     glint_material *paint;
     glint_shape *ball, *floor, *crowd[CROWD];
     glint_light *lights[LIGHTS];
-    glint_renderer *renderers[2]; ///< one that reuses and one that does not
+    glint_renderer *renderers[2]; ///< one that reuses results and one that does not
     glint_render_desc render;
     glint_frame_stats stats; ///< of the last frame
 } stand;
 
 static uint64_t state;
 
-/// 0 .. n-1
+/// A random integer in 0 .. n - 1.
 static uint32_t draw(uint32_t n)
 {
     state = state * 6364136223846793005u + 1442695040888963407u;
@@ -123,7 +123,7 @@ static void set_ball(const stand *s, double x)
     assert_int_equal(glint_shape_set(s->ball, &place, NULL), GLINT_OK);
 }
 
-/// Renders the scene as it is now on both, and compares every pixel.
+/// Renders the current scene with both renderers and compares every pixel.
 static void check(stand *s, int frame)
 {
     glint_plan *plan;
@@ -144,7 +144,7 @@ static void check(stand *s, int frame)
     glint_plan_destroy(plan);
 }
 
-/// Which share of the tiles had a stage's results from an earlier frame.
+/// Share of the tiles whose results for a stage came from an earlier frame.
 static double reused(const stand *s, const char *stage)
 {
     for (int i = 0; i < s->stats.stage_count; i++)
@@ -163,7 +163,7 @@ static void a_lamp_that_goes_around(void **unused)
         set_lamp(&s, 0, frame % 7 - 3);
         set_color(&s, 0.01 * frame);
         check(&s, frame);
-        if (frame >= 14) { // the first time they are seen; the second time they are cached
+        if (frame >= 14) { // first round without, second round with cached results
             assert_true(reused(&s, "light") == 1);
             assert_true(reused(&s, "occlude") == 1);
         }
@@ -217,7 +217,7 @@ static void pictures_that_come_back(void **unused)
     free_stand(&s);
 }
 
-/// Whether a picture of the scene as it is comes back: given again, or else rendered.
+/// Renders the current scene. Returns whether every stage was reused.
 static bool is_given(stand *s)
 {
     glint_plan *plan;
@@ -232,14 +232,15 @@ static bool is_given(stand *s)
     return given;
 }
 
-/// Eighty pictures of 400 x 300 pixels and one sample, more than have a place, do not evict a small one of 16 samples, which costs more rays a byte.
+/// Eighty pictures of 400 x 300 pixels with one sample, more than fit in the cache, do not evict a small picture with
+/// 16 samples, which costs more rays per byte.
 static void dear_pictures_stay(void **unused)
 {
     (void)unused;
     stand s;
     make_stand(&s, (size_t)512 << 20);
     s.render.samples = 16;
-    for (int again = 0; again < 2; again++) { // the second time, it is set aside
+    for (int again = 0; again < 2; again++) { // the second time, it is cached
         set_color(&s, 0.8);
         is_given(&s);
         set_color(&s, 0.9);
@@ -265,7 +266,7 @@ static void dear_pictures_stay(void **unused)
     free_stand(&s);
 }
 
-/// Gives one thing one of a few values.
+/// Sets one property to one of a few values.
 static void change(stand *s)
 {
     const uint32_t what = draw(16);
@@ -287,7 +288,7 @@ static void change(stand *s)
         s->render.samples = 4;
 }
 
-/// Results that return must belong to the same pixels, surfaces and samples, also when stored between other frames.
+/// Results that return must belong to the same pixels, surfaces and samples, even when stored between other frames.
 static void come_back(size_t memory, int frames)
 {
     stand s;
@@ -328,7 +329,7 @@ static glint_image *render_held(stand *s)
     return image;
 }
 
-/// A picture that nobody holds is drawn over; one that somebody holds stays as it is.
+/// The renderer may overwrite a picture that nobody retains. A retained picture stays as it is.
 static void a_picture_that_is_held(void **unused)
 {
     (void)unused;
@@ -345,7 +346,8 @@ static void a_picture_that_is_held(void **unused)
     assert_memory_not_equal(before, after, sizeof before);
     glint_image_release(held);
     glint_image_release(next);
-    for (int frame = 0; frame < 6; frame++) { // over each other, the lamp and the colour in turn
+    // each overwrites the previous one; the light and the colour change in turn
+    for (int frame = 0; frame < 6; frame++) {
         set_color(&s, 0.1 * (frame / 2));
         set_lamp(&s, 0, frame / 2 + frame % 2);
         check(&s, frame);

@@ -1,5 +1,5 @@
-/// Frames that differ in what reuse must look at beyond the objects: another number of samples, another order of the index,
-/// more lights than are cached, only a background. Each equals the same frame rendered afresh.
+/// Frames that differ in more than their objects: another number of samples, another BVH order, more lights than are
+/// cached, only another background. Each equals the same frame rendered afresh.
 #include "engine/glint.h"
 
 #include <setjmp.h>
@@ -18,7 +18,7 @@ typedef struct stand {
     glint_material *paint;
     glint_shape *ball;
     glint_light *lights[LIGHTS];
-    glint_renderer *renderers[2]; ///< one that reuses and one that does not
+    glint_renderer *renderers[2]; ///< one that reuses results and one that does not
     glint_render_desc render;
 } stand;
 
@@ -44,7 +44,7 @@ static void make_stand(stand *s, int lights)
     whole.camera = s->camera;
     assert_int_equal(glint_scene_set(s->scene, &whole, NULL), GLINT_OK);
     assert_int_equal(glint_scene_add_shape(s->scene, s->ball, NULL), GLINT_OK);
-    for (int i = 0; i < lights; i++) { // all but the last from behind
+    for (int i = 0; i < lights; i++) { // all except the last shine from behind
         glint_light_desc light = glint_light_desc_default(GLINT_LIGHT_DIRECTIONAL);
         light.direction[0] = light.direction[1] = 0;
         light.direction[2] = i + 1 < lights ? 1 : -1;
@@ -70,7 +70,7 @@ static void free_stand(stand *s)
     glint_scene_release(s->scene);
 }
 
-/// Renders the scene as it is now on both, and compares every pixel. Returns the sum of them all.
+/// Renders the current scene with both renderers and compares every pixel. Returns the sum of all pixel values.
 static double check(const stand *s)
 {
     glint_plan *plan;
@@ -93,7 +93,7 @@ static double check(const stand *s)
     return sum;
 }
 
-/// Moves the first light a little, and renders.
+/// Turns the first light a little and renders.
 static double turn_light(stand *s)
 {
     glint_light_desc light = *glint_light_get(s->lights[0]);
@@ -113,13 +113,13 @@ static void other_samples(void **state)
         s.render.samples = samples[i];
         const double sum = check(&s);
         assert_true(sum != last);
-        last = turn_light(&s); // of cached results
+        last = turn_light(&s); // with cached results
         assert_true(last != sum);
     }
     free_stand(&s);
 }
 
-/// Hits are cached by the positions of primitives, and an index changes their positions.
+/// Hits are cached as positions in the primitive array, which building a BVH changes.
 static void an_index_that_comes_later(void **state)
 {
     (void)state;
@@ -147,7 +147,7 @@ static void a_light_beyond_those_cached(void **state)
     assert_true(check(&s) < last);
     last = check(&s);
     glint_material_desc look = *glint_material_get(s.paint);
-    look.shininess = 500; // its highlight alone
+    look.shininess = 500; // shrinks the highlight only
     assert_int_equal(glint_material_set(s.paint, &look, NULL), GLINT_OK);
     assert_true(check(&s) < last);
     free_stand(&s);

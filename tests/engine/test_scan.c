@@ -1,6 +1,6 @@
-/// Scan conversion against casting: a thousand random meshes, from outside and from within, crossing the eye's plane, with
-/// corners and edges in the middle of pixels, in both precisions and projections: the same object, distance and normal
-/// in every bit of every pixel. And what a frame without triangles, or without need of an index, makes of it.
+/// Scan conversion against ray casting: a thousand random meshes, from outside and inside, crossing the eye's plane,
+/// with corners and edges at pixel centres, in both precisions and projections. Object, distance and normal must be
+/// identical bit for bit in every pixel. Also tests frames without triangles or without a BVH.
 #include "engine/glint.h"
 
 #include <math.h>
@@ -30,7 +30,7 @@ static void add_face(soup *s, uint32_t size, const uint32_t *corners)
     s->sizes[s->face_count++] = size;
 }
 
-/// Triangles anywhere: long ones, slivers, some twice.
+/// Random triangles: long ones, slivers, some duplicates.
 static void make_triangles(soup *s)
 {
     const size_t count = 1 + below(below(4) ? 40 : 400);
@@ -50,7 +50,7 @@ static void make_triangles(soup *s)
     }
 }
 
-/// A sheet of squares at whole numbers: with the right camera, corners and edges are in the middle of pixels.
+/// A sheet of squares at integer positions: with a matching camera, corners and edges are at pixel centres.
 static void make_sheet(soup *s)
 {
     const uint32_t n = 2 + below(14);
@@ -112,7 +112,7 @@ static glint_camera *make_camera(double scale, const double offset[3])
 {
     glint_camera *camera;
     glint_camera_desc c = glint_camera_desc_default();
-    const bool straight = below(2); // whole numbers: rays along axes, through corners
+    const bool straight = below(2); // integer positions: rays along axes and through corners
     for (int k = 0; k < 3; k++) {
         c.eye[k] = offset[k] + scale * (straight ? (k == 2 ? 8 : below(3)) : between(-6, 6));
         c.at[k] = offset[k] + scale * (straight ? (k == 2 ? 0 : (c.eye[k] - offset[k]) / scale) : between(-2, 2));
@@ -126,7 +126,7 @@ static glint_camera *make_camera(double scale, const double offset[3])
     return camera;
 }
 
-/// Spheres and planes beside the mesh.
+/// Adds spheres and planes next to the mesh.
 static void add_others(glint_scene *scene, double scale, const double offset[3])
 {
     for (uint32_t i = below(4); i > 0; i--) {
@@ -181,7 +181,7 @@ static glint_render_desc desc_of(glint_visibility visibility)
     return r;
 }
 
-/// NULL: this machine lacks the instruction set.
+/// Returns NULL when this machine lacks the instruction set.
 static glint_image *render(const glint_scene *scene, const glint_render_desc *r, const char *isa)
 {
     glint_plan *plan = NULL;
@@ -201,7 +201,7 @@ static glint_image *render(const glint_scene *scene, const glint_render_desc *r,
     return image;
 }
 
-/// Counts pixels that differ in any bit of any pass; *hits: pixels of `a` with a hit.
+/// Counts the pixels that differ in any bit of any pass. *hits: pixels of `a` with a hit.
 static int differing(const glint_image *a, const glint_image *b, int *hits)
 {
     static const glint_pass passes[] = { GLINT_PASS_BEAUTY, GLINT_PASS_DEPTH, GLINT_PASS_NORMAL, GLINT_PASS_OBJECT_ID };
@@ -221,7 +221,8 @@ static int differing(const glint_image *a, const glint_image *b, int *hits)
     return count;
 }
 
-/// moved: half of the pictures have their samples elsewhere, the only one of a pixel as well.
+/// moved: half of the pictures place their samples by a seed, even a single sample per pixel. Returns the number of
+/// hits.
 static int scanned_and_cast(uint64_t first, uint64_t last, bool moved)
 {
     int hits = 0;
@@ -248,7 +249,7 @@ static void same_as_casting(void **unused)
     assert_true(scanned_and_cast(1, 1000, true) * (int)case_step() > 1000000);
 }
 
-/// Sheets that the eye sees edge-on, each by one pixel whose rays run in the plane of triangles before and behind.
+/// Seeds with sheets seen edge-on, where the rays of one pixel run in the plane of triangles.
 static void in_the_plane_of_the_eye(void **unused)
 {
     static const uint64_t seeds[] = { 12107, 17819, 17979, 22574, 25546, 35020, 35436, 46600, 54696, 55745, 61770 };
@@ -279,7 +280,8 @@ static void same_on_every_instruction_set(void **unused)
     }
 }
 
-/// One renderer, in turn with and without an index, in either order: cached results of a frame fit the next.
+/// One renderer alternates between frames with and without a BVH: cached results of one frame stay valid for the
+/// next.
 static void in_turn(void **unused)
 {
     (void)unused;
@@ -322,8 +324,8 @@ static bool has_effect(const glint_plan *plan, const char *name)
     return false;
 }
 
-/// Without triangles there is nothing to scan; few of them are cast with the other primitives, and scanned when they
-/// are alone and nobody asks for an index. A wrong word is refused.
+/// Without triangles there is nothing to scan. A few triangles among other primitives are cast; on their own, and
+/// without another need for a BVH, they are scanned. An invalid value is refused.
 static void only_triangles(void **unused)
 {
     (void)unused;

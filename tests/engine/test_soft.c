@@ -1,4 +1,4 @@
-/// Area lights by the C API: what their shadows cost, and that every way to render them gives the same picture.
+/// Area lights through the C API: the cost of their shadows, and identical pictures in every configuration.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,10 +12,10 @@
 
 #define SIDE 96
 
-/// Seen from above at a slant.
+/// A floor seen from above at an angle.
 static glint_scene *make_slanted_floor(void) { return make_floor((double[3]) { 0, 8, 9 }, (double[3]) { 0, 0, 0 }); }
 
-static bool visible; ///< whether lights are, from here on
+static bool visible; ///< whether lights added from here on are visible
 
 static void add_light(glint_scene *scene, glint_light_kind kind, double height, double radius, double samples)
 {
@@ -37,7 +37,7 @@ typedef struct setting {
     const char *isa;
     int threads;
     bool no_reuse;
-    double samples; ///< of a pixel
+    double samples; ///< per pixel
     glint_precision precision;
 } setting;
 
@@ -79,7 +79,7 @@ static void nothing_between_costs_no_rays(void **state)
     (void)state;
     glint_scene *scene = make_slanted_floor();
     add_light(scene, GLINT_LIGHT_SPHERE, 6, 0.5, 16);
-    add_ball(scene, (double[3]) { 0, 20, 0 }, 1, 0); // above the lamp
+    add_ball(scene, (double[3]) { 0, 20, 0 }, 1, 0); // above the light
     assert_int_equal(shadow_rays(scene), 0);
     glint_scene_release(scene);
 }
@@ -90,7 +90,7 @@ static void one_ball_hides_the_whole(void **state)
     glint_scene *scene = make_slanted_floor();
     glint_frame_stats stats;
     add_light(scene, GLINT_LIGHT_SPHERE, 20, 0.5, 16);
-    add_ball(scene, (double[3]) { 0, 15, 0 }, 4, 0); // between the lamp and all of the floor that is seen
+    add_ball(scene, (double[3]) { 0, 15, 0 }, 4, 0); // between the light and the whole visible floor
     glint_image *image = render(scene, (setting) { .no_reuse = true }, &stats, NULL);
     float black[3];
     assert_int_equal(glint_image_pixel(image, GLINT_PASS_BEAUTY, SIDE / 2, SIDE / 2, black, NULL), GLINT_OK);
@@ -125,7 +125,7 @@ static void point_like_lights_cost_one_ray(void **state)
     }
 }
 
-/// The reference has no index and settles nothing at once.
+/// The reference has no BVH and resolves no shadows for whole groups or tiles.
 static void every_way_gives_one_picture(void **state)
 {
     (void)state;
@@ -135,9 +135,9 @@ static void every_way_gives_one_picture(void **state)
     const glint_light_kind kinds[] = { GLINT_LIGHT_SPOT, GLINT_LIGHT_DISK, GLINT_LIGHT_POLYGON, GLINT_LIGHT_SPHERE };
     glint_scene *scene = make_slanted_floor();
     visible = true;
-    for (int i = 0; i < 30; i++) // so many between that groups walk by themselves
+    for (int i = 0; i < 30; i++) // so many occluders that groups traverse the BVH separately
         add_ball(scene, (double[3]) { i % 6 - 2.5, 1 + 0.1 * i, i / 6 - 2 }, 0.3, 0);
-    add_ball(scene, (double[3]) { 0, 6, 0 }, 1.2, 0); // a lamp's samples inside and outside
+    add_ball(scene, (double[3]) { 0, 6, 0 }, 1.2, 0); // some of a light's samples are inside it
     for (int precision = 0; precision < 2; precision++)
         for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
             add_light(scene, kinds[k], 5 + (double)k, 1, 19);
@@ -207,7 +207,7 @@ static void stages_run(const glint_scene *scene, glint_frame_stats *stats, bool 
         *visible_lights = *visible_lights || strcmp(stats->stage_name[i], "visible_lights") == 0;
 }
 
-/// A light without a surface, without light, or not called visible, calls for nothing.
+/// A light without a surface, without emission, or not set to visible, adds no effect.
 static void lights_are_seen_where_called_for(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/// Programs in two parts, and frames in which numbers of programs change: cached values give a fresh frame's bits.
+/// Programs in two parts, and frames in which constants of programs change: cached values give the same bits as a
+/// fresh frame.
 #include "engine/program/split.h"
 #include "engine/film/image.h"
 #include "engine/frame/renderer.h"
@@ -12,7 +13,7 @@ enum { CASES = 1500 };
 
 static long splits_seen, refused_seen;
 
-/// The numbers of a program, of which some are others.
+/// The program's constants, with new values where `changed` says so.
 static double (*other_numbers(const glint_program *program, const bool *changed))[GLINT_NUMBER_LANES]
 {
     double(*numbers)[GLINT_NUMBER_LANES] = input(KIND_DOUBLE, (program->number_count + 1) * GLINT_NUMBER_LANES);
@@ -24,7 +25,8 @@ static double (*other_numbers(const glint_program *program, const bool *changed)
     return numbers;
 }
 
-/// The first part with the old numbers, then the second with the new ones, into `args`, which has run the whole.
+/// Runs the first part with the old constants, then the second part with the new ones, into `args`, which has already
+/// run the whole program.
 static void run_parts(const glint_split *split, const glint_program *program, const glint_program_args *args)
 {
     static _Alignas(64) double values[GLINT_PROGRAM_OUTPUTS_MAX][GLINT_PROGRAM_LANES];
@@ -101,7 +103,7 @@ static void test_random_splits(void **state)
 
 static glint_value of_point(glint_op which) { return op(which, in(GLINT_INPUT_P_X), in(GLINT_INPUT_P_Y), in(GLINT_INPUT_P_Z)); }
 
-/// Splits a program where the number `which` changes. Returns NULL where it is not.
+/// Splits a program in which the constant `which` changes. Returns NULL when no split is possible.
 static glint_split *split_by(const glint_value *outputs, size_t count, double which, glint_program **program)
 {
     bool changed[32] = { false };
@@ -113,7 +115,8 @@ static glint_split *split_by(const glint_value *outputs, size_t count, double wh
     return split;
 }
 
-/// A board whose colour changes: one bit is cached, and the choices run again, also those that do not change.
+/// A checkerboard with a changing colour: one bit is cached, and all selections run again, even those that do not
+/// change.
 static void test_board(void **state)
 {
     (void)state;
@@ -132,7 +135,7 @@ static void test_board(void **state)
     glint_program_release(program);
 }
 
-/// Marble whose colours change: its noise is cached as one number, not the three that are mixed by it.
+/// Marble with changing colours: its noise is cached as one number, not as the three mixed results.
 static void test_marble(void **state)
 {
     (void)state;
@@ -152,7 +155,7 @@ static void test_marble(void **state)
     glint_program_release(program);
 }
 
-/// A scale: the whole point would be cached, and no constants.
+/// With a changing scale the split would cache the whole point and save nothing. Constants are never cached.
 static void test_scale(void **state)
 {
     (void)state;
@@ -177,7 +180,7 @@ static void test_scale(void **state)
 
 enum { MATERIALS = 3, FIELDS = 7 };
 
-/// The recipes of a material's fields; without one where there is no step.
+/// The recipes of a material's fields. A field without steps has no program.
 typedef struct dressed {
     glint_material *material;
     recipe field[FIELDS];
@@ -201,7 +204,7 @@ static uint32_t add_number(recipe *r, double x)
     return r->value_count - 1;
 }
 
-/// A random program whose results lie between 0 and 1, but where they are odd.
+/// A random program whose results are between 0 and 1, except for special values.
 static recipe any_field(bool one)
 {
     recipe r;
@@ -214,7 +217,7 @@ static recipe any_field(bool one)
         add_op(&r, GLINT_OP_SIN, r.output[k], 0, 0);
         const uint32_t wave = r.value_count - 1, scale = add_number(&r, between(0.1, 0.4));
         add_op(&r, GLINT_OP_MULADD, wave, scale, half);
-        if (!one_in(4)) { // NaN is one of a choice's two
+        if (!one_in(4)) { // otherwise the result may be NaN; `less` selects one of two numbers
             add_op(&r, GLINT_OP_LESS, half, r.value_count - 1, 0);
             add_op(&r, GLINT_OP_SELECT, r.value_count - 1, scale, half);
         }
@@ -223,7 +226,8 @@ static recipe any_field(bool one)
     return r;
 }
 
-/// A pattern as users write them: boards, bands or noise of a scaled point, in two colours; now and then NaN on one side of a line.
+/// A typical pattern: checkers, bands or noise of a scaled point, in two colours; sometimes NaN on one side of a
+/// line.
 static recipe usual_field(bool one)
 {
     recipe r = { .output_count = one ? 1 : 3 };
@@ -292,7 +296,7 @@ static void add_shape(world *w, glint_shape_kind kind, double x, glint_material 
     glint_shape_desc desc = glint_shape_desc_default(kind);
     const double to[3] = { x, 1, -x };
     glint_shape *shape;
-    if (kind != GLINT_SHAPE_PLANE) // of which a coordinate is one number
+    if (kind != GLINT_SHAPE_PLANE) // a plane stays at y = 0, so that p.y is one number for all points
         desc.transform = glint_transform_translate(to);
     desc.material = material;
     OK(glint_shape_create(&desc, &shape, &error));
@@ -349,13 +353,13 @@ static void release_world(world *w)
     glint_scene_release(w->scene);
 }
 
-/// Changes numbers of one field: of the same ones in a row of frames, as who turns a knob does.
+/// Changes a constant of one field. Successive frames change the same one, as a user turning a knob would.
 static void turn_knob(world *w, uint32_t knob)
 {
     dressed *d = &w->of[knob % MATERIALS];
     recipe *r = &d->field[knob / MATERIALS % FIELDS];
     r = r->step_count ? r : &d->field[0];
-    uint32_t number = knob / (MATERIALS * FIELDS) % 8; // from the end on
+    uint32_t number = knob / (MATERIALS * FIELDS) % 8; // counted from the end
     for (uint32_t i = r->step_count; i-- > 0;)
         if (r->step[i].op == (glint_op)GLINT_SSA_NUMBER && number-- == 0)
             r->step[i].number += between(0.001, 0.02);
@@ -378,7 +382,7 @@ static void change(world *w, uint32_t *knob)
     }
     if (kind <= 2)
         *knob = below(100000);
-    if (kind == 4 || kind == 5) // back and forth between two
+    if (kind == 4 || kind == 5) // alternates between two constants
         *knob ^= MATERIALS * FIELDS;
     if (kind == 3)
         turn_knob(w, *knob + 1 + below(1000));
@@ -405,7 +409,7 @@ static void check_same(const glint_image *a, const glint_image *b, uint32_t roun
                 fail_msg("round %u, frame %u: pass %s differs", round, frame, glint_pass_name((glint_pass)pass));
 }
 
-/// Tiles of the last frame with cached results of first parts.
+/// Counts the tiles of the last frame with cached results of first parts.
 static long kept_tiles(const glint_renderer *renderer)
 {
     const glint_reuse *reuse = &renderer->reuse;
@@ -420,12 +424,13 @@ static glint_renderer *new_renderer(const char *isa, bool fresh)
     glint_renderer_desc desc = { .isa = isa, .threads = 1 + (int)below(3), .no_reuse = fresh };
     glint_renderer *renderer;
     if (!fresh && one_in(4))
-        desc.reuse_memory = 20000 + below(400000); // some of it can be kept
+        desc.reuse_memory = 20000 + below(400000); // only a part fits
     OK(glint_renderer_create(&desc, &renderer, &error));
     return renderer;
 }
 
-/// Frames of random programs whose numbers change, with every instruction set in turn, one thread or several, and little memory.
+/// Frames of random programs with changing constants: every instruction set in turn, one or several threads, and
+/// little memory.
 static void test_frames(void **state)
 {
     (void)state;
@@ -452,9 +457,9 @@ static void test_frames(void **state)
     assert_true(kept > 2000 / (long)case_step());
 }
 
-enum { SCALE = 6, COLOR = 11 }; // steps of a board's recipe
+enum { SCALE = 6, COLOR = 11 }; // steps of a checkerboard's recipe
 
-/// A world in which the floor alone has a program: a board of world + scale p.
+/// A world in which only the floor has a program: a checkerboard of world + scale p.
 static recipe *board_world(world *w)
 {
     random_state = 5;
@@ -478,8 +483,8 @@ static recipe *board_world(world *w)
     return r;
 }
 
-/// Numbers of a board in turn. A changing scale needs too much to cache; and when the colour changes again,
-/// the cached values belong to another scale. A negative colour is reported as usual.
+/// Changes the constants of a checkerboard in turn. A changing scale would need too much cache; and when the colour
+/// changes afterwards, the cached values belong to another scale. A negative colour is reported as usual.
 static void test_turns(void **state)
 {
     (void)state;
@@ -513,7 +518,7 @@ static void test_turns(void **state)
     release_world(&w);
 }
 
-/// Exponents that multiply a board of highlights: neither is cached after that.
+/// Exponents multiply the normalised highlights, so the cache must follow both programs.
 static void test_normalized(void **state)
 {
     (void)state;

@@ -1,11 +1,12 @@
-/// Where rays go on from a surface: every instruction set against the scalar reference, and that against closed forms.
+/// Reflected and refracted rays: every instruction set against the scalar reference, and the reference against closed
+/// forms.
 #include "tests/engine/cases/stage_rays.h"
 
 #define ALIGNED _Alignas(64)
 
 #define CASES 200
 
-/// Rays on surfaces of every slant, grazing ones among them.
+/// Rays that hit surfaces at all angles, including grazing ones.
 static void bounce_case(int precision, bool odd)
 {
     ray_case c;
@@ -42,7 +43,7 @@ static void bounce_case(int precision, bool odd)
         args.reflectance = out[6];
         args.total = output("total", KIND_U16, groups);
         geometry(precision)->bounce(&args);
-        for (uint32_t i = 0; i < n; i++) // elsewhere anything goes
+        for (uint32_t i = 0; i < n; i++) // other lanes may hold anything
             for (int k = 0; k < 7 && !lane_of(args.wanted, i); k++)
                 put(out[k], precision, i, 0);
         compare_outputs("bounce");
@@ -61,7 +62,8 @@ typedef struct answer {
     bool total;
 } answer;
 
-/// A ray in the plane z = 0 that falls on the floor y = 0 from the left, `sine` being that of its angle.
+/// Reflects and refracts a ray in the plane z = 0 that falls on the floor y = 0 from the left at an angle of this
+/// sine.
 static answer ask(double ratio, double sine, double cosine)
 {
     static ALIGNED double direction[3][GLINT_GROUP], normal[3][GLINT_GROUP], ratios[GLINT_GROUP];
@@ -104,12 +106,12 @@ static void test_closed_forms(void **state)
     static const double fresnel[][2] = { { 1, 0.04 }, { 0.5, 0.0891867128 }, { 0.1, 0.5715925203 }, { 0, 1 } };
     FOR_EACH_TESTED
     {
-        answer a = ask(1.5, 2.0 / 3, sqrt(5) / 3); // critical: nothing, or next to nothing, comes through
+        answer a = ask(1.5, 2.0 / 3, sqrt(5) / 3); // critical angle: almost nothing is transmitted
         near(a.reflectance, 1, 1e-7);
         a = ask(1.5, 1, 0);
         assert_true(a.total);
         near(a.reflectance, 1, 0);
-        a = ask(1.5, 0.8, 0.6); // beyond the critical angle: a mirror
+        a = ask(1.5, 0.8, 0.6); // beyond the critical angle: total reflection
         assert_true(a.total);
         near(a.reflectance, 1, 0);
         near(a.reflected[0], 0.8, 2e-16);
@@ -130,7 +132,8 @@ static void test_closed_forms(void **state)
     }
 }
 
-/// Snell backwards is Snell: the refracted ray, turned round, comes back, and is mirrored as much.
+/// Snell's law is reversible: the reversed refracted ray leaves along the incident direction, with the same
+/// reflectance.
 static void test_reversible(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/// camera, in_sight, cast and surface on every instruction set against the scalar reference, which looks at every
-/// primitive: neither the index nor a filter loses a hit or changes a bit.
+/// camera, in_sight, cast and surface on every instruction set against the scalar reference, which tests every
+/// primitive: neither the BVH nor a filter loses a hit or changes a bit.
 #include "tests/engine/cases/stage_rays.h"
 
 enum { CASES = 300 };
@@ -97,7 +97,7 @@ static void cast_with(const ray_case *c, glint_cast_view views[])
 
 static void cast_all(const ray_case *c) { cast_with(c, NULL); }
 
-/// Now and then what nobody expects in a ray; not a direction next to nothing, whose square is 0 in float.
+/// Puts special values into some rays, except a tiny direction, whose square is 0 in float.
 static void spoil_rays(ray_case *c)
 {
     double origin[3], direction[3];
@@ -128,8 +128,8 @@ static void test_cast(void **state)
     run_cases(4 * CASES, 2000, cast_case);
 }
 
-/// A ray from a triangle: into any direction, or from next to the edge of its first two corners over that edge and hardly out of
-/// the plane.
+/// Starts a ray on a triangle: in a random direction, or from next to an edge, across that edge and almost in the
+/// plane.
 static void leave_triangle(ray_case *c, uint32_t i, const glint_prim *prim)
 {
     const bool by_edge = one_in(2);
@@ -152,7 +152,7 @@ static void leave_triangle(ray_case *c, uint32_t i, const glint_prim *prim)
     put3(c->direction, c->precision, i, direction);
 }
 
-/// Makes the scene anew, with triangles or solids.
+/// Rebuilds the scene with triangles or solids.
 static void mix_scene(ray_case *c, bool triangles, bool solids)
 {
     free_scene(c->scene);
@@ -162,13 +162,13 @@ static void mix_scene(ray_case *c, bool triangles, bool solids)
     c->cast.geometry = &c->scene->table;
 }
 
-/// Rays that start on the primitives, some of them into the inside.
+/// Rays that start on the primitives, some of them towards the inside.
 static void leaving_case(int precision, bool odd)
 {
     (void)odd;
     ray_case c;
     start_rays(&c, RAYS_FREE, precision);
-    if (precision == GLINT_DOUBLE && one_in(2)) // triangles in float: see test_stages_occlude.c
+    if (precision == GLINT_DOUBLE && one_in(2)) // test_stages_occlude.c covers triangles in float
         mix_scene(&c, true, false);
     const uint32_t n = c.cast.group_count * GLINT_GROUP;
     uint32_t *leaving = input(KIND_U32, n);
@@ -180,11 +180,11 @@ static void leaving_case(int precision, bool odd)
         if (prim->kind == GLINT_PRIM_TRIANGLE)
             leave_triangle(&c, i, prim);
         if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_PLANE)
-            continue; // the last one ignores the ray's origin
+            continue; // for planes the ray's origin does not matter
         random_unit(direction);
         along3(prim->center, prim->kind == GLINT_PRIM_SPHERE ? prim->radius : 0, direction, point);
         put3(c.origin, precision, i, point);
-        if (one_in(3)) { // along the surface, nearly
+        if (one_in(3)) { // almost along the surface
             random_across(direction, point);
             along3(point, either_sign(power_of_ten(-17, 0)), direction, direction);
         } else {
@@ -204,7 +204,7 @@ static void test_leaving(void **state)
     run_cases(2 * CASES, 7000, leaving_case);
 }
 
-/// The scene around one tile, seen by a tile nearby: what is in sight of it, if anything, is at its border.
+/// The scene is built around one tile and seen from a nearby tile: anything visible there is at its border.
 static void neighbour_case(int precision, bool odd)
 {
     (void)odd;
@@ -225,10 +225,10 @@ static void test_in_sight(void **state)
     (void)state;
     out_of_sight = 0;
     run_cases(CASES, 3000, neighbour_case);
-    assert_true(out_of_sight > 0 || case_step() > 1); // of a few cases there may be none
+    assert_true(out_of_sight > 0 || case_step() > 1); // a run of few cases may have none
 }
 
-/// Another tile of the picture, most often the next one, and another place in the pixels.
+/// Moves to another tile of the picture, most often a neighbour, and to other sample positions.
 static void move_tile(ray_case *c)
 {
     glint_camera_args *camera = &c->camera;
@@ -241,7 +241,7 @@ static void move_tile(ray_case *c)
     shoot_camera(c);
 }
 
-/// Tiles of one picture, each with the data of earlier calls.
+/// Casts several tiles of one picture, each with the cached data of earlier calls.
 static void cast_tiles(ray_case *c)
 {
     static glint_cast_view views[sizeof tested / sizeof *tested];
@@ -271,7 +271,7 @@ static void test_tiles(void **state)
 
 // ---- From afar ---------------------------------------------------------------------------------------------------
 
-/// Rays along an axis, exactly, from up to 1e36 away, at spheres next to which the way is endless.
+/// Exactly axis-parallel rays from up to 1e36 away, at small spheres: any angular error would miss them.
 static void afar_case(int precision, bool odd)
 {
     (void)odd;
@@ -314,7 +314,7 @@ static void test_from_afar(void **state)
 
 // ---- Borders of groups ---------------------------------------------------------------------------------------------
 
-/// An upright camera whose outermost rays of each group run exactly along the group's border.
+/// An axis-aligned camera whose outermost rays of each group run exactly along the group's border.
 static void set_border_camera(glint_camera_args *camera, double distance)
 {
     const double height = random_tile(camera), edge = power_of_ten(-1.5, 0);
@@ -327,7 +327,7 @@ static void set_border_camera(glint_camera_args *camera, double distance)
     camera->eye[axis] = -distance * camera->forward[axis];
 }
 
-/// A ray on the left, right, upper or lower border of a group, and which way is out of the group there.
+/// A ray on the left, right, upper or lower border of a group, and the direction out of the group there.
 static void border_ray(const ray_case *c, double origin[3], double direction[3], double outwards[3])
 {
     const glint_camera_args *camera = &c->camera;
@@ -343,7 +343,7 @@ static void border_ray(const ray_case *c, double origin[3], double direction[3],
         outwards[k] /= size;
 }
 
-/// Spheres outside of groups that a ray along the border of the group touches, or all but touches.
+/// Spheres outside of groups that touch, or almost touch, a ray along the border of the group.
 static void border_case(int precision, bool odd)
 {
     (void)odd;
@@ -378,9 +378,9 @@ static void test_borders(void **state)
     run_cases(2 * CASES, 3500, border_case);
 }
 
-// ---- Groups that something fills -----------------------------------------------------------------------------------
+// ---- Groups filled by one primitive --------------------------------------------------------------------------------
 
-/// A sphere or plane whose outline runs along the border of a group, inside or outside of it by a little or not at all.
+/// A sphere or plane whose silhouette runs along the border of a group, exactly or slightly inside or outside.
 static void set_along_border(const ray_case *c, glint_prim *prim, double distance)
 {
     double origin[3], direction[3], outwards[3], place[3], center[3];
@@ -397,7 +397,7 @@ static void set_along_border(const ray_case *c, glint_prim *prim, double distanc
     set_sphere(prim, center, radius);
 }
 
-/// A sphere that has nearly the outline of another, but is farther away, if often not by much.
+/// A sphere with nearly the same silhouette as another one, but farther away, often only slightly.
 static void set_behind(const ray_case *c, glint_prim *prim, const glint_prim *other)
 {
     const double times = 1 + power_of_ten(-12, 0);
@@ -409,7 +409,7 @@ static void set_behind(const ray_case *c, glint_prim *prim, const glint_prim *ot
 
 static uint32_t groups_filled;
 
-/// Few primitives, each of which fills groups of the tile, up to their very border.
+/// Few primitives, each of which fills groups of the tile up to their border.
 static void filled_case(int precision, bool odd)
 {
     (void)odd;
@@ -449,8 +449,8 @@ static void test_filled(void **state)
 
 // ---- Equal distances ---------------------------------------------------------------------------------------------
 
-/// Four primitives that a ray downwards meets at one point, numbered in any order: two spheres that coincide, a third that
-/// touches them there from inside, and a plane that is tangent.
+/// Four primitives that a downward ray hits at one point, numbered in random order: two coincident spheres, a third
+/// that touches them from inside, and a tangent plane.
 static test_scene *tied_scene(const scene_plan *plan)
 {
     static test_scene scene;
@@ -464,7 +464,7 @@ static test_scene *tied_scene(const scene_plan *plan)
     return &scene;
 }
 
-/// The lowest id wins. The ray in the middle of the picture is exactly downwards.
+/// The lowest id wins. The ray in the middle of the picture points exactly down.
 static void ties_case(int precision, bool odd)
 {
     (void)odd;
@@ -506,7 +506,7 @@ static void test_ties(void **state)
 
 // ---- surface -----------------------------------------------------------------------------------------------------
 
-/// Hits as cast leaves them; in an odd case other primitives and distances than those.
+/// Hits as cast leaves them. In odd cases some primitives and distances are replaced.
 static void make_hits(ray_case *c, bool odd)
 {
     const uint32_t n = c->cast.group_count * GLINT_GROUP;
@@ -523,7 +523,7 @@ static void make_hits(ray_case *c, bool odd)
     }
 }
 
-/// Makes the input of surface; returns the number of lanes.
+/// Makes the input of surface. Returns the number of lanes.
 static uint32_t make_surface_case(ray_case *c, glint_surface_args *args, int precision, bool odd, bool mixed)
 {
     start_rays(c, (ray_kind)below(RAY_KINDS), precision);
@@ -561,7 +561,7 @@ static void put_box(const glint_point_box *box)
     *only = box->only;
 }
 
-/// Triangles and solids are asked where rays have met them.
+/// Triangles and solids need real hits and double precision.
 static bool may_mix(int precision, bool odd) { return precision == GLINT_DOUBLE && !odd && one_in(2); }
 
 static void surface_case(int precision, bool odd)
@@ -584,7 +584,7 @@ static void surface_case(int precision, bool odd)
     end_rays(&c);
 }
 
-/// Only points: equal to those computed with normals, in the requested lanes.
+/// Computes only points: they equal the points computed with normals, in the requested lanes.
 static void points_case(int precision, bool odd)
 {
     static _Alignas(64) double points[3][GLINT_TILE_SAMPLES], normals[3][GLINT_TILE_SAMPLES];
@@ -620,10 +620,10 @@ static void points_case(int precision, bool odd)
     end_rays(&c);
 }
 
-/// A lamp near what is hit, or far from it, for materials of every kind.
+/// A light near a primitive or far away, for materials of every kind.
 static void make_lamp(const ray_case *c, glint_light_args *light)
 {
-    static glint_shade_material materials[4]; // as many as finish_scene gives out
+    static glint_shade_material materials[4]; // as many as finish_scene assigns
     for (uint32_t i = 0; i < COUNT_OF(materials); i++)
         materials[i] = (glint_shade_material) { .highlight = below(3), .least = one_in(3) ? 0 : (float)between(0, 1) };
     *light = (glint_light_args) { .group_count = c->cast.group_count,
@@ -637,7 +637,7 @@ static void make_lamp(const ray_case *c, glint_light_args *light)
                                   .coefficients = { between(0, 2), between(0, 1), between(0, 1) },
                                   .highlights = !one_in(4),
                                   .sparing = one_in(2) };
-    if (one_in(2)) { // what a visible lamp covers is not lit
+    if (one_in(2)) { // lanes covered by a visible light are not lit
         uint16_t *hits = masks(light->group_count);
         for (uint32_t g = 0; g < light->group_count; g++)
             hits[g] = one_in(2) ? c->cast.hits[g] : hits[g] & c->cast.hits[g];

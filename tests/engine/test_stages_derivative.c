@@ -1,4 +1,4 @@
-/// Stages of derivatives: every instruction set against the scalar reference, with slopes of some things alone and of all.
+/// Stages of derivatives: every instruction set against the scalar reference, with some or all inputs varying.
 #include "tests/engine/cases/stage_case.h"
 
 #define CASES 6000
@@ -13,7 +13,7 @@ static double *sixteen(double a, double b)
     return row;
 }
 
-/// Unit vectors, often along axes; `like`: now and then the same as these, or against them.
+/// Unit vectors, some along axes. like: some equal these vectors or their opposites.
 static void units(const double *out[3], const double *const like[3])
 {
     double *row[3];
@@ -61,7 +61,7 @@ static glint_derivative_light any_light(bool turned, bool other)
     return light;
 }
 
-/// Away from all points.
+/// A light position away from all points.
 static void any_source(const glint_derivative_points *points, const glint_derivative_light *light, glint_derivative_source *out)
 {
     *out = (glint_derivative_source) { .weight = one_in(3) ? sixteen(0, 1) : NULL, .radiant = !light->directional && one_in(3) };
@@ -99,7 +99,7 @@ static void any_planes(glint_derivative_planes *out)
 {
     *out = (glint_derivative_planes) { .value = { NULL } };
     for (int k = 0; k < GLINT_DERIVED_COUNT; k++) {
-        const int first = k < GLINT_DERIVED_SHININESS ? k / 3 * 3 : k; // colours are there whole
+        const int first = k < GLINT_DERIVED_SHININESS ? k / 3 * 3 : k; // a colour has all its channels or none
         const double most = k == GLINT_DERIVED_SHININESS ? 200 : 1;
         if (k == first ? !one_in(2) : !out->value[first])
             continue;
@@ -108,7 +108,7 @@ static void any_planes(glint_derivative_planes *out)
     }
 }
 
-/// A zero of either sign is the same slope.
+/// Turns -0 into 0: both signs are the same derivative.
 static void drop_signs(double *row)
 {
     for (int i = 0; i < GLINT_GROUP; i++)
@@ -121,7 +121,7 @@ static void any_three(bool sloped, double out[3])
         out[c] = sloped && !one_in(4) ? between(-2, 2) : 0;
 }
 
-/// Hits on a sphere or a plane that moves, or that an eye sees which does.
+/// Hits on a moving sphere or plane, or seen by a moving eye.
 typedef struct any_bend_room {
     glint_prim prim;
     glint_derivative_part part;

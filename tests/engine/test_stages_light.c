@@ -1,4 +1,4 @@
-/// light, view and facet on every instruction set against the scalar reference, and how accurate its logarithm is.
+/// light, view and facet on every instruction set against the scalar reference, and the accuracy of their logarithm.
 #include "tests/engine/cases/stage_case.h"
 
 #define ALIGNED _Alignas(64)
@@ -9,8 +9,8 @@ enum { CASES = 300 };
 
 static glint_shade_material materials[6];
 
-/// Points, normals, materials and dark lanes as surface leaves them: nothing where a group has no hit, zeros in the other
-/// lanes without one.
+/// Points, normals, materials and dark lanes as surface leaves them: anything in groups without a hit, and zeros in
+/// the other lanes without one.
 static void make_points(glint_light_args *args, int precision, bool odd, double size)
 {
     uint32_t n = args->group_count * GLINT_GROUP;
@@ -35,7 +35,7 @@ static void make_points(glint_light_args *args, int precision, bool odd, double 
                 normal[c] = maybe_odd(odd, grazing ? normal[c] * power_of_ten(-30, 0) : normal[c]);
                 direction[c] *= power_of_ten(-2, 2);
             }
-            uint32_t facing = below(10); // the eye at the light, or the light straight behind
+            uint32_t facing = below(10); // the light at the eye, or straight behind the point
             for (int c = 0; c < 3; c++) {
                 double along = point[c] - args->position[c];
                 direction[c] = maybe_odd(odd, facing == 0 ? along : facing == 1 ? -along : direction[c]);
@@ -50,7 +50,7 @@ static void make_points(glint_light_args *args, int precision, bool odd, double 
     }
 }
 
-/// Directions of a perspective camera, in two parts.
+/// The directions of a perspective camera, stored as column and row parts.
 static void make_camera(glint_camera_args *camera, int precision, bool odd)
 {
     const uint32_t across = 1 + below(GLINT_TILE_WIDTH / 4), down = 1 + below(GLINT_TILE_HEIGHT / 4);
@@ -66,7 +66,7 @@ static void make_camera(glint_camera_args *camera, int precision, bool odd)
 static void place_light(glint_light_args *args, double distance)
 {
     args->directional = one_in(3);
-    const bool near = fabs(log2(distance)) < 16 && one_in(2); // 1 is near enough
+    const bool near = fabs(log2(distance)) < 16 && one_in(2); // close enough to 1 for a scale of 1
     args->scale = args->directional || near ? 1 : ldexp(1, -ilogb(distance));
     args->attenuated = one_in(2);
     args->highlights = !one_in(4);
@@ -77,7 +77,7 @@ static void place_light(glint_light_args *args, double distance)
     }
 }
 
-/// The cone of a spot that points somewhere near the middle; its axis and edges now and then through points.
+/// The cone of a spot light that points roughly at the middle. Its axis and edges sometimes pass through points.
 static void make_spot(glint_light_args *args, glint_spot *spot)
 {
     const double inner = cos(between(0, 3)), outer = one_in(4) ? inner : fmin(inner, cos(between(0, 3.2)));
@@ -92,7 +92,7 @@ static void make_spot(glint_light_args *args, glint_spot *spot)
     args->attenuated = true;
 }
 
-/// Where in the cone each lane has its sample; now and then at its middle or edge.
+/// Each lane's sample position in the cone, sometimes at its axis or edge.
 static void make_cone(glint_light_sample *light_sample)
 {
     for (int lane = 0; lane < GLINT_GROUP; lane++) {
@@ -103,7 +103,7 @@ static void make_cone(glint_light_sample *light_sample)
     }
 }
 
-/// Samples of an area light about the place of the light, which may be anywhere and of any size.
+/// Samples of an area light around the light's position, of any size.
 static void make_lamps(glint_light_args *args, glint_light_sample *lamps, double radius)
 {
     args->sample_count = 1 + below(GLINT_LIGHT_CHUNK);
@@ -140,7 +140,7 @@ static void make_alike(glint_light_args *args, double (*place)[3])
     }
 }
 
-/// Makes a light's arguments without outputs; returns the number of lanes.
+/// Makes a light's arguments without outputs. Returns the number of lanes.
 static uint32_t make_light_case(glint_light_args *args, glint_camera_args *camera, glint_spot *spot, int precision,
                                 bool odd)
 {
@@ -189,7 +189,7 @@ static void light_case(int precision, bool odd)
     }
 }
 
-/// view and facet at such points, for whatever lanes are lit.
+/// view and facet at such points, with random lit lanes.
 static void facet_case(int precision, bool odd)
 {
     glint_light_args args, *light = &args;
@@ -244,7 +244,7 @@ static void test_facet(void **state)
 
 // ---- elementary functions ----------------------------------------------------------------------------------------
 
-/// How far `got` is from `want`, in units of the last place of `want` as a float.
+/// The error of `got` in ulps of `want` as a float.
 static double ulps(float got, long double want)
 {
     if (want == 0)
@@ -252,9 +252,9 @@ static double ulps(float got, long double want)
     return fabs((double)(((long double)got - want) / ldexpl(1, ilogbl(want) - 23)));
 }
 
-/// Worst error in units of the last place of a float result, as a sum of possible errors. Near 1: f rounded to float 1,
-/// the last sum of the polynomial 0.7, the terms before it 0.2, the last product 0.5, the polynomial 0.34. Below, worst
-/// just under sqrt(1/2): x rounded to float 1.02, the last sum 0.5, the rest, of numbers half as large, 0.87.
+/// Worst error in float ulps, as a sum of possible errors. Near 1: f rounded to float 1, the last sum of the
+/// polynomial 0.7, the terms before it 0.2, the last product 0.5, the polynomial 0.34. Below 1, worst just under
+/// sqrt(1/2): x rounded to float 1.02, the last sum 0.5, the rest, on numbers half as large, 0.87.
 #define MAX_ULP_LOG2 2.75
 
 /// log2 through light: with normal and light along z and the ray (1, 0, -s), Phong's x is s^2 / (1 + s^2).

@@ -1,5 +1,5 @@
-/// occlude and soft_light on every instruction set against the scalar reference, which asks every primitive about every point: neither
-/// the index nor the list of a tile nor a filter loses a shadow or makes one.
+/// occlude and soft_light on every instruction set against the scalar reference, which tests every primitive for
+/// every point: neither the BVH, nor a tile's list of occluders, nor a filter loses or adds a shadow.
 #include "engine/geometry/geometry.h"
 #include "tests/engine/cases/stage_scene.h"
 
@@ -8,8 +8,8 @@ enum { CASES = 3000 };
 /// The primitives and the light of a case.
 typedef enum shadow_kind {
     SHADOWS, ///< any
-    SHADOWS_OF_SMALL, ///< small spheres in the main
-    SHADOWS_IN_LAYERS ///< many, between points that lie together and an area light that is off them
+    SHADOWS_OF_SMALL, ///< mostly small spheres
+    SHADOWS_IN_LAYERS ///< many, between points close together and a distant area light
 } shadow_kind;
 
 typedef struct shadow_case {
@@ -21,13 +21,13 @@ typedef struct shadow_case {
     uint32_t *prim;
     uint16_t *back;
     void *slack;
-    bool soft; ///< an area light
-    bool cone; ///< whose samples are each point's own
+    bool soft; ///< whether the light is an area light
+    bool cone; ///< whether samples differ per point, inside a cone
 } shadow_case;
 
 // ---- Lights and points -------------------------------------------------------------------------------------------
 
-/// In the scene, around it, far away, or without a place. Returns how far from the middle.
+/// Places the light inside the scene, around it, far away, or at infinity. Returns its distance from the middle.
 static double place_light(shadow_case *c)
 {
     const double size = c->plan.size;
@@ -53,7 +53,7 @@ static double place_light(shadow_case *c)
 
 static glint_light_sample lamps[GLINT_LIGHT_CHUNK];
 
-/// For sample s and a lane: a position on the light, or in the cones.
+/// Places sample s of a lane on the light, or in its cone.
 static void place_sample(const shadow_case *c, const double axis[3], double radius, uint32_t s, int lane)
 {
     double out[3];
@@ -71,11 +71,11 @@ static void place_sample(const shadow_case *c, const double axis[3], double radi
     lamps[s].position[2][lane] = sin(angle);
 }
 
-/// Makes an area light of the light: a ball, or a patch of a plane, of any size.
+/// Turns the light into an area light: a ball or a planar disk of any size.
 static void place_lamps(shadow_case *c, double distance)
 {
     const bool apart = c->kind == SHADOWS_IN_LAYERS;
-    c->cone = !apart && (case_seed >> 4) % 3 == 0; // of whatever precision, and odd or not
+    c->cone = !apart && (case_seed >> 4) % 3 == 0; // independent of precision and odd
     const double radius = !c->cone && one_in(8) ? 0 : distance * (apart ? power_of_ten(-3, -0.3) : power_of_ten(-6, 0.5));
     const bool flat = !c->cone && one_in(2);
     double axis[3], lower[3], upper[3];
@@ -105,7 +105,7 @@ static void place_lamps(shadow_case *c, double distance)
     }
 }
 
-/// The points of a tile are usually close together; otherwise its shaft would hold half the scene.
+/// The points of a tile are usually close together; otherwise its shaft would contain half the scene.
 static void place_points(shadow_case *c, double light_distance)
 {
     const scene_plan *plan = &c->plan;
@@ -134,7 +134,7 @@ static void place_points(shadow_case *c, double light_distance)
         add_line(&c->plan, plan->middle, (const double[3]) { 0, 0, 1 }, plan->size);
 }
 
-/// A point of a triangle, and its rounding error, as in surface.
+/// Places a point on a triangle, with its rounding error, as surface does.
 static void place_on_triangle(shadow_case *c, uint32_t i, const glint_prim *prim)
 {
     const double slack = c->precision == GLINT_DOUBLE ? GLINT_POINT_SLACK_DOUBLE : GLINT_POINT_SLACK_FLOAT;
@@ -151,7 +151,7 @@ static void place_on_triangle(shadow_case *c, uint32_t i, const glint_prim *prim
     put(c->slack, c->precision, i, slack * ((f + g) + far));
 }
 
-/// Puts a point that went far off, perhaps beyond the light, back to where it was.
+/// Restores the position of a point that moved far away, perhaps beyond the light.
 static void keep_near(shadow_case *c, uint32_t i, const double was[3])
 {
     double off[3];
@@ -164,7 +164,8 @@ static void keep_near(shadow_case *c, uint32_t i, const double was[3])
     c->back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP);
 }
 
-/// Puts a point onto a primitive, or says that it is on none that could shadow it. few: how much of the scene is not for that.
+/// Moves a point onto a primitive, or marks it as on none that could shadow it. few: the larger, the fewer primitives
+/// get points.
 static void place_on_surface(shadow_case *c, uint32_t i, uint32_t few)
 {
     const test_scene *scene = c->scene;
@@ -174,7 +175,7 @@ static void place_on_surface(shadow_case *c, uint32_t i, uint32_t few)
     if (one_in(3)) {
         c->back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP);
         if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_SOLID)
-            c->prim[i] = GLINT_MISS; // their rules ask where on them a point is
+            c->prim[i] = GLINT_MISS; // their self-shadowing rules depend on the point's position
         return;
     }
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
@@ -193,7 +194,7 @@ static void place_on_surface(shadow_case *c, uint32_t i, uint32_t few)
     put3(c->args.point, c->precision, i, point);
 }
 
-/// Some of the points go onto the primitive they are said to be on; the others are on none that could shadow them.
+/// Moves some points onto their primitive. The others are on none that could shadow them.
 static void place_on_surfaces(shadow_case *c)
 {
     const uint32_t few = below(4);
@@ -208,7 +209,7 @@ static void place_on_surfaces(shadow_case *c)
 
 // ---- occlude -----------------------------------------------------------------------------------------------------
 
-/// Makes most primitives small spheres where they are.
+/// Replaces most primitives by small spheres at the same position.
 static void shrink(shadow_case *c)
 {
     uint32_t left = below(2) * below(GLINT_GRID_OTHERS);
@@ -230,7 +231,7 @@ static void start_shadows(shadow_case *c, int precision, bool odd, shadow_kind k
     memset(c, 0, sizeof *c);
     c->precision = precision;
     c->kind = kind;
-    random_place(&c->plan, precision == GLINT_DOUBLE); // there are no points where float overflows
+    random_place(&c->plan, precision == GLINT_DOUBLE); // no points where float overflows
     const uint32_t groups = c->args.group_count = 1 + below(GLINT_TILE_GROUPS), n = groups * GLINT_GROUP;
     c->args.sample_count = 1;
     c->args.prim = c->prim = input(KIND_U32, n);
@@ -241,7 +242,7 @@ static void start_shadows(shadow_case *c, int precision, bool odd, shadow_kind k
         c->plan.count = 30 + below(300);
         c->plan.spread = one_in(4) ? 0.5 : between(2, 4);
     }
-    // float takes what rounding makes of them for hits far away from them, which the index does not look up
+    // In float, rounding can produce hits on distant triangles and solids that the BVH would not test.
     c->plan.triangles = precision == GLINT_DOUBLE && !odd && one_in(2);
     c->plan.solids = precision == GLINT_DOUBLE && !odd && one_in(3);
     input3(c->args.point, real_kind(precision), n);
@@ -282,7 +283,7 @@ static bool is_triangle(const shadow_case *c, uint32_t prim)
     return prim != GLINT_MISS && c->scene->prims[prim].kind == GLINT_PRIM_TRIANGLE;
 }
 
-/// A box as surface gives it: around the lit points, and maybe around more.
+/// A box as surface gives it: around the lit points, or around all points.
 static void make_box(const shadow_case *c, glint_point_box *box)
 {
     *box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, GLINT_MISS };
@@ -307,16 +308,17 @@ static void make_box(const shadow_case *c, glint_point_box *box)
         box->only = GLINT_MISS;
 }
 
-static uint32_t settled; ///< cases in which the whole of an area light settled something
+static uint32_t settled; ///< cases in which the whole area light resolved some lanes
 static uint32_t gridded; ///< cases in which the light had a grid
 
-/// The grid of a light without samples, where it can have one.
+/// Creates the grid of a light without samples, if it can have one.
 static glint_light_grid *make_grid(const shadow_case *c)
 {
     static uint32_t calls;
     glint_light_grid *grid = NULL;
     glint_error error;
-    const size_t room = calls++ % 3 ? SIZE_MAX : (size_t)c->scene->table.prim_count * 40; // then cells are wider, or there is none
+    // a small limit gives wider cells, or no grid
+    const size_t room = calls++ % 3 ? SIZE_MAX : (size_t)c->scene->table.prim_count * 40;
     if (!c->soft)
         assert_int_equal(
             glint_light_grid_create(&c->scene->table, c->args.directional, c->args.position, room, &grid, &error), GLINT_OK);
@@ -345,7 +347,7 @@ static void occlude_all(shadow_case *c)
         for (uint32_t s = 0; s < args.sample_count; s++)
             args.open[s] = output("open", KIND_U16, args.group_count);
         geometry(c->precision)->occlude(&args);
-        if (c->soft) // what the whole light settles is not counted
+        if (c->soft) // rays resolved for the whole light are not counted
             settled += running != &glint_stages_ref && rays < lit_lanes(c) + 5;
         else
             *(double *)output("rays", KIND_DOUBLE, 1) = (double)rays;
@@ -355,7 +357,7 @@ static void occlude_all(shadow_case *c)
     glint_light_grid_destroy(grid);
 }
 
-/// Some shadow somewhere, and some light: a test of nothing but one of them would be none.
+/// Counts of lit and shadowed lanes: a useful test needs both.
 static uint32_t open_lanes, dark_lanes;
 
 static void count_lanes(const shadow_case *c)
@@ -369,7 +371,7 @@ static void count_lanes(const shadow_case *c)
 
 // ---- soft_light --------------------------------------------------------------------------------------------------
 
-static uint64_t summed, highlights; ///< lanes that were reached; of them, those with a highlight
+static uint64_t summed, highlights; ///< lanes that light reached; lanes among them with a highlight
 
 static void count_sums(const glint_light_args *light)
 {
@@ -381,7 +383,7 @@ static void count_sums(const glint_light_args *light)
     }
 }
 
-/// Normals and rays of all kinds; more often than not, ones that show what the light does.
+/// Random normals and rays; most of them face the light.
 static void look_at_points(const shadow_case *c, glint_light_args *light, bool odd)
 {
     const uint32_t n = light->group_count * GLINT_GROUP;
@@ -480,7 +482,7 @@ static void soft_light_all(const shadow_case *c, bool odd)
         if (geometry(c->precision)->soft_light(&args))
             compare_outputs("soft_light");
         else
-            free_arrays(gotten, &gotten_count); // too much lies between
+            free_arrays(gotten, &gotten_count); // too many occluders
         assert_true(rays <= (uint64_t)groups * GLINT_GROUP * light.sample_count);
     }
     count_sums(&light);
@@ -509,7 +511,7 @@ static void occlude_case(int precision, bool odd)
     start_shadows(&c, precision, odd, SHADOWS);
     for (uint32_t i = 0; odd && i < c.args.group_count * GLINT_GROUP; i++)
         for (int k = 0; k < 3 && one_in(8); k++) {
-            c.back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP); // it is on nothing any more
+            c.back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP); // no longer on a primitive
             put(c.args.point[k], precision, i, odd_number());
         }
     occlude_all(&c);
@@ -526,7 +528,7 @@ static void test_occlude(void **state)
     assert_true(settled * case_step() > 100);
 }
 
-/// Many small spheres and up to a few other surfaces: what grids are for, where double decides.
+/// Many small spheres and a few other surfaces, where the grid is used and double precision decides.
 static void occlude_grid_case(int precision, bool odd)
 {
     shadow_case c;
@@ -546,7 +548,7 @@ static void test_occlude_grid(void **state)
     assert_true(open_lanes * case_step() > 10000 && dark_lanes * case_step() > 10000);
 }
 
-/// Area lights behind more than a list holds.
+/// Area lights behind more occluders than a list holds.
 static void occlude_layers_case(int precision, bool odd)
 {
     shadow_case c;
@@ -562,10 +564,10 @@ static void test_occlude_layers(void **state)
     (void)state;
     open_lanes = dark_lanes = 0;
     run_cases(CASES / 3, 600000, occlude_layers_case);
-    assert_true(open_lanes * case_step() > 2000 && dark_lanes * case_step() > 10000); // much is in the way
+    assert_true(open_lanes * case_step() > 2000 && dark_lanes * case_step() > 10000); // many occluders
 }
 
-/// Cases that were wrong.
+/// Cases that failed in the past.
 static void test_occlude_found(void **state)
 {
     static const struct {
@@ -573,8 +575,10 @@ static void test_occlude_found(void **state)
         glint_precision precision;
         bool odd;
     } found[] = {
-        { 1021078, GLINT_DOUBLE, false }, // a triangle of 30 roundings: a point that counts as on it lies outside of its box
-        { 3012971, GLINT_FLOAT, true }, // a point without a place made its cell forget how far its other points are
+        // a triangle as small as 30 rounding errors: a point that counts as on it is outside its box
+        { 1021078, GLINT_DOUBLE, false },
+        // a point at no finite position made its cell forget the extent of its other points
+        { 3012971, GLINT_FLOAT, true },
         { 3038036, GLINT_DOUBLE, true },
     };
     (void)state;

@@ -1,5 +1,5 @@
 /// The stage `program`: every operation and thousands of random programs on every instruction set against the scalar
-/// reference, and programs as the builder makes them against the same without anything folded, shared or fused.
+/// reference, and built programs against the same programs without folding, sharing or fusing.
 #include "tests/engine/png_case.h"
 #include "tests/engine/cases/program_case.h"
 
@@ -7,9 +7,9 @@
 
 #define CASES 4000
 
-static uint32_t damaged[2]; ///< programs that were refused, that were run
+static uint32_t damaged[2]; ///< programs that were refused, programs that were run
 
-/// Makes an operand one number: a power of two, as `mod` and `div` often have it, or none.
+/// Sets an operand to one number in all lanes: often a power of two, as is common for `mod` and `div`.
 static void put_power(double *x, glint_program_args *args, uint32_t input)
 {
     const double power = ldexp(one_in(8) ? 3 : 1, (int)below(12) - 6) * (one_in(8) ? 0x1p600 : 1);
@@ -19,7 +19,7 @@ static void put_power(double *x, glint_program_args *args, uint32_t input)
     args->same |= 1u << input;
 }
 
-/// One operation on numbers of every kind.
+/// Runs one operation on numbers of every kind.
 static void operation_case(glint_op op, bool odd)
 {
     glint_builder *b;
@@ -80,7 +80,7 @@ static void test_operations(void **state)
     run_cases(300, 41000, every_operation);
 }
 
-/// The outputs of the set that is running: `more` makes the arrays.
+/// Makes the outputs of the running instruction set. more: allocates an array.
 static void make_outputs(glint_program_args *args, uint32_t outputs, uint32_t n, uint32_t groups,
                          void *(*more)(const char *name, array_kind kind, uint32_t count))
 {
@@ -89,7 +89,7 @@ static void make_outputs(glint_program_args *args, uint32_t outputs, uint32_t n,
         args->plane[k] = more("plane", KIND_FLOAT, n);
         args->total[k] = more("total", KIND_DOUBLE, n);
         for (uint32_t i = 0; i < n; i++)
-            args->total[k][i] = 0.125 * i; // whatever was added before
+            args->total[k][i] = 0.125 * i; // an arbitrary earlier total
     }
     args->odd = more("odd", KIND_U16, groups);
 }
@@ -99,7 +99,8 @@ static void *plain_output(const char *name, array_kind kind, uint32_t count)
     return new_array(gotten, &gotten_count, name, kind, count);
 }
 
-/// A program that chooses between numbers by a parity, and of which planes alone are wanted: often a checker, which kernels know.
+/// A program that selects between numbers by a parity, with only planes as outputs: often a checker, for which there
+/// is a special kernel.
 static void checker_case(int precision, bool odd)
 {
     (void)precision;
@@ -147,7 +148,7 @@ static void test_checkers(void **state)
     run_cases(CASES, 48000, checker_case);
 }
 
-/// Factors of outputs, and which sums they are in: what is infinite or no number meets some that are 0.
+/// Factors of outputs, and the sums that they go to. Infinities and NaN meet some factors of 0.
 static void random_sums(uint32_t outputs, uint32_t n, bool odd, glint_program_sums *out)
 {
     *out = (glint_program_sums) { .by = { NULL } };
@@ -160,13 +161,13 @@ static void random_sums(uint32_t outputs, uint32_t n, bool odd, glint_program_su
     }
 }
 
-/// Those of the set that is running; of lanes not wanted they may be anything.
+/// Runs the sums on the current instruction set. Lanes that are not wanted are cleared, as they may hold anything.
 static void run_sums(glint_program_args *args, glint_program_sums *sums, uint32_t count, uint32_t n)
 {
     for (uint32_t k = 0; k < 3 * count; k++) {
         double *sum = sums[k / 3].sum[k % 3] = output("sum", KIND_DOUBLE, n);
         for (uint32_t i = 0; i < n; i++)
-            sum[i] = 0.25 * i; // whatever was added before
+            sum[i] = 0.25 * i; // an arbitrary earlier total
     }
     args->sums = sums;
     args->sums_count = count;
@@ -177,7 +178,7 @@ static void run_sums(glint_program_args *args, glint_program_sums *sums, uint32_
                 sums[k / 3].sum[k % 3][i] = 0;
 }
 
-/// A program whose outputs are one several times, as many as there may be, and no others are stored.
+/// A program with as many outputs as allowed, several of them identical. Only sums are stored.
 static void random_gradient(int precision, bool odd)
 {
     (void)precision;
@@ -202,7 +203,7 @@ static void random_gradient(int precision, bool odd)
     glint_program_release(program);
 }
 
-/// A program whose outputs are added where they are finite.
+/// A program whose outputs are added only where they are finite.
 static void random_slopes(int precision, bool odd)
 {
     (void)precision;
@@ -245,7 +246,7 @@ static void test_gradients(void **state)
     run_cases(CASES / 10, 48000, random_slopes);
 }
 
-/// Stored as they are, as reflectances and as totals of these, in groups that lie anywhere.
+/// Outputs stored as values, as reflectances and as totals of these, in groups at any position.
 static void random_program(int precision, bool odd)
 {
     (void)precision;
@@ -273,7 +274,8 @@ static void random_program(int precision, bool odd)
             compare_outputs("program");
             continue;
         }
-        make_outputs(&args, program->code.output_count, places * GLINT_GROUP, groups, plain_output); // compared with these
+        // reference for the comparison
+        make_outputs(&args, program->code.output_count, places * GLINT_GROUP, groups, plain_output);
         args.code = &plain->code;
         args.rows = plain_rows;
         running->program(&args);
@@ -290,7 +292,8 @@ static void test_random_programs(void **state)
     run_cases(CASES, 42000, random_program);
 }
 
-/// Code with a few bytes of another program: the check accepts code that can run, and accepted code is run.
+/// Code in which a few bytes come from another program: the check must accept only code that can run, and accepted
+/// code is run.
 static void damaged_program(int precision, bool odd)
 {
     (void)precision;
@@ -349,13 +352,14 @@ static glint_camera_args any_camera(bool odd)
     return camera;
 }
 
-/// Ways of every size, from points or along directions or back along a camera's rays, in rows of their own or in those that they are read from.
+/// Vectors of any length, between points, along directions or back along a camera's rays. Results are in separate
+/// rows or overwrite the input.
 static void unit_case(int precision, bool odd)
 {
     (void)precision;
     const uint32_t groups = 1 + below(GLINT_PROGRAM_GROUPS), n = groups * GLINT_GROUP;
     const bool one_place = one_in(2), from = one_in(2), in_place = one_in(2), back = one_in(3);
-    const bool hard_length = one_in(4); // whose last bits are ones: where a reciprocal is hardest to round
+    const bool hard_length = one_in(4); // the last bits are ones, where a reciprocal is hardest to round
     const glint_camera_args camera = any_camera(odd);
     uint32_t *places = input(KIND_U32, groups);
     for (uint32_t g = 0; g < groups; g++)
@@ -436,7 +440,7 @@ static void test_choose(void **state)
     run_cases(200, 47000, choose_case);
 }
 
-/// A picture of odd sides, of any texels.
+/// A texture with odd sides and random texels.
 static void load_texture(glint_wrap wrap, glint_filter filter)
 {
     char path[64];

@@ -1,5 +1,5 @@
-/// Directions for indirect light: every instruction set against the scalar reference, that against closed forms; and the
-/// numbers they are made from.
+/// Directions for indirect light: every instruction set against the scalar reference, the reference against closed
+/// forms, and the low-discrepancy sequence.
 #include "engine/base/sequence.h"
 #include "tests/engine/cases/stage_rays.h"
 
@@ -38,7 +38,7 @@ static void scatter_case(int precision, bool odd)
         for (int k = 0; k < 3; k++)
             args.direction[k] = output("direction", real_kind(precision), n);
         geometry(precision)->scatter(&args);
-        for (uint32_t i = 0; i < n; i++) // elsewhere anything goes
+        for (uint32_t i = 0; i < n; i++) // other lanes may hold anything
             for (int k = 0; k < 3 && args.wanted[i / GLINT_GROUP] && !lane_of(args.wanted, i); k++)
                 put(args.direction[k], precision, i, 0);
         compare_outputs("scatter");
@@ -51,7 +51,7 @@ static void test_scatter(void **state)
     run_cases(CASES, 17000, scatter_case);
 }
 
-/// Sums that hold something: added to where rays missed, left alone elsewhere.
+/// Adds the background to nonzero sums where rays missed, and leaves the others unchanged.
 static void sky_case(int precision, bool odd)
 {
     (void)precision;
@@ -87,7 +87,7 @@ static void test_sky(void **state)
     run_cases(CASES, 20000, sky_case);
 }
 
-/// One direction around `n`, by point k of the sequence of a seed.
+/// One direction around `n`, from point k of a seed's sequence.
 static void direction_of(const double n[3], uint32_t k, uint64_t seed, double out[3])
 {
     static ALIGNED double normal[3][GLINT_GROUP], direction[3][GLINT_GROUP];
@@ -116,7 +116,7 @@ static void direction_of(const double n[3], uint32_t k, uint64_t seed, double ou
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// The cosine with the normal is sqrt(1 - u); v turns around it by 2 pi.
+/// The cosine with the normal is sqrt(1 - u). v is the azimuth in turns.
 static void test_closed_forms(void **state)
 {
     (void)state;
@@ -139,7 +139,7 @@ static void test_closed_forms(void **state)
                 assert_true(fabs(sqrt(dot(d[j], d[j])) - 1) < 2e-9);
                 assert_true(fabs(dot(d[j], n) - sqrt(1 - square[j][0])) < 1e-14);
             }
-            const double cosine = (dot(d[0], d[1]) - up) / across; // of the angle between both, seen along n
+            const double cosine = (dot(d[0], d[1]) - up) / across; // of the azimuth between both directions
             assert_true(across < 1e-3 || fabs(cosine - cos(turn)) < 1e-8 / across);
         }
     }
@@ -161,11 +161,12 @@ static void test_means(void **state)
         square += dot(d, n) * dot(d, n) / COUNT;
     }
     for (int c = 0; c < 3; c++)
-        assert_true(fabs(mean[c] - 2.0 / 3 * n[c]) < 2e-4); // the mean of cos over cos / pi
+        assert_true(fabs(mean[c] - 2.0 / 3 * n[c]) < 2e-4); // the mean of cos under the density cos / pi
     assert_true(fabs(square - 0.5) < 2e-4);
 }
 
-/// Every 2^m points from a multiple of 2^m on have one point in each of the 2^m boxes of any shape, for any seed.
+/// For any seed, every 2^m points from a multiple of 2^m on have one point in each of the 2^m boxes, for every box
+/// shape.
 static void test_evenness(void **state)
 {
     (void)state;
@@ -189,7 +190,8 @@ static void test_evenness(void **state)
     }
 }
 
-/// Sequences of different seeds are as independent as random numbers: correlations of first points over many seeds.
+/// Sequences of different seeds are as independent as random numbers: tests correlations of first points over many
+/// seeds.
 static void test_independence(void **state)
 {
     (void)state;

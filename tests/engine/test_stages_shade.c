@@ -1,4 +1,4 @@
-/// shade and resolve on every instruction set against the scalar reference, and how accurate exp2 is.
+/// shade and resolve on every instruction set against the scalar reference, and the accuracy of exp2.
 #include "tests/engine/cases/stage_case.h"
 
 #define ALIGNED _Alignas(64)
@@ -14,7 +14,7 @@ static void random_color(double color[3])
         color[c] = grey >= 0 ? grey : one_in(6) ? 0 : one_in(10) ? power_of_ten(-40, 40) : between(0, 2);
 }
 
-/// The results of light and occlude: numbers only in the groups that were lit, before shadows.
+/// The results of light and occlude: values only in groups that were lit, before shadows.
 static void make_shade_light(glint_shade_light *light, const uint16_t *hits, uint32_t groups)
 {
     uint32_t n = groups * GLINT_GROUP;
@@ -42,7 +42,7 @@ static void make_shade_light(glint_shade_light *light, const uint16_t *hits, uin
     light->sine2 = sine2;
     light->schlick = schlick;
     light->summed = false;
-    light->highlight = attenuation; // as good as any
+    light->highlight = attenuation; // arbitrary values
 }
 
 static void make_materials(glint_shade_material *material, uint32_t count)
@@ -60,7 +60,7 @@ static void make_materials(glint_shade_material *material, uint32_t count)
     }
 }
 
-/// Planes for half of the cases: some materials have some of their numbers there, or all that lights make of them.
+/// Makes planes in half of the cases: materials take some values from planes, or all light from a shader's planes.
 static const glint_shade_planes *make_planes(glint_shade_material *material, uint32_t count, uint32_t n,
                                              glint_shade_planes *planes)
 {
@@ -86,7 +86,7 @@ static const glint_shade_planes *make_planes(glint_shade_material *material, uin
         planes->ambient[c] = ambient;
         planes->specular[c] = specular;
         planes->ambient_light[c] = level && c > 0 ? planes->ambient_light[0] : between(0, 2);
-        planes->shaded[0][c] = shaded ? specular : NULL; // as good as any
+        planes->shaded[0][c] = shaded ? specular : NULL; // arbitrary values
         planes->shaded[1][c] = shaded ? ambient : NULL;
     }
     for (uint32_t i = 0; i < n; i++) {
@@ -98,7 +98,7 @@ static const glint_shade_planes *make_planes(glint_shade_material *material, uin
     return planes;
 }
 
-/// The shade outputs of the set that is running: sums that start as `before` says, or the film and the beauty.
+/// Makes the shade outputs of the running instruction set: sums that start at `before`, or the film and the beauty.
 static void make_shade_outputs(glint_shade_args *args, const double *before, uint32_t passes)
 {
     uint32_t n = args->group_count * GLINT_GROUP;
@@ -115,7 +115,7 @@ static void make_shade_outputs(glint_shade_args *args, const double *before, uin
         args->beauty[c] = before ? NULL : output("beauty", KIND_FLOAT, n);
 }
 
-/// Lights of a sample; `sums`: some are sums.
+/// The lights of a sample. sums: some arrive already summed.
 static void make_shade_lights(glint_shade_args *args, glint_shade_light *lights, uint32_t count, bool sums)
 {
     args->lights = lights;
@@ -124,7 +124,7 @@ static void make_shade_lights(glint_shade_args *args, glint_shade_light *lights,
         make_shade_light(&lights[k], args->hits, args->group_count);
         lights[k].summed = sums && one_in(2);
     }
-    for (uint32_t k = 0; k < count; k++) { // samples of one light have its colours
+    for (uint32_t k = 0; k < count; k++) { // samples of one light share its colours
         lights[k].joined = k > 0 && !lights[k - 1].summed && !lights[k].summed && one_in(2);
         if (!lights[k].joined)
             continue;
@@ -133,7 +133,7 @@ static void make_shade_lights(glint_shade_args *args, glint_shade_light *lights,
     }
 }
 
-/// The materials of a sample: several, or one in most groups, which may be known.
+/// The materials of a sample: several, or one in most groups, which may be known in advance.
 static void make_shade_hits(glint_shade_args *args, uint32_t material_count)
 {
     static const uint32_t only = 0;
@@ -241,7 +241,7 @@ static void resolve_case(int precision, bool odd)
     const uint32_t passes = below(1u << GLINT_TERM_COUNT), missing = below(1u << GLINT_TERM_COUNT) >> GLINT_TERM_LOCAL;
     glint_resolve_args args = { .group_count = groups, .samples = 1 + below(1000) };
     for (int term = 0; term < GLINT_TERM_COUNT; term++) {
-        if (missing << GLINT_TERM_LOCAL >> term & 1) // a frame has any of the terms that shade does not make
+        if (missing << GLINT_TERM_LOCAL >> term & 1) // a frame may lack terms that shade does not compute
             continue;
         for (int c = 0; c < 3; c++) {
             args.sum[term][c] = input(KIND_DOUBLE, n);
@@ -269,7 +269,7 @@ static void test_resolve(void **state)
 
 // ---- elementary functions ----------------------------------------------------------------------------------------
 
-/// How far `got` is from `want`, in units of the last place of `want` as a float.
+/// The error of `got` in ulps of `want` as a float.
 static double ulps(float got, long double want)
 {
     if (want == 0)
@@ -277,8 +277,8 @@ static double ulps(float got, long double want)
     return fabs((double)(((long double)got - want) / ldexpl(1, ilogbl(want) - 23)));
 }
 
-/// Worst error in units of the last place of a float result, as a sum of possible errors: the last sum 0.5, the product
-/// before it 0.25, its factor 0.25, the terms before that 0.1, and the polynomial's 2e-8 at most 0.34.
+/// Worst error in float ulps, as a sum of possible errors: the last sum 0.5, the product before it 0.25, its factor
+/// 0.25, the terms before that 0.1, and the polynomial's 2e-8 at most 0.34.
 #define MAX_ULP_EXP2 1.5
 
 /// exp2 through shade: white light on a white material of shininess 1, log2_specular = y.

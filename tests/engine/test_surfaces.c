@@ -1,5 +1,6 @@
-/// Meshes, solids, transforms and groups: the same pictures on every instruction set, no ray between neighbours, no light by an edge and no shadow on a
-/// flat mesh by itself, distances and normals against 113-bit arithmetic, .obj files and their faults.
+/// Meshes, solids, transforms and groups: identical pictures on every instruction set, no cracks between neighbours,
+/// no light leaks at edges, no self-shadowing of flat meshes, distances and normals against 113-bit arithmetic, and
+/// .obj files with their errors.
 #include "engine/glint.h"
 
 #include <float.h>
@@ -44,7 +45,7 @@ static void random_turn(double m[3][3])
         m[2][c] = m[0][(c + 1) % 3] * m[1][(c + 2) % 3] - m[0][(c + 2) % 3] * m[1][(c + 1) % 3];
 }
 
-// ---- Things to look at ----
+// ---- Test scenes ----------
 
 enum { MOST = 4096 };
 
@@ -79,7 +80,7 @@ static void add_face(soup *s, uint32_t size, const uint32_t *corners)
     s->sizes[s->face_count++] = size;
 }
 
-/// Triangles anywhere, some of them slivers, some sharing corners.
+/// Random triangles, some of them slivers, some sharing corners.
 static void make_soup(soup *s, size_t triangles)
 {
     memset(s, 0, sizeof *s);
@@ -99,7 +100,7 @@ static void make_soup(soup *s, size_t triangles)
     }
 }
 
-/// A closed box of n x n quadrangles a side; `roundness` pushes its vertices towards a sphere.
+/// A closed box of n x n quads a side. `roundness` pushes its vertices towards a sphere.
 static void make_box(soup *s, uint32_t n, double half, double roundness, double m[3][3])
 {
     memset(s, 0, sizeof *s);
@@ -132,9 +133,9 @@ static void make_box(soup *s, uint32_t n, double half, double roundness, double 
                 }
 }
 
-#define PARALLEL 1234 ///< as at[2]
+#define PARALLEL 1234 ///< as at[2]: selects an orthographic camera
 
-static bool soft_light; ///< of the next scene
+static bool soft_light; ///< for the next scene
 
 static glint_scene *new_scene(const double eye[3], const double at[3], double fov, const double light[3], bool shadows)
 {
@@ -145,7 +146,7 @@ static glint_scene *new_scene(const double eye[3], const double at[3], double fo
     memcpy(c.eye, eye, sizeof c.eye);
     memcpy(c.at, at, sizeof c.at);
     c.fov_y_rad = fov;
-    if (at[2] == PARALLEL) { // down the z axis; of 129 pixels across every eighth ray is at a whole number
+    if (at[2] == PARALLEL) { // along the z axis; with 129 pixels across, every eighth ray is at an integer
         c.projection = GLINT_ORTHOGRAPHIC;
         c.has_direction = true;
         c.direction[2] = -1;
@@ -209,9 +210,9 @@ static int differing(const glint_image *a, const glint_image *b)
     return count;
 }
 
-// ---- The same everywhere ----
+// ---- Identical on every instruction set ----
 
-/// Any map that can be undone: turned, stretched, mirrored, moved.
+/// A random invertible map: rotation, stretch, reflection and translation.
 static glint_transform random_map(double move)
 {
     double a[3][3], b[3][3];
@@ -229,7 +230,7 @@ static glint_transform random_map(double move)
     return out;
 }
 
-/// capped: closed for certain.
+/// capped: certainly closed.
 static glint_shape *random_solid(int kind, bool capped)
 {
     glint_shape *shape;
@@ -254,7 +255,7 @@ static glint_shape *random_solid(int kind, bool capped)
     return shape;
 }
 
-/// Solids and spheres, some of them twice, under maps.
+/// Solids and spheres under random maps, some of them twice.
 static glint_shape *random_group(uint32_t count)
 {
     static const int kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_DISK, GLINT_SHAPE_CYLINDER,
@@ -316,9 +317,9 @@ static void same_on_every_instruction_set(void **unused)
         }
 }
 
-// ---- No ray between neighbours ----
+// ---- No cracks between neighbours ----
 
-/// From within a closed mesh every ray hits: towards its corners, its edges, points next to them, and anywhere.
+/// From inside a closed mesh every ray hits: towards its corners, its edges, points next to them, and anywhere else.
 static void no_cracks(void **unused)
 {
     static soup s;
@@ -357,7 +358,7 @@ static void no_cracks(void **unused)
     }
 }
 
-/// A camera in a closed box, corners and edges on its pixels' rays: no light from outside gets in.
+/// A camera in a closed box, with corners and edges on its pixels' rays: no light leaks in.
 static void no_light_by_an_edge(void **unused)
 {
     static soup s;
@@ -392,7 +393,8 @@ static void no_light_by_an_edge(void **unused)
     }
 }
 
-/// A tessellated floor, whichever way it lies, under a light however low: with shadows and without, the same picture.
+/// A tessellated floor at any orientation, under a light at any height: the picture is identical with and without
+/// shadows.
 static void no_acne(void **unused)
 {
     static soup s;
@@ -448,7 +450,7 @@ static void quad_cross(const quad a[3], const quad b[3], quad out[3])
         out[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
 }
 
-/// t, the weights of corners 1 and 2, and the normal (not unit).
+/// Computes t, the weights of corners 1 and 2, and the normal (not unit).
 static void triangle_truth(const soup *s, const double o[3], const double d[3], quad *t, quad w[2], quad n[3])
 {
     quad e[3], f[3], g[3], q[3], p[3];
@@ -462,7 +464,7 @@ static void triangle_truth(const soup *s, const double o[3], const double d[3], 
     const quad down = quad_dot(n, p);
     *t = -quad_dot(n, e) / down;
     for (int c = 0; c < 3; c++)
-        e[c] += *t * p[c]; // the point, from corner 0
+        e[c] += *t * p[c]; // the point, relative to corner 0
     quad_cross(e, g, q);
     w[0] = quad_dot(q, n) / quad_dot(n, n);
     quad_cross(f, e, q);
@@ -498,7 +500,7 @@ static void triangles_against_oracle(void **unused)
         for (int c = 0; c < 3; c++)
             along += (double)n[c] * d[c];
         const double sine = fabs(along) / (length * sqrt(dot(d, d)));
-        // what 53 bits of the corners as seen from the origin leave, over the angle at which the ray comes in
+        // Error from rounding the corners as seen from the origin to 53 bits, divided by the incidence angle.
         double size = 0, far = 0;
         for (int i = 0; i < 9; i++) {
             size = fmax(size, fabs(s.vertices[i / 3][i % 3] - s.vertices[0][i % 3]));
@@ -514,7 +516,7 @@ static void triangles_against_oracle(void **unused)
         if (!hit || least < -tolerance)
             continue;
         hits++;
-        // t belongs to a point of the triangle, with the error of its weights
+        // t belongs to a point of the triangle, within the error of its weights
         assert_true(fabs(got.t - (double)t) <= (8 * DBL_EPSILON + tolerance * size / far) * (double)t);
         for (int c = 0; c < 3; c++)
             assert_true(fabs(got.normal[c] - (double)(n[c] / length)) <= 16 * DBL_EPSILON / thin);
@@ -522,7 +524,8 @@ static void triangles_against_oracle(void **unused)
     assert_true(hits > 5000);
 }
 
-/// How far outside of its shape a place is, in the shape's own lengths, and which bound says so. m: the unit shape's map.
+/// How far a point is outside of its shape, in units of the unit shape, and which bound is exceeded. m: the unit
+/// shape's map.
 static double outside(const glint_shape_desc *d, quad m[3][4], const quad p[3], int *bound)
 {
     const glint_shape_kind kind = d->kind;
@@ -550,7 +553,7 @@ static double outside(const glint_shape_desc *d, quad m[3][4], const quad p[3], 
     return by[*bound];
 }
 
-/// The map that the description says.
+/// The map from the unit shape, as the description defines it.
 static void unit_map(const glint_shape_desc *d, quad m[3][4])
 {
     quad unit[3][4] = { { 0 } };
@@ -590,7 +593,8 @@ static void unit_map(const glint_shape_desc *d, quad m[3][4])
         }
 }
 
-/// Solids under random maps: the hit is on the surface, nothing is before it, and the normal is the surface's slope.
+/// Solids under random maps: the hit is on the surface, nothing is in front of it, and the normal is perpendicular to
+/// the surface.
 static void solids_against_oracle(void **unused)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER,
@@ -631,7 +635,7 @@ static void solids_against_oracle(void **unused)
                 p[c] = o[c] + (quad)got.t * dir[c];
             if (fabs(outside(&d, m, p, &bound)) > 1e-12)
                 fail_msg("case %d: %g off the surface", n, outside(&d, m, p, &bound));
-            // a step along the normal leads out, and the steps across it lead nowhere
+            // A step along the normal leads outside; steps across it stay on the surface to first order.
             for (int axis = 0; axis < 3; axis++) {
                 double slope[3];
                 for (int c = 0; c < 3; c++) {
@@ -667,7 +671,7 @@ static void groups_hold_together(void **unused)
     assert_int_equal(glint_group_add(a, a, &error), GLINT_ERR_INVALID);
     assert_int_equal(glint_group_add(a, b, &error), GLINT_ERR_INVALID);
     assert_string_equal(error.message, "group: already in the group");
-    // two ways up at every level: as many paths as no scene can show, and still an answer at once
+    // Two paths up at every level: exponentially many paths, and still an immediate answer.
     assert_int_equal(glint_shape_create(&d, &chain, NULL), GLINT_OK);
     for (int i = 0; i < 70; i++) {
         glint_shape *outer, *left, *right;
@@ -677,7 +681,7 @@ static void groups_hold_together(void **unused)
         const bool fits =
             glint_group_add(left, chain, NULL) == GLINT_OK && glint_group_add(right, chain, NULL) == GLINT_OK &&
             glint_group_add(outer, left, NULL) == GLINT_OK && glint_group_add(outer, right, NULL) == GLINT_OK;
-        assert_int_equal(fits, 2 * i + 2 <= GLINT_GROUP_DEPTH); // the first of them is that deep
+        assert_int_equal(fits, 2 * i + 2 <= GLINT_GROUP_DEPTH); // only chains within the depth limit fit
         glint_shape_release(left);
         glint_shape_release(right);
         glint_shape_release(chain);
@@ -686,7 +690,7 @@ static void groups_hold_together(void **unused)
             break;
     }
     glint_shape_release(chain);
-    // a child edited later shows, under both of its parents
+    // A later edit of a child appears under both of its parents.
     d.kind = GLINT_SHAPE_SPHERE;
     assert_int_equal(glint_shape_create(&d, &ball, NULL), GLINT_OK);
     assert_int_equal(glint_group_add(b, ball, NULL), GLINT_OK);
@@ -706,7 +710,7 @@ static void groups_hold_together(void **unused)
         d.radius = 2;
         assert_int_equal(glint_shape_set(ball, &d, NULL), GLINT_OK);
     }
-    // nothing is flattened
+    // No flattening transform is accepted.
     d.transform = glint_transform_scale((double[3]) { 1, 0, 1 });
     assert_int_equal(glint_shape_set(ball, &d, &error), GLINT_ERR_INVALID);
     assert_string_equal(error.message, "transform: a map that can be undone expected, got one that flattens space");

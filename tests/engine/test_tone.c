@@ -1,5 +1,5 @@
-/// The tone stage on every instruction set against the scalar reference: whatever the table, whatever the lanes, and
-/// with its estimate for every float there is a code for.
+/// The tone stage on every instruction set against the scalar reference: for any table and any lanes, and, with its
+/// estimate, for every float that has a pixel value.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -46,7 +46,7 @@ static bool runs_here(const glint_stages *stages) { return stages != &glint_stag
 
 // ---- Cases ----
 
-/// Codes with a threshold anywhere in a bucket, at its ends, or nowhere.
+/// Pixel values with a threshold anywhere in a bucket, at its ends, or nowhere.
 static void make_tone_table(uint32_t table[ENTRIES])
 {
     uint32_t code = 0;
@@ -84,7 +84,7 @@ typedef struct tone_case {
     glint_tone_args args;
 } tone_case;
 
-/// The output of a call: the picture of the tile with space between and around its rows, and the counts.
+/// The output of a call: the tile's pixels, with space around and between the rows, and the counts.
 typedef struct tone_result {
     uint8_t codes[(GLINT_TILE_HEIGHT + 2) * STRIDE_MOST];
     uint64_t clipped, nonfinite;
@@ -117,7 +117,7 @@ static void make_case(tone_case *c)
 
 static void run_case(const tone_case *c, const glint_stages *stages, tone_result *result)
 {
-    memset(result, 0xa5, sizeof *result); // what no active lane covers stays so
+    memset(result, 0xa5, sizeof *result); // bytes that no active lane covers must stay unchanged
     result->clipped = 3;
     result->nonfinite = 4;
     glint_tone_args args = c->args;
@@ -145,7 +145,7 @@ static void test_tone_cases(void **state)
     }
 }
 
-/// The reference itself: the lanes that are active, at their place, with the codes of the definition.
+/// The reference itself: it writes the active lanes at their positions, with the pixel values of the definition.
 static void test_tone_reference(void **state)
 {
     (void)state;
@@ -161,7 +161,8 @@ static void test_tone_reference(void **state)
         c.args.gain = 1;
         run_case(&c, &glint_stages_ref, &got);
         for (size_t i = 0; i < sizeof got.codes; i++) {
-            size_t at = i - STRIDE_MOST, y = at / c.args.stride, x = at % c.args.stride / 3; // of no lane: too large
+            // wraps to a large value before the first row
+            size_t at = i - STRIDE_MOST, y = at / c.args.stride, x = at % c.args.stride / 3;
             size_t group = y / 4 * c.args.groups_across + x / 4, lane = y % 4 * 4 + x % 4;
             bool lit = x < 4 * c.args.groups_across && group < c.args.group_count && c.active[group] >> lane & 1;
             double want = lit ? glint_tone_value(&table->desc,
@@ -174,7 +175,7 @@ static void test_tone_reference(void **state)
 
 // ---- Every float ----
 
-/// The codes of TONE_BYTES floats from `bits` on, `step` bits apart, in that order.
+/// Pixel values of TONE_BYTES floats, in order, starting at the bits `bits` with a step of `step`.
 static void tone_floats(const glint_stages *stages, const glint_tone_table *table, uint32_t bits, uint32_t step,
                         uint8_t codes[TONE_BYTES])
 {
@@ -200,13 +201,14 @@ static void tone_floats(const glint_stages *stages, const glint_tone_table *tabl
     stages->tone(&args);
 }
 
-/// The estimate may not be wrong anywhere: every float that has a code for sRGB, one in seven elsewhere.
+/// The estimate must never be wrong: tests every float that has an sRGB pixel value, and one in seven for other
+/// tables.
 static void test_tone_every_float(void **state)
 {
     (void)state;
     static uint8_t want[TONE_BYTES], got[TONE_BYTES];
     for (int i = 0; i < 5; i++) {
-        const uint32_t step = i == 0 ? 1 : i == 4 ? 40961 : 7; // the last: down to the smallest of all
+        const uint32_t step = i == 0 ? 1 : i == 4 ? 40961 : 7; // the last one goes down to the smallest float
         const uint32_t first = i == 4 ? 0 : GLINT_TONE_FIRST << 16;
         for (uint64_t bits = first; bits <= 0x3f800001u; bits += (uint64_t)step * TONE_BYTES) {
             tone_floats(&glint_stages_ref, tone_of(i), (uint32_t)bits, step, want);
