@@ -56,7 +56,7 @@ static glint_shape *new_whole(glint_shape_kind kind)
     return made(&d);
 }
 
-// ---- Random CSG trees ----------
+// ---- Random CSG trees ----
 
 enum { MOST_NODES = 128 };
 
@@ -804,7 +804,7 @@ static void boxes_of_triangles(void **unused)
     assert_true(hits * (int)case_step() > 50000);
 }
 
-// ---- Coincident faces -------
+// ---- Coincident faces ----
 
 static glint_shape *block(double x0, double x1, double y0, double y1, double z0, double z1)
 {

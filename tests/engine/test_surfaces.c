@@ -45,7 +45,7 @@ static void random_turn(double m[3][3])
         m[2][c] = m[0][(c + 1) % 3] * m[1][(c + 2) % 3] - m[0][(c + 2) % 3] * m[1][(c + 1) % 3];
 }
 
-// ---- Test scenes ----------
+// ---- Test scenes ----
 
 enum { MOST = 4096 };
 

@@ -1,11 +1,11 @@
-/// The named cases of lights that have a surface: no radius, a point within them, so small that float loses them, what they
-/// give to a point in closed form and how fast it is approached, how noisy a ball is, and where their shadows begin and end.
+/// Test cases for area lights: radius 0, the shaded point inside the light, lights too small for float, irradiance in
+/// closed form and the rate of convergence, the noise of a ball light, and the extent of shadows.
 #include "tests/hard/oracle/oracle_light.h"
 #include "tests/hard/oracle/point.h"
 
 #include <string.h>
 
-/// A light of radius r at height h over the floor's point, shining down on it.
+/// A light of radius r at height h above the floor's point, facing it.
 static glint_light_desc above(glint_light_kind kind, double h, double r)
 {
     glint_light_desc light = glint_light_desc_default(kind);
@@ -23,7 +23,7 @@ static glint_light_desc radiant(glint_light_kind kind, double h, double r, doubl
     return light;
 }
 
-/// L8: the same bits as a point light, and no more rays.
+/// L8: a light of radius 0 gives the same bits as a point light and costs no more rays.
 static void no_radius(void)
 {
     hard_test("L8", "area light of radius 0");
@@ -58,8 +58,8 @@ static void no_radius(void)
              rays[0][0] >= rays[1][0] && rays[0][1] >= rays[1][1]);
 }
 
-/// pi sin^2 of the half angle, from the cosine as books have it: sin^2 = 1 - cos^2, cos = sqrt(1 - r^2/d^2); and the weight
-/// 2 pi (1 - cos) of sampling the cone, where `weight`.
+/// The textbook's pi sin^2 of the half angle, from sin^2 = 1 - cos^2, cos = sqrt(1 - r^2/d^2); or, if `weight`, the
+/// weight 2 pi (1 - cos) of sampling the cone.
 #define NAIVE(name, real, root) \
     static double name(bool weight, double r, double d) \
     { \
@@ -69,7 +69,7 @@ static void no_radius(void)
 NAIVE(naive_float, float, sqrtf)
 NAIVE(naive_double, double, sqrt)
 
-/// The light on the floor, in both precisions, against a closed form, with a relative error of `share`.
+/// Compares the light on the floor with a closed form, in both precisions, with a relative error of `share`.
 static void compare(const char *id, const char *what, const glint_light_desc *light, double width, double share,
                     hard_values *shown)
 {
@@ -83,7 +83,7 @@ static void compare(const char *id, const char *what, const glint_light_desc *li
     hard_row(id, what, shown, right);
 }
 
-/// L9: the sky is all light: pi, by 4096 samples.
+/// L9: the point is inside the light, so the whole sky has radiance 1: pi, with 4096 samples.
 static void within(void)
 {
     static const double places[][2] = { { 0.5, 2 }, { 0, 2 }, { 0.9, 1 }, { 1e-9, 1 }, { 3e5, 1e6 }, { 1e-12, 1e-11 } };
@@ -100,8 +100,8 @@ static void within(void)
     }
 }
 
-/// L10: light that float's 1 - cos is 0 of. The textbook's column: 2 pi (1 - cos), the weight of its samples, which is nearly
-/// pi r^2/d^2 for small lights.
+/// L10: a light so small that 1 - cos is 0 in float. The textbook's column is 2 pi (1 - cos), the weight of its
+/// samples, which is nearly pi r^2/d^2 for small lights.
 static void tiny(void)
 {
     hard_test("L10", "sphere light of a small angle");
@@ -137,7 +137,7 @@ static void closed_form(glint_light_kind kind, const char *name, double h, doubl
             if (n == 16)
                 first[p] = off[p];
             const double rounding =
-                1e-6 * want; // all that there is of a ball whose every part is as bright as its share
+                1e-6 * want; // the only error of a ball, whose samples all contribute equally
             right &= hard_check(off[p] <= fmax(2 * first[p] / sqrt(n / 16.0), rounding),
                                 "%s: error of %d samples %g, of 16 %g", name, n, off[p], first[p]) &
                      hard_check(n < 1024 || off[p] <= fmax(first[p] / 8, rounding),
@@ -156,7 +156,7 @@ static void closed_forms(void)
     closed_form(GLINT_LIGHT_DISK, "disk", 2, 1, 0.6283185307);
     closed_form(GLINT_LIGHT_SPHERE, "ball", 2, 1, 0.7853981634);
     const bool table = hard_table;
-    hard_table = false; // too many for lines
+    hard_table = false; // too many for the table
     for (int i = 0; i < 6; i++) {
         const double h = log_uniform(1e-6, 1e6), r = h * uniform(0.1, 0.9);
         closed_form(i % 2 ? GLINT_LIGHT_DISK : GLINT_LIGHT_SPHERE, "random", h, r, 0);
@@ -166,8 +166,9 @@ static void closed_forms(void)
 
 // ---- Noise ----
 
-/// The root mean square error, over the truth, of 16 samples of a ball's whole surface, half of which no point sees: the
-/// textbook's columns. The ball of radius 1 is `away`, `tilt` off the floor's normal.
+/// Relative RMS error of 16 samples of a ball's whole surface, half of which is invisible from the point: the
+/// textbook's columns. The ball has radius 1, at a distance `away` and an angle `tilt` (radians) from the floor's
+/// normal.
 static double surface_noise(double away, double tilt)
 {
     const double place[2] = { away * sin(tilt), away * cos(tilt) }, want = M_PI / (away * away) * cos(tilt);
@@ -188,8 +189,8 @@ static double surface_noise(double away, double tilt)
     return sqrt(square / 20000);
 }
 
-/// The noise of a pixel by 16 samples of a ball of radius 1, `away` radii off in a direction `degrees` off the normal; `most`
-/// of it is allowed, and its mean over the block of pixels is the closed form.
+/// Checks the noise of a pixel with 16 samples of a ball of radius 1, `away` radii away and `degrees` off the normal.
+/// The noise must be at most `most`, and the mean over the block of pixels must equal the closed form.
 static void check_noise(double away, double degrees, double most)
 {
     const double tilt = degrees * M_PI / 180, want = M_PI / (away * away) * cos(tilt);
@@ -199,7 +200,7 @@ static void check_noise(double away, double degrees, double most)
     bool right = true;
     char what[96];
     light.position[0] = away * sin(tilt);
-    light.radiance = 1e4; // so that no pixel of a far one rounds to 0
+    light.radiance = 1e4; // so that no pixel of a distant ball rounds to 0
     for (int p = 0; p < 2; p++) {
         double off;
         const double mean = point_lit(&light, NULL, 0, 1e-6, 1e4 * want, (glint_precision)p, &off, NULL) / (1e4 * want);
@@ -212,7 +213,7 @@ static void check_noise(double away, double degrees, double most)
     hard_row("cone", what, &shown, right);
 }
 
-/// For shapes below a ball's cone, all of which the floor sees.
+/// For balls entirely above the horizon, sampled by solid angle.
 static void noise(void)
 {
     hard_test("cone", "noise of a ball by radiance");
@@ -232,7 +233,7 @@ typedef struct shadow {
     double light, height, ball, between; ///< radius and height of the light; of the occluder
 } shadow;
 
-/// The share of the light that reaches the floor at x, by 1024 samples: 0 in the umbra, 1 beyond the penumbra.
+/// The share of the light that reaches the floor at x, with 1024 samples: 0 in the umbra, 1 outside the penumbra.
 static double share(const shadow *s, double x, glint_precision precision)
 {
     const hard_sphere ball = { { 0, s->between, 0 }, s->ball };
@@ -242,7 +243,7 @@ static double share(const shadow *s, double x, glint_precision precision)
     return point_lit(&light, &ball, x, 1e-9 * s->height, 0, precision, NULL, NULL) / open;
 }
 
-/// Where the share begins to be above `level` (0), or ceases to be below it (1).
+/// The position where the share first exceeds `level` (0), or reaches it (1).
 static double edge(const shadow *s, double level, glint_precision precision)
 {
     double low = 0, high = 3 * oracle_shadow(false, s->light, s->height, s->ball, s->between);
@@ -253,8 +254,8 @@ static double edge(const shadow *s, double level, glint_precision precision)
     return level == 0 ? high : low;
 }
 
-/// L12. Not one sample gets through in the umbra, none is lost beyond the penumbra; and with so many samples the edges that
-/// show are near the true ones.
+/// L12. No sample gets through in the umbra and none is lost outside the penumbra. With so many samples the visible
+/// edges are close to the true ones.
 static void check_shadow(const char *what, const shadow *s, double stated_umbra, double stated_penumbra)
 {
     const double umbra = oracle_shadow(true, s->light, s->height, s->ball, s->between),

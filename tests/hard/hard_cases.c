@@ -1,6 +1,6 @@
-/// The named cases of one ray and one object, and their neighbourhood: each case again with axes swapped and turned,
-/// scaled, moved and with other lengths of the direction. --table prints one line a case: what is true, what the engine
-/// finds in double and in float, and the result of the textbook's formula.
+/// Test cases with one ray and one object, and variations: each case again with axes swapped and mirrored, rotated,
+/// scaled, moved and with other lengths of the direction. --table prints one line per case: the truth, the engine's
+/// results in double and float, and the result of the textbook's formula.
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/judge.h"
 #include "tests/hard/oracle/naive.h"
@@ -26,7 +26,7 @@ static answer ask(const hard_ray *ray, const hard_sphere *sphere)
     return out;
 }
 
-/// The same sphere as the only one of a glint.spheres has to give the same bits.
+/// The same sphere as the only one of a glint.spheres must give the same bits.
 static bool requested_as_spheres(const hard_ray *ray, const hard_sphere *sphere, const answer *one)
 {
     glint_error error;
@@ -50,7 +50,8 @@ static judgement judge_answer(const hard_ray *ray, const hard_sphere *sphere, co
     return judge_sphere(ray, sphere, &want, got->hit, &got->at);
 }
 
-/// What a frame of one pixel along the ray finds: the way in units of |d|, from the float32 depth pass. False: nothing.
+/// Renders one pixel along the ray. Returns whether it hits; *t: the distance in units of |d|, from the float32 depth
+/// pass.
 static bool framed(const hard_ray *ray, const hard_sphere *sphere, glint_precision precision, double *t)
 {
     float depth[3], id[3];
@@ -107,7 +108,7 @@ static void check_case(const ray_case *k)
         right = fabs(got.at.t - want.t) <= 1e-13 * want.t;
         for (int c = 0; c < 3; c++)
             right = right && fabs(got.at.normal[c] - want.n[c]) <= normal_allowed;
-    } else if (got.hit) { // tangent: the point must be where they touch
+    } else if (got.hit) { // tangent: the hit must be at the point of contact
         right = right && fabs(got.at.t / want.t - 1) < 1e-7;
     }
     hard_check(right, "truth %s t %.17g, engine %s t %.17g", want.hit ? "hit" : "miss", want.t,
@@ -115,7 +116,7 @@ static void check_case(const ray_case *k)
     hard_check(requested_as_spheres(&k->ray, &k->sphere, &got), "another answer from a shape of many spheres");
     if (hard_table)
         print_case(k, &got, &want, right);
-    // a frame's ray is rounded once more; its depth is float32, and infinite beyond
+    // A frame's ray is rounded once more. Its depth is float32, and infinite beyond the range.
     double t;
     const bool hit = framed(&k->ray, &k->sphere, GLINT_DOUBLE, &t);
     if (want.tangency > 64 * 0x1p-53 && want.surface > 0)
@@ -123,9 +124,9 @@ static void check_case(const ray_case *k)
                    hit ? t : 0, want.t);
 }
 
-// ---- Near them ----
+// ---- Variations ----
 
-/// Number 0 .. 47 of the ways to swap and mirror the axes.
+/// Permutes and mirrors the axes in one of 48 ways, 0 .. 47.
 static void turn_axes(double v[3], int way)
 {
     static const int order[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
@@ -152,7 +153,7 @@ static void check_variant(const hard_ray *ray, const hard_sphere *sphere, const 
                j.normal_share);
 }
 
-/// Swapped axes and powers of two leave every bit as it was.
+/// Swapped axes and powers of two must not change any bit.
 static void exact_variants(const ray_case *k)
 {
     const answer plain = ask(&k->ray, &k->sphere);
@@ -182,7 +183,7 @@ static void exact_variants(const ray_case *k)
         }
 }
 
-/// Everything else rounds the inputs; the oracle answers for what they have become.
+/// Other variations round the inputs; the oracle evaluates the rounded inputs.
 static void rounded_variants(const ray_case *k)
 {
     static const double scales[] = { 1, 1e-6, 1e6, 3, 1 / 3.0 }, offsets[] = { 0, 1, 1e3, 1e7 };
@@ -210,7 +211,8 @@ static void rounded_variants(const ray_case *k)
 
 // ---- Several objects ----
 
-/// S28, S38: the outer of two concentric spheres, the first of two equal ones, whichever was defined first.
+/// S28, S38: of two concentric spheres the outer one is hit, in any order of definition; of two equal spheres, the
+/// first one.
 static void check_pairs(void)
 {
     hard_test("S28, S38", "concentric and equal spheres");
@@ -233,7 +235,7 @@ static void check_pairs(void)
             }
 }
 
-/// S39: what no sphere and no ray may be.
+/// S39: invalid spheres and rays are refused.
 static void check_refused(void)
 {
     hard_test("S39", "refused by name");
@@ -254,7 +256,7 @@ static void check_refused(void)
             glint_hit got;
             double o[3] = { 0, 0, 5 }, d[3] = { 0, 0, 0 };
             o[c] = bad[i];
-            d[c] = i == 1 ? 0 : bad[i]; // -1 would be a direction
+            d[c] = i == 1 ? 0 : bad[i]; // a direction with -1 is valid
             if (i >= 2)
                 hard_check(glint_scene_cast(scene, o, (double[3]) { 0, 0, -1 }, &hit, &got, &error) ==
                                    GLINT_ERR_INVALID &&
@@ -275,7 +277,7 @@ static void check_refused(void)
     }
 }
 
-/// G1: rays in a plane, along it, and so near to it that the division would mean nothing.
+/// G1: rays in a plane, parallel to it, and so nearly parallel that the quotient has no meaning.
 static void check_planes(void)
 {
     hard_test("G1", "rays in and along planes");

@@ -1,10 +1,10 @@
-/// Combined solids where books leave specks: cutters that end in the face they cut, halves that meet, boxes of triangles whose edges
-/// and corners rays go through. Beside them what is out of a lens's focus, against the share of the lens that is open.
+/// CSG cases in which textbook methods leave specks: cutters that end in the face they cut, halves that share a face,
+/// and mesh boxes hit at edges and corners. Also defocus by a lens, against the unoccluded share of the lens.
 #include "tests/hard/oracle/drive.h"
 
 #include <string.h>
 
-#define RAYS_MOST 4000 ///< of a row: each is a frame
+#define RAYS_MOST 4000 ///< per row; each ray is a frame
 
 static glint_shape *made(const glint_shape_desc *d)
 {
@@ -33,7 +33,7 @@ static glint_shape *solid_block(const block *b)
     return made(&d);
 }
 
-/// Corner i of a block: bits of i are the axes.
+/// Corner i of a block: bit c of i selects the upper end of axis c.
 static void corner_of(const block *b, int i, double out[3])
 {
     for (int c = 0; c < 3; c++)
@@ -79,7 +79,7 @@ static void map_vector(const glint_transform *m, const double v[3], double w, do
         out[i] = ((m->m[i][0] * v[0] + m->m[i][1] * v[1]) + m->m[i][2] * v[2]) + m->m[i][3] * w;
 }
 
-/// A ray of a shape's own space in the world; its direction is unit there.
+/// Transforms a ray from a shape's own space to the world. Its direction is a unit vector in the shape's space.
 static hard_ray ray_in_world(const glint_transform *map, const double from[3], const double to[3])
 {
     hard_ray ray;
@@ -99,7 +99,7 @@ static double distance(const double a[3], const double b[3])
     return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
 }
 
-/// The distance to the ray's hit; infinite: no hit.
+/// Returns the distance to the ray's hit; infinity for a miss.
 static double depth_of(glint_shape *whole, const hard_ray *ray, glint_precision precision)
 {
     glint_error error;
@@ -113,14 +113,14 @@ static double depth_of(glint_shape *whole, const hard_ray *ray, glint_precision 
     return (double)depth[0];
 }
 
-// ---- Books: each part is a unit cube in a map of its own ----
+// ---- The textbook: each part is a unit cube under its own map ----
 
-/// Where a ray is inside the block; map: of both.
+/// Computes the span of a ray inside the block. map: from the shape to the world.
 #define BOOK(name, real) \
     static void name(const block *b, const glint_transform *map, const hard_ray *ray, double span[2]) \
     { \
         real low = -INFINITY, high = INFINITY; \
-        for (int k = 0; k < 3; k++) { /* a row of the inverse: the map is a turn */ \
+        for (int k = 0; k < 3; k++) { /* a row of the inverse: the map is a rotation */ \
             real o = 0, d = 0; \
             const real half = (real)((b->high[k] - b->low[k]) / 2), middle = (real)((b->high[k] + b->low[k]) / 2); \
             for (int c = 0; c < 3; c++) { \
@@ -146,7 +146,7 @@ static uint64_t rays_of_row(void)
     return rays > RAYS_MOST ? RAYS_MOST : rays;
 }
 
-/// Counts are of rays that see what is not there.
+/// Counts are numbers of rays that hit something that should not be there.
 static void report(const char *id, const char *what, uint64_t rays, const double counts[4])
 {
     char text[120];
@@ -211,9 +211,9 @@ static void halves(void)
     report("K2", "a seam between halves, from within", rays_of_row(), counts);
 }
 
-// ---- Boxes of triangles ----
+// ---- Mesh boxes ----
 
-/// Moeller and Trumbore, edges included: how many triangles a line meets ahead.
+/// Moeller-Trumbore, edges included: counts the triangles that a ray hits.
 #define COUNT(name, real) \
     static int name(const block *b, const double from[3], const double way[3]) \
     { \
@@ -246,7 +246,7 @@ static void halves(void)
 COUNT(count_double, double)
 COUNT(count_float, float)
 
-/// From outside through an edge, a corner or the diagonal of a face, to the middle.
+/// From outside through an edge, a corner or the diagonal of a face, towards the centre.
 static void edges_and_corners(void)
 {
     static const block body = { { -1, -1, -1 }, { 1, 1, 1 } };
@@ -277,7 +277,7 @@ static void edges_and_corners(void)
     report("K3", "through edges and corners of a box of triangles: missed; books: went in and not out", rays_of_row(), counts);
 }
 
-/// Boxes of triangles less a ball and a flush block, beside the boxes less these.
+/// Mesh boxes minus a ball and a flush block, against solid boxes minus the same.
 static void boxes_of_triangles(void)
 {
     static const block body = { { -1, -1, -1 }, { 1, 1, 1 } }, pit = { { -0.5, -0.3, -0.7 }, { 0.5, 1, 0.7 } };
@@ -313,8 +313,8 @@ static void boxes_of_triangles(void)
 
 // ---- A lens ----
 
-/// A pixel that looks past the edge of a black wall at half the way to the focus, by 4,096 samples: where the edge is at a share
-/// `edge` of the lens's view there; the rest of the lens sees a white world.
+/// Renders a pixel that looks past the edge of a black wall halfway to the focus, with 4,096 samples. The edge is at
+/// a share `edge` of the lens's cross-section there; the rest of the lens sees a white world.
 static double seen_past(double edge, glint_precision precision)
 {
     static const double white[3] = { 1, 1, 1 };
@@ -363,7 +363,8 @@ static void lens(void)
     hard_test("K5", "a lens");
     for (size_t i = 0; i < sizeof edges / sizeof *edges; i++) {
         const double s = fmin(fmax(edges[i], -1), 1);
-        const double want = (acos(s) - s * sqrt(1 - s * s)) / acos(-1), off = 0x1p-9; // 4096^-3/4, as of an edge in a square
+        // 4096^-3/4, as for an edge across a square
+        const double want = (acos(s) - s * sqrt(1 - s * s)) / acos(-1), off = 0x1p-9;
         char what[80];
         uint64_t open = 0, all = 0;
         for (; all < 4096;) {

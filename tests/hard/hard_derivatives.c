@@ -1,5 +1,5 @@
-/// Derivatives of pictures against central differences of the formulas in 113 bits: every field that has one, of every model and
-/// kind of light, and of shaders.
+/// Derivatives of pictures against central differences of the formulas in 113 bits: every differentiable field, every
+/// model and kind of light, and shaders.
 #include "tests/hard/oracle/shaders.h"
 #include "tests/hard/oracle/slopes.h"
 
@@ -9,10 +9,10 @@
 #define HEIGHT 36
 #define PI_Q ((quad)0x1.921fb54442d18p+1 + (quad)0x1.1a62633145c07p-53) ///< to 106 bits
 
-/// How sphere and floor are described: as they are, as parts of combined solids, under a transform.
+/// How sphere and floor are described: directly, as parts of CSG shapes, or under a transform.
 typedef enum dress { BARE, PARTS, TURNED, DRESSES } dress;
 
-/// A sphere over a floor under one light: the parameters of derivatives, each as three numbers, and the constants.
+/// A sphere above a floor under one light: the differentiable parameters, each as three numbers, and the constants.
 typedef struct world {
     quad diffuse[3], ambient[3], specular[3], shininess[3], roughness[3], f0[3];
     quad color[3], intensity[3], light_ambient[3], light_diffuse[3], light_specular[3], attenuation[3], position[3],
@@ -20,8 +20,8 @@ typedef struct world {
     quad scene_ambient[3], background[3];
     quad ball[3], radius[3], point[3], normal[3], eye[3], at[3], up[3], fov[3];
     glint_model model;
-    bool beckmann, normalized, matched, own_terms; ///< own_terms: the light has a diffuse and a specular of its own
-    bool shader; ///< which says what the model says, times a wave
+    bool beckmann, normalized, matched, own_terms; ///< own_terms: the light has separate diffuse and specular colours
+    bool shader; ///< a shader that computes the model, times a wave
     glint_light_kind kind;
     dress dress;
 } world;
@@ -58,7 +58,7 @@ static const number numbers[] = {
 
 // ---- The formulas, from their definitions -------------------------------------------------------------------------
 
-/// The way of the ray through a pixel's centre.
+/// The direction of the ray through a pixel's centre.
 static void ray_of(const world *w, int x, int y, quad d[3])
 {
     quad forward[3], right[3], up[3];
@@ -75,7 +75,7 @@ static void ray_of(const world *w, int x, int y, quad d[3])
     unit(d);
 }
 
-/// The nearest way along a unit direction to the sphere; negative: none.
+/// The distance to the sphere along a unit direction; negative: a miss.
 static quad meet_ball(const world *w, const quad o[3], const quad d[3])
 {
     quad f[3];
@@ -91,7 +91,7 @@ static quad smith_beckmann(quad alpha, quad x)
     return c < (quad)1.6 ? (1 - (quad)1.259 * c + (quad)0.396 * c * c) / ((quad)3.535 * c + (quad)2.181 * c * c) : 0;
 }
 
-/// pi D G / (4 n.v), without F.
+/// pi D G / (4 n.v), without the factor F.
 static quad facets(const world *w, quad nh, quad nl, quad nv)
 {
     const quad alpha = w->roughness[0] * w->roughness[0], aa = alpha * alpha, nh2 = nh * nh;
@@ -123,7 +123,8 @@ static void specular_of(const world *w, const quad n[3], const quad l[3], const 
                  (w->f0[c] + (1 - w->f0[c]) * powf128(1 - dot(v, h), 5));
 }
 
-/// By what shaders alone read: the point in the shape's own space, in the world, and how far the light is.
+/// The factor that only shaders apply: depends on the point in the shape's space, the point in the world, and the
+/// light's distance.
 static quad wave(const world *w, const quad p[3], quad distance)
 {
     const quad own = w->dress == TURNED ? p[1] / 2 : p[0], far = w->kind == GLINT_LIGHT_DIRECTIONAL ? 0 : distance;
@@ -227,7 +228,7 @@ static glint_light *make_light(const world *w)
     return light;
 }
 
-/// A direction of the world as a turned shape has it: the world's is 2 (-y, x, z) of it.
+/// Transforms a direction from world space to a shape's space if the shape is rotated: world = size (-y, x, z).
 static void undress(const world *w, double v[3], double size)
 {
     const double x = v[0], y = v[1], z = v[2];
@@ -238,7 +239,7 @@ static void undress(const world *w, double v[3], double size)
     v[2] = z / size;
 }
 
-/// A sphere out of sight, of a material of its own, makes one of two.
+/// Puts the shape and an invisible distant sphere with another material into `whole`.
 static void make_part(glint_shape *whole, glint_shape *shape)
 {
     glint_shape_desc far = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
@@ -252,7 +253,7 @@ static void make_part(glint_shape *whole, glint_shape *shape)
     glint_shape_release(other);
 }
 
-/// Adds a shape that is described as it is in the world.
+/// Adds a shape whose description is in world space.
 static glint_shape *add_shape(const world *w, glint_scene *scene, glint_shape_desc desc)
 {
     const glint_transform turn = glint_transform_rotate((const double[3]) { 0, 0, 1 }, 90),
@@ -305,7 +306,7 @@ static glint_scene *make_scene(const world *w, glint_material *material, glint_l
     return scene;
 }
 
-/// Whether the scene as it is reads the number.
+/// Returns whether the picture depends on the number.
 static bool is_read(const world *w, const number *n)
 {
     const bool power = w->model == GLINT_MODEL_PHONG || w->model == GLINT_MODEL_BLINN_PHONG;
@@ -323,14 +324,15 @@ static bool is_read(const world *w, const number *n)
         return !directional;
     if (!strcmp(n->field, "inner_rad") || !strcmp(n->field, "outer_rad") || !strcmp(n->field, "exponent"))
         return spot;
-    if (!strcmp(n->field, "point")) // along rays no angle changes under parallel light
+    // under a directional light, moving the floor along its normal changes nothing on it
+    if (!strcmp(n->field, "point"))
         return !directional || w->shader;
     return strcmp(n->field, "direction") != 0 || directional || spot;
 }
 
 // ---- The comparison -----------------------------------------------------------------------------------------------
 
-/// The picture's derivative along `slope`, by the formulas.
+/// Computes the picture's derivative along `slope` from the formulas.
 static void true_slopes(const world *w, const number *n, const double slope[3], double (*out)[3])
 {
     world more = *w, less = *w;
@@ -412,7 +414,7 @@ static world random_world(int turn)
     fill(w.ball, -0.3, 0.3);
     fill(w.radius, 1, 1.3);
     fill(w.point, -1.5, -1.3);
-    fill(w.normal, turn % 4 ? -0.1 : 0, turn % 4 ? 0.1 : 0); // along an axis, too
+    fill(w.normal, turn % 4 ? -0.1 : 0, turn % 4 ? 0.1 : 0); // axis-aligned normals too
     fill(w.eye, 0.5, 1.5);
     fill(w.at, -0.2, 0.2);
     fill(w.up, -0.1, 0.1);
@@ -420,7 +422,7 @@ static world random_world(int turn)
     w.normal[1] += 1;
     w.up[1] += 1;
     w.eye[2] += 7;
-    for (int c = 0; c < 3; c++) { // what the engine gets
+    for (int c = 0; c < 3; c++) { // rounded as for the engine
         for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
             ((quad *)((char *)&w + numbers[i].offset))[c] = (double)((quad *)((char *)&w + numbers[i].offset))[c];
     }

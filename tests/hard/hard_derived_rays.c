@@ -1,5 +1,5 @@
-/// Derivatives of pictures in mirrors and glass against central differences of the formulas in 113 bits: by mirror and transmission, by
-/// motion, and by the surfaces that rays hit.
+/// Derivatives of pictures in mirrors and glass against central differences of the formulas in 113 bits: with respect
+/// to mirror and transmission, positions, and the properties of the surfaces that secondary rays hit.
 #include "tests/hard/oracle/slopes.h"
 
 #include <string.h>
@@ -7,12 +7,12 @@
 #define WIDTH 40
 #define HEIGHT 30
 #define DEPTH 3
-#define NEAR ((quad)1e-18) ///< a ray that starts on a surface is no nearer to another one
+#define NEAR ((quad)1e-18) ///< minimum distance of a hit from the ray's own surface
 
 /// The material of the first ball.
-typedef enum stuff { MIRROR, GLASS, PANE, VARNISH, STUFFS } stuff; ///< pane: glass without Fresnel's formula; varnish: a solid by it
+typedef enum stuff { MIRROR, GLASS, PANE, VARNISH, STUFFS } stuff; ///< pane: glass, no Fresnel; varnish: opaque with it
 
-/// A ball that sends rays on and a matt one over a floor that mirrors.
+/// A reflecting or refracting ball and a matt one above a mirroring floor.
 typedef struct world {
     quad diffuse[3], specular[3], shininess[3], mirror[3], transmission[3], ior[3], absorption[3], floor_mirror[3];
     quad position[3], intensity[3], background[3];
@@ -45,7 +45,7 @@ enum { NOTHING, BALL, OTHER, FLOOR };
 
 // ---- The formulas, from their definitions -------------------------------------------------------------------------
 
-/// Where a line meets a ball: its two distances; false: nowhere.
+/// Intersects a line with a ball. *t: the two distances. Returns false for a miss.
 static bool meet_ball(const quad center[3], quad radius, const quad o[3], const quad d[3], quad t[2])
 {
     const quad f[3] = { o[0] - center[0], o[1] - center[1], o[2] - center[2] };
@@ -75,7 +75,7 @@ static int nearest(const world *w, const quad o[3], const quad d[3], quad *far)
     return found;
 }
 
-/// The lamp's light in channel c that reaches a point.
+/// The light in channel c that reaches a point directly.
 static quad reach(const world *w, const quad p[3], const quad l[3], quad distance, int c)
 {
     quad t[2], left = 1;
@@ -107,7 +107,7 @@ static quad local_light(const world *w, int what, const quad p[3], const quad n[
 
 static quad trace(const world *w, const quad o[3], const quad d[3], bool inside, int depth, int c);
 
-/// The light that the ball reflects and transmits at p, where n is turned to the ray.
+/// The light that the ball reflects and transmits at p. n faces the ray.
 static quad send_on(const world *w, const quad p[3], const quad n[3], const quad d[3], bool inside, int depth, int c)
 {
     const bool glass = w->stuff == GLASS || w->stuff == PANE, fresnel = w->stuff == GLASS || w->stuff == VARNISH;
@@ -129,7 +129,7 @@ static quad send_on(const world *w, const quad p[3], const quad n[3], const quad
     return light;
 }
 
-/// The light in channel c along a ray that comes from o.
+/// The light in channel c along a ray from o.
 static quad trace(const world *w, const quad o[3], const quad d[3], bool inside, int depth, int c)
 {
     quad far, p[3], n[3] = { w->normal[0], w->normal[1], w->normal[2] }, v[3], up[3], light;
@@ -161,7 +161,7 @@ static quad color_of(const world *w, int x, int y, int c)
     for (int i = 0; i < 3; i++)
         forward[i] = w->at[i] - w->eye[i];
     unit(forward);
-    right[0] = -forward[2], right[1] = 0, right[2] = forward[0]; // across up, the world's y
+    right[0] = -forward[2], right[1] = 0, right[2] = forward[0]; // perpendicular to the world's y axis
     unit(right);
     for (int i = 0; i < 3; i++)
         up[i] = right[(i + 1) % 3] * forward[(i + 2) % 3] - right[(i + 2) % 3] * forward[(i + 1) % 3];
@@ -259,7 +259,7 @@ static void unmake_scene(made *m)
     glint_material_release(m->floor);
 }
 
-/// Whether the scene as it is reads the number, and has a derivative by it.
+/// Returns whether the picture depends on the number and has a derivative with respect to it.
 static bool is_read(const world *w, const number *n)
 {
     const bool glass = w->stuff == GLASS || w->stuff == PANE, absorbed_shadows = w->absorbs && w->shadows && glass;
@@ -275,7 +275,7 @@ static bool is_read(const world *w, const number *n)
 
 // ---- The comparison -----------------------------------------------------------------------------------------------
 
-/// The picture's derivative along `slope`, by the formulas.
+/// Computes the picture's derivative along `slope` from the formulas.
 static void true_slopes(const world *w, const number *n, const double slope[3], double (*out)[3])
 {
     world more = *w, less = *w;
@@ -345,7 +345,7 @@ static world random_world(int turn)
     w.other[2] -= (quad)1.5;
     w.normal[1] += 1;
     w.eye[2] += 7;
-    for (int c = 0; c < 3; c++) // what the engine gets
+    for (int c = 0; c < 3; c++) // rounded as for the engine
         for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
             ((quad *)((char *)&w + numbers[i].offset))[c] = (double)((quad *)((char *)&w + numbers[i].offset))[c];
     for (int c = 0; c < 3; c++)

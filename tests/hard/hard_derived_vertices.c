@@ -1,5 +1,5 @@
-/// Derivatives of flat and Gouraud shaded meshes against central differences of the formulas in 113 bits: light is found once a face or
-/// corner and lies between those in each sample, whose place moves with the eye.
+/// Derivatives of flat and Gouraud shaded meshes against central differences of the formulas in 113 bits. Light is
+/// computed once per face or vertex and interpolated at each sample, whose position moves with the eye.
 #include "tests/hard/oracle/slopes.h"
 
 #include <string.h>
@@ -11,7 +11,7 @@
 
 static const uint32_t faces[FACES][3] = { { 0, 1, 2 }, { 0, 2, 3 } };
 
-/// A folded sheet before a background, under one lamp.
+/// A folded sheet in front of a background, under one light.
 typedef struct world {
     quad corner[CORNERS][3], normal[CORNERS][3];
     quad eye[3], at[3], height[3], position[3], intensity[3], attenuation[3];
@@ -60,7 +60,7 @@ static void ray_of(const world *w, int x, int y, quad o[3], quad d[3])
     unit(d);
 }
 
-/// Where a ray meets a face: the shares of its corners; false: beside it. *far: how far along.
+/// Intersects a ray with a face. share: barycentric weights; *far: the distance. Returns false for a miss.
 static bool meet(const world *w, int face, const quad o[3], const quad d[3], quad share[3], quad *far)
 {
     const quad *a = w->corner[faces[face][0]];
@@ -80,7 +80,7 @@ static bool meet(const world *w, int face, const quad o[3], const quad d[3], qua
     return share[0] > 0 && share[1] > 0 && share[2] > 0;
 }
 
-/// Phong's light at a place that is seen by the eye.
+/// Phong's light at a point, as seen from the eye.
 static void light_of(const world *w, const quad p[3], const quad normal[3], quad out[3])
 {
     quad l[3], v[3], n[3] = { normal[0], normal[1], normal[2] }, forward[3];
@@ -205,7 +205,8 @@ static glint_scene *make_scene(const world *w, glint_material *material, glint_l
 
 // ---- The comparison -----------------------------------------------------------------------------------------------
 
-/// Whether some pixel of the scene as it is changes with the number; a flat face's does where its distance or its highlight does.
+/// Returns whether any pixel depends on the number. A flat face depends on the camera only through its distance or
+/// its highlight.
 static bool is_read(const world *w, const number *n)
 {
     if (!strcmp(n->field, "height"))
@@ -243,7 +244,7 @@ static void compare(const world *w, const number *n, const glint_scene *scene, g
     s.camera = !strcmp(n->object, "camera") ? glint_scene_get(scene)->camera : NULL;
     s.material = !strcmp(n->object, "material") ? material : NULL;
     glint_slope both[2] = { s, s };
-    both[1].field = "ambient"; // which is the diffuse one
+    both[1].field = "ambient"; // as ambient equals diffuse
     const glint_derivative derivative = { "number", both, strcmp(n->field, "diffuse") == 0 ? 2 : 1 };
     glint_image *image = slope_picture(scene, desc, &derivative);
     true_slopes(w, n, slope, want);
@@ -281,7 +282,7 @@ static world random_world(int turn)
     fill(w.background, 0.1, 0.6);
     w.eye[2] += 7;
     w.position[2] += 4;
-    for (int c = 0; c < 3; c++) // what the engine gets
+    for (int c = 0; c < 3; c++) // rounded as for the engine
         for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
             ((quad *)((char *)&w + numbers[i].offset))[c] = (double)((quad *)((char *)&w + numbers[i].offset))[c];
     return w;

@@ -1,5 +1,5 @@
-/// Derivatives by the camera against central differences of the formulas in 113 bits: of perspective and orthographic cameras,
-/// with and without a lens, and of light that fades with the distance, from outside and from within what absorbs.
+/// Derivatives with respect to the camera against central differences of the formulas in 113 bits: perspective and
+/// orthographic cameras, with and without a lens, and depth cueing, from outside and from inside an absorbing medium.
 #include "tests/hard/oracle/slopes.h"
 
 #include "engine/base/sequence.h"
@@ -12,14 +12,14 @@
 
 typedef enum look { PINHOLE, SQUARE, LENS, SQUARE_LENS, LOOKS } look;
 
-/// A ball over a floor before a background; in some worlds inside an absorbing ball.
+/// A ball above a floor in front of a background; in some worlds inside an absorbing ball.
 typedef struct world {
     quad eye[3], at[3], up[3], fov[3], height[3], aperture[3], focus[3], focus_point[3];
     quad ball[3], radius[3], point[3], position[3], diffuse[3], shininess[3], background[3], ambient[3], absorption[3];
     quad cue_color[3], cue_near[3], cue_far[3];
     look look;
     bool cue, own_color, veil, by_direction;
-    int focused; ///< 0: at what the camera looks at; 1: by its distance; 2: a point
+    int focused; ///< 0: at the point that the camera looks at; 1: by distance; 2: at a point
 } world;
 
 static const number numbers[] = {
@@ -48,7 +48,7 @@ static const number numbers[] = {
 
 // ---- The formulas, from their definitions -------------------------------------------------------------------------
 
-/// Where a pixel's ray goes through a round lens of radius 1: see plan/lens.c.
+/// Maps a pixel's sample to a round lens of radius 1: see plan/lens.c.
 static void lens_point(int x, int y, quad out[2])
 {
     double square[2];
@@ -68,7 +68,7 @@ static quad focus_of(const world *w, const quad forward[3])
     return w->focused == 1 ? w->focus[0] : dot(way, forward);
 }
 
-/// The ray through a pixel's middle: it starts at o, along the unit vector d.
+/// The ray through a pixel's centre, from o along the unit vector d.
 static void ray_of(const world *w, int x, int y, quad o[3], quad d[3])
 {
     quad forward[3], right[3], up[3], lens[2] = { 0 };
@@ -122,7 +122,7 @@ static void color_of(const world *w, int x, int y, quad out[3])
     const quad ball = meet_ball(w, o, d), floor = (w->point[1] - o[1]) / d[1];
     const bool on_ball = ball > 0 && !(floor > 0 && floor < ball);
     const quad way = on_ball ? ball : floor, share = (way - w->cue_near[0]) / (w->cue_far[0] - w->cue_near[0]);
-    for (int c = 0; c < 3; c++) // the far side of the absorbing ball has faded
+    for (int c = 0; c < 3; c++) // the far side of the absorbing ball has faded completely
         out[c] = w->veil && w->cue && w->own_color ? w->cue_color[c] : w->veil && !w->cue ? 0 : w->background[c];
     if (!(way > 0))
         return;
@@ -240,7 +240,7 @@ static void unmake_scene(made *m)
     glint_material_release(m->glass);
 }
 
-/// Whether the scene as it is reads the number.
+/// Returns whether the picture depends on the number.
 static bool is_read(const world *w, const number *n)
 {
     const bool parallel = w->look == SQUARE || w->look == SQUARE_LENS, lens = w->look >= LENS;
@@ -256,7 +256,7 @@ static bool is_read(const world *w, const number *n)
     if (!strcmp(f, "absorption"))
         return w->veil;
     if (!strcmp(f, "background"))
-        return (!w->veil && !parallel) || (w->cue && !w->own_color); // square cameras see the floor everywhere
+        return (!w->veil && !parallel) || (w->cue && !w->own_color); // orthographic cameras see the floor everywhere
     if (!strcmp(f, "depth_cue_color"))
         return w->cue && w->own_color;
     return strncmp(f, "depth_cue", 9) != 0 || w->cue;
@@ -311,7 +311,8 @@ static void compare(const world *w, const number *n, const made *m)
 static world random_world(int turn)
 {
     world w = { .look = (look)(turn % LOOKS), .cue = turn / LOOKS % 2, .own_color = turn / 8 % 2, .veil = turn / 6 % 2 };
-    w.veil = w.veil && w.look != SQUARE && w.look != SQUARE_LENS; // only the eye of a perspective camera is within something
+    // only the eye of a perspective camera can be inside a medium
+    w.veil = w.veil && w.look != SQUARE && w.look != SQUARE_LENS;
     w.focused = turn % 3;
     w.by_direction = turn % 5 == 0 && w.focused;
     fill(w.eye, 0.5, 1.5);
@@ -338,7 +339,7 @@ static world random_world(int turn)
     w.eye[2] += 7;
     for (int c = 0; c < 3 && w.by_direction; c++)
         w.at[c] -= w.eye[c];
-    for (int c = 0; c < 3; c++) // what the engine gets
+    for (int c = 0; c < 3; c++) // rounded as for the engine
         for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
             ((quad *)((char *)&w + numbers[i].offset))[c] = (double)((quad *)((char *)&w + numbers[i].offset))[c];
     return w;

@@ -1,5 +1,5 @@
--- Faces of different shapes in one plane, of which the first defined is met everywhere, and rays that begin on a face, which
--- do not meet it there. Numbers with all their digits: what is a multiple of a power of two is right by chance.
+-- Coplanar faces of different shapes, where the first defined must always be hit, and rays that start on a face,
+-- which must not hit it again. Coordinates use all their digits: multiples of powers of two can be right by accident.
 --   hard_faces.lua [--table] [--rays N] [--seed S]
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
@@ -33,7 +33,7 @@ local function row(name, count, wrong)
   check(count > 0, "%s: nothing was tried", name)
 end
 
--- ---- Shapes that have a face at height h, and are below it otherwise ----
+-- ---- Shapes with a face at height h and nothing above it ----
 
 local function box(h)
   local x, z = u(-.5, 0), u(-.5, 0)
@@ -62,7 +62,7 @@ local makers = {
   end },
 }
 
--- ---- Maps: none, along the axes, any ----
+-- ---- Maps: none, axis-aligned, arbitrary ----
 
 local function no_map() return nil, function(p) return p end, "" end
 
@@ -85,7 +85,7 @@ end
 
 -- ---- Faces in one plane ----
 
--- Two shapes of the same plane: of rays that meet both there, how many do not meet the first; and in how many pixels.
+-- Two shapes with coplanar faces: counts the rays that hit both there, and those that fail to return the first.
 local function both(first, second, map, to_world, h)
   local function scene(...)
     local camera = glint.camera { eye = to_world { u(-.3, .3), h + 4.3, u(-.3, .3) }, at = to_world { 0, h, 0 }, up = { .1, .2, 1 }, fov = 9 }
@@ -97,7 +97,7 @@ local function both(first, second, map, to_world, h)
     local from = to_world { u(-2, 2), h + u(.5, 5), u(-2, 2) }
     local way = minus(to_world { u(-.8, .8), h, u(-.8, .8) }, from)
     local a, b, c = one:cast(from, way), two:cast(from, way), all:cast(from, way)
-    -- of a box's and a cylinder's side, t has nothing to do with the other shape's
+    -- t on the side of a box or cylinder is unrelated to the other shape
     if a and b and math.abs(a.t - b.t) < 1e-12 * a.t then
       count = count + 1
       if a.t ~= b.t or c.t ~= a.t or c.object ~= first then wrong = wrong + 1 end
@@ -122,7 +122,7 @@ local function coincident(map_of, count)
   end
 end
 
--- A disk, a plane and a cap that have a place and an oblique normal in common.
+-- A disk, a plane and a cap with a common point and oblique normal.
 local function oblique(count)
   local sum, bad = 0, 0
   for _ = 1, count do
@@ -145,7 +145,7 @@ local function oblique(count)
   row("disk and plane of one oblique place and normal", sum, bad)
 end
 
--- From above, nothing that ends at the plane throws a shadow on it: the pictures with and without shadows are one.
+-- Seen from above, nothing that ends at the plane shadows it: pictures are identical with and without shadows.
 local function shadows(count)
   local sum, bad = 0, 0
   local oblique_way = unit(vector(1))
@@ -181,7 +181,7 @@ local function shadows(count)
   row("shadows on planes that shapes share, pixels", sum, bad)
 end
 
--- ---- Rays that begin on a face ----
+-- ---- Rays that start on a face ----
 
 local function toward(o, q) return o, minus(q, o) end
 
@@ -197,7 +197,7 @@ local function on_box()
   return glint.box { min = low, max = high }, toward(o, q)
 end
 
--- A cylinder's or cone's side, or its base. straight: along an axis
+-- The side of a cylinder or cone, or its base. straight: along a coordinate axis.
 local function on_round(kind, straight, cap)
   return function()
     local base = vector(2)
@@ -230,7 +230,7 @@ local function on_ball()
   return glint.sphere { center = center, radius = radius }, toward(plus(center, n, radius), plus(center, vector(.3), radius))
 end
 
--- A triangle square to an axis, or a midpoint of one that is not, whose sums are exact.
+-- A triangle perpendicular to an axis, or a midpoint of another triangle, computed without rounding.
 local function on_mesh(straight)
   return function()
     local v, k, h = { vector(2), vector(2), vector(2) }, random(3), u(-2, 2)

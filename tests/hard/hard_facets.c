@@ -1,5 +1,5 @@
-/// Microfacets, roughness 1 down to 1e-4, against multiple precision; the textbook's float loses the lobe of a smooth
-/// surface in 1 - cos^2.
+/// Microfacets with roughness 1 down to 1e-4, against multiple precision. The textbook's float formula loses the lobe
+/// of a smooth surface in 1 - cos^2.
 #include "tests/hard/oracle/oracle_light.h"
 #include "tests/hard/oracle/point.h"
 
@@ -25,7 +25,7 @@ static glint_material *facets(bool beckmann, double roughness, double f0)
     return material;
 }
 
-/// D as it stands in books: alpha^2 / (pi (c^2 (alpha^2 - 1) + 1)^2).
+/// The textbook's D: alpha^2 / (pi (c^2 (alpha^2 - 1) + 1)^2).
 #define NAIVE(name, real, cosine) \
     static double name(double alpha, double angle) \
     { \
@@ -35,18 +35,19 @@ static glint_material *facets(bool beckmann, double roughness, double f0)
 NAIVE(naive_float, float, cosf)
 NAIVE(naive_double, double, cos)
 
-/// The error of float: roundings of 2^-24, and as many of Beckmann's exponent, whose cosine is 1 less a squared sine; and
-/// the rounding of the directions, which moves the half vector by 2^-52 or, in float, by 2^-22, and the lobe by that over
-/// its width.
+/// The allowed error: roundings of 2^-24, the same for Beckmann's exponent, whose cosine is 1 minus a squared sine,
+/// and the rounding of the directions. The last moves the half vector by 2^-52, or 2^-22 in float, relative to the
+/// width of the lobe.
 static double allowed(bool beckmann, double roughness, double want, double tangent, bool in_float)
 {
     const double alpha = roughness * roughness, moved = (in_float ? 0x1p-21 : 0x1p-51) / alpha, at = tangent / alpha;
-    const double steep = beckmann ? 2 * at : 4 * at / (1 + at * at); // of log D, by the half vector's angle over alpha
+    // derivative of log D by the half vector's angle over alpha
+    const double steep = beckmann ? 2 * at : 4 * at / (1 + at * at);
     return want * (0x1p-24 * (40 + (beckmann ? 8 * at * at * (1 + tangent * tangent) : 0)) +
                    (steep + moved) * moved * 2 * (1 + tangent * tangent));
 }
 
-/// n.h's tangent.
+/// The tangent of the angle between n and h.
 static double half_tangent(const double n[3], const double l[3], const double v[3])
 {
     double h[3], along = 0, across = 0, ll = hypot(hypot(l[0], l[1]), l[2]), vv = hypot(hypot(v[0], v[1]), v[2]);
@@ -60,7 +61,8 @@ static double half_tangent(const double n[3], const double l[3], const double v[
     return across / along;
 }
 
-/// One pair of directions by `evaluate` and in a frame of double; returns the larger error, relative to the allowed one.
+/// Compares one pair of directions, by `evaluate` and in a frame in double. Returns the larger error, relative to the
+/// allowed one.
 static double compare(bool beckmann, double roughness, double f0, const double n[3], const double l[3],
                       const double v[3], hard_values *shown)
 {
@@ -69,7 +71,7 @@ static double compare(bool beckmann, double roughness, double f0, const double n
     glint_material *material = facets(beckmann, roughness, f0);
     const double want = oracle_facets(beckmann, roughness, f0, n, l, v);
     must(glint_material_evaluate(material, n, l, v, &got, &error), &error);
-    // Beckmann's exponential is 0 below 2^-126, and 4 n.v no less than 4e-3
+    // Beckmann's exponential is 0 below 2^-126, and 4 n.v is at least 4e-3.
     const double dark = beckmann ? 250 * 0x1p-126 / pow(roughness, 4) + 1e-30 : 1e-30;
     const double limit = allowed(beckmann, roughness, want, half_tangent(n, l, v), false) + dark;
     const double off = fabs(got.specular[1] - want);
@@ -89,7 +91,7 @@ static double compare(bool beckmann, double roughness, double f0, const double n
     return off / limit;
 }
 
-/// P12, P13, and Beckmann likewise: l is twice `angle` from v = n, so that h is `angle` from n. `stated`: D.
+/// P12, P13, and the same for Beckmann: l is 2 `angle` away from v = n, so that h is `angle` away from n. stated: D.
 static void check_lobe(const char *id, double alpha, double angle, double stated)
 {
     const double v[3] = { 0, 0, 1 }, l[3] = { sin(2 * angle), 0, cos(2 * angle) };
@@ -109,7 +111,7 @@ static void check_lobe(const char *id, double alpha, double angle, double stated
     }
 }
 
-/// Any roughness and directions, half of them within the lobe.
+/// Random roughness and directions, half of them inside the lobe.
 static void sweep(uint64_t count)
 {
     double worst = 0;
@@ -132,7 +134,7 @@ static void sweep(uint64_t count)
         for (int c = 0; c < 3; c++)
             v[c] *= nv < 0 ? -1 : 1;
         if (fabs(nl) < 1e-3 || fabs(nv) < 1e-3)
-            continue; // where rounding of a normal makes a horizon
+            continue; // the rounding of a normal decides about the horizon
         worst = fmax(worst, compare(chance(0.5), roughness, f0, n, l, v, NULL));
     }
     if (hard_table)

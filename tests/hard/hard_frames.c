@@ -1,6 +1,6 @@
-/// Pictures that are hard to get right, against the truth: spheres tangent to pixels' rays, through the filters and the
-/// index that a frame uses and a single ray does not; random still lifes with their shadows; and rays that leave a
-/// surface towards a light, which nothing may stop.
+/// Difficult pictures against the truth: spheres tangent to pixel rays, through the filters and the BVH that a frame
+/// uses and a single ray does not; random still lifes with their shadows; and rays that leave a surface towards a
+/// light, which must not hit the surface.
 #include "tests/hard/oracle/aim.h"
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/judge.h"
@@ -14,10 +14,10 @@ static const double black[3] = { 0 }, white[3] = { 1, 1, 1 };
 
 // ---- Tangent spheres ----
 
-#define SIDE 32 ///< a power of two: with it and a field of view of 90 degrees, or whole sizes, all rays are exact
+#define SIDE 32 ///< makes all rays exact with a field of view of 90 degrees or integer sizes
 #define CROWD 24
 
-/// A camera along -z whose rays are (u, v, -1) from one point, or (0, 0, -1) from (u, v, 0), with u and v whole multiples
+/// A camera along -z whose rays are (u, v, -1) from one point, or (0, 0, -1) from (u, v, 0), with u and v multiples
 /// of 2^-5 of the scale.
 typedef struct grid_view {
     double eye[3], scale;
@@ -40,19 +40,19 @@ static grid_view random_view(void)
 {
     grid_view view = { .scale = ldexp(1, -26 + (int)(random_bits() % 53)), .orthographic = chance(0.4) };
     const double reach = chance(0.5) ? 0 : view.scale * log_uniform(1, 1e6);
-    for (int c = 0; c < 3; c++) // whole multiples, so that eye + u is exact
+    for (int c = 0; c < 3; c++) // integer multiples, so that eye + u is exact
         view.eye[c] = view.scale * rint(uniform(-1, 1) * reach / view.scale);
     return view;
 }
 
-/// A sphere that a pixel's ray all but touches.
+/// A sphere that is almost tangent to a pixel's ray.
 static hard_sphere tangent_sphere(const grid_view *view)
 {
     const hard_ray ray = ray_of_pixel(view, (int)(random_bits() % SIDE), (int)(random_bits() % SIDE));
     const double away = view->scale * log_uniform(0.1, 1e5), size = hypot(hypot(ray.d[0], ray.d[1]), 1);
     hard_sphere sphere = { .r = away * log_uniform(1e-4, 0.5) };
     const double turn = uniform(0, 6.3), off = sphere.r * (1 + (chance(0.5) ? -1 : 1) * log_uniform(1e-15, 1e-2));
-    // two directions square to the ray
+    // two directions perpendicular to the ray
     const double a[3] = { 1, 0, ray.d[0] }, n = hypot(1, ray.d[0]);
     const double b[3] = { a[1] * ray.d[2] - a[2] * ray.d[1], a[2] * ray.d[0] - a[0] * ray.d[2],
                           a[0] * ray.d[1] - a[1] * ray.d[0] };
@@ -61,7 +61,7 @@ static hard_sphere tangent_sphere(const grid_view *view)
     return sphere;
 }
 
-/// A sphere so large that the whole grid of rays starts right above its surface.
+/// A sphere so large that the whole grid of rays starts just above its surface.
 static hard_sphere near_ground(const grid_view *view)
 {
     hard_sphere sphere = { .r = view->scale * log_uniform(1e3, 1e10) };
@@ -71,7 +71,7 @@ static hard_sphere near_ground(const grid_view *view)
     return sphere;
 }
 
-/// Far enough from the line that double arithmetic is sure.
+/// Returns whether the line misses the sphere by more than the error of double arithmetic.
 static bool surely_missed(const hard_ray *ray, const hard_sphere *sphere)
 {
     double f[3], dd = 0, ff = 0, xx = 0;
@@ -88,7 +88,7 @@ static bool surely_missed(const hard_ray *ray, const hard_sphere *sphere)
     return xx > 1.01 * sphere->r * sphere->r * dd + 1e-12 * ff * dd;
 }
 
-/// The nearest sphere, counted from 1; 0: none; -1: too close to tell, for these rays are rounded once more than others.
+/// The nearest sphere, counted from 1; 0: none; -1: undecidable, as these rays are rounded once more than others.
 static int nearest_of(const hard_ray *ray, const hard_sphere *spheres, int count, double *t)
 {
     int nearest = 0;
@@ -212,7 +212,7 @@ static void judge_still(const hard_still *still, tally *sum)
             double off = 0;
             for (int c = 0; c < 3; c++)
                 off = fmax(off, fabs(got.color[c] - want.color[c]));
-            // a highlight's steepest colour: the exponent times what rounding leaves of the angle
+            // a highlight's steepest change: the exponent times the rounding error of the angle
             const bool right = got.object == want.object && got.lit == want.lit && off < 1e-4;
             sum->pixels++;
             sum->hits += want.object > 0;
@@ -237,19 +237,19 @@ static void random_stills(uint64_t pixels)
     report("random still lifes", &sum);
 }
 
-// ---- Leaving rays ----
+// ---- Rays that leave a surface ----
 
 #define LEAVING_SIDE 256
 
 typedef struct bare {
     hard_sphere sphere;
     hard_plane plane;
-    bool is_plane, twice; ///< twice: a second, bit-equal object
+    bool is_plane, twice; ///< twice: there is a second, identical object
     double eye[3], at[3];
     glint_light_desc light;
 } bare;
 
-/// An eye outside or inside; a light outside, near or far, or inside with the eye.
+/// An eye outside or inside; a light outside, near or far, or inside together with the eye.
 static bare random_bare(void)
 {
     bare b = { .is_plane = chance(0.2), .twice = chance(0.3) };
@@ -304,7 +304,7 @@ static glint_image *render_bare(const bare *b, bool shadows, glint_frame_stats *
     return image;
 }
 
-/// A convex surface never stands between a light and a point of itself that faces it.
+/// A convex surface never occludes the light at a point of its own that faces the light.
 static void leaving_rays(uint64_t rays)
 {
     hard_test("fuzz", "rays leaving for the light");

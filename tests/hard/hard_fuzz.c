@@ -1,6 +1,6 @@
-/// Adversarial rays: the engine's answers against the oracle's. 1e6 rays when run as a test, as many as --rays says in
-/// the soak. Spheres and planes one at a time, many spheres in one place, pictures of tangent spheres through the
-/// frame's own kernels, and rays that leave surfaces towards a light.
+/// Adversarial rays: the engine's answers against the oracle's. Casts 1e6 rays when run as a test, and --rays in the
+/// soak. Single spheres and planes, many spheres in one place, pictures of tangent spheres through the frame's own
+/// kernels, and rays that leave surfaces towards a light.
 #include "tests/hard/oracle/aim.h"
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/judge.h"
@@ -11,7 +11,7 @@
 
 typedef struct tally {
     uint64_t rays, hits, close, wrong;
-    double worst_ulp, worst_t, worst_normal; ///< the last two relative to the allowed error
+    double worst_ulp, worst_t, worst_normal; ///< the last two are relative to the allowed error
 } tally;
 
 static void report(const char *name, const tally *sum)
@@ -21,7 +21,7 @@ static void report(const char *name, const tally *sum)
                (unsigned long long)sum->hits, (unsigned long long)sum->close, (unsigned long long)sum->wrong,
                sum->worst_t, sum->worst_normal);
     hard_right(sum->rays - sum->wrong);
-    // a third of the rays and more must mean something
+    // at least a third of the rays must hit
     hard_check(sum->hits >= sum->rays / 3, "%s: only %llu hits of %llu rays", name, (unsigned long long)sum->hits,
                (unsigned long long)sum->rays);
 }
@@ -36,7 +36,7 @@ static void note(tally *sum, const judgement *j, bool hit)
     sum->worst_normal = fmax(sum->worst_normal, j->normal_share);
 }
 
-/// Counts a wrong answer, with the input to repeat it.
+/// Reports a wrong answer, with the input to reproduce it.
 static void complain(const char *about, const hard_ray *ray, const judgement *j, const truth *want, bool hit,
                      const glint_hit *got)
 {
@@ -114,7 +114,7 @@ static bool same_sphere(const hard_sphere *a, const hard_sphere *b)
     return a->r == b->r && a->c[0] == b->c[0] && a->c[1] == b->c[1] && a->c[2] == b->c[2];
 }
 
-/// All in one shape, or each its own; then the index of the shape equals the sphere's.
+/// Adds all spheres in one shape, or each as its own; in one shape, the element index equals the sphere's.
 static void add_many(glint_scene *scene, const hard_sphere *spheres, int count, glint_shape *shapes[MANY], bool as_one)
 {
     for (int i = 0; i < count && !as_one; i++)
@@ -133,7 +133,7 @@ static void add_many(glint_scene *scene, const hard_sphere *spheres, int count, 
     glint_shape_release(shapes[0]);
 }
 
-/// Which sphere was hit; -1: none of these.
+/// Returns the index of the sphere that was hit; -1: none.
 static int which(const glint_hit *got, glint_shape *const shapes[MANY], int count, bool as_one)
 {
     if (as_one)
@@ -144,7 +144,7 @@ static int which(const glint_hit *got, glint_shape *const shapes[MANY], int coun
     return -1;
 }
 
-/// The engine's sphere has to be hit, no other one clearly nearer, and none before it bit-equal to it.
+/// The engine's sphere must be hit, no other sphere may be clearly nearer, and no earlier one may be identical.
 static judgement judge_many(const hard_ray *ray, const hard_sphere *spheres, int count, bool hit, int index,
                             const glint_hit *got)
 {
@@ -168,7 +168,7 @@ static judgement judge_many(const hard_ray *ray, const hard_sphere *spheres, int
             j.verdict = WRONG_DECISION;
         if (i == index || !want[i].hit || want[i].t >= got->t)
             continue;
-        glint_hit other = *got; // as near as its own t allows
+        glint_hit other = *got; // whether another sphere is nearer, allowing for the error of t
         memcpy(other.normal, want[i].n, sizeof other.normal);
         const judgement nearer = judge_sphere(ray, &spheres[i], &want[i], true, &other);
         if (nearer.verdict != RIGHT)

@@ -1,17 +1,17 @@
-/// The named cases of mirrors and glass: Fresnel and Snell at and about the critical angle, mirrors that face each other, and
-/// chains as long as a million; what total reflection leaves.
+/// Test cases for mirrors and glass: Fresnel and Snell at and around the critical angle, mirrors that face each
+/// other, chains of up to a million reflections, and total reflection.
 #include "tests/hard/oracle/oracle_light.h"
 #include "tests/hard/oracle/point.h"
 
 #include <string.h>
 #include <sys/resource.h>
 
-#define LOSS 0x1p-20 ///< of light: what weak rays that are not followed may hold
+#define LOSS 0x1p-20 ///< light that dropped weak rays may carry
 
 // ---- Fresnel ----
 
-/// The share that is mirrored, at depth 1, of a white world, where a ray in glass of `inside` (1: in the open) meets a plane
-/// of glass of `ior` from the side of its index, at this cosine.
+/// The share reflected, at depth 1, in a white world, for a ray that hits a plane of glass of index `ior` from inside
+/// or from air, along d.
 static double reflectance(double ior, bool from_inside, const double d[3], glint_precision precision)
 {
     static const double white[3] = { 1, 1, 1 };
@@ -25,12 +25,12 @@ static double reflectance(double ior, bool from_inside, const double d[3], glint
     const double mirrored = point_seen(scene, &ray, precision, 1, GLINT_PASS_MIRROR);
     const double through = point_seen(scene, &ray, precision, 1, GLINT_PASS_TRANSMISSION);
     glint_scene_release(scene);
-    const double lost = mirrored > 0 && through > 0 ? 0 : LOSS; // a share too weak to be seen is not followed
+    const double lost = mirrored > 0 && through > 0 ? 0 : LOSS; // a share too weak to be visible is not traced
     hard_check(fabs(mirrored + through - 1) < lost + 0x1p-22, "mirrored %.9g and let through %.9g", mirrored, through);
     return mirrored;
 }
 
-/// Books: Snell's sine, then the two polarisations.
+/// The textbook: Snell's sine, then the two polarisations.
 #define NAIVE(name, real, root) \
     static double name(double ratio, double cosine) \
     { \
@@ -41,8 +41,8 @@ static double reflectance(double ior, bool from_inside, const double d[3], glint
 NAIVE(naive_float, float, sqrtf)
 NAIVE(naive_double, double, sqrt)
 
-/// `sine`: of the ray's angle to the normal. The rounding of the ray's direction moves the cosine beyond by ratio^2 2^-52 over
-/// itself, which near the critical angle is its root.
+/// Rounding of the ray's direction moves the cosine beyond the surface by ratio^2 2^-52 over that cosine, and near
+/// the critical angle by the square root.
 static bool check_fresnel(const char *id, const char *what, double ior, bool from_inside, double cosine, double stated)
 {
     const double ratio = from_inside ? ior : 1 / ior, sine = sqrt((1 - cosine) * (1 + cosine));
@@ -55,7 +55,7 @@ static bool check_fresnel(const char *id, const char *what, double ior, bool fro
     double *const got[2] = { &shown.in_double, &shown.in_float };
     for (int p = 0; p < 2; p++) {
         const double rounding = p ? 0x1p-21 : 0x1p-50;
-        // R's slopes: 4/cos at grazing angles, 4/cos' at critical ones
+        // R's slope is 4/cos at grazing angles and 4/cos' at critical ones.
         const double beyond = sqrt(fabs(1 - ratio * ratio * sine * sine)), moved = rounding * ratio * ratio;
         const double off =
             0x1p-22 + 8 * (rounding / fmax(cosine, rounding) + ratio * fmin(sqrt(moved), moved / fmax(beyond, 1e-300)));
@@ -86,7 +86,7 @@ static void fresnel(void)
     hard_test("M4", "Fresnel from inside");
     check_fresnel("M4", "1.5 -> 1 at cos 0.75", 1.5, true, 0.75, 0.5);
     const bool table = hard_table;
-    hard_table = false; // too many for lines
+    hard_table = false; // too many for the table
     for (int i = 0; i < 300; i++) {
         const double ior = chance(0.3) ? 1 + log_uniform(1e-6, 1) : log_uniform(0.1, 10);
         check_fresnel("M3", "random", ior, chance(0.5), chance(0.3) ? log_uniform(1e-6, 1) : uniform(0, 1), NAN);
@@ -96,7 +96,7 @@ static void fresnel(void)
 
 // ---- Snell ----
 
-/// A sheet at the height `below` that begins at x: is the ray that comes down from (0, 0, 0) at it there?
+/// Returns whether a ray refracted at the origin hits a sheet `below` the surface that starts at x.
 static bool lands_beyond(double ior, const double d[3], double below, double x, glint_precision precision)
 {
     const hard_plane plane = { { 0 }, { 0, 1, 0 } };
@@ -128,7 +128,7 @@ static bool lands_beyond(double ior, const double d[3], double below, double x, 
     return seen > 0;
 }
 
-/// The refracted ray's tangent, found by moving the edge of a sheet.
+/// The refracted ray's tangent, by bisection over the edge of a sheet.
 static double tangent(double ior, const double d[3], glint_precision precision)
 {
     double low = 0, high = 1e3;
@@ -184,7 +184,7 @@ static long resident_kb(void)
     return usage.ru_maxrss;
 }
 
-/// Two mirrors that face each other and glow.
+/// The light between two glowing mirrors that face each other.
 static double facing(double mirror, double depth, double visible_light, glint_precision precision)
 {
     const hard_plane low = { { 0 }, { 0, 1, 0 } }, high = { { 0, 1, 0 }, { 0, -1, 0 } };
@@ -239,13 +239,13 @@ static void depth(void)
 
 // ---- Total reflection ----
 
-/// The light through a rod of glass along x, one unit thick, which a ray enters at 45 degrees through one end: out of the
-/// other, after `reflections`.
+/// The light through a glass rod along x, one unit thick: a ray enters at 45 degrees through one end and leaves
+/// through the other, after `reflections` total reflections.
 static double through_rod(int reflections, double transmission, double mirror, glint_precision precision)
 {
     static const double white[3] = { 1, 1, 1 };
-    const double rise = 1 / sqrt(2 * 1.5 * 1.5 - 1); // the tangent inside, of the sine sqrt(1/2) / 1.5
-    const hard_ray ray = { { -0.5, 0, 0 }, { 1, 1, 0 } }; // it enters half way up
+    const double rise = 1 / sqrt(2 * 1.5 * 1.5 - 1); // tangent inside the glass, for a sine of sqrt(1/2) / 1.5
+    const hard_ray ray = { { -0.5, 0, 0 }, { 1, 1, 0 } }; // enters halfway up
     glint_shape_desc rod = glint_shape_desc_default(GLINT_SHAPE_BOX);
     glint_scene *scene = scene_new();
     glint_shape *shape;
@@ -263,7 +263,8 @@ static double through_rod(int reflections, double transmission, double mirror, g
     return seen;
 }
 
-/// The light that is totally reflected has not crossed the surface. The textbook's columns: dimmed there as well.
+/// Totally reflected light does not cross the surface, so transmission does not dim it. The textbook's columns dim it
+/// at each reflection.
 static void total(void)
 {
     static const struct {
@@ -286,8 +287,9 @@ static void total(void)
     }
 }
 
-/// A prism of total reflections as above, of any length, size, index and angle, anywhere and turned anyhow. *out: what comes
-/// through, of which *through = transmission^2 is the truth.
+/// A random prism with total reflections as above, of any length, size, index, angle, position and orientation. *out:
+/// the transmitted light; *through: its true value, transmission^2. Returns false for prisms close to the critical
+/// angle.
 static bool random_prism(double *out, double *through)
 {
     static const double white[3] = { 1, 1, 1 };
@@ -296,7 +298,7 @@ static bool random_prism(double *out, double *through)
     const int reflections = 1 + (int)(random_bits() % 40);
     double axis[3], by[3];
     if (ior * ior * (1 - inside * inside) < 1.001 || rise * reflections < 1e-2)
-        return false; // next to the critical angle
+        return false; // close to the critical angle
     *through = uniform(0.1, 1);
     random_direction(axis);
     for (int c = 0; c < 3; c++)
@@ -318,7 +320,7 @@ static bool random_prism(double *out, double *through)
     glint_material_release(rod.material);
     glint_shape_release(shape);
     scene_light_up(scene, 0, white);
-    // it enters half way up
+    // Enters halfway up.
     const double from[3] = { -size * sqrt(1 - sine * sine), size * (0.5 - sine), 0 },
                  d[3] = { sqrt(1 - sine * sine), sine, 0 };
     hard_ray ray;

@@ -1,5 +1,5 @@
-/// Rays that leave a surface: nothing convex stands in the way of its own light, sees itself in a mirror of its own, or lets a
-/// ray that has gone in out anywhere but through its far side.
+/// Rays that leave a surface: a convex shape never shadows itself or reflects itself, and a ray that has entered
+/// leaves only through the far side.
 #include "tests/hard/oracle/aim_solid.h"
 #include "tests/hard/oracle/point.h"
 
@@ -20,7 +20,7 @@ static void note(const char *name, const tally *sum)
     hard_right(sum->rays - sum->wrong);
 }
 
-/// A camera that sees the shape, from near its surface to far away: `ray` meets it.
+/// Sets a camera that looks along `ray` and sees the shape, from close to its surface or far away.
 static void look_along(glint_scene *scene, const hard_ray *ray)
 {
     glint_camera_desc camera = glint_camera_desc_default();
@@ -31,7 +31,7 @@ static void look_along(glint_scene *scene, const hard_ray *ray)
     scene_camera(scene, &camera);
 }
 
-/// Whether the ray met the shape from outside.
+/// Returns whether the ray hit the shape from outside.
 static bool from_outside(const hard_ray *ray, const glint_hit *hit)
 {
     double front = 0;
@@ -50,12 +50,12 @@ static glint_light_desc random_light(const hard_ray *ray, const glint_hit *hit)
     for (int c = 0; c < 3; c++)
         away = fmax(away, fabs(ray->o[c] - hit->point[c]));
     if (light.kind == GLINT_LIGHT_SPHERE || light.kind == GLINT_LIGHT_DISK) {
-        light.radius = away * log_uniform(1e-9, 10); // it may reach to the shape, and into it
+        light.radius = away * log_uniform(1e-9, 10); // it may touch or overlap the shape
         light.samples = 4;
         light.has_radiance = chance(0.5);
         light.radiance = 1;
     }
-    for (int c = 0; c < 3; c++) { // in front of the point, at times by very little
+    for (int c = 0; c < 3; c++) { // in front of the point, sometimes by very little
         light.position[c] = hit->point[c] + away * log_uniform(1e-9, 1e3) * (hit->normal[c] + side[c]);
         light.direction[c] = -(hit->normal[c] + side[c]);
     }
@@ -77,7 +77,7 @@ static glint_image *lit(glint_scene *scene, const glint_light_desc *light, bool 
     return image;
 }
 
-/// With shadows and without: the same picture.
+/// The picture is identical with and without shadows.
 static void shadows(int kind, uint64_t rays)
 {
     tally sum = { 0 };
@@ -113,7 +113,7 @@ static void shadows(int kind, uint64_t rays)
     note(name, &sum);
 }
 
-/// In a white world: what a mirror shows of it is 1; of glass, at depth 1, nothing is through yet.
+/// In a white world a mirror shows 1, and glass at depth 1 transmits nothing yet.
 static void sent_on(int kind, bool glass, uint64_t rays)
 {
     tally sum = { 0 };

@@ -1,5 +1,6 @@
-/// The named cases of lights: at the point, inside, far away, spots, lights with a surface, sums of very many. Each through
-/// frames in double and in float, beside the textbook's formula, and again with other numbers.
+/// Test cases for lights: at the shaded point, inside shapes, far away, spots, area lights, and sums of very many
+/// lights. Each is rendered in double and float, compared with the textbook's formula, and repeated with other
+/// numbers.
 #include "tests/hard/oracle/oracle_light.h"
 #include "tests/hard/oracle/point.h"
 
@@ -19,7 +20,7 @@ static double lit(const glint_light_desc *light, const hard_sphere *more, double
     return point_lit(light, more, x, 1e-6, 0, precision, NULL, NULL);
 }
 
-/// Both columns of the engine, each within `off` of the truth.
+/// Checks both precisions, each within `off` of the truth.
 static void compare(const char *id, const char *what, const glint_light_desc *light, hard_values *shown, double off,
                     double off_float)
 {
@@ -34,7 +35,7 @@ static void compare(const char *id, const char *what, const glint_light_desc *li
 
 // ---- Where distances vanish or overflow ----
 
-/// The textbook's n.l / (c0 + c2 d^2) of a light at height h over a floor, x aside.
+/// The textbook's n.l / (c0 + c2 d^2) for a light at height h above a floor, at a horizontal distance x.
 #define NAIVE(name, real, root) \
     static double name(double x, double h, double c0, double c2) \
     { \
@@ -44,7 +45,7 @@ static void compare(const char *id, const char *what, const glint_light_desc *li
 NAIVE(naive_float, float, sqrtf)
 NAIVE(naive_double, double, sqrt)
 
-/// L1: every kind of light, at the very point that is shaded.
+/// L1: every kind of light exactly at the shaded point.
 static void at_the_point(void)
 {
     static const glint_light_kind kinds[] = { GLINT_LIGHT_POINT, GLINT_LIGHT_SPOT, GLINT_LIGHT_DISK,
@@ -52,7 +53,7 @@ static void at_the_point(void)
     hard_test("L1", "light at the shaded point");
     for (int k = 0; k < 4; k++)
         for (int c2 = 0; c2 < 2; c2++)
-            for (int p = 0; p < 2; p++) { // a ray straight down at the origin meets it exactly
+            for (int p = 0; p < 2; p++) { // a ray straight down hits the origin exactly
                 const hard_plane floor = { { 0 }, { 0, 1, 0 } };
                 const hard_ray down = { { 0, 4, 0 }, { 0, -1, 0 } };
                 glint_light_desc light = light_sample_at(kinds[k], 0, 0, 0);
@@ -82,12 +83,12 @@ static void far_and_near(void)
                               .naive_double = naive_double(far, 2 * far, 1, 0),
                               .naive_float = naive_float(far, 2 * far, 1, 0) };
         snprintf(what, sizeof what, "light at %g", far);
-        // float holds nothing beyond 3.4e38
+        // float ends at 3.4e38
         compare("L4", what, &light, &shown, 0x1p-23, far < 1e38 ? 0x1p-22 : 1);
     }
     hard_test("L5", "light next to the point, inverse square");
     static const double heights[] = { 1e-10, 1e-30, 1e-100, 1e-300 };
-    for (int i = 0; i < 4; i++) { // straight above where the ray comes down
+    for (int i = 0; i < 4; i++) { // straight above the point that the ray hits
         const double near = heights[i];
         const hard_plane floor = { { 0 }, { 0, 1, 0 } };
         const hard_ray down = { { 0, 4, 0 }, { 0, -1, 0 } };
@@ -103,7 +104,7 @@ static void far_and_near(void)
             scene_light(scene, &light);
             *got[p] = point_seen(scene, &down, p ? GLINT_FLOAT : GLINT_DOUBLE, 5, GLINT_PASS_BEAUTY);
             glint_scene_release(scene);
-            // in float a height below the smallest float is none: the light is at the point
+            // in float a height below the smallest float is 0: the light is at the point
             const bool vanished = p && (float)near == 0;
             right &=
                 hard_check(vanished ? *got[p] == 0 : *got[p] >= 1 && *got[p] < HUGE_VAL, "%g away: %g", near, *got[p]);
@@ -115,7 +116,8 @@ static void far_and_near(void)
 
 // ---- Inside and outside of an opaque ball ----
 
-/// L2, L3, L3b: what a ball of radius 1 shows of its n.l, straight ahead, by where the eye and the light are.
+/// L2, L3, L3b: the visible light on a ball of radius 1 straight ahead, for positions of eye and light inside or
+/// outside.
 static void within(void)
 {
     static const struct {
@@ -136,7 +138,7 @@ static void within(void)
         double *const got[2] = { &shown.in_double, &shown.in_float };
         bool right = true;
         hard_test(list[i].id, list[i].what);
-        for (int e = -30; e <= 30; e += 10) // scales, and the way the eye looks
+        for (int e = -30; e <= 30; e += 10) // scales, and view directions
             for (int way = 0; way < 3; way++)
                 for (int p = 0; p < 2; p++) {
                     hard_ray ray = { { 0 }, { 0 } };
@@ -174,7 +176,7 @@ static double naive_spot(double inner, double outer, double angle)
     return x * x * (3 - 2 * x);
 }
 
-/// A spot 4 over the floor's point, whose axis is `angle` off.
+/// A spot light 4 units above the floor's point, with its axis at an angle `angle`.
 static glint_light_desc spot_off(double inner, double outer, double exponent, double angle)
 {
     glint_light_desc light = light_sample_at(GLINT_LIGHT_SPOT, 0, 4, 0);
@@ -197,13 +199,13 @@ static void check_spot(const char *id, const char *what, double inner, double ou
                           .naive_float = naive_spot(inner, outer, angle) * pow(cos(angle), exponent) };
     if (!isnan(stated))
         hard_check(fabs(shown.truth - stated) <= 5e-10, "oracle %.12g, stated %.12g", shown.truth, stated);
-    // the profile's slope times a rounding of the cosine and of the pixel's place, and of the power
+    // the profile's slope times the rounding of the cosine and of the pixel's position, and of the power
     const double width = fmax(cos(inner) - cos(outer), 1e-300), power = 1 + exponent;
     const double off = 4e-7 * power + fmin(1, 1e-14 / width), off_float = 1e-5 * power + fmin(1, 2e-6 / width);
     compare(id, what, &light, &shown, off, off_float);
 }
 
-/// L6: a spot of 180 degrees is a point light; bit for bit, wherever it points.
+/// L6: a spot light of 180 degrees equals a point light bit for bit, in any direction.
 static void whole_spots(int scenes)
 {
     long differ = 0;
@@ -238,7 +240,7 @@ static void spots(void)
     check_spot("L7", "inner 0, outer 1e-3, 5e-4 off", 0, 1e-3, 0, 5e-4, NAN);
     check_spot("L7", "inner 89, outer 179, 85 off", 89 * DEGREE, 179 * DEGREE, 0, 85 * DEGREE, NAN);
     const bool table = hard_table;
-    hard_table = false; // too many for lines
+    hard_table = false; // too many for the table
     for (int i = 0; i < 500; i++) {
         const double outer = uniform(0, 3.14), inner = uniform(0, outer), exponent = chance(0.5) ? 0 : uniform(0, 50);
         check_spot("L7", "random", inner, outer, exponent, uniform(0, 1.4), NAN);
@@ -248,7 +250,7 @@ static void spots(void)
 
 // ---- Sums ----
 
-/// L13: n lights of 1/n; L14: a thousand of 1e36 on a material that is black in one channel.
+/// L13: n lights of intensity 1/n. L14: a thousand lights of 1e36 on a material that is black in one channel.
 static void sums(int many)
 {
     const double purple[3] = { 1, 0, 1 };

@@ -1,5 +1,6 @@
-/// Pictures at the limits of valid input: scenes scaled by powers of two, numbers near the largest, the longest
-/// sides, the most lights, the most spheres, nothing at all; each instruction set and number of threads.
+/// Pictures at the limits of valid input: scenes scaled by powers of two, numbers near the largest, the largest
+/// sizes, the most lights, the most spheres, and empty scenes; for each instruction set and several numbers of
+/// threads.
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/still.h"
 
@@ -34,7 +35,7 @@ static hard_still scaled(const hard_still *still, int e)
     return s;
 }
 
-/// With a light that falls off, and with a plane through the first sphere.
+/// Adds an attenuated light, and a plane through the first sphere.
 static glint_scene *attenuated(const hard_still *still, double size, int e)
 {
     glint_scene *scene = still_scene(still);
@@ -119,7 +120,7 @@ static void huge_vector(double v[3], double reach)
 
 static double largest(const double v[3]) { return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))); }
 
-/// A scene valid on input, of numbers from the smallest to the largest; some are left as they were.
+/// A valid scene with numbers from the smallest to the largest; some fields keep their defaults.
 static glint_scene *extreme_scene(void)
 {
     glint_error error;
@@ -166,7 +167,8 @@ static glint_scene *extreme_scene(void)
     return scene;
 }
 
-/// No NaN and nothing below 0 in any plane; what is above the largest float is counted; a written file holds numbers.
+/// No plane has NaN or negative values, values above the largest float are counted, and written files hold finite
+/// numbers.
 static void check_finite(uint64_t scenes)
 {
     hard_test("finite", "extreme numbers");
@@ -233,9 +235,9 @@ static void check_written(void)
     glint_scene_release(scene);
 }
 
-// ---- The smallest and the farthest ----
+// ---- The smallest and the most distant shapes ----
 
-/// A shape about the origin, as wide and as deep as 2 `size`, whose top a ray down the z axis meets at z = size.
+/// A shape around the origin, 2 `size` wide and deep. A ray down the z axis hits it at z = size.
 static glint_shape *small_shape(glint_shape_kind kind, bool mapped, double size)
 {
     static const double x[3] = { 1, 0, 0 }, z[3] = { 0, 0, 1 };
@@ -247,9 +249,9 @@ static glint_shape *small_shape(glint_shape_kind kind, bool mapped, double size)
     desc.major = 2 * own;
     desc.minor = own;
     for (int c = 0; c < 3; c++) {
-        const double *along = kind == GLINT_SHAPE_CYLINDER ? x : z; // of a cylinder, its side is met
+        const double *along = kind == GLINT_SHAPE_CYLINDER ? x : z; // a cylinder is hit on its side
         desc.center[c] = kind == GLINT_SHAPE_DISK    ? own * z[c]
-                         : kind == GLINT_SHAPE_TORUS ? -2 * own * x[c] // its tube is about the origin
+                         : kind == GLINT_SHAPE_TORUS ? -2 * own * x[c] // its tube passes through the origin
                                                      : 0;
         desc.normal[c] = desc.axis[c] = z[c];
         desc.base[c] = -own * along[c];
@@ -273,7 +275,7 @@ static const char *const size_names[] = { [GLINT_SHAPE_SPHERE] = "sphere 'mite'"
                                           [GLINT_SHAPE_CONE] = "cone 'mite'",
                                           [GLINT_SHAPE_TORUS] = "torus 'mite'" };
 
-/// Whether a frame of one pixel shows the scene's first object. thin: it need not.
+/// Checks that a one-pixel frame shows the scene's first object, or is refused with the reason. thin: it may miss.
 static void check_frame_of(glint_scene *scene, const hard_ray *ray, bool thin, const char *name, const char *refused)
 {
     const glint_render_desc desc = { .width = 1, .height = 1, .samples = 1, .passes = 1u << GLINT_PASS_OBJECT_ID,
@@ -298,7 +300,8 @@ static void check_frame_of(glint_scene *scene, const hard_ray *ray, bool thin, c
     glint_plan_destroy(plan);
 }
 
-/// Casts and renders from `distance` over the origin: met with the right t and seen, or refused by both with the reason.
+/// Casts and renders from `distance` above the origin. The shape must be hit at the right t and visible, or refused
+/// in both cases with the reason.
 static void check_size(glint_shape_kind kind, bool mapped, double size, double distance, const char *refused)
 {
     const hard_ray ray = { { 0, 0, distance }, { 0, 0, -1 } };
@@ -310,7 +313,7 @@ static void check_size(glint_shape_kind kind, bool mapped, double size, double d
     bool hit = false;
     glint_hit got = { 0 };
     const glint_status status = glint_scene_cast(scene, ray.o, ray.d, &hit, &got, &error);
-    // a cone's side and base are rounded each by itself: thinner than that, they may part
+    // a cone's side and base are rounded separately: below this size a gap may open between them
     const bool thin = kind == GLINT_SHAPE_CONE && size < 0x1p-50 * distance;
     const bool right = hit ? fabs(got.t / (distance - size) - 1) <= 0x1p-51 : thin;
     const bool told = refused && status == GLINT_ERR_INVALID && says(&error, name, refused);
@@ -324,7 +327,8 @@ static void check_size(glint_shape_kind kind, bool mapped, double size, double d
     glint_scene_release(scene);
 }
 
-/// Shapes smaller than 1e-150 of their distance, or in the world, are refused with the reason; all others are hit.
+/// Shapes smaller than 1e-150, absolutely or relative to their distance, are refused with the reason. All others are
+/// hit.
 static void check_small(void)
 {
     hard_test("S25", "the smallest spheres and solids, the farthest");
@@ -388,7 +392,7 @@ static void check_sides(void)
                    "%d x %d: %ld pixels wrong, %g in the middle", sides[i][0], sides[i][1], wrong, middle[0]);
         glint_image_release(image);
     }
-    // I4: nothing is allocated for these, and all pixels and samples of the largest can be counted
+    // I4: nothing is allocated for these, and all pixels and samples of the largest size can be counted.
     const double refused[][2] = { { 65536, 65536 }, { 65536, 1 }, { 1, 65536 },     { 1, 0 },
                                   { 0, 1 },         { 1.5, 2 },   { NAN, 2 },       { 2, NAN },
                                   { HUGE_VAL, 2 },  { -1, 5 },    { 1e300, 1e300 }, { 4294967297, 1 } };
@@ -402,7 +406,7 @@ static void check_sides(void)
                        (!strncmp(error.message, "width", 5) || !strncmp(error.message, "height", 6)),
                    "%g x %g is refused by name", refused[i][0], refused[i][1]);
     }
-    desc.width = desc.height = 65535; // both sides are allowed, their product is not
+    desc.width = desc.height = 65535; // each side is allowed, their product is not
     hard_check(glint_plan_create(scene, &desc, &plan, &error) == GLINT_ERR_INVALID &&
                    strstr(error.message, "65535 x 65535"),
                "65535 x 65535 is refused by name");
@@ -415,7 +419,7 @@ static void check_sides(void)
     glint_scene_release(scene);
 }
 
-/// L13: the sum of a million lights, and as many that cast shadows on nothing.
+/// L13: the sum of a million lights, and as many shadow-casting lights without occluders.
 static void check_lights(int count)
 {
     hard_test("L13", "a million lights");
@@ -437,7 +441,7 @@ static void check_lights(int count)
     glint_scene_release(scene);
 }
 
-/// B1: spheres about one centre; one giant and the rest tiny. The nearest is found, in order and in reverse.
+/// B1: concentric spheres; one giant among tiny spheres. The nearest is found in either order of definition.
 static void check_crowd(int count)
 {
     hard_test("B1", "many spheres in one place");

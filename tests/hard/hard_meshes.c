@@ -1,5 +1,5 @@
-/// Triangles: rays at the edges and corners that two or more share, and triangles of no area; coordinates on a ball's surface
-/// at its poles. The textbook's triangle is Moller and Trumbore's.
+/// Triangles: rays at shared edges and corners, and triangles without area; coordinates on a ball at its poles. The
+/// textbook's triangle test is Moeller-Trumbore.
 #include "tests/hard/oracle/shell.h"
 
 #include <string.h>
@@ -48,7 +48,7 @@ static bool naive_hit(const shell *s, const hard_ray *ray, bool (*meets)(const d
     return false;
 }
 
-/// G2: nothing gets out of a closed mesh. Frames in float are asked one ray in fifty.
+/// G2: no ray escapes from a closed mesh. One ray in fifty is also rendered in float.
 static void seams(uint64_t rays)
 {
     static shell s;
@@ -80,7 +80,7 @@ static void seams(uint64_t rays)
             }
             glint_scene_release(scene);
         }
-        // float loses the eye's place in a mesh far away; near by it keeps it
+        // in float the eye's position is imprecise relative to a distant mesh, but not to a nearby one
         hard_check(kind % 2 || shown.in_float == 0, "%g of %llu rays get out in float", shown.in_float,
                    (unsigned long long)requested);
         snprintf(what, sizeof what, "%s: of %llu rays at seams, out (float: of %llu)", names[kind],
@@ -89,8 +89,8 @@ static void seams(uint64_t rays)
     }
 }
 
-/// G2: three corners on one line are no face; where a polygon has such a triangle it is left out, and nothing is hit twice
-/// or by a hair of it.
+/// G2: a face of three collinear corners is refused. In a polygon such a triangle is omitted, and the polygon has no
+/// double hits or cracks.
 static void no_area(int count)
 {
     hard_test("G2", "triangles of no area");
@@ -100,7 +100,7 @@ static void no_area(int count)
         double v[5][3], along[3], length = log_uniform(1e-6, 1e6);
         const uint32_t corners[5] = { 0, 1, 2, 3, 4 }, three = 3, five = 5;
         random_direction(along);
-        for (int c = 0; c < 3; c++) { // whole steps: exactly on one line
+        for (int c = 0; c < 3; c++) { // multiples of one step: exactly collinear
             along[c] = rint(along[c] * 1024) / 1024 * exp2(rint(log2(length)));
             v[0][c] = 0;
             v[1][c] = along[c];
@@ -124,7 +124,7 @@ static void no_area(int count)
             continue;
         }
         if (along[i % 3] == 0 && along[(i + 1) % 3] == 0)
-            continue; // the rest has no area either
+            continue; // the remaining triangles have no area either
         desc.face_sizes = &five;
         must(glint_mesh_create(&desc, &shape, &error), &error);
         hard_check(glint_spheres_count(shape) == 2, "a quadrangle with a corner more is %zu triangles",
@@ -137,7 +137,7 @@ static void no_area(int count)
 
 static double whole(double low, double high) { return rint(uniform(low, high)); }
 
-/// A triangle of whole numbers, of some size, and a ray that runs in its plane and passes its corners on one side.
+/// A triangle with integer coordinates times a size, and a ray in its plane that passes all its corners on one side.
 static hard_ray aim_shared_edge(double corner[3][3])
 {
     const double size = uniform(0.1, 10);
@@ -171,7 +171,7 @@ static hard_ray aim_shared_edge(double corner[3][3])
     return ray;
 }
 
-/// G1: a ray in a triangle's own plane that goes past it, by a whole step at least: rounding tilts it a little, but not so far.
+/// G1: a ray in a triangle's plane that misses it by at least one step: rounding tilts the ray, but not that far.
 static void in_plane(uint64_t rays)
 {
     const uint32_t corners[3] = { 0, 1, 2 }, three = 3;
@@ -218,7 +218,7 @@ static glint_value op(glint_builder *b, glint_op which, glint_value x, glint_val
     return out[0];
 }
 
-/// 1 where u and v are 0 .. 1, and where a checker of 1e10 squares a unit is 0 or 1; what is NaN is neither.
+/// 1 where u and v are in 0 .. 1 and a checker of 1e10 squares per unit is 0 or 1. NaN gives 0.
 static glint_program *proper_coordinates(void)
 {
     glint_builder *b;
@@ -242,7 +242,7 @@ static glint_program *proper_coordinates(void)
     return program;
 }
 
-/// G3: rays along a ball's axis, and closer and closer to it.
+/// G3: rays along a ball's axis, and ever closer to it.
 static void poles(int steps)
 {
     hard_values shown = { 0 };

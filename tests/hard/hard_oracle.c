@@ -1,4 +1,4 @@
-/// The oracle itself, where the answer is known without it.
+/// Tests the oracle, where the answer is known independently.
 #include "tests/hard/oracle/aim.h"
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/oracle_light.h"
@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/// Cases that can be checked by hand: 3-4-5 and 1-2-2-3 triangles, scaled by powers of two; the answers are exact.
+/// Cases that can be checked by hand: 3-4-5 and 1-2-2-3 triangles scaled by powers of two, with exact answers.
 static void check_by_hand(void)
 {
     hard_test("oracle", "triangles of whole numbers");
@@ -37,7 +37,7 @@ static void check_by_hand(void)
     }
 }
 
-/// The named cases, against answers that were computed elsewhere with 4096 bits; and 113 bits against more.
+/// The test cases against answers computed elsewhere with 4096 bits, and 113 bits against more.
 static void check_known(void)
 {
     hard_test("oracle", "the named cases");
@@ -55,7 +55,7 @@ static void check_known(void)
     }
 }
 
-/// The rays of the fuzz that 113 bits decide, and those that they leave open.
+/// Fuzz rays that 113 bits decide, and those that need more.
 static void check_quick(uint64_t count)
 {
     hard_test("oracle", "113 bits against 400");
@@ -84,7 +84,7 @@ static void check_quick(uint64_t count)
                (unsigned long long)count);
 }
 
-/// Cosines of the 3-4-5 triangle, whose powers are known; and codes of both ends and of the middle.
+/// Cosines of the 3-4-5 triangle with known powers; pixel values at both ends and in the middle.
 static void check_shading(void)
 {
     hard_test("oracle", "reflections and codes");
@@ -97,7 +97,7 @@ static void check_shading(void)
                "codes of 0, 1, 1/2 and 0.2140411");
 }
 
-/// Where a whole number or a fraction of them is the answer.
+/// Cases whose answer is an integer or a fraction.
 static void check_light(void)
 {
     const double n[3] = { 0, 0, 2 }, l[3] = { 3, 0, 4 }, v[3] = { -3, 0, 4 }, up[3] = { 0, 0, 1 };
@@ -110,7 +110,7 @@ static void check_light(void)
     hard_check(fabs(oracle_facets(true, 0.5, 0.25, n, l, v) / (16 / 3.2 * (0.25 + 0.75 * pow(0.2, 5))) - 1) < 1e-15,
                "Beckmann, 3-4-5: its facets hide nothing, F = f0 + (1 - f0) 0.2^5");
     hard_check(oracle_facets(false, 0.5, 1, n, (double[3]) { 3, 0, -4 }, v) == 0, "below the horizon");
-    const double a60 = acos(0.5), a90 = acos(0); // half way between the cosines 0.5 and 0
+    const double a60 = acos(0.5), a90 = acos(0); // halfway between the cosines 0.5 and 0
     hard_check(fabs(oracle_spot(a60, a90, 0, up, (double[3]) { sqrt(15), 0, 1 }) - 0.5) < 1e-15, "spot, half way");
     hard_check(oracle_spot(1, 1.5, 2, up, l) == 0.64 && oracle_spot(0.1, 0.2, 0, up, l) == 0, "spot, 0.8^2");
     hard_check(fabs(oracle_cap(0.6) - 0.2) < 1e-16 && oracle_cap(1) == 1, "caps");

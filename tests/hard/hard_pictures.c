@@ -1,6 +1,7 @@
-/// Whole pictures against 113-bit arithmetic: nine still lifes that differ in how far apart their numbers are. In double
-/// no pixel may show a wrong object, a wrong shadow or a colour more than one 8-bit code off; in float none of those whose
-/// numbers span four digits, and next to none of random ones. The errors of float and of the textbook's formulas are printed.
+/// Whole pictures against 113-bit arithmetic: nine still lifes with different ranges of numbers. In double no pixel
+/// may show a wrong object, a wrong shadow or a colour off by more than one 8-bit step. In float this holds for
+/// scenes whose numbers span four digits, and for nearly all pixels of random ones. The errors of float and of the
+/// textbook's formulas are printed.
 #include "tests/hard/oracle/still.h"
 
 #include <math.h>
@@ -10,10 +11,10 @@
 
 #define WIDTH 96
 #define HEIGHT 72
-#define TIMED_SCALE 8 ///< the timed pictures' sides are this many times longer
-#define TIMED_RUNS 15 ///< of each precision
+#define TIMED_SCALE 8 ///< factor on the sides of the timed pictures
+#define TIMED_RUNS 15 ///< per precision
 
-/// Three spheres that touch a huge one, and each other's shadows.
+/// Three spheres that touch a huge one, with shadows on each other.
 static hard_still ordinary(const char *name, double ground)
 {
     hard_still s = { .name = name,
@@ -64,9 +65,9 @@ static hard_still moved(const char *name, double scale, const double by[3])
 }
 
 typedef struct errors {
-    long object, shadow, over1, wrong; ///< pixels; `wrong` in any of these ways
-    int worst; ///< codes
-    double ms; ///< least time of the larger picture; 0: not measured
+    long object, shadow, over1, wrong; ///< numbers of pixels; `wrong` in any of these ways
+    int worst; ///< 8-bit steps
+    double ms; ///< shortest time for the larger picture; 0: not measured
 } errors;
 
 static int code(double linear)
@@ -89,7 +90,7 @@ static void note(errors *sum, const still_pixel *want, const still_pixel *got)
     sum->worst = off > sum->worst ? off : sum->worst;
 }
 
-/// The least of some times (of the processor, which other programs stretch less), the two precisions by turns.
+/// The shortest of several processor times, which other programs affect less, alternating the two precisions.
 static void time_both(const hard_still *still, errors *in_float, errors *in_double)
 {
     glint_scene *scene = still_scene(still);
@@ -143,7 +144,7 @@ static errors textbook_errors(const hard_still *still, const still_pixel *want, 
     return sum;
 }
 
-/// The cells that are the same on every machine; README.md may hold the row, and must then hold these.
+/// Writes the cells that are identical on every machine. If README.md has the row, its cells must match.
 static void write_row(char row[256], const char *name, const errors *in_float, const errors *in_double)
 {
     snprintf(row, 256, "| %s | %ld, %ld, %ld | %ld, %ld, %ld |", name, in_float->object, in_float->shadow,
@@ -165,7 +166,7 @@ static void check_readme(const char *name, const char *row)
     fclose(readme);
 }
 
-/// The truth is not one colour: every object is seen, and both in light and in shadow.
+/// Checks that the true picture shows every object, both lit and in shadow.
 static void check_truth(const hard_still *still, const still_pixel *want)
 {
     long seen[STILL_MAX + 1] = { 0 }, shadows = 0;
@@ -189,7 +190,7 @@ static const still_pixel *trace_truth(const hard_still *still)
 
 // ---- The bound of --precision float ----
 
-/// How far apart a scene's numbers are: the largest length or coordinate, in radii of the smallest sphere.
+/// The range of a scene's numbers: the largest length or coordinate, in radii of the smallest sphere.
 static double span_of(const hard_still *still)
 {
     double least = HUGE_VAL, most = 0;
@@ -204,10 +205,10 @@ static double span_of(const hard_still *still)
     return most / least;
 }
 
-#define FLOAT_SPAN 2e4 ///< up to it, float is as right as double but for one pixel in FLOAT_PIXELS
+#define FLOAT_SPAN 2e4 ///< up to this range, float is as right as double except for one pixel in FLOAT_PIXELS
 #define FLOAT_PIXELS 5000
 
-/// Many still lifes whose numbers span up to that, of any size, near the origin and away from it.
+/// Many still lifes within that range, of any size, near the origin and far from it.
 static void check_float(int stills)
 {
     hard_test("float", "still lifes of four digits");

@@ -1,5 +1,5 @@
--- One ray, one reflection, as scripts ask for them. The whole list of hard cases, with their neighbourhoods, is in
--- hard_cases.c and hard_shading.c; here are cases that would show a number changed by Lua.
+-- Single rays and single reflections through the Lua API. hard_cases.c and hard_shading.c have the full list of hard
+-- cases and their variations. The cases here would reveal a number changed by the binding.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -46,7 +46,7 @@ local function check_hit(id, hit, origin, direction, center, radius, t, normal)
   near(id .. ": t", hit.t, t, 1e-13 * t)
   for c = 1, 3 do
     near(("%s: normal[%d]"):format(id, c), hit.normal[c], normal[c], allowed)
-    -- the point lies where t says; its own rounding is relative to its terms
+    -- The point must be where t says, within rounding relative to its terms.
     local size = math.abs(origin[c]) + math.abs(t * direction[c]) + radius + math.abs(center[c])
     near(("%s: point[%d]"):format(id, c), hit.point[c], origin[c] + t * direction[c], 1e-12 * size)
   end
@@ -72,7 +72,7 @@ for _, case in ipairs(cases) do
   end
 end
 
-do -- S28: the outer of two concentric spheres, whichever was defined first
+do -- S28: the outer of two concentric spheres, in any order of definition
   local inner = glint.sphere { center = O, radius = 1 }
   local outer = glint.sphere { center = O, radius = 1 + 0x1p-23 }
   for _, scene in ipairs { glint.scene { inner, outer }, glint.scene { outer, inner } } do
@@ -104,7 +104,7 @@ do
   check(below and below.t == 2 and below.normal.y == 1, "plane: its own normal also from behind")
 end
 
-do -- which sphere of many; nothing to hit
+do -- which of many spheres; nothing to hit
   local rows = {}
   for i = 1, 100 do
     for _, x in ipairs { i, 0, 0, 0.25 } do rows[#rows + 1] = x end
@@ -129,10 +129,10 @@ end
 local function phong(...) return specular("phong", ...) end
 local function blinn(...) return specular("blinn_phong", ...) end
 
--- A direction in the x-z plane whose cosine with z is c.
+-- A direction in the x-z plane whose angle with z has cosine c.
 local function tilted(c) return { math.sqrt(1 - c * c), 0, c } end
 local Z = { 0, 0, 1 }
-local REL = 4e-6 -- the kernels shade in float32 and bound their power function by this
+local REL = 4e-6 -- the kernels shade in float32, with this error bound for their power function
 
 local function near_rel(name, got, want) near(name, got, want, REL * want) end
 

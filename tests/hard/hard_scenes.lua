@@ -1,6 +1,6 @@
--- The hard cases that need a picture: scale and offset, ties, coverage, lights in awkward places, odd cameras and
--- sizes. Each is named by its id. The cases of one ray or one reflection are in hard_cases.c and hard_shading.c, the
--- largest numbers and counts in hard_limits.c, random scenes in hard_frames.c.
+-- The hard cases that need a picture: scale and offset, ties, coverage, lights at difficult positions, unusual
+-- cameras and sizes. Each is named by its id. Cases with one ray or one reflection are in hard_cases.c and
+-- hard_shading.c, the largest numbers and counts in hard_limits.c, random scenes in hard_frames.c.
 local glint = require "glint"
 
 local tabular = arg and arg[1] == "--table" -- for `make hard`
@@ -22,7 +22,7 @@ local function refused(name, pattern, make)
   check(not ok and tostring(message):find(pattern), name, "got:", tostring(message))
 end
 
--- The pixels of two images: how many differ at all, and the largest difference in 8-bit sRGB codes.
+-- Compares the pixels of two images. Returns the number that differ, and the largest difference in 8-bit sRGB steps.
 local function code(x)
   x = math.min(math.max(x, 0), 1)
   return math.floor(255 * (x <= 0.0031308 and 12.92 * x or 1.055 * x ^ (1 / 2.4) - 0.055) + 0.5)
@@ -39,7 +39,7 @@ local function difference(a, b)
   return differ, worst
 end
 
--- A still life whose every length is multiplied by s and which is moved by m.
+-- A still life with every length multiplied by s, moved by m.
 local function still_life(s, m)
   local function at(x, y, z) return { x * s + m[1], y * s + m[2], z * s + m[3] } end
   local shiny = glint.material { diffuse = { 0.7, 0.3, 0.2 }, specular = 0.5, shininess = 40 }
@@ -61,7 +61,7 @@ for _, k in ipairs { -40, -20, 20, 40 } do
   local differ = difference(plain, still_life(2.0 ^ k, origin):render(size))
   check(differ == 0, ("S36: scale 2^%d gives the same bits"):format(k), differ .. " pixels differ")
 end
--- A lamp next to the eye, nearer than any length of the scene; and at the eye of a scene of any size.
+-- A light next to the eye, closer than any length of the scene; and at the eye of a scene of any size.
 for _, c in ipairs { { 1e-19, 1 }, { 1e-25, 1 }, { 1e-300, 1 }, { 0, 1 }, { 0, 1e19 }, { 0, 1e-19 }, { 0, 1e60 } } do
   local x, s = c[1], c[2]
   local image = glint.scene {
@@ -114,7 +114,7 @@ for W, want in pairs { [16] = 12, [64] = 140, [101] = 341, [256] = 2136, [512] =
   check(got == want, ("S40: %d pixels covered at %d x %d"):format(want, W, W), "got " .. got)
 end
 
--- Every value of an image's first channel.
+-- Calls f with every value of an image's first channel.
 local function each(image, f)
   for y = 0, image.height - 1 do
     for x = 0, image.width - 1 do f(image:pixel(x, y)) end

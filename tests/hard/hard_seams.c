@@ -1,12 +1,13 @@
-/// Rays that leave a triangle by an edge or corner: mirrored, they do not meet the face beyond it from inside; in glass, none
-/// gets by that face.
+/// Rays that leave a triangle close to an edge or corner: a reflected ray does not hit the adjacent face from inside;
+/// in glass, no ray slips past that face.
 #include "tests/hard/oracle/point.h"
 #include "tests/hard/oracle/shell.h"
 
 // ---- Two faces ----
 
-/// Two triangles of a convex mesh, and a ray that meets the first next to the second, by grazing light: where it begins anew,
-/// rounding has moved it further off the first one's plane, or a third one's, than it rises over that on its way to the second.
+/// Two triangles of a convex mesh, and a grazing ray that hits the first one close to the second. Rounding moves the
+/// hit point further from the plane of the first triangle, or of a third one, than the continued ray rises before it
+/// reaches the second.
 typedef struct grazing_case {
     const char *what;
     bool mirrors;
@@ -47,8 +48,8 @@ static const grazing_case cases[] = {
         { -0x1.2781502687c06p-8, -0x1.154733fb64eecp-2, -0x1.15ba41f2eb3a4p-2 } } },
 };
 
-/// Of a white world, the mirror shows all; the glass, which does not bend and of which there is but one surface to go
-/// through, nothing, as the second face ends the chain.
+/// In a white world the mirror shows all light. The glass does not refract and its depth allows one surface, so it
+/// shows nothing: the second face ends the chain.
 static void check_case(const grazing_case *k)
 {
     static const uint32_t corners[6] = { 0, 1, 2, 3, 4, 5 }, sizes[2] = { 3, 3 };
@@ -78,7 +79,7 @@ static void check_case(const grazing_case *k)
 
 // ---- A box ----
 
-/// A ray from outside, at a seam.
+/// A ray from outside towards a seam.
 static hard_ray aim_from_outside(const shell *s, double size)
 {
     hard_ray ray = aim_at_seam(s, size);
@@ -92,7 +93,7 @@ static hard_ray aim_from_outside(const shell *s, double size)
     return ray;
 }
 
-/// A ray from outside that a face's plane hardly rises to, and which meets it next to a seam, before or beyond.
+/// A ray from outside, nearly parallel to a face, that hits it close to a seam, before or beyond the seam.
 static hard_ray aim_along_face(const shell *s, double size)
 {
     const uint32_t *quad = s->corner[random_bits() % QUADS];
@@ -116,7 +117,7 @@ static hard_ray aim_along_face(const shell *s, double size)
     return ray;
 }
 
-/// The ray as a camera has it that looks along it, so that casting it decides as the frame does.
+/// The ray as a camera along it would generate it, so that casting it decides as the frame does.
 static hard_ray as_camera(const hard_ray *ray)
 {
     hard_ray out = *ray;
@@ -131,9 +132,9 @@ static double cosine_at(const hard_ray *ray, const glint_hit *hit)
     return (hit->normal[0] * ray->d[0] + hit->normal[1] * ray->d[1]) + hit->normal[2] * ray->d[2];
 }
 
-/// The way of a ray of unit direction through the shell, by casting it from both ends, and what rounding may make of it: at
-/// each end 16 roundings of the numbers there, which a face that the ray rises to slowly shifts along the ray. False: it does
-/// not go in by a front and out by a back, which is so by a silhouette, or hardly rises at all.
+/// The length of a unit-direction ray inside the shell, by casting it from both ends, and its error *slack: 16
+/// roundings of the coordinates at each end, divided by the cosine there. Returns false when the ray does not enter
+/// by a front and leave by a back face, as close to a silhouette, or when the error is too large.
 static bool way_through(const glint_scene *scene, const shell *s, double size, const hard_ray *ray, double *way,
                         double *slack)
 {
@@ -152,13 +153,14 @@ static bool way_through(const glint_scene *scene, const shell *s, double size, c
         *way = hypot(*way, out.point[c] - in.point[c]);
     const double place = 16 * size + fabs(s->middle[0]) + fabs(s->middle[1]) + fabs(s->middle[2]);
     *slack = 16 * 0x1p-53 * place * (1 / -cosine_at(ray, &in) + 1 / cosine_at(ray, &out));
-    // Corners are 4 roundings off, a face's plane below its neighbour's corner five times that: rays that rise to it by less
-    // than 40 roundings over half the size may truly meet the neighbour. That is a slack of 0.4 sizes.
+    // Corners are off by 4 roundings, and a face's plane is below its neighbour's corner by up to five times as much:
+    // rays that rise by less than 40 roundings over half the size may really hit the neighbour. That is a slack of
+    // 0.4 sizes.
     return *slack < 0.25 * size;
 }
 
-/// Rays that start on seams, in a white world: a mirror's go away; in glass none gets out without meeting the inside; and
-/// through glass that does not bend but dims they lose what the way takes.
+/// Rays that start close to seams, in a white world. Reflected rays leave, refracted rays do not get out without
+/// hitting the inside, and non-refracting absorbing glass dims by the length of the path.
 static void leaving_seams(uint64_t rays)
 {
     static shell s;

@@ -1,5 +1,5 @@
-/// The named cases of reflections, of sums of lights and of codes, each also turned and scaled; shininess from 0 to 1e7;
-/// codes as they come out of a PNG file.
+/// Test cases for reflections, sums of lights and pixel values, each also rotated and scaled; shininess from 0 to
+/// 1e7; pixel values as read from a PNG file.
 #include "tests/hard/oracle/point.h"
 
 #include <math.h>
@@ -116,22 +116,23 @@ static const reflection_case cases[] = {
       5.594805650890779e-05 },
 };
 
-/// log2 of the cosine is a float, off by at most 2.75 ulp, times a rounded exponent, rounded: 3.75 ulp of y; exp2 adds 1.5,
-/// the material's and the light's strengths 1.5. What the vectors' own rounding does to the cosine counts s times.
-/// Blinn's h, of length `half`, besides turns with l and v. In units of 2^-53, each, l and v of length 1: the components of l and v are 1 off by
-/// their division, those of a l and of w d 1 each by the product; a is 3 off, w is half of what a and l^2 are, and 1.5: the two
-/// lengths are 4.5 apart; n turns by 1, at most 2 / |h|. That makes 11 / |h|, by which (n.h)^s moves s tan(n, h) times.
+/// Allowed error. log2 of the cosine is a float with an error of at most 2.75 ulp, times a rounded exponent, rounded:
+/// 3.75 ulp of y. exp2 adds 1.5 ulp, the strengths of material and light 1.5. Rounding of the vectors changes the
+/// cosine, which counts s times. Blinn's h, of length `half`, also turns with l and v. In units of 2^-53 per
+/// component, with l and v of length 1: l and v are off by 1 from their division, a l and w d by 1 each from the
+/// product; a is off by 3, and w by half of the errors of a and l^2 plus 1.5, so the two lengths differ by 4.5; n
+/// turns by 1, at most 2 / |h|. The sum is 11 / |h|, which changes (n.h)^s by s tan(n, h) times as much.
 static double allowed(const reflection *want, double shininess, double half)
 {
     if (want->specular == 0)
-        return 0x1p-40; // below it a highlight is 0
+        return 0x1p-40; // below this value a highlight is 0
     const double y = fabs(want->log2_specular), ln2 = 0.6931471805599453;
-    const double tangent = shininess > 0 ? sqrt(expm1(2 * ln2 * y / shininess)) : 0; // (n.h)^s = 2^-y
+    const double tangent = shininess > 0 ? sqrt(expm1(2 * ln2 * y / shininess)) : 0; // from (n.h)^s = 2^-y
     const double turn = tangent * (11 * 0x1p-53) / half;
     return want->specular * (0x1p-23 * (ln2 * 3.75 * y + 3) + shininess * (8 * 0x1p-53 + turn)) + 0x1p-40;
 }
 
-/// The length of l + v, both of length 1, which Blinn's highlight is made of; Phong's is not.
+/// The length of l + v for Blinn's highlight, with l and v normalised; infinity for Phong's.
 static double half_length(bool blinn, const double l[3], const double v[3])
 {
     const double l_length = hypot(hypot(l[0], l[1]), l[2]), v_length = hypot(hypot(v[0], v[1]), v[2]);
@@ -192,7 +193,8 @@ static double compare(bool blinn, double shininess, const double n[3], const dou
     return error / limit;
 }
 
-/// A line of the table, by frames of one pixel; that in double has to hold what `evaluate` does, but for the pixel's ray.
+/// Prints a line of the table from one-pixel frames. In double the frame must agree with `evaluate`, except for the
+/// rounding of the pixel's ray.
 static void show(const reflection_case *k, const reflection *want, bool right)
 {
     static const double white[3] = { 1, 1, 1 };
@@ -232,8 +234,8 @@ static void check_reflection(const reflection_case *k)
         }
 }
 
-/// Shininess 0 and 1e-3 .. 1e7; v as far from the mirror direction as makes the highlight anything from 1 to 2^-45. Of some,
-/// light that the surface hardly rises to.
+/// Shininess 0 and 1e-3 .. 1e7, with v at a distance from the mirror direction that gives highlights from 1 to 2^-45.
+/// Some cases have grazing light.
 static void sweep_shininess(uint64_t count)
 {
     hard_test("P", "shininess 0 .. 1e7");
@@ -260,9 +262,10 @@ static void sweep_shininess(uint64_t count)
                worst);
 }
 
-// ---- Codes ----
+// ---- Pixel values ----
 
-/// One row of pixels of these linear values: spheres that an orthographic camera sees one a pixel, lit only by ambient light.
+/// A row of pixels with these linear values: an orthographic camera sees one sphere per pixel, lit only by ambient
+/// light.
 static glint_image *row_of(const double *values, int count)
 {
     static const double one[3] = { 1, 1, 1 }, none[3] = { 0 };
@@ -289,7 +292,7 @@ static glint_image *row_of(const double *values, int count)
     return image;
 }
 
-/// Writes the image and reads its codes back with libpng.
+/// Writes the image and reads its pixel values back with libpng.
 static void written_codes(const glint_image *image, glint_transfer transfer, int bits, int *codes)
 {
     char path[64];
@@ -342,7 +345,7 @@ static void check_row(const char *id, const double *values, int count, glint_tra
 
 static void check_codes(void)
 {
-    // I1; a pixel is a float: those a hair below a half stay there
+    // I1; a pixel is a float: values slightly below a half stay there
     const double steps[] = { 0.49999 / 255, 0.5 / 255, 1.5 / 255, 127.5 / 255, 0.999, 1.0001, 1e30, 0 };
     const int step_codes[] = { 0, 1, 2, 128, 255, 255, 255, 0 };
     check_row("I1", steps, 8, GLINT_TRANSFER_LINEAR, 8, step_codes);
@@ -359,8 +362,8 @@ static void check_codes(void)
             same[i] = bits == 8 ? i : (int)(random_bits() % 65536);
             values[i] = glint_srgb_decode((double)same[i] / range);
         }
-        check_row("I3", values, count, GLINT_TRANSFER_SRGB, bits, same); // code -> linear -> code
-        for (int i = 0; i < 1024; i++) { // at the steps themselves, and a few floats to each side
+        check_row("I3", values, count, GLINT_TRANSFER_SRGB, bits, same); // I3: pixel value -> linear -> pixel value
+        for (int i = 0; i < 1024; i++) { // at the steps themselves, and a few floats on each side
             const double step = glint_srgb_decode(((double)(random_bits() % (unsigned)range) + 0.5) / range);
             values[i] = (double)((float)step * (1 + (float)(int)(random_bits() % 7 - 3) * 0x1p-23f));
         }

@@ -1,11 +1,11 @@
-/// Adversarial rays at ellipsoids, boxes, disks, cylinders, cones, tori and triangles, under maps that turn, stretch, shear and
-/// mirror, against 113 bits.
+/// Adversarial rays at ellipsoids, boxes, disks, cylinders, cones, tori and triangles, under maps that rotate,
+/// stretch, shear and mirror, against 113-bit arithmetic.
 #include "tests/hard/oracle/aim_solid.h"
 #include "tests/hard/oracle/solid_cases.h"
 
 #include <string.h>
 
-#define ROUNDING 8 ///< of 2^-53: what the engine's arithmetic may be off by, times the map's condition and the distance
+#define ROUNDING 8 ///< in 2^-53: allowed error of the engine's arithmetic, times the map's condition and the distance
 
 // ---- Judging ----
 
@@ -41,7 +41,7 @@ static const char *judge(const solid_truth *want, bool hit, const glint_hit *got
     return want->normals ? "normal too far off" : NULL;
 }
 
-/// Numbers as they stand in an initializer.
+/// Formats numbers as in an initializer.
 static const char *list(char *out, size_t size, const double *v, int count)
 {
     int at = 0;
@@ -123,9 +123,10 @@ static void fuzz(int kind, uint64_t count)
 
 // ---- Disks nearly edge-on ----
 
-/// The engine's t is within GRAZING 2^-53 (1 + R / L) / c of itself, where the ray meets the plane at a cosine c, L after its
-/// start, and R is the size of what was subtracted: the lengths of o, p, o - p and the radius. The normal, n.(o - p) and n.d are
-/// three roundings or fewer of what they are made of, which R has twice, and the last two are over c.
+/// The relative error of the engine's t is at most GRAZING 2^-53 (1 + R / L) / c, where the ray hits the plane at a
+/// cosine c, L after its start, and R is the size of the operands: the lengths of o, p, o - p and the radius. The
+/// normal, n.(o - p) and n.d each have at most three roundings relative to their terms; R counts its terms twice, and
+/// the last two errors are divided by c.
 #define GRAZING 2
 
 typedef struct grazed {
@@ -134,7 +135,7 @@ typedef struct grazed {
     double radius;
 } grazed;
 
-/// A disk, and a ray that comes to its plane at a cosine of 1e-16 .. 1e-2, at a place within it, on its rim or past it.
+/// A disk, and a ray that hits its plane at a cosine of 1e-16 .. 1e-2, inside the disk, at its rim or outside.
 static grazed graze(void)
 {
     grazed g;
@@ -164,7 +165,7 @@ static grazed graze(void)
 
 static double length_of(const double v[3]) { return hypot(hypot(v[0], v[1]), v[2]); }
 
-/// Compares the engine with the bound; *share: the error of t relative to the bound.
+/// Compares the engine with the bound. *share: the error of t relative to the bound.
 static const char *judge_grazed(const grazed *g, bool hit, const glint_hit *got, tally *sum, double *share)
 {
     const truth want = true_plane(&g->ray, &g->plane);
@@ -179,7 +180,7 @@ static const char *judge_grazed(const grazed *g, bool hit, const glint_hit *got,
     }
     *share = 0;
     sum->rays++;
-    // of places that near to the plane, the engine does not tell on which side they are; likewise at the rim
+    // The engine does not decide on which side points so close to the plane are; likewise at the rim.
     if (!want.hit || !(bound < 0.25) || way * want.cosine < 1.01 * 0x1p-50 * places ||
         fabs(from_center - g->radius) < bound * way + 8 * 0x1p-53 * numbers) {
         sum->close++;

@@ -1,5 +1,5 @@
-/// How programs change with their numbers, against central differences in 113 bits: random formulas of all operations that have a
-/// slope, at random points.
+/// Derivatives of programs with respect to their inputs and constants, against central differences in 113 bits:
+/// random formulas of all differentiable operations, at random points.
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/quad.h"
 
@@ -8,9 +8,9 @@
 #define NODES 12
 #define STEP ((quad)1e-12)
 #define PARAMETERS 3
-#define OPERANDS 3 ///< the most that these operations have
+#define OPERANDS 3 ///< the most operands of these operations
 
-/// A formula: each node of operations on nodes before it; the first are the inputs and the numbers.
+/// A formula: each node is an operation on earlier nodes; the first nodes are the inputs and constants.
 typedef struct formula {
     int count;
     glint_op op[NODES];
@@ -67,7 +67,7 @@ static quad apply(glint_op op, quad a, quad b, quad c)
     }
 }
 
-/// Where an operation has no slope, or one without a bound, or where rounding decides which of two values it has.
+/// Returns whether an operation has no derivative, an unbounded one, or a value that rounding decides.
 static bool is_steep(glint_op op, quad a, quad b, quad c)
 {
     const quad size = a < 0 ? -a : a, other = b < 0 ? -b : b, width = a < b ? b - a : a - b, tie = 1e-9;
@@ -92,7 +92,7 @@ static bool is_steep(glint_op op, quad a, quad b, quad c)
     }
 }
 
-/// The value of all nodes; false: one is steep, or far from 1, where differences tell little.
+/// Computes all nodes. Returns false when one is steep, or far from 1, where differences are inaccurate.
 static bool evaluate(const formula *f, const quad *leaves, quad value[LEAVES + NODES])
 {
     memcpy(value, leaves, LEAVES * sizeof *leaves);
@@ -112,7 +112,7 @@ static formula random_formula(void)
     formula f = { .count = 3 + (int)uniform(0, NODES - 3) };
     for (int i = 0; i < f.count; i++) {
         f.op[i] = ops[(size_t)uniform(0, sizeof ops / sizeof *ops)];
-        for (int k = 0; k < OPERANDS; k++) // mostly what is new
+        for (int k = 0; k < OPERANDS; k++) // mostly recent nodes
             f.operand[i][k] = uniform(0, 1) < 0.5 && i > 0 ? LEAVES + i - 1 : (int)uniform(0, LEAVES + i);
     }
     return f;
@@ -139,7 +139,7 @@ static glint_program *make_program(const formula *f, const double *numbers, cons
     return program;
 }
 
-/// The slope by differences with a step; false: there is none.
+/// The derivative by differences with a step. Returns false when there is none.
 static bool difference(const formula *f, const quad *leaves, const double *slopes, quad step, quad *out)
 {
     quad more[LEAVES], less[LEAVES], high[LEAVES + NODES], low[LEAVES + NODES];
@@ -154,7 +154,7 @@ static bool difference(const formula *f, const quad *leaves, const double *slope
     return true;
 }
 
-/// Checks one formula at some points; returns how many of them tell.
+/// Checks one formula at several points. Returns the number of usable points.
 static int compare(const formula *f, double *worst)
 {
     double numbers[PARAMETERS], slopes[PARAMETERS], inputs[GLINT_INPUT_COUNT] = { 0 }, got, value;
@@ -174,7 +174,7 @@ static int compare(const formula *f, double *worst)
         if (!evaluate(f, leaves, all) || !difference(f, leaves, slopes, STEP, &want) ||
             !difference(f, leaves, slopes, 1000 * STEP, &wider) || want > 1e4 || want < -1e4 || want - wider > 1e-9 ||
             wider - want > 1e-9)
-            continue; // a kink, or next to one
+            continue; // at or next to a kink
         must(glint_program_evaluate(tangent, inputs, &got, &error), &error);
         must(glint_program_evaluate(program, inputs, &value, &error), &error);
         const double off = fabs(got - (double)want) / (1 + fabs((double)want));

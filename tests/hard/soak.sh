@@ -1,11 +1,11 @@
 #!/bin/sh
-# The long form of the hard cases: two processes, each with half of the rays and a seed of its own.
+# The long form of the hard cases: two processes, each with half of the rays and its own seed.
 #   soak.sh FOLDER RAYS    FOLDER holds the programs
 set -u
 folder=$1
 half=$(awk "BEGIN { printf \"%.0f\", $2 / 2 }")
 
-# Casts half of the rays; what it prints ends in its totals.
+# Casts half of the rays. Its output ends with the totals.
 soak() {
     bad=0
     for program in hard_fuzz hard_frames hard_pictures hard_solids hard_torus hard_combined hard_leaving hard_glass hard_area hard_meshes hard_seams hard_shading hard_facets hard_limits; do

@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-/// 1 + or - something between low and high.
+/// 1 plus or minus a log-uniform number between low and high.
 static double near_one(double low, double high) { return 1 + (chance(0.5) ? -1 : 1) * log_uniform(low, high); }
 
-/// side = a unit vector square to u
+/// side = a unit vector perpendicular to u
 static void random_side(const double u[3], double side[3])
 {
     double v[3], along, length = 0;
@@ -34,7 +34,7 @@ static double random_distance(void)
 {
     switch (random_bits() % 6) {
     case 0:
-        return near_one(1e-16, 1e-8); // on the surface or all but
+        return near_one(1e-16, 1e-8); // on the surface or almost
     case 1:
         return near_one(1e-8, 1);
     case 2:
@@ -57,7 +57,7 @@ static void random_place(double place[3], double size)
     }
 }
 
-/// Any length, denormal to huge; at times components that vanish beside the others.
+/// Scales to any length, denormal to huge; sometimes makes components negligible next to the others.
 static void stretch(double d[3])
 {
     const double length = chance(0.2)   ? ldexp(1, -1060 + (int)(random_bits() % 2040))
@@ -86,8 +86,8 @@ void aim_at_sphere(hard_ray *ray, hard_sphere *sphere)
         ray->o[c] = sphere->c[c] - u[c] * away;
     random_side(u, side);
     const double miss = sphere->r * (chance(0.5) ? near_one(1e-16, 1e-2) : uniform(0, 1.2));
-    // towards the point of the side plane through the centre that is `miss` from the line, when seen from afar; from
-    // near and inside any direction is as good
+    // Seen from far away: aims at the point of the perpendicular plane through the centre that is `miss` from the
+    // line. From nearby or inside, a random direction.
     const double sine = away > miss ? miss / away : 0, cosine = sqrt(1 - sine * sine);
     for (int c = 0; c < 3; c++)
         ray->d[c] = away > miss ? u[c] * cosine + side[c] * sine : side[c] + u[c] * uniform(-1, 1);
@@ -126,7 +126,7 @@ void aim_at_many(hard_ray *ray, hard_sphere *spheres, int count)
         spheres[i] = spheres[random_bits() % (unsigned)i];
         switch (random_bits() % 4) {
         case 0:
-            break; // the same again
+            break; // identical to the previous one
         case 1:
             spheres[i].r = nextafter(spheres[i].r, chance(0.5) ? 0 : HUGE_VAL);
             break;

@@ -12,7 +12,7 @@ static glint_transform random_map(double move)
 {
     glint_transform map = glint_transform_identity(), next;
     double axis[3], by[3];
-    for (int i = 0; i < 2; i++) { // scale, turn, scale, turn: shears
+    for (int i = 0; i < 2; i++) { // scale, rotate, scale, rotate: this shears
         for (int c = 0; c < 3; c++)
             by[c] = (chance(0.2) ? -1 : 1) * log_uniform(0.1, 10);
         next = glint_transform_scale(by);
@@ -27,8 +27,8 @@ static glint_transform random_map(double move)
     return glint_transform_product(&next, &map);
 }
 
-/// A map that undoes what its shape, a cylinder or cone, is flattened by: what is under it is as wide as high, of about the
-/// same size, and turned.
+/// A map that undoes the flattening of its shape, a cylinder or cone: the result is about as wide as high, of about
+/// `size`, and rotated.
 static glint_transform undoing_map(const glint_shape_desc *d, double size)
 {
     double n[3], x[3], away[3], turn[3], length = 0;
@@ -133,12 +133,12 @@ glint_scene *solid_alone(const hard_solid *s, glint_material *material)
 
 // ---- Rays ----
 
-/// A point of the shape as described: of its surface, its silhouette, an edge or a corner, and next to it.
+/// A point on or next to the shape as described: on its surface, silhouette, an edge or a corner.
 static void some_point(const hard_solid *s, double p[3])
 {
     const double turn = uniform(0, 6.3),
                  w = chance(0.3)   ? 0
-                     : chance(0.1) ? 1 - log_uniform(1e-8, 1) // of a cone, next to the apex
+                     : chance(0.1) ? 1 - log_uniform(1e-8, 1) // on a cone, next to the apex
                                    : uniform(0, 1),
                  v = chance(0.3) ? 0 : uniform(0, 1 - w);
     double k[3], a[3], b[3], along[3];
@@ -196,8 +196,8 @@ static void to_world(const hard_solid *s, double p[3])
             s->desc.transform.m[i][3];
 }
 
-/// Next to the line from a point of a cone through its apex: beyond that, for a ray down the side of the other half of the
-/// double cone, or on this side of it.
+/// A point close to the line from a point of a cone through its apex: beyond the apex, for a ray down the side of the
+/// other nappe of the double cone, or on this side of it.
 static void along_side(const hard_solid *s, const double p[3], double size, double out[3])
 {
     const double way = (chance(0.3) ? -1 : 1) * log_uniform(0.1, 10), nudge = size * log_uniform(1e-9, 0.1);
@@ -205,14 +205,15 @@ static void along_side(const hard_solid *s, const double p[3], double size, doub
         out[c] = s->desc.top[c] + way * (s->desc.top[c] - p[c]) + nudge * uniform(-1, 1);
 }
 
-/// From next to a point of a torus on along its surface, so that a ray from there touches it, nearly: a way of length `reach`.
+/// A point at distance `reach` from a point of a torus, along a tangent, so that a ray from there nearly touches the
+/// torus.
 static void beside(const hard_solid *s, const double p[3], double reach, double out[3])
 {
     const glint_shape_desc *d = &s->desc;
     double n[3], away[3], along = 0, off = 0, length = 0, round = 0, level = 0, from_axis[3];
     random_direction(away);
     for (int c = 0; c < 3; c++)
-        level += d->axis[c] * (p[c] - d->center[c]); // of random_solid the axis is unit
+        level += d->axis[c] * (p[c] - d->center[c]); // random_solid makes the axis a unit vector
     for (int c = 0; c < 3; c++)
         round = hypot(round, from_axis[c] = p[c] - d->center[c] - level * d->axis[c]);
     for (int c = 0; c < 3; c++)
@@ -241,7 +242,7 @@ hard_ray solid_aim(const hard_solid *s, double size)
     to_world(s, p);
     to_world(s, q);
     random_direction(away);
-    // points of flat shapes lie in one plane
+    // points of flat shapes are in one plane
     const bool flat = s->is_triangle || s->desc.kind == GLINT_SHAPE_DISK;
     const int way = along || touching ? 0 : flat && chance(0.8) ? 2 : (int)(random_bits() % 4);
     for (int c = 0; c < 3; c++) {

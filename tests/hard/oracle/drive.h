@@ -1,4 +1,4 @@
-/// The engine, only through engine/glint.h; and the counting of checks that every program here does.
+/// Helpers that use the engine only through engine/glint.h, and the counting of checks that every program here uses.
 #ifndef HARD_DRIVE_H
 #define HARD_DRIVE_H
 
@@ -11,32 +11,33 @@
 
 // ---- Counting ----
 
-/// Reads the arguments: --table prints Markdown tables, --rays N sets how many rays the fuzz casts, --seed N which.
-/// Anything else ends the program. HARD_RAYS in the environment is another way to set the rays.
+/// Reads the arguments: --table prints Markdown tables, --rays N sets the number of fuzz rays, --seed N their seed.
+/// Any other argument ends the program. HARD_RAYS in the environment also sets the number of rays.
 void hard_begin(int argc, char **argv);
 extern bool hard_table;
-extern uint64_t hard_rays; ///< 1e6 unless told
+extern uint64_t hard_rays; ///< default 1e6
 
-/// Begins a test: what is checked from here to the next one belongs to it. `id` as in the list of hard cases.
+/// Begins a test: all checks up to the next one belong to it. id: as in the list of hard cases.
 void hard_test(const char *id, const char *what);
-/// Checks one thing; prints the message when it fails (of a program, the first ten). Returns `ok`; several are joined by `&`, so that
-/// each is checked.
+/// Checks one condition and prints the message when it fails (the first ten failures of a program). Returns `ok`;
+/// combine several with `&`, so that each is evaluated.
 __attribute__((format(printf, 2, 3))) int hard_check(bool ok, const char *format, ...);
-/// Counts checks that were right, where they are too many for a message each.
+/// Counts correct results that are too many to check one by one.
 void hard_right(uint64_t checks);
-/// A case about something that the engine does not have.
+/// Records a case about a feature that the engine does not have.
 void hard_absent(const char *id, const char *what);
-/// Prints the totals; what main returns.
+/// Prints the totals. Returns the exit code for main.
 int hard_end(void);
 
-/// In tables: the heading, and a line for each test as it ends, for programs whose tests have no numbers to show.
+/// In tables, prints the heading, and a line for each test as it ends, for programs whose tests have no values to
+/// show.
 void hard_list_tests(const char *title);
-/// In tables: the heading of lines of values.
+/// In tables, prints the heading of lines of values.
 void hard_columns(const char *title);
-/// The values of a line; HARD_BLANK: empty.
+/// The values of a line; HARD_BLANK: an empty cell.
 #define HARD_BLANK (-HUGE_VAL)
 typedef struct hard_values {
-    double truth, in_double, in_float; ///< the oracle's, the engine's
+    double truth, in_double, in_float; ///< the oracle's; the engine's
     double naive_double, naive_float; ///< the textbook's formula
 } hard_values;
 void hard_row(const char *id, const char *what, const hard_values *values, bool right);
@@ -52,7 +53,7 @@ void random_direction(double v[3]); ///< unit to the last bits
 
 // ---- Objects ----
 
-/// A call that must not fail: a failure ends the program with the engine's message.
+/// Ends the program with the engine's message when the call has failed.
 void must(glint_status status, const glint_error *error);
 
 glint_scene *scene_new(void);
@@ -65,7 +66,7 @@ void scene_light(glint_scene *scene, const glint_light_desc *desc);
 
 glint_material *material_new(glint_model model, const double diffuse[3], double specular, double shininess);
 
-/// Makes an empty file of a name nobody else has, for the caller to remove. `ending` with its dot.
+/// Creates an empty file with a unique name. The caller removes it. ending: includes the dot.
 void temporary_file(char path[64], const char *ending);
 
 /// Casts one ray.
@@ -75,21 +76,21 @@ typedef struct frame_desc {
     int width, height;
     glint_precision precision;
     uint32_t passes; ///< bits 1u << GLINT_PASS_...
-    int threads; ///< 0: 1
-    const char *isa; ///< NULL: as the environment says, else the best
+    int threads; ///< 0: one thread
+    const char *isa; ///< NULL: as the environment says, otherwise the best
 } frame_desc;
 
-/// Whether this machine and build can render with an instruction set.
+/// Returns whether this machine and build can render with an instruction set.
 bool isa_usable(const char *isa);
 
-/// Renders a frame; `stats` may be NULL.
+/// Renders a frame. `stats` may be NULL.
 glint_image *frame(const glint_scene *scene, const frame_desc *desc, glint_frame_stats *stats);
 glint_image *frame_to_depth(const glint_scene *scene, const frame_desc *desc, double max_depth,
                             glint_frame_stats *stats);
-/// The same, of one pixel, along the ray: 1 x 1 pixels of a camera that looks there.
+/// Renders one pixel along the ray, with a camera that looks there.
 glint_image *frame_of_ray(glint_scene *scene, const hard_ray *ray, glint_precision precision, uint32_t passes);
 void pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3]);
-/// How many pixels of a pass differ in any bit; -0 and 0 are the same.
+/// Counts the pixels of a pass that differ in any bit, except the sign of 0.
 long pixels_that_differ(const glint_image *a, const glint_image *b, glint_pass pass);
 
 #endif

@@ -1,6 +1,7 @@
-/// The engine's allowed error: 4 ulp of t, times the magnification of the inputs' rounding. Half an
-/// ulp of the direction, of the radius, and of o - c where that is not exact, moves the hit by so much that a sharper
-/// answer would mean nothing. (Where o - c is exact the roundings of o and c are not counted: a user may mean them.)
+/// The engine's allowed error: 4 ulp of t, times the magnification of the inputs' rounding. Half an ulp of the
+/// direction, of the radius, and of o - c where that is not exact, moves the hit by so much that a more precise
+/// answer would be meaningless. (Where o - c is exact, the roundings of o and c do not count: a user may mean these
+/// values.)
 #ifndef HARD_JUDGE_H
 #define HARD_JUDGE_H
 
@@ -9,21 +10,21 @@
 
 typedef enum verdict {
     RIGHT,
-    TOO_CLOSE, ///< within 8 * 2^-53 of tangency, or of the surface where o - c is not exact: either answer will do
+    TOO_CLOSE, ///< within 8 * 2^-53 of tangency, or of the surface where o - c is not exact: either answer is accepted
     WRONG_DECISION,
     WRONG_T,
     WRONG_NORMAL
 } verdict;
 
 #define TANGENCY (8 * 0x1p-53) ///< decisions further away than this, in units of |f| + r, must be right
-#define SURFACE (2 * 0x1p-53) ///< the rounding of an inexact o - c, in the same units
+#define SURFACE (2 * 0x1p-53) ///< rounding of an inexact o - c, in the same units
 
 extern const char *const verdict_name[];
 
 typedef struct judgement {
     verdict verdict;
     double ulp; ///< error of t, in ulp
-    double t_share; ///< that error relative to the allowed one: 4 ulp x the magnification of the inputs' rounding
+    double t_share; ///< error of t relative to the allowed one: 4 ulp x the magnification of the inputs' rounding
     double normal_share;
 } judgement;
 

@@ -1,5 +1,4 @@
-/// The textbook's intersection, (-b +- sqrt(b^2 - 4ac)) / 2a, in float and in double: what the engine is measured
-/// against, and what it must not be.
+/// The textbook's intersection, (-b +- sqrt(b^2 - 4ac)) / 2a, in float and in double, for comparison with the engine.
 #ifndef HARD_NAIVE_H
 #define HARD_NAIVE_H
 

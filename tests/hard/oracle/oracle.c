@@ -1,11 +1,12 @@
-/// Truth in multiple precision: 400 bits, and where those do not decide, as many as no product of four doubles exceeds.
+/// Truth in multiple precision: 400 bits, and, where those do not decide, enough bits for exact products of four
+/// doubles.
 #include "tests/hard/oracle/oracle.h"
 
 #include <math.h>
 #include <mpfr.h>
 
 #define BITS 400
-#define BITS_EXACT 9000 ///< 4 x 2098 bits between the smallest and the largest double, and room for sums
+#define BITS_EXACT 9000 ///< 4 x 2098 bits between the smallest and the largest double, plus space for sums
 
 #define RN MPFR_RNDN
 
@@ -59,7 +60,8 @@ static bool lost(mpfr_t x, mpfr_t y, int k)
 
 static double rounded(mpfr_t x) { return mpfr_get_d(x, RN); }
 
-/// a t^2 + 2 b t + c = 0 with a = d.d, b = f.d, c = f.f - r^2; disc = b^2 - a c. False: more bits are needed.
+/// a t^2 + 2 b t + c = 0 with a = d.d, b = f.d, c = f.f - r^2; disc = b^2 - a c. Returns false when more bits are
+/// needed.
 static bool set_equation(numbers *k, const hard_ray *ray, const hard_sphere *sphere, int bits)
 {
     set_vector(k->d, ray->d);
@@ -83,7 +85,8 @@ static bool set_equation(numbers *k, const hard_ray *ray, const hard_sphere *sph
     return bits == BITS_EXACT || !lost(k->disc, k->size, bits - 120);
 }
 
-/// The nearest positive root in k->x, without a difference of near numbers; false: there is none.
+/// Puts the nearest positive root into k->x, without subtracting nearly equal numbers. Returns false when there is
+/// none.
 static bool nearest_root(numbers *k)
 {
     const int outside = mpfr_sgn(k->c), away = mpfr_sgn(k->b);
@@ -112,7 +115,7 @@ static void sphere_margins(numbers *k, const hard_sphere *sphere, truth *out)
     mpfr_sqr(k->y, k->size, RN);
     mpfr_div(k->y, k->c, k->y, RN); // (|f| - r) / (|f| + r)
     out->surface = fabs(rounded(k->y));
-    mpfr_mul(k->x, k->rr, k->a, RN); // line's distance: sqrt((r^2 a - disc) / a)
+    mpfr_mul(k->x, k->rr, k->a, RN); // distance of the line: sqrt((r^2 a - disc) / a)
     mpfr_sub(k->x, k->x, k->disc, RN);
     mpfr_div(k->x, k->x, k->a, RN);
     mpfr_sqrt(k->x, k->x, RN);
@@ -213,7 +216,7 @@ static void make_unit(mpfr_t v[3])
     mpfr_clear(length);
 }
 
-/// The cosine whose power the highlight is: r.v = 2 (n.l)(n.v) - l.v, or n.h. 0 where h is undefined.
+/// The cosine that the highlight raises to a power: r.v = 2 (n.l)(n.v) - l.v, or n.h. 0 where h is undefined.
 static void highlight_cosine(mpfr_t out, bool blinn, mpfr_t n[3], mpfr_t l[3], mpfr_t v[3], mpfr_t nl, mpfr_t nv)
 {
     if (!blinn) {

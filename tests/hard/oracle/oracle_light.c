@@ -1,4 +1,4 @@
-/// Truth about light, in 400 bits.
+/// Exact results for light, in 400 bits.
 #include "tests/hard/oracle/oracle_light.h"
 
 #include <mpfr.h>
@@ -6,7 +6,7 @@
 #define BITS 400
 #define RN MPFR_RNDN
 
-/// Takes the result and frees it.
+/// Rounds the result to double and frees it.
 static double taken(mpfr_t x)
 {
     const double out = mpfr_get_d(x, RN);
@@ -239,7 +239,8 @@ static double pi_over(double radius, double distance, unsigned plus)
 double oracle_disk(double radius, double distance) { return pi_over(radius, distance, 1); }
 double oracle_ball(double radius, double distance) { return pi_over(radius, distance, 0); }
 
-/// Half the angle that a ball on the axis covers as seen from `x` aside on the plane, and the angle of its centre.
+/// Half the angle that a ball on the axis subtends at a point `x` from the axis in the plane, and the angle of its
+/// centre.
 static void seen_from(mpfr_t x, double radius, double height, mpfr_t half, mpfr_t centre)
 {
     mpfr_t h;
@@ -297,7 +298,7 @@ double oracle_fresnel(double ratio, double cosine)
     mpfr_mul(s, s, r, RN);
     mpfr_ui_sub(s, 1, s, RN);
     mpfr_set_ui(out, 1, RN);
-    if (mpfr_sgn(s) > 0) { // the mean of the two polarisations
+    if (mpfr_sgn(s) > 0) { // mean of the two polarisations
         mpfr_sqrt(s, s, RN);
         mpfr_mul(p, r, c, RN);
         mpfr_sub(q, p, s, RN);

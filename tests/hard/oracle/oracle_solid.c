@@ -6,7 +6,7 @@
 typedef struct frame_of {
     quad m[3][3], inverse[3][3], center[3]; ///< x = center + m k
     quad normals[3][3]; ///< transpose of inverse
-    quad extent, place; ///< norms of m and center as if nothing in their sums cancelled
+    quad extent, place; ///< norms of m and center, without cancellation in their sums
     quad condition; ///< extent times the norm of inverse
 } frame_of;
 
@@ -26,7 +26,7 @@ static bool is_torus(const glint_shape_desc *desc) { return desc->kind == GLINT_
 
 // ---- The map from the unit shape ----
 
-/// Two unit vectors square to a third.
+/// Computes two unit vectors perpendicular to a third.
 static void square_to(const quad along[3], quad x[3], quad y[3])
 {
     const quad length = sqrtf128(dot(along, along));
@@ -56,7 +56,7 @@ static void set_round(frame_of *frame, const quad center[3], const quad along[3]
     }
 }
 
-/// The shape as described, before its transform.
+/// The frame of the shape as described, before its transform.
 static void described(const glint_shape_desc *desc, frame_of *frame)
 {
     quad center[3], along[3];
@@ -77,7 +77,7 @@ static void described(const glint_shape_desc *desc, frame_of *frame)
         return;
     }
     const double radius = is_torus(desc) ? desc->major : desc->radius;
-    if (desc->kind == GLINT_SHAPE_DISK || is_torus(desc)) { // a disk has no height; any unit of it will do
+    if (desc->kind == GLINT_SHAPE_DISK || is_torus(desc)) { // a disk has no height, so any unit serves
         const quad length = sqrtf128(dot(along, along));
         for (int c = 0; c < 3; c++)
             along[c] *= radius / length;
@@ -146,14 +146,14 @@ static void add_normal(solid_truth *out, const quad n[3], quad turn)
     next->turn = (double)turn;
 }
 
-/// The normals that will do where the ray meets the shape, at t.
+/// Adds the acceptable normals where the ray hits the shape, at t.
 static void add_normals(const glint_shape_desc *desc, const frame_of *frame, const unit_ray *r, quad margin,
                         const unit_span *grown, int end, quad t, solid_truth *out)
 {
     const quad moved = (out->most - out->least) * sqrtf128(dot(r->e, r->e)) + margin;
     const quad x = r->f[0] + t * r->e[0], y = r->f[1] + t * r->e[1];
     if (desc->kind == GLINT_SHAPE_CONE && sqrtf128(x * x + y * y) < 16 * margin)
-        return; // its apex
+        return; // the apex
     for (int part = 0; part < unit_parts(desc); part++) {
         quad g[3], n[3];
         if (!unit_may_end(desc, part, r, margin, end, grown))
@@ -178,17 +178,18 @@ static void bracket(const unit_span *exact, const unit_span *grown, const unit_s
     out->most = (double)(a < b ? b : a);
 }
 
-/// How far rounding may move each part of the unit shape: `rounding` times 2^-53 of what it is a share of.
+/// How far rounding may move each part of the unit shape: 2^-53 times `rounding`, the condition and the reach.
 ///
-/// Let x = c + M k, M = T F: the shape's frame F under its transform T. The engine knows M to some roundings of the sums in
-/// |T| |F|, each of the columns of F being a few roundings off itself: nine of them. These move k by |M^-1| |T||F| |k|, the
-/// condition times |k|. The numbers of the inverse are cofactors (two roundings, whatever cancels) over the determinant (three
-/// of |row| |cofactors|, so three of the condition, common to all) and one more: six. Its products with x - c are of size
-/// |M^-1| |M k|, and so is what their sums lose: three roundings of the condition times |k|, one in x - c. What is lost in c,
-/// four roundings of |T| |c| and the translation, comes in by |M^-1|. So at both ends of the ray's way to the shape, at f and at
-/// a |k| below 2, it is off by some twenty roundings of the condition times the reach below. Solving adds a few of the reach
-/// alone, if it squares nothing that is much longer than what is left. Norms here are Frobenius's: their product, the
-/// condition, is 3 or more where maps keep angles. Eight times it are two dozen roundings.
+/// Let x = c + M k, M = T F: the shape's frame F under its transform T. The engine knows M to a few roundings of the
+/// sums in |T| |F|, each column of F being a few roundings off: nine of them. These move k by |M^-1| |T||F| |k|, the
+/// condition times |k|. The elements of the inverse are cofactors (two roundings, despite cancellation) over the
+/// determinant (three of |row| |cofactors|, so three of the condition, common to all) and one more: six. Its products
+/// with x - c are of size |M^-1| |M k|, and so are the errors of their sums: three roundings of the condition times
+/// |k|, one in x - c. The error of c, four roundings of |T| |c| and the translation, is multiplied by |M^-1|. So at
+/// both ends of the ray's path to the shape, at f and at a |k| below 2, the error is some twenty roundings of the
+/// condition times the reach below. Solving adds a few of the reach only, provided it squares nothing much longer
+/// than the result. The norms here are Frobenius norms: their product, the condition, is at least 3, with equality
+/// for conformal maps. Eight times the condition are two dozen roundings.
 static quad margin_of(const frame_of *frame, const unit_ray *r, double rounding)
 {
     const quad reach = sqrtf128(dot(r->f, r->f)) + 2 + frame->condition / frame->extent * frame->place;
@@ -212,7 +213,7 @@ static solid_truth of_solid(const hard_ray *ray, const glint_shape_desc *desc, d
         out.most += (double)(margin / size_of(r.e[2]));
     }
     if (margin > 1e-3 * (is_torus(desc) ? desc->minor / desc->major : 1) || (desc->kind == GLINT_SHAPE_DISK && size_of(r.f[2]) < 4 * margin))
-        out.close = true; // nothing to hold on to; or in the disk's plane
+        out.close = true; // too imprecise to judge; or in the disk's plane
     const int end = unit_first_ahead(&s);
     if (out.hit && !out.close)
         add_normals(desc, &frame, &r, margin, &more, end, s.t[end], &out);
@@ -221,8 +222,8 @@ static solid_truth of_solid(const hard_ray *ray, const glint_shape_desc *desc, d
 
 // ---- Triangles ----
 
-/// Whether the engine takes a place for one of the plane, which a ray that starts there does not meet: n . q is less than
-/// ON_PLANE of what it is made of, n = f x g. Its rounding is half of that.
+/// Returns whether the engine treats a point as in the plane, so that a ray from there does not hit it: n . q is less
+/// than ON_PLANE of the sum of its terms, n = f x g. Rounding is half of that.
 #define ON_PLANE (17 * (quad)0x1p-53)
 
 static bool is_on_plane(const quad f[3], const quad g[3], const quad n[3], const quad q[3])
@@ -251,13 +252,13 @@ static solid_truth of_triangle(const hard_ray *ray, const double corner[3][3], d
         const int i = (c + 1) % 3, k = (c + 2) % 3;
         n[c] = f[i] * g[k] - f[k] * g[i];
     }
-    for (int j = 0; j < 3; j++) { // d . (p_k x p_i): which side of an edge the ray passes on
+    for (int j = 0; j < 3; j++) { // d . (p_k x p_i): the side of an edge on which the ray passes
         const quad *a = p[(j + 1) % 3], *b = p[(j + 2) % 3];
         e[j] = d[0] * (a[1] * b[2] - a[2] * b[1]) + d[1] * (a[2] * b[0] - a[0] * b[2]) +
                d[2] * (a[0] * b[1] - a[1] * b[0]);
     }
     const quad det = e[0] + e[1] + e[2], length = sqrtf128(dot(d, d)), turn = det < 0 ? -1 : 1;
-    // each edge is made of differences of products of two such numbers and a component of d
+    // each edge consists of differences of products of two such numbers and a component of d
     const quad off = rounding * (quad)0x1p-53 * reach * reach * length;
     const quad least = turn * (turn * e[0] < turn * e[1] ? (turn * e[0] < turn * e[2] ? e[0] : e[2])
                                                          : (turn * e[1] < turn * e[2] ? e[1] : e[2]));

@@ -37,7 +37,7 @@ static void cut_quadric(unit_span *s, quad a, quad b, quad c)
     cut(s, t0 < t1 ? t0 : t1, t0 < t1 ? t1 : t0);
 }
 
-/// x^2 + y^2 <= (z + g)^2 for z >= -g: the half of the double cone.
+/// x^2 + y^2 <= (z + g)^2 for z >= -g: one nappe of the double cone.
 static void cut_cone(unit_span *s, const unit_ray *r, quad g)
 {
     const quad z = r->f[2] + g, ez = r->e[2], huge = (quad)HUGE_VAL;
@@ -59,7 +59,7 @@ static void cut_cone(unit_span *s, const unit_ray *r, quad g)
             s->hit = s->hit && a < 0;
         else
             cut_quadric(s, a, b, c);
-    } else { // steeper than the side: outside between the roots; within z >= 0 one of the two ends is left
+    } else { // steeper than the side: outside between the roots; with z >= 0 only one of the two ends remains
         const quad root = sqrtf128(disc), q = b > 0 ? -b - root : -b + root, t0 = q / a, t1 = q == 0 ? t0 : c / q;
         if (ez > 0)
             cut(s, t0 < t1 ? t1 : t0, s->t[1]);
@@ -68,7 +68,7 @@ static void cut_cone(unit_span *s, const unit_ray *r, quad g)
     }
 }
 
-/// A disk: a plane off by g moves the point on it by as much, times how flat the ray is.
+/// A disk: a plane offset by g moves the hit point in proportion to g and to the ray's slope along the plane.
 static void cut_disk(unit_span *s, const unit_ray *r, quad g)
 {
     if (r->e[2] == 0) {
@@ -80,7 +80,7 @@ static void cut_disk(unit_span *s, const unit_ray *r, quad g)
     *s = (unit_span) { radius >= 0 && x * x + y * y <= radius * radius, { t, t } };
 }
 
-// ---- The torus: a quartic along the ray, begun anew where that is nearest to the middle ----
+// ---- The torus: a quartic along the ray, from the point nearest to the centre ----
 
 #define DEGREE 4
 
@@ -92,7 +92,7 @@ static quad value_of(const quad *coefficient, int degree, quad x)
     return sum;
 }
 
-/// A root between two places of different signs.
+/// Finds a root between two points of opposite sign.
 static quad root_between(const quad *coefficient, int degree, quad low, quad high)
 {
     quad slope[DEGREE], x = (low + high) / 2;
@@ -112,7 +112,8 @@ static quad root_between(const quad *coefficient, int degree, quad low, quad hig
     return x;
 }
 
-/// The roots within -reach .. reach, in order: one between neighbours of the derivative's where the sign changes. Returns how many.
+/// The roots within -reach .. reach, in order, one between neighbouring roots of the derivative where the sign
+/// changes. Returns their number.
 static int roots_of(const quad *coefficient, int degree, quad reach, quad *root)
 {
     quad slope[DEGREE], turn[DEGREE + 2];
@@ -160,7 +161,7 @@ int unit_parts(const glint_shape_desc *desc)
                                                                                   : 1;
 }
 
-/// Cuts by one part: of a box a slab; of others first the curved side, then the slab between the ends.
+/// Cuts with one part: a slab of a box; for other shapes first the curved side, then the slab between the ends.
 static void cut_part(unit_span *s, const glint_shape_desc *desc, int part, const unit_ray *r, quad g)
 {
     const quad one = 1 + g;
@@ -168,7 +169,7 @@ static void cut_part(unit_span *s, const glint_shape_desc *desc, int part, const
                cc = r->f[0] * r->f[0] + r->f[1] * r->f[1];
     if (desc->kind == GLINT_SHAPE_BOX)
         cut_slab(s, r->f[part], r->e[part], -one, one);
-    else if (part == 1) // of a cone, whose apex is the side's, one end
+    else if (part == 1) // a cone has only one end; its side includes the apex
         cut_slab(s, r->f[2], r->e[2], desc->kind == GLINT_SHAPE_CONE ? -(quad)HUGE_VAL : -one, one);
     else if (desc->kind == GLINT_SHAPE_SPHERE)
         cut_quadric(s, aa + r->e[2] * r->e[2], bb + r->f[2] * r->e[2], cc + r->f[2] * r->f[2] - one * one);
@@ -220,7 +221,7 @@ void unit_normal(const glint_shape_desc *desc, int part, const unit_ray *r, int 
         n[2] = 1;
     } else if (desc->kind == GLINT_SHAPE_BOX || part == 1) {
         const int axis = desc->kind == GLINT_SHAPE_BOX ? part : 2;
-        n[axis] = (r->e[axis] > 0) == (end == 1) ? 1 : -1; // against the ray where it goes in
+        n[axis] = (r->e[axis] > 0) == (end == 1) ? 1 : -1; // against the ray where it enters
     } else {
         const quad round = sqrtf128(k[0] * k[0] + k[1] * k[1]);
         n[0] = k[0] / round;

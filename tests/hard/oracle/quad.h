@@ -1,10 +1,10 @@
-/// Arithmetic of 113 bits. Private to the oracle.
+/// 113-bit arithmetic. Private to the oracle.
 #ifndef GLINT_TESTS_QUAD_H
 #define GLINT_TESTS_QUAD_H
 
 #include <math.h>
 
-#ifdef __clang__ // whose C has the type by its older name alone, and to which glibc's headers do not show the functions
+#ifdef __clang__ // clang has only the older name of the type in C, and glibc's headers hide the functions from it
 __extension__ typedef __float128 quad;
 quad floorf128(quad), sqrtf128(quad), expf128(quad), exp2f128(quad), log2f128(quad), powf128(quad, quad), sinf128(quad),
     cosf128(quad), tanf128(quad), acosf128(quad), atan2f128(quad, quad);

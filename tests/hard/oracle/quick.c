@@ -1,10 +1,10 @@
-/// Truth in 113 bits, with a bound on its own error: an order of magnitude faster than multiple precision, and enough
-/// for all but the few rays that come nearer than 2^-46.
+/// Truth in 113 bits, with a bound on its own error: an order of magnitude faster than multiple precision, and
+/// sufficient except for the few rays closer than 2^-46 to a decision.
 #include "tests/hard/oracle/oracle.h"
 #include "tests/hard/oracle/quad.h"
 
-/// A sum of products of the sizes below is off by less than 16 roundings of 2^-113; what is left of a difference has
-/// to be this many times larger, so that it is good to 2^-63.
+/// A sum of products of the sizes below has an error below 16 roundings of 2^-113. A difference must be larger than
+/// this error by the factor below to be accurate to 2^-63.
 #define ENOUGH (16 * 0x1p-113 * 0x1p63)
 
 static quad dot(const quad u[3], const quad v[3]) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; }

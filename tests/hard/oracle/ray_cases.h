@@ -1,4 +1,4 @@
-/// The named cases of one ray and one sphere.
+/// The test cases of one ray and one sphere.
 #ifndef HARD_RAY_CASES_H
 #define HARD_RAY_CASES_H
 
@@ -10,7 +10,7 @@ typedef struct ray_case {
     const char *id, *what;
     hard_ray ray;
     hard_sphere sphere;
-    double t; ///< as computed elsewhere with 4096 bits; 0: a miss; NAN: tangent, a hit or a miss
+    double t; ///< computed elsewhere with 4096 bits; 0: a miss; NAN: tangent, a hit or a miss
 } ray_case;
 
 extern const ray_case ray_cases[];

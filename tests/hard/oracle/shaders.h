@@ -1,4 +1,4 @@
-/// Phong's and Blinn's models as shaders that read every input except coordinates on surfaces.
+/// Phong's and Blinn's models as shaders that read every input except texture coordinates.
 #ifndef GLINT_HARD_SHADERS_H
 #define GLINT_HARD_SHADERS_H
 
@@ -28,7 +28,7 @@ static inline glint_value input_of(glint_builder *b, int input)
     return out;
 }
 
-/// The product of two vectors, which begin at these inputs.
+/// The dot product of two vectors whose inputs start at x and y.
 static inline glint_value product(glint_builder *b, int x, int y)
 {
     glint_value sum = apply(b, GLINT_OP_MUL, input_of(b, x), input_of(b, y));
@@ -59,7 +59,8 @@ static inline glint_value make_wave(bool directional, glint_builder *b)
                        : apply(b, GLINT_OP_ADD, wave, apply(b, GLINT_OP_DIV, input_of(b, GLINT_INPUT_DISTANCE), number_of(b, 16)));
 }
 
-/// The model's formula, times 1.5 + (sin(3 p.x) + sin(world.z)) / 4 + distance / 16. Under parallel light without the distance.
+/// The model's formula, times 1.5 + (sin(3 p.x) + sin(world.z)) / 4 + distance / 16, under directional light without
+/// the distance.
 static inline glint_program *make_shader(glint_model model, bool directional)
 {
     glint_builder *b;

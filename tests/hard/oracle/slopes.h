@@ -1,4 +1,5 @@
-/// Shared by the tests of derivatives: vectors in 113 bits, a picture with one, and how far it is from the truth.
+/// Shared by the tests of derivatives: vectors in 113 bits, a picture with one derivative, and its distance from the
+/// truth.
 #ifndef GLINT_HARD_SLOPES_H
 #define GLINT_HARD_SLOPES_H
 
@@ -7,7 +8,7 @@
 
 #include <stddef.h>
 
-/// A number of a test's `world`, which a derivative is taken by.
+/// A number of a test's `world` with respect to which a derivative is taken.
 typedef struct number {
     const char *object, *field;
     size_t offset;
@@ -16,7 +17,7 @@ typedef struct number {
 
 #define NUMBER(object, field, member, components) { object, field, offsetof(world, member), components }
 
-#define STEP 1e-12 ///< of central differences, which are off by its square
+#define STEP 1e-12 ///< of central differences, whose error is its square
 
 static inline void fill(quad out[3], double low, double high)
 {
@@ -45,7 +46,7 @@ static inline void put(double *out, const quad in[3], int count)
         out[c] = (double)in[c];
 }
 
-/// `desc`: the size, and other fields that differ from the defaults. The caller releases the image.
+/// desc: the size, and other fields that differ from the defaults. The caller releases the image.
 static inline glint_image *slope_picture(const glint_scene *scene, glint_render_desc desc, const glint_derivative *derivative)
 {
     glint_renderer_desc r = glint_renderer_desc_default();
@@ -64,8 +65,8 @@ static inline glint_image *slope_picture(const glint_scene *scene, glint_render_
     return image;
 }
 
-/// The largest distance from `want`, of width * height pixels, relative to the promise. *most: the steepest pixel.
-/// Pixels are rounded to float; before, what is left of sums in double is within 2^-40 of the steepest pixel.
+/// The largest distance from `want`, of width * height pixels, relative to the guaranteed error. *most: the steepest
+/// pixel. Pixels are rounded to float; before that, sums in double have an error within 2^-40 of the steepest pixel.
 static inline double slope_distance(const glint_image *image, int width, int height, double (*want)[3], double *most)
 {
     double worst = 0;

@@ -3,8 +3,8 @@
 #include <string.h>
 
 const solid_case solid_cases[] = {
-    // Next to a face's plane by an ulp or two and nearly along it: within rounding the ray is under that face from the start,
-    // and goes in by another, far away.
+    // An ulp or two from a face's plane and nearly parallel to it: within rounding the ray is under that face from
+    // the start, and enters by another face, far away.
     { "V1", "box, from an ulp beyond a face, along it",
       .ray = { { 0x1.30d5db6811a34p+16, 0x1.62a5baa45b9b6p+15, 0x1.11b94f0656f56p+17 },
                { -0x1.68p-28, -0x1.3e1b40492732ep+17, 0x1.3f0b374d7b92p+18 } },
@@ -20,7 +20,7 @@ const solid_case solid_cases[] = {
                { -0x1.5eaff1fe9994dp-19, 0x1.688c1712b7cc2p-19, 0x1.56p-62 } },
       .kind = GLINT_SHAPE_BOX, .min = { -0x1.a618e87783472p-18, -0x1.24c73ffceb841p-20, -0x1.5c95cf32239e6p-20 },
       .max = { 0x1.646a1aa255eebp-18, 0x1.32d1b73bc93p-19, 0x1.74f31fb7a1afap-18 }, .t = 0.0014619883040935672 },
-    // Flattened in two directions: the numbers of the inverse are differences that nearly cancel.
+    // Flattened in two directions: the elements of the inverse are differences that nearly cancel.
     { "V4", "disk, flattened to a needle",
       .ray = { { -0x1.83e1b0d22a5b8p+7, 0x1.5ab248a689ee7p+8, -0x1.a455150e67442p+6 },
                { 0x1.6e6e63fc084p-2, -0x1.88e964824e9p+0, 0x1.50079a47ea28p-1 } },
@@ -30,7 +30,7 @@ const solid_case solid_cases[] = {
                { -0x1.40ecf90d049ebp-2, -0x1.c455a4348b9f9p-2, 0x1.dae62db0dbbbep+5, 0x0p+0 },
                { 0x1.8b75d51b58594p-4, 0x1.5785926369606p-3, -0x1.1f9c7f908b37ep+4, 0x0p+0 } },
       .t = 0.99999952271042791 },
-    // A map that undoes the flattening of a map under it: M is small although its terms are large.
+    // A map that undoes the flattening of its child's map: M is small although its terms are large.
     { "V5", "cylinder, made round by its map",
       .ray = { { 0x1.3d78a45f30204p+15, -0x1.73ded04ab4097p+16, -0x1.caa1d494ef3c7p+19 },
                { -0x1.5a45b396dcfap+13, 0x1.e7f43187e60aep+15, 0x1.9ddefd642989cp+17 } },
@@ -40,7 +40,7 @@ const solid_case solid_cases[] = {
                { -0x1.b067f0e7ef702p+7, 0x1.9ec883273b9c3p+9, 0x1.9feae59aa4592p+8, 0x0p+0 },
                { -0x1.4c175c62b2f25p+9, 0x1.3b36492f95461p+11, 0x1.3d06c513973e9p+10, 0x0p+0 } },
       .t = 0.011255564900902735 },
-    // Down the side of the other half of the double cone: the squares of where the ray begins differ by next to nothing.
+    // Down the side of the other nappe of the double cone: the squares at the ray's origin almost cancel.
     { "V6", "cone, down its other half's side",
       .ray = { { 0x1.1603cb690892ap+11, 0x1.036a375d1d3adp+12, 0x1.afe54e0755471p+14 },
                { 0x1.013694758472ep+29, 0x1.5edccac15fe53p+29, -0x1.11486831bc98dp+33 } },

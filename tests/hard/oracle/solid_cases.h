@@ -1,4 +1,4 @@
-/// Rays at solids that have been answered wrongly, or judged so, once; with their answers, computed in 400 bits.
+/// Rays at solids that once got a wrong answer or a wrong judgement, with answers computed in 400 bits.
 #ifndef HARD_SOLID_CASES_H
 #define HARD_SOLID_CASES_H
 
@@ -8,7 +8,7 @@ typedef struct solid_case {
     const char *id, *what;
     hard_ray ray;
     glint_shape_kind kind;
-    double center[3], normal[3], base[3], top[3], radius, min[3], max[3]; ///< those that the kind has
+    double center[3], normal[3], base[3], top[3], radius, min[3], max[3]; ///< as far as the kind has them
     double map[3][4]; ///< all 0: the identity
     double t;
 } solid_case;

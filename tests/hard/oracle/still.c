@@ -59,10 +59,10 @@ hard_still still_random(double scale, double away)
         s.paint[s.count++] = random_paint();
     }
     random_direction(lamp);
-    const double far = scale * log_uniform(1, 300); // in a room or outside it
+    const double far = scale * log_uniform(1, 300); // inside or outside the room
     do
         random_direction(side);
-    while (fabs(side[1]) > 0.9); // the textbook's camera has no other upward axis
+    while (fabs(side[1]) > 0.9); // the textbook's camera has a fixed up vector
     for (int c = 0; c < 3; c++) {
         s.at[c] = s.spheres[0].c[c];
         s.eye[c] = s.at[c] + side[c] * scale * uniform(4, 10);

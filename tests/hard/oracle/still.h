@@ -1,4 +1,4 @@
-/// A still life of spheres under one point light with hard shadows, as the engine and the textbook tracers see it.
+/// A still life of spheres under one point light with hard shadows, for the engine and the textbook tracers.
 #ifndef HARD_STILL_H
 #define HARD_STILL_H
 
@@ -23,20 +23,22 @@ typedef struct hard_still {
 /// A tracer's result for one pixel.
 typedef struct still_pixel {
     int object; ///< counted from 1; 0: background
-    bool lit; ///< the light reaches it and shines on its front
+    bool lit; ///< whether the light reaches it and shines on its front
     double color[3]; ///< linear
 } still_pixel;
 
-/// The textbook's tracer: (-b +- sqrt(b^2 - 4ac)) / 2a, p = o + t d, n = (p - c) / r, shadows beyond an epsilon. In 113
-/// bits it is the truth about scenes whose numbers span no more than twelve digits; in 24 and in 53 it is the contrast.
+/// The textbook's tracer: (-b +- sqrt(b^2 - 4ac)) / 2a, p = o + t d, n = (p - c) / r, shadows beyond an epsilon. In
+/// 113 bits it gives the truth for scenes whose numbers span at most twelve digits; in 24 and 53 bits it serves for
+/// comparison.
 still_pixel still_trace_113(const hard_still *still, int width, int height, int x, int y);
 still_pixel still_trace_53(const hard_still *still, int width, int height, int x, int y);
 still_pixel still_trace_24(const hard_still *still, int width, int height, int x, int y);
 
-/// Spheres of about the size `scale` in a heap within `away` of the origin, at times on a ground, in a room, or both.
+/// A heap of spheres of about the size `scale` within `away` of the origin, sometimes on a ground, in a room, or
+/// both.
 hard_still still_random(double scale, double away);
 
-/// The same for the engine.
+/// The same scene for the engine.
 glint_scene *still_scene(const hard_still *still);
 /// From an image with the passes beauty, diffuse and object_id.
 still_pixel still_engine_pixel(const glint_image *image, int x, int y);

@@ -1,5 +1,5 @@
-// A textbook's tracer in one arithmetic. Before it is included: REAL, T(name), SQRT, POW, TAN, EPSILON (of a shadow ray,
-// whose whole length is 1).
+// A textbook's tracer in one arithmetic. Define before including it: REAL, T(name), SQRT, POW, TAN, EPSILON (of a
+// shadow ray, whose whole length is 1).
 
 typedef struct T(vec) {
     REAL x, y, z;
@@ -52,7 +52,7 @@ static bool T(in_shadow)(const hard_still *still, T(vec) p, T(vec) to_light)
     return false;
 }
 
-/// The ray through the centre of a pixel; row 0 is the top.
+/// The ray through the centre of a pixel; row 0 is at the top.
 static T(vec) T(view_ray)(const hard_still *still, int width, int height, int x, int y)
 {
     const T(vec) forward = T(unit)(T(sub)(T(vec_of)(still->at), T(vec_of)(still->eye)));
