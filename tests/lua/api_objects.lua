@@ -39,7 +39,7 @@ function tests.sphere_and_plane()
   raises("plane.radius: no such field", function() p.radius = 1 end)
 end
 
--- The message holds `expected`.
+-- The error message contains `expected`.
 local function refused(expected, f)
   local ok, message = pcall(f)
   check(not ok and tostring(message):find(expected, 1, true), "expected an error with <" .. expected .. ">, got " .. tostring(message))
@@ -304,7 +304,7 @@ function tests.lifetimes()
   scene:close()
   raises("scene is closed", function() scene:cast({ 0, 0, 9 }, { 0, 0, -1 }) end)
   raises("scene is closed", function() scene:render {} end)
-  -- Userdata stay the same as long as anything holds them.
+  -- Userdata keep their identity as long as anything retains them.
   local marks = setmetatable({}, { __mode = "k" })
   local held = glint.scene {}
   for i = 1, 50 do
@@ -317,14 +317,14 @@ function tests.lifetimes()
     local object = held:cast({ 3 * i, 0, 9 }, { 0, 0, -1 }).object
     check(marks[object] == i and marks[object.material] == -i, "object %d is the same userdata", i)
   end
-  for _ = 1, 200 do -- what is dropped is freed; addresses are used again
+  for _ = 1, 200 do -- dropped objects are freed, and their addresses are used again
     glint.scene { glint.sphere(with(SPHERE, "material", glint.material {})), glint.point_light(LAMP) }
   end
   collectgarbage()
   check(getmetatable(held) == false and not pcall(setmetatable, held, {}), "the metatable is out of reach")
 end
 
--- A finalizer that closes objects while they are used.
+-- A finalizer closes objects while they are in use.
 function tests.hostile_finalizers()
   local function later(f) setmetatable({}, { __gc = f }) end
   local at = { normal = { 0, 0, 1 }, to_light = { 0, 0, 1 }, to_eye = { 0, 0, 1 } }
@@ -357,7 +357,7 @@ function tests.functions()
   raises("log: one number expected; for another base divide by glint.log(base)", function() glint.log(8, 2) end)
 end
 
--- diffuse above 1 is allowed, and warned about once a process.
+-- A diffuse above 1 is allowed, with one warning per process.
 function tests.warning()
   local interpreter = arg[-1] or "lua5.4"
   local script = [[package.cpath = %q

@@ -1,9 +1,9 @@
--- engine/glint.h says of every type, function, field and constant what it is: in a comment on it, above it, or above the
--- group of lines that it stands in. A test calls each function that takes a pointer with NULL.
+-- engine/glint.h documents every type, function, field and constant: in a comment on its line, above it, or above its
+-- group of lines. A test must call each function that takes a pointer with NULL.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 
--- Declarations of the header, each with its first line and whether a comment explains it.
+-- The declarations of the header, each with its first line and whether a comment documents it.
 local function declarations(path)
   local list, explained, depth, open = {}, false, 0, nil
   local number = 0
@@ -43,7 +43,7 @@ for _, d in ipairs(declarations "engine/glint.h") do
 end
 check(count > 300, "%d declarations", count)
 
--- Each function that takes a pointer is called with NULL.
+-- Every function that takes a pointer must be called with NULL.
 local function text_of(path)
   local file <close> = assert(io.open(path))
   return file:read "a"

@@ -19,7 +19,7 @@ local function read_meta(text)
     local name, parents = line:match "^%-%-%-@class ([%w_.]+):?%s*(.*)$"
     local field = line:match "^%-%-%-@field ([%w_]+)%??%s+%S"
     local variable = line:match "^local ([%w_]+) = {}$"
-    local word = line:match '^glint%["(%w+)"%] = function%(' -- a word of Lua
+    local word = line:match '^glint%["(%w+)"%] = function%(' -- a Lua keyword
     local owner, separator, member = line:match "^function ([%w_]+)([.:])([%w_]+)%("
     if name then
       current = { fields = {}, methods = {}, parents = {} }
@@ -47,7 +47,7 @@ local function read_meta(text)
   return classes, functions
 end
 
--- The fields of a class and of its parents.
+-- Collects the fields of a class and of its parents.
 local function all_fields(classes, name, into)
   into = into or {}
   for field in pairs(classes[name].fields) do into[field] = true end
@@ -100,7 +100,7 @@ for kind, members in pairs(registered) do
   end
 end
 
--- The constructors take exactly the described fields. A wrong value shows whether a field is known.
+-- The constructors take exactly the documented fields. The error for a wrong value shows whether a field is known.
 local function is_known(make, field)
   local _, message = pcall(make, { [field] = print })
   return not tostring(message):find("no such field", 1, true)
@@ -121,7 +121,7 @@ for name in pairs(functions) do
   end
 end
 
--- The manual page names every object, field, method and function.
+-- The manual page must name every object, field, method and function.
 local page = filled(root .. "/bindings/glint.1")
 local section = page:match "%.SH SCRIPTS\n(.-)\n%.SH "
 check(section, "the manual page has a section SCRIPTS")

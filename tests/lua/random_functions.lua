@@ -1,6 +1,6 @@
---- Functions for patterns, drawn at random, against the same functions run by plain Lua.
----   dofile "tests/lua/random_functions.lua"(random)    `random` has the two forms of math.random that are called here:
----                                                      () in 0 .. 1, (n) or (a, b) a whole number
+-- Random functions for patterns, against the same functions run by plain Lua.
+--   dofile "tests/lua/random_functions.lua"(random)    `random` needs these two forms of math.random:
+--   () for 0 .. 1, (n) or (a, b) for an integer
 local glint = require "glint"
 local V = glint.vector
 
@@ -68,13 +68,13 @@ return function(random)
       uv = V(random(), random(), 0), footprint = random() / 10 }
   end
 
-  -- As a vector, whatever the function gives.
+  -- Converts a number or a vector to three components.
   local function parts(value)
     if type(value) == "number" then return { value, value, value } end
     return { value.x, value.y, value.z }
   end
 
-  --- The pattern's value at a random point, or nil and its fault.
+  -- Compares the pattern with f at a random point. Returns the value, or nil and a message.
   local function compare(f, text)
     local pattern = glint.pattern(function(p, s) return f(p, s) end)
     local point = random_point()

@@ -1,9 +1,9 @@
--- Shared by the Lua tests: the path of the module, checks that are counted, and the line of totals that run.sh reads.
+-- Shared by the Lua tests: the module's path, counted checks, and the line of totals that run.sh reads.
 package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
 
 local tally = { passed = 0, failed = 0 }
 
--- Counts a check; a failed one is reported with the format's text and its line.
+-- Counts a check. A failed check prints the formatted message and its line.
 function tally.check(ok, format, ...)
   if ok then
     tally.passed = tally.passed + 1
@@ -17,7 +17,7 @@ function tally.near(got, want, tolerance, name)
   tally.check(math.abs(got - want) <= tolerance, "%s: %.9g expected within %.2g, got %.9g", name, want, tolerance, got)
 end
 
--- Runs the functions of a table by their names' order; one that stops is a failed check.
+-- Runs the functions of a table in the order of their names. An error counts as a failed check.
 function tally.run(tests)
   local names = {}
   for name in pairs(tests) do names[#names + 1] = name end
@@ -28,8 +28,8 @@ function tally.run(tests)
   end
 end
 
--- Prints the totals and ends the process: 0 when nothing failed. The state is closed, which unloads the module: under
--- AddressSanitizer what the module alone still knew of is a leak then.
+-- Prints the totals and ends the process with 0 when nothing failed. Closes the Lua state, which unloads the module:
+-- under AddressSanitizer, memory that only the module still references is then reported as a leak.
 function tally.finish()
   print(("%d passed, %d failed"):format(tally.passed, tally.failed))
   os.exit(tally.failed == 0, true)

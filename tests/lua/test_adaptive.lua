@@ -1,5 +1,5 @@
--- Adaptive sampling: every pixel equals the picture with all samples or the picture with one, chosen by the rule,
--- across the borders of tiles too; and one picture by every way to render it.
+-- Adaptive sampling: every pixel equals the picture with all samples or the picture with one, as the rule chooses,
+-- across tile borders too; and identical pictures in every configuration.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -40,7 +40,7 @@ local function srgb(x)
   return x <= 0.0031308 and 12.92 * x or 1.055 * x ^ (1 / 2.4) - 0.055
 end
 
--- Whether the rule chooses the pair of pixels; nil where it is too near to call.
+-- Returns whether the rule chooses this pair of pixels; nil when the decision is too close.
 local function chosen(image, x, y, x2, y2, threshold, alpha)
   local id, id2 = image:pixel(x, y, "object_id"), image:pixel(x2, y2, "object_id")
   if id ~= id2 then return true end
@@ -117,7 +117,7 @@ for y = 0, HEIGHT - 1 do
 end
 check(darker < brighter, "what is shown dark differs less: %d and %d pixels", darker, brighter)
 
--- A threshold next to nothing: as with all samples wherever neighbours differ at all, and else they are the same anyway.
+-- With a tiny threshold, pixels with differing neighbours have all samples; the others look the same anyway.
 do
   local _, picture, all = compare("next to nothing", scene_of "plain", 1e-9)
   local differ = 0
@@ -135,7 +135,7 @@ end
 
 -- ---- Edges between tiles --------------------------------------------------------------------------------------------------
 
--- Two objects that meet where two tiles do: at x = 32 or 64, and at y = 24 or 48.
+-- Two objects that meet at a tile border: at x = 32 or 64, and at y = 24 or 48.
 for _, edge in ipairs { { 32, 0 }, { 64, 0 }, { 0, 24 }, { 0, 48 }, { 32, 24 } } do
   local left, top = edge[1], edge[2]
   local function unit(x, y) return (x - WIDTH / 2), (HEIGHT / 2 - y) end
@@ -167,7 +167,7 @@ for _, wrong in ipairs { -1, 3.01, 0 / 0, math.huge } do
 end
 check(not pcall(render, plain, { adaptive = "0.1" }), "a string is no number")
 
--- ---- One picture by every way ------------------------------------------------------------------------------------------------
+-- ---- Identical pictures in every configuration -------------------------------------------------------------------------------
 
 local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
 local function read(path)

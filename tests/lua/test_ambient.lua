@@ -1,20 +1,20 @@
--- Patterns in the place of a material's ambient reflectance: their light on paper, beside numbers of the same value by every
--- way to shade, and as light that surfaces send each other.
+-- Patterns as a material's ambient reflectance: closed forms, comparison with constants of the same value in every
+-- configuration, and light that glowing surfaces send to others.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
 local tests = {}
 
 local ROUNDING <const> = 2 ^ -23 -- of a float32 near 1
-local LOSS <const> = 2 ^ -20 -- of light, what weak rays may hold that are not followed
+local LOSS <const> = 2 ^ -20 -- light that dropped weak rays may carry
 local PASSES <const> = "beauty,ambient,diffuse,specular,indirect,mirror"
 
--- A pattern of a colour that is not known to be one.
+-- A pattern of one colour that the tracer cannot recognise as constant.
 local function even(color)
   return glint.pattern(function(p) return glint.vector(color) + 0 * p.x end)
 end
 
--- Seen from above: x to the right, z downwards, a unit to a pixel.
+-- Seen from above: x to the right, z down, one unit per pixel.
 local function floor_picture(material, more, ambient)
   local options = { width = 4, height = 4, output = "none", passes = "beauty,ambient,diffuse" }
   for name, value in pairs(more or {}) do options[name] = value end
@@ -34,7 +34,7 @@ function tests.it_is_the_number_at_each_point()
       check(image:pixel(x, x, "diffuse") == 0)
     end
   end
-  -- NaN and less than 0 are 0; a pattern of numbers alone is these.
+  -- NaN and negative values become 0. A pattern without inputs equals its numbers.
   check(floor_picture(glint.material { ambient = glint.pattern(function(p) return -1 + 0 * p.x end) }):pixel(1, 1) == 0)
   check(floor_picture(glint.material { ambient = glint.pattern(function() return 0.5 end) }):pixel(1, 1) == 0.25)
   local material = glint.material { diffuse = even { 0.5, 0.5, 0.5 } }
@@ -45,7 +45,7 @@ function tests.it_is_the_number_at_each_point()
   check(floor_picture(material):pixel(1, 1) == 0.25, "and follows again")
 end
 
--- Numbers and patterns of the same value, by every way to shade.
+-- Constants and patterns of the same value, in every shading configuration.
 local KA <const> = { 0.5, 0.25, 0.75 }
 local function room(kd, ka, more)
   local function material(fields)
@@ -87,13 +87,13 @@ function tests.it_is_a_number_by_every_way_to_shade()
     compare(kind .. ", four samples", kd, { render = { samples = 4 } }, ROUNDING)
     compare(kind .. ", adaptive", kd, { render = { samples = 4, adaptive = 0.1 } }, ROUNDING)
     compare(kind .. ", float", kd, { render = { precision = "float" } }, ROUNDING)
-    compare(kind .. ", indirect", kd, { indirect = { samples = 4, bounces = 2 } }, 8 * LOSS) -- other rays are too weak
+    compare(kind .. ", indirect", kd, { indirect = { samples = 4, bounces = 2 } }, 8 * LOSS) -- more dropped rays
     compare(kind .. ", no bounces", kd, { indirect = { samples = 4, bounces = 0 } }, ROUNDING)
   end
 end
 
--- The excess of ambient over diffuse lights others: a floor before a wall without end that glows by E gets kd E / 2, as half of the
--- cosine-weighted directions meet it.
+-- The excess of ambient over diffuse lights other surfaces: a floor next to an infinite wall that emits E receives kd
+-- E / 2, because half of the cosine-weighted directions hit the wall.
 function tests.it_lights_others()
   local glow = 0.5
   local scene = glint.scene { ambient = 1, indirect = { samples = 4096, bounces = 1 },
@@ -105,7 +105,7 @@ function tests.it_lights_others()
   near(image:pixel(0, 0), 0.8 * glow / 2, 2e-3, "half of the sky glows")
 end
 
--- A changed number of the pattern runs the stages that read it; the picture equals a fresh renderer's.
+-- A changed number in the pattern reruns the stages that read it. The picture equals a fresh renderer's.
 function tests.a_changed_number_shows()
   local k = 0.25
   local material = glint.material { diffuse = 0.5, ambient = glint.pattern(function(p) return k + 0 * p.x end) }

@@ -1,4 +1,4 @@
--- The Lua API: constructors, fields, errors word by word, vectors, colours, lifetimes; under several collector modes.
+-- The Lua API: constructors, fields, exact error messages, vectors, colours, lifetimes; under several collector modes.
 package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
 local glint = require "glint"
 
@@ -13,7 +13,7 @@ local function check(ok, format, ...)
   end
 end
 
--- The function raises exactly this message, with this file and a line before it.
+-- Checks that the function raises exactly this message, prefixed with this file and a line.
 local function raises(expected, f, ...)
   local ok, message = pcall(f, ...)
   local where, text = tostring(message):match "^([^:]*api[_%w]*%.lua:%d+): (.*)$"
@@ -24,7 +24,7 @@ local function is(got, x, y, z)
   return type(got) == "userdata" and got[1] == x and got[2] == y and got[3] == z
 end
 
--- A table without one key, with another value for it.
+-- Copies a table without one key, or with another value for it.
 local function with(t, key, value)
   local copy = {}
   for k, v in pairs(t) do copy[k] = v end
@@ -316,7 +316,7 @@ function tests.polygon_lights()
   raises("polygon_light.vertices: convex polygon expected, got corner 4 outside of the edge from corner 2",
     function() polygon({ 0, 0, 0 }, { 4, 0, 0 }, { 1, 0, 1 }, { 0, 0, 4 }) end)
   raises("polygon_light.vertices: convex polygon expected, got corner 4 outside of the edge from corner 1", function()
-    local star = {} -- of five corners
+    local star = {} -- with five corners
     for i = 0, 4 do star[i + 1] = { math.cos(i * 4 * math.pi / 5), math.sin(i * 4 * math.pi / 5), 0 } end
     glint.polygon_light { vertices = star }
   end)

@@ -1,10 +1,10 @@
--- Mirrors and glass against closed forms: one ray and its hits, energy, depth, absorption, tinted shadows; and
--- one picture by every way to render it.
+-- Mirrors and glass against closed forms: single rays and their hits, energy, depth, absorption, tinted shadows; and
+-- identical pictures in every configuration.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
 
-local LOSS = 2 ^ -20 -- of light, what weak rays may hold that are not followed
+local LOSS = 2 ^ -20 -- light that dropped weak rays may carry
 local ROUNDING = 2 ^ -23 -- of a float32 near 1
 
 local function material(fields)
@@ -20,7 +20,7 @@ end
 local function ball(radius, of, center) return glint.sphere { center = center or { 0, 0, 0 }, radius = radius, material = of } end
 local function floor(of, y, up) return glint.plane { point = { 0, y or 0, 0 }, normal = { 0, up or 1, 0 }, material = of } end
 
--- One ray, which is the middle of a picture's only pixel.
+-- Casts one ray, through the centre of a one-pixel picture.
 local function look(eye, direction, objects, more)
   local scene = glint.scene {
     camera = glint.camera { eye = eye, direction = direction, fov = 10 },
@@ -33,10 +33,10 @@ local function look(eye, direction, objects, more)
   return (image:pixel(0, 0)), image, scene
 end
 
--- ---- Where rays go: a lamp of 1e-6 stands where the ray must come to -----------------------------------------------------
+-- ---- Paths: a light of radius 1e-6 is where the ray must end -------------------------------------------------------------
 
--- Polar angles count from +z towards +x in the plane y = 0. The ray leaves the ball of radius 2 at `leaves` and goes along
--- `goes`; objects are what it goes through.
+-- Polar angles are measured from +z towards +x in the plane y = 0. The ray leaves the ball of radius 2 at the angle
+-- `leaves` in the direction `goes`. objects: the scene.
 local function comes_out(name, eye, direction, objects, leaves, goes)
   local function at(angle, length) return length * math.sin(angle), length * math.cos(angle) end
   local x, z = at(leaves, 2)
@@ -53,12 +53,12 @@ for _, n in ipairs { 1.5, 1, 2.4, 1.0001 } do
   end
 end
 for _, n in ipairs { { 1.5, 1.2 }, { 1.2, 1.5 }, { 1.5, 1.5 }, { 1.33, 1 } } do
-  for _, b in ipairs { 0.05, 0.5, 0.9 } do -- a ball of radius 1 in one of 2
+  for _, b in ipairs { 0.05, 0.5, 0.9 } do -- a ball of radius 1 inside one of radius 2
     local i1, r1, i2, r2 = asin(b / 2), asin(b / (2 * n[1])), asin(b / n[1]), asin(b / n[2])
     local leaves = i1 + 2 * (i2 - r1) + pi - 2 * r2
     local outer, inner = ball(2, glass(n[1])), ball(1, glass(n[2]))
     comes_out(("ball of %g in %g at %g"):format(n[2], n[1], b), { b, 0, 9 }, { 0, 0, -1 }, { outer, inner }, leaves, leaves + i1)
-    local s = asin(b) -- and with the eye in both
+    local s = asin(b) -- also with the eye inside both
     leaves = pi - s + asin(n[2] * b / n[1]) - asin(n[2] * b / n[1] / 2)
     if n[2] * b / n[1] < 1 then
       comes_out(("eye in ball of %g in %g at %g"):format(n[2], n[1], b), { b, 0, 0 }, { 0, 0, -1 }, { inner, outer }, leaves,
@@ -66,16 +66,16 @@ for _, n in ipairs { { 1.5, 1.2 }, { 1.2, 1.5 }, { 1.5, 1.5 }, { 1.33, 1 } } do
     end
   end
 end
-do -- total reflection by a bubble: at b = 1.2 the bubble of radius 1 in glass of 1.5 is beyond the critical angle
+do -- total reflection at a bubble: at b = 1.2 the bubble of radius 1 in glass of index 1.5 is beyond the critical angle
   local b, n = 1.2, 1.5
   local i1, r1, i2 = asin(b / 2), asin(b / (2 * n)), asin(b / n)
   local leaves = i1 + 2 * (i2 - r1)
   comes_out("total reflection", { b, 0, 9 }, { 0, 0, -1 }, { ball(2, glass(n)), ball(1, glass(1)) }, leaves, leaves + i1)
 end
 
--- ---- How much ------------------------------------------------------------------------------------------------------------
+-- ---- Amounts -------------------------------------------------------------------------------------------------------------
 
-do -- a mirror shows what it must, times its colour; with fresnel a dielectric's share
+do -- a mirror shows the reflected light times its colour; with fresnel, times a dielectric's reflectance
   local down = { 0, -1, -1 }
   near(look({ 0, 5, 0 }, down, { floor(material { mirror = 0.9 }) }, { background = 0.5 }), 0.45, ROUNDING, "mirror")
   near(look({ 0, 5, 0 }, { 0, -1, 0 }, { floor(material { fresnel = true }) }, { background = 1 }), 0.04, ROUNDING, "coat")
@@ -85,7 +85,7 @@ do -- a mirror shows what it must, times its colour; with fresnel a dielectric's
   near(grazing, 0.0891867128, 1e-8, "coat at 60 degrees")
 end
 
-do -- facing mirrors of 0.9 that shine by themselves: a (1 + 0.9 + ... + 0.9^k) at depth k
+do -- facing mirrors of reflectance 0.9 that emit a: a (1 + 0.9 + ... + 0.9^k) at depth k
   local a = 0.05
   local wall = material { mirror = 0.9, ambient = a }
   local objects = { floor(wall, 0, 1), floor(wall, 1, -1) }
@@ -96,7 +96,7 @@ do -- facing mirrors of 0.9 that shine by themselves: a (1 + 0.9 + ... + 0.9^k) 
   end
 end
 
-do -- energy: nothing is lost or won in a white world, by mirrors, by glass, by balls in balls
+do -- energy: in a white world mirrors, glass and nested balls neither lose nor gain light
   local furnace = {
     mirror = { ball(1, material { mirror = 1 }) },
     mirrors = { ball(1, material { mirror = 1 }), ball(1, material { mirror = 1 }, { 1.2, 1.9, 0 }), floor(material { mirror = 1 }, -1) },
@@ -107,7 +107,7 @@ do -- energy: nothing is lost or won in a white world, by mirrors, by glass, by 
   for name, objects in pairs(furnace) do
     local scene = glint.scene { camera = glint.camera { eye = { 0, 0.3, 4 }, at = { 0, 0, 0 }, fov = 40 }, background = 1 }
     for _, object in ipairs(objects) do scene:add(object) end
-    local nested = name == "glass in glass" -- rays double at every surface: what is left at the end of the chains is more
+    local nested = name == "glass in glass" -- rays double at every surface: more light remains at the ends of chains
     local image = scene:render { width = 24, height = 24, output = "none", max_depth = nested and 14 or 300 }
     local least, most = math.huge, -math.huge
     for y = 0, 23 do
@@ -120,8 +120,8 @@ do -- energy: nothing is lost or won in a white world, by mirrors, by glass, by 
   end
 end
 
-do -- what is totally reflected has not crossed the surface: a prism takes `transmission` twice, however often it reflects
-  local function prism(of) -- a triangle of legs 1 along x and y
+do -- total reflection does not cross the surface: a prism applies `transmission` twice, however often it reflects
+  local function prism(of) -- a triangle with legs of length 1 along x and y
     local vertices = {}
     for _, z in ipairs { -1, 1 } do
       for _, p in ipairs { { 0, 0 }, { 1, 0 }, { 0, 1 } } do vertices[#vertices + 1] = { p[1], p[2], z } end
@@ -140,7 +140,7 @@ do -- what is totally reflected has not crossed the surface: a prism takes `tran
   near(seen(glass(1.4, { transmission = 0.5 })), 0.25, off, "below the critical angle, two surfaces as well")
   local red, green, blue = select(2, seen(glass(1.5, { transmission = { 0.5, 0, 1 } }))):pixel(0, 0)
   check(math.abs(red - 0.25) <= off and green == 0 and math.abs(blue - 1) <= off, "each channel its own: %g %g %g", red, green, blue)
-  -- between the legs the rest goes to and fro: a + r a r' + ..., r of each leg
+  -- The rest bounces between the legs: a + r a r' + ..., with each leg's r.
   local both = seen(glass(1.5, { transmission = 0.5, mirror = 0.2 }))
   near(both, 0.2 + (0.25 + 0.2 * 0.25) / (1 - 0.2 ^ 2), off, "a mirror beside it")
   near(seen(glass(1.5, { transmission = 0.5, fresnel = true })), 0.04 + (0.48 ^ 2 + 0.04 * 0.48 ^ 2) / (1 - 0.04 ^ 2), off, "and with fresnel")
@@ -149,7 +149,7 @@ do -- what is totally reflected has not crossed the surface: a prism takes `tran
   near(look({ -0.5, 0, 0 }, { 1, 1, 0 }, { guide }, { background = 1, max_depth = 6 }), 0, 0, "seven surfaces are needed")
 end
 
-do -- absorption by the way inside, and the same in the shadow: twice the transmission, a diameter of glass
+do -- absorption by path length inside, and in shadows: transmission twice, and absorption along a diameter
   local dense = glass(1, { transmission = 0.9, absorption = { 0.5, 0, 2 } })
   local through = 0.81 * math.exp(-0.5 * 2 * 1.5)
   near(look({ 0, 0, 9 }, { 0, 0, -1 }, { ball(1.5, dense) }, { background = 1 }), through, ROUNDING, "absorption")
@@ -172,7 +172,7 @@ do -- absorption by the way inside, and the same in the shadow: twice the transm
   near(directional, 0.8 * 0.0625, ROUNDING, "two balls, four surfaces")
 end
 
--- The way from an eye inside glass: the clear picture times exp(-absorption x depth), in every term.
+-- An eye inside glass sees every term of the clear picture times exp(-absorption x depth).
 local TERMS = { "background", "ambient", "diffuse", "specular", "indirect", "mirror", "transmission" }
 
 do
@@ -202,10 +202,10 @@ do
   channels("an eye outside", { 0.5, 0.5, 0.5 }, { 0, 0, 9 }, { 0, 0, -1 }, { ball(r, wall {}) }, { max_depth = 0 })
 end
 
-do -- whatever shape the glass has: the way out is what Beer's law takes, and a mirror shows how the index changes at the way out
+do -- any shape of glass: absorption depends on the path to the exit, reflection on the change of index there
   local a = { 0.5, 0, 2 }
   local function wall(ior) return material { transmission = 0.25, ior = ior or 1, absorption = a, ambient = 0.5 } end
-  local function cube(of, turn) -- corners of -1 .. 1; turn: faces look inwards
+  local function cube(of, turn) -- a cube from -1 to 1; turn: faces point inwards
     local faces = { { 1, 3, 4, 2 }, { 5, 6, 8, 7 }, { 1, 2, 6, 5 }, { 3, 7, 8, 4 }, { 1, 5, 7, 3 }, { 2, 4, 8, 6 } }
     local vertices = {}
     for i = 0, 7 do vertices[i + 1] = { (i & 1) * 2 - 1, (i >> 1 & 1) * 2 - 1, (i >> 2 & 1) * 2 - 1 } end
@@ -213,7 +213,7 @@ do -- whatever shape the glass has: the way out is what Beer's law takes, and a 
     return glint.mesh { vertices = vertices, faces = faces, material = of }
   end
   local turned = glint.rotate({ 0, 0, 1 }, 90) * glint.scale(2, 1, 1)
-  local shapes = { -- what it is, the eye, the way, its length in the glass
+  local shapes = { -- name, object, eye, direction, path length in the glass
     { "box", glint.box { min = { -1, -1, -1 }, max = { 1, 1, 1 }, material = wall() }, { 0.5, 0, 0 }, { 1, 0, 0 }, 0.5 },
     { "cylinder", glint.cylinder { base = { 0, -1, 0 }, top = { 0, 1, 0 }, radius = 1, material = wall() }, { 0, 0.25, 0 }, { 0, 1, 0 }, 0.75 },
     { "cone", glint.cone { base = { 0, 0, 0 }, top = { 0, 2, 0 }, radius = 1, material = wall() }, { 0, 1, 0 }, { 1, 0, 0 }, 0.5 },
@@ -231,7 +231,7 @@ do -- whatever shape the glass has: the way out is what Beer's law takes, and a 
     local got = { select(2, look(eye, way, { object })):pixel(0, 0) }
     for c = 1, 3 do near(got[c], 0.5 * math.exp(-a[c] * length), ROUNDING, ("an eye in a %s %d"):format(name, c)) end
   end
-  local outside = { -- beside it, in what has no inside, and behind a face that looks away
+  local outside = { -- outside, inside shapes without an interior, and behind a face that points away
     { "beside a box", glint.box { min = { -1, -1, -1 }, max = { 1, 1, 1 }, material = wall() }, { 3, 0, 0 }, { -1, 0, 0 } },
     { "beside a mesh", cube(wall()), { 3, 0, 0 }, { -1, 0, 0 } },
     { "behind a mesh", cube(wall()), { 3, 0.25, 0.5 }, { 1, 0, 0 } },
@@ -249,8 +249,8 @@ do -- whatever shape the glass has: the way out is what Beer's law takes, and a 
   end
 end
 
--- The light's path, too: a light in the same glass as the lit point, in another glass, or only the point in glass. By Beer's
--- law exp(-absorption x way inside); the eye's own way inside is taken off beforehand.
+-- Absorption along the light's path as well: the light in the same glass as the lit point, in another glass, or only
+-- the point in glass. Beer's law gives exp(-absorption x path inside). The path from the eye is absorbed first.
 do
   local a = { 0.5, 0, 2 }
   local function dense(share) return material { transmission = share or 1, ior = 1, absorption = a } end
@@ -265,7 +265,7 @@ do
     for key, value in pairs(more or {}) do fields[key] = value end
     return glint.point_light(fields)
   end
-  -- the eye is 1 above the floor
+  -- The eye is 1 above the floor.
   local box = function(low, high, share) return glint.box { min = { -9, low, -9 }, max = { 9, high, 9 }, material = dense(share) } end
   local down, eye = { 0, -1, 0 }, { 0, 1, 0 }
   lit("a light in the eye's glass", 1 + 2.5, 1, eye, down, { floor(white), ball(5, dense()), lamp { 0, 2.5, 0 } })
@@ -274,7 +274,7 @@ do
     { floor(white), ball(9, dense()), lamp({ 3, 4, 0 }, { attenuation = { 1, 0, 1 } }) })
   lit("many samples of a small light", 1 + 2.5, 1, eye, down,
     { floor(white), ball(5, dense()), glint.sphere_light { position = { 0, 2.5, 0 }, radius = 1e-9, samples = 4 } })
-  lit("the glass itself, from inside", 1 + 3, 0.5, { 0, 2, 0 }, down, -- its lower side, at 1
+  lit("the glass itself, from inside", 1 + 3, 0.5, { 0, 2, 0 }, down, -- its lower side, at y = 1
     { glint.box { min = { -9, 1, -9 }, max = { 9, 9, 9 }, material = material { transmission = 1, ior = 1, absorption = a, diffuse = 0.5 } },
       lamp { 0, 4, 0 } })
   lit("another ball in the way, clear", 1 + 3 - 1, 0.25, eye, down,
@@ -303,7 +303,7 @@ local function pool(absorption, more)
 end
 local A = { 0.2, 0.05, 0.7 }
 
-do -- the eye's own way alone: what mirrors and glass bring is absorbed further on, too; a light without shadows is not
+do -- only the eye's own path: mirrors and glass absorb further on; a light without shadows is not absorbed
   local fields = { width = 40, height = 30, output = "none", passes = "depth,beauty," .. table.concat(TERMS, ",") }
   local clear, dense = pool(0):render(fields), pool(A):render(fields)
   local worst, sums = 0, 0
@@ -336,7 +336,7 @@ do -- the eye's own way alone: what mirrors and glass bring is absorbed further 
   check(worst < 4 * ROUNDING, "a depth cue fades what is left: %.3g off", worst)
 end
 
-do -- chains without an end: beyond 16 surfaces one ray stands for both, so that work stays bounded and no light is lost
+do -- endless chains: beyond 16 surfaces one ray replaces two, so that work stays bounded and no light is lost
   local scene = glint.scene { camera = glint.camera { eye = { 0, 0.3, 4 }, at = { 0, 0, 0 }, fov = 30 }, background = 1,
     ball(1, glass(1.5, { fresnel = true })), ball(0.7, glass(1.1, { fresnel = true })), ball(0.4, glass(2, { fresnel = true })) }
   local image = scene:render { width = 8, height = 8, output = "none", max_depth = 1000000 }
@@ -396,7 +396,7 @@ check(m.mirror.x == 0.5, "until it is set")
 m.mirror, m.fresnel = nil, false
 check(m.mirror.x == 0, "and it follows again")
 
--- ---- One picture by every way --------------------------------------------------------------------------------------------
+-- ---- Identical pictures in every configuration ---------------------------------------------------------------------------
 
 local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
 local function picture(environment, options)
@@ -429,7 +429,7 @@ for _, precision in ipairs { "double", "float" } do
   end
 end
 
--- ---- From inside absorbing glass: needed because of the eye, and the same with and without reuse -------------------------------
+-- ---- Inside absorbing glass: the effect is used because of the eye; identical with and without reuse ---------------------------
 
 local POOL = [[
 local glint = require "glint"
@@ -467,10 +467,10 @@ local fresh = frames "--no-reuse"
 for _, way in ipairs { "", "-t 1", "-t 3 --samples 1" } do check(frames(way) == fresh, "reused as fresh, %s", way) end
 os.remove(path)
 
--- ---- What a mirror or glass elsewhere leaves alone ----
+-- ---- A mirror or glass must not change other pixels ----
 
--- Pixels that show no mirror and whose light nothing dims have the same bits with a mirror or glass in the frame as without,
--- in tiles that show it and in tiles that do not.
+-- Pixels that show no mirror and whose light is not dimmed are identical bit for bit with and without a mirror or
+-- glass in the frame, whether or not their tile shows it.
 local LIGHT = { "beauty", "background", "ambient", "diffuse", "specular", "mirror", "transmission" }
 local function with_ball(of, samples)
   local scene = glint.scene {
@@ -496,7 +496,7 @@ for _, samples in ipairs { 1, 3 } do
         shown, changed = shown + (is_shown and 1 or 0), changed + ((is_shown or equal) and 0 or 1)
       end
     end
-    local most = name == "glass" and 400 or samples > 1 and 40 or 0 -- its shadow; pixels that show a part of it
+    local most = name == "glass" and 400 or samples > 1 and 40 or 0 -- its shadow; pixels that partly show the ball
     check(shown > 300 and changed <= most, "%s, %d samples: of %d other pixels %d changed", name, samples, 130 * 90 - shown, changed)
   end
 end

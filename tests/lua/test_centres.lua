@@ -1,4 +1,4 @@
--- The passes depth, normal, object_id, albedo and outline are of the ray through the pixel's centre in every mode.
+-- In every mode, the passes depth, normal, object_id, albedo and outline belong to the ray through the pixel's centre.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -63,7 +63,7 @@ for _, camera in ipairs { {}, { pixel_offset = 0.2 }, { projection = "orthograph
   end
 end
 
--- An open shutter: at the frame's own instant.
+-- With an open shutter: at the frame's own time.
 local function contents(path)
   local file = assert(io.open(path, "rb"))
   local text = file:read "a"
@@ -93,7 +93,7 @@ do
   os.remove(name)
 end
 
--- A ball of radius 1, 0.1 to a pixel: the normal's x at a pixel's centre is that x.
+-- A ball of radius 1 at 0.1 units per pixel: the normal's x equals the x of the pixel's centre.
 local ball = glint.scene { ambient = 1, glint.sphere { center = { 0, 0, 0 }, radius = 1 }, camera = glint.camera {
   eye = { 0, 0, 10 }, direction = { 0, 0, -1 }, projection = "orthographic", height = 2.2 } }
 for _, mode in ipairs(MODES) do

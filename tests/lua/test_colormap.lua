@@ -1,14 +1,14 @@
--- glint.colormap: published colours at the ends, in the middle and between, Moreland's map by his formula, ranges, and the same
--- bits in a pattern and outside.
+-- glint.colormap: published colours at the ends, in the middle and between, Moreland's map by his formula, ranges,
+-- and identical bits inside and outside a pattern.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
 
--- The sRGB code, with its fraction, of linear light.
+-- The 8-bit sRGB value of linear light, with its fraction.
 local function code(x) return 255 * (x <= 0.0031308 and 12.92 * x or 1.055 * x ^ (1 / 2.4) - 0.055) end
 local function light(c) return c / 255 <= 0.04045 and c / 255 / 12.92 or ((c / 255 + 0.055) / 1.055) ^ 2.4 end
 
--- From the papers and their programs: of 256 colours the numbers 0, 64, 128, 192 and 255.
+-- Entries 0, 64, 128, 192 and 255 of 256 colours, from the papers and their programs.
 local PUBLISHED = {
   viridis = { "440154", "3b528b", "21918c", "5ec962", "fde725" },
   magma = { "000004", "51127c", "b73779", "fc8961", "fcfdbf" },
@@ -23,7 +23,7 @@ function tests.published_colours()
   for name, list in pairs(PUBLISHED) do
     local map = glint.colormap(name)
     for i, hex in ipairs(list) do
-      local color = map((i - 1) / 4) -- between the numbers 63 and 64 ...
+      local color = map((i - 1) / 4) -- between entries 63 and 64 ...
       for c = 1, 3 do
         near(code(color[c]), tonumber(hex:sub(2 * c - 1, 2 * c), 16), i % 2 == 1 and i ~= 3 and 1e-3 or 3,
           ("%s at %g, component %d"):format(name, (i - 1) / 4, c))
@@ -45,7 +45,7 @@ local function moreland(share)
     local m = math.sqrt(l * l + s * s + t * t)
     return { m, math.acos(l / m), math.atan(t, s) }
   end
-  local function hue(color, m) -- of white, so that the way there from the colour is straight
+  local function hue(color, m) -- for white, so that the path from the colour is straight
     if color[1] >= m then return color[3] end
     local turn = color[2] * math.sqrt(m * m - color[1] ^ 2) / (color[1] * math.sin(color[2]))
     return color[3] > -math.pi / 3 and color[3] + turn or color[3] - turn
@@ -103,7 +103,7 @@ function tests.ranges()
   check(red(0 / 0)[1] == 1 and red(0 / 0)[2] == 0 and red(5)[1] == plain(1)[1], "or a colour of one's own")
 end
 
--- A material of the number, and of the pattern, show the same bits.
+-- A material with the constant and one with the pattern give identical bits.
 function tests.in_patterns()
   for name in pairs(PUBLISHED) do
     local map, k = glint.colormap(name, 0.5, 2.5), 0
@@ -142,7 +142,7 @@ function tests.refused()
   raises("colormap: one number or symbol expected, got 2 values", map, 1, 2)
 end
 
--- The codes of a .png, as one string.
+-- The pixel values of a .png, as one string.
 local build = os.getenv "BUILD" or "build"
 local function codes_of(image, options)
   local path = os.tmpname()
@@ -156,7 +156,7 @@ local function codes_of(image, options)
   return codes
 end
 
--- A colour corresponds to the grey without a map; the background of depth is black.
+-- Each colour matches the grey value without a map. The background of depth is black.
 function tests.passes_in_colours()
   local x = glint.variable("x", 1)
   local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 0.1,
@@ -188,7 +188,7 @@ function tests.passes_in_colours()
   check(not good and message:find(want, 1, true), "<%s> expected, got %s", want, message)
 end
 
--- A list of colours has the first at low, the last at high and the others evenly between them; between two of them codes are mixed.
+-- A list of colours spans low to high evenly; between two colours the pixel values are interpolated.
 function tests.maps_of_ones_own()
   local own = glint.colormap({ "#000000", "#ff0000", { 1, 1, 1 } }, 10, 20)
   check(own(10) == glint.vector(0, 0, 0) and own(20) == glint.vector(1, 1, 1) and own(5) == own(10) and own(99) == own(20))
@@ -211,7 +211,7 @@ function tests.maps_of_ones_own()
   end
 end
 
--- A colour bar calls the function when it is made, and has its colours as a list.
+-- A colour bar calls the function once, when it is created, and stores the colours as a list.
 function tests.bars_of_ones_own()
   local function map(share) return { share, 0, 1 - share } end
   local bar = glint.colorbar { map = map, low = 1, high = 1000, scale = "log" }
@@ -228,7 +228,7 @@ function tests.bars_of_ones_own()
   check(not good and tostring(message):find("colorbar.map: the function's result: ", 1, true), "no colour: %s", message)
 end
 
--- Every picture of depth with a range has the same colour for the same distance.
+-- With a range, every picture of depth has the same colour for the same distance.
 function tests.ranges_of_passes()
   local wall = glint.plane { point = { 0, 0, 0 }, normal = { 0, 0, 1 } }
   local scene = glint.scene { ambient = 1, wall,

@@ -1,6 +1,6 @@
--- Random nested combined solids of all parts against the membership of points, computed here independently: a ray from a point outside
--- meets nothing before it comes to a point inside, and the other way round. Half of them have their numbers on a lattice, so that faces
--- coincide and rays run along them; places whose surroundings are both in and out say nothing, and are boundaries that may be met.
+-- Random nested CSG shapes against point membership, computed here: from a point outside, the ray hits nothing before
+-- a point inside, and vice versa. In half of the shapes all coordinates are on a lattice, so that faces coincide and
+-- rays run along them. Points with both inside and outside neighbours decide nothing, and may count as hits.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -17,7 +17,7 @@ end
 local function dot(a, b) return a[1] * b[1] + a[2] * b[2] + a[3] * b[3] end
 local function step(a, t, b) return { a[1] + t * b[1], a[2] + t * b[2], a[3] + t * b[3] } end
 
--- ---- Parts: each with whether a point is inside ----
+-- ---- Parts: each with a function that tests whether a point is inside ----
 
 local function corners()
   local low = vector(1.5)
@@ -30,7 +30,7 @@ local function between(low, high)
   end
 end
 
--- How far along an axis a point is, and how far from it.
+-- The distance of a point along an axis, and from the axis.
 local function around(base, way, p)
   local length, from = math.sqrt(dot(way, way)), step(p, -1, base)
   local along = dot(from, way) / length
@@ -86,7 +86,7 @@ function parts.plane()
 end
 local kinds = { "sphere", "box", "mesh", "cylinder", "cone", "torus", "plane" }
 
--- ---- Wholes ----
+-- ---- CSG shapes ----
 
 local sets = {
   union = function(p, inside)
@@ -105,7 +105,7 @@ local sets = {
 sets.group = sets.union
 local names = { "union", "intersection", "difference", "difference", "group" }
 
--- A transform, and the way back.
+-- A random transform and its inverse.
 local function random_map()
   local kind, k = math.random(3), math.random(3)
   if kind == 1 then
@@ -138,7 +138,7 @@ end
 
 -- ---- Rays ----
 
--- "in" or "out" where all surroundings of a place are; else nil.
+-- Returns "in" or "out" if the whole neighbourhood of a point is on that side, otherwise nil.
 local function side_of(inside, p, count)
   local first = inside(p)
   for _ = 1, count do
@@ -149,7 +149,7 @@ local function side_of(inside, p, count)
 end
 
 local function random_ray()
-  if lattice and math.random(3) == 1 then -- in planes of faces
+  if lattice and math.random(3) == 1 then -- in the planes of faces
     local from, way, c = vector(4), { 0, 0, 0 }, math.random(3)
     way[c], from[c] = math.random(2) * 2 - 3, from[c] + random(-0.4, 0.4)
     return from, way
@@ -159,7 +159,7 @@ local function random_ray()
   return from, step({ 0, 0, 0 }, 1 / math.sqrt(dot(way, way)), way)
 end
 
--- Whether the ray, whose start is on a side, passes over to the other before it is said to.
+-- Returns a point where the ray has crossed to the other side before the reported hit, or nil.
 local function passes(inside, from, way, far, side)
   for k = 1, PLACES do
     local p = step(from, far * (k - random(0.01, 0.99)) / PLACES, way)

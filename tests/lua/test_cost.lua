@@ -1,4 +1,4 @@
--- glint cost from outside: its rows, their relations, and bad input.
+-- glint cost from the command line: its rows, their relations, and bad input.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local build = os.getenv "BUILD" or "build"
@@ -17,7 +17,7 @@ local function read(name)
   return file:read "a"
 end
 
--- ---- JSON, as much as is printed ----
+-- ---- JSON, as far as glint prints it ----
 
 local parse
 local function skip(text, at) return text:match("^%s*()", at) end
@@ -69,7 +69,7 @@ end
 
 -- ---- Running ----
 
--- Runs `glint cost ARGUMENTS`; returns the exit code. Its streams are in the files out and err.
+-- Runs `glint cost ARGUMENTS`. Returns the exit code; its output is in the files out and err.
 local function run(arguments, before, after)
   local _, _, code = os.execute(("%s %s cost %s >%s/out 2>%s/err </dev/null %s"):format(before or "", glint, arguments,
     work, work, after or ""))
@@ -78,7 +78,7 @@ end
 
 local function says(pattern) return read("err"):find(pattern) ~= nil end
 
--- Rows and advice of the last run; fails the test when a line is something else.
+-- Returns rows and advice of the last run. Fails the test when a line is anything else.
 local function rows_of(name)
   local rows, advice = {}, nil
   for line in read("out"):gmatch "[^\n]+" do
@@ -116,7 +116,7 @@ local function knobs_of(rows)
   return table.concat(list, " ")
 end
 
--- ---- What every study's rows must be ----
+-- ---- Properties of the rows of every study ----
 
 local fields = { knob = "string", ms = "table", cpu = "table", apart = "boolean", x_fastest = "number", rmse = "number", relmse = "number", max_code = "number",
   over1 = "number", over8 = "number", flip = "number", wrong_object = "number", wrong_shadow = "number", counters = "table",
@@ -147,7 +147,7 @@ local function check_rows(name, rows, reference)
     check(row.rmse >= 0 and row.relmse >= 0 and row.flip >= 0 and row.flip <= 1, "%s: errors in range", where)
     check(row.over8 <= row.over1 and row.over1 <= 1, "%s: shares of pixels", where)
     check(row.runs >= 5 and row.runs <= 15 and not row.partial, "%s: %d runs", where, row.runs)
-    local apart = true -- from the nearest in time, whose rows may be others of the same case
+    local apart = true -- from the closest in time, which may be another row of the same setting
     for _, other in ipairs(rows) do
       apart = apart and (other.cpu.median == row.cpu.median and other.cpu.q1 == row.cpu.q1 or other.cpu.q3 < row.cpu.q1
         or row.cpu.q3 < other.cpu.q1)
@@ -190,7 +190,7 @@ return glint.animation { scene = glint.scene { camera = glint.camera { eye = { 0
   %s }, frames = 1, width = 64, height = 48, %s frame = function() end }]]):format(inside, options or ""))
 end
 
--- ---- A scene with everything ----
+-- ---- A scene with all knobs ----
 
 local rows, advice = study("film", film .. " --frame 2")
 check_rows("film", rows, advice.reference)
@@ -232,7 +232,7 @@ check(find(rows, "model", "matched_blinn_phong").rmse < find(rows, "model", "bli
 local eight, sixteen = find(rows, "bits", 8), find(rows, "bits", 16)
 check(eight.default and sixteen.rmse <= eight.rmse and sixteen.flip < eight.flip, "16 bits keep more than 8")
 
--- ---- The error, from files written by the renderer and read here ----
+-- ---- The error, from files that the renderer writes and this test reads ----
 
 local function pfm(name, options)
   assert(os.execute(("%s %s -f 2 -q -o %s/%s_####.pfm %s"):format(glint, film, work, name, options)))
@@ -264,7 +264,7 @@ check(near(own.relmse, relative / #mine), "relMSE %g, by hand %g", own.relmse, r
 check(near(advice.reference.rmse, (apart / #mine) ^ 0.5), "the reference's own error %g, by hand %g",
   advice.reference.rmse, (apart / #mine) ^ 0.5)
 
--- ---- Only what the scene calls for ----
+-- ---- Only effects that the scene needs ----
 
 local matt = [[glint.sphere { center = { 0, 1, 0 }, radius = 1 }, ]]
 local plain, plain_advice = study("plain", still("plain.lua", matt .. "glint.point_light { position = { 0, 9, 9 }, shadows = false }"))
@@ -282,14 +282,14 @@ local odd = study("odd", still("odd.lua", matt, [[samples = 9, precision = "floa
 check(find(odd, "samples", 9).default and find(odd, "samples", 16) and find(odd, "precision", "float").default,
   "the script's own values are in their places")
 
--- Samples are also points of a lens: few of them lack its blur.
+-- Samples also sample the lens: few of them do not show its blur.
 local lens = study("lens", write("lens.lua", (read "film.lua":gsub("at = { 0, 0.5, 0 }", "%0, aperture = 0.6, focus = 3")))
   .. " --knobs samples")
 check(find(lens, "samples", 1).rmse > 3 * find(lens, "samples", 16).rmse
   and find(lens, "samples", 16).rmse > 1.5 * find(lens, "samples", 64).rmse, "a lens converges: %g, %g, %g",
   find(lens, "samples", 1).rmse, find(lens, "samples", 16).rmse, find(lens, "samples", 64).rmse)
 
--- A shutter: times that the frame function is called for, with everything that it moves; also under another knob.
+-- A shutter: the frame function runs at its times, with everything that it moves, also under another knob.
 local exposed = [[local glint = require "glint"
 local lamp = glint.point_light { position = { 0, 4, 4 } }
 local ball = glint.sphere { center = { 0, 1, 0 }, radius = 1, material = glint.material { specular = 0.5 } }
@@ -317,7 +317,7 @@ local _, anew = study("anew", write("anew.lua", (exposed:gsub("TIMES", "8"):gsub
 check(table.concat(anew.left_out):find("the open shutter: the frame function makes objects anew", 1, true), "said of an instant: %s",
   table.concat(anew.left_out))
 
--- Lights with a surface, in their units and in radiance, of which a knob must leave everything as it was; and a cone.
+-- Area lights, in their own units and by radiance, which a knob must leave unchanged; and a cone.
 local soft = study("soft", still("soft.lua", matt .. [[glint.polygon_light { vertices = { { -1, 5, -1 }, { 1, 5, -1 }, { 1, 5, 1 }, { -1, 5, 1 } },
   radiance = 4, samples = 4 }, glint.sphere_light { position = { 3, 6, 4 }, radius = 0.5, intensity = 0.4, samples = 4 },
   glint.spot_light { position = { -3, 6, 4 }, direction = { 3, -6, -4 }, inner = 10, outer = 40, intensity = 0.3 },
@@ -350,7 +350,7 @@ local mixed = study("mixed", still("mixed.lua", [[glint.directional_light { dire
   .. " --knobs model")
 check(find(mixed, "model", "mixed").default and find(mixed, "model", "blinn_phong").rmse > 0, "highlights of both sorts")
 
--- ---- Meshes: against the sphere they stand for, and lit in other places ----
+-- ---- Meshes: against the sphere that they approximate, under several lights ----
 
 local globe = study("globe", still("globe.lua", [[glint.directional_light { direction = { -1, -1, -2 }, shadows = false },
   glint.group { glint.sphere_mesh { center = { 0, 1, 0 }, radius = 1, segments = 24, name = "globe",
@@ -369,7 +369,7 @@ local sheets = study("sheets", still("sheets.lua", [[glint.directional_light { d
   faces = { { 1, 2, 3 } }, shading = "flat" } ]]) .. " --knobs shading,samples")
 check(find(sheets, "shading", "mixed").default and find(sheets, "shading", "phong"), "meshes of both sorts")
 
--- ---- Precision: what float gets wrong under a ground of radius 1e7 ----
+-- ---- Precision: errors of float above a ground of radius 1e7 ----
 
 local ground = study("ground", still("ground.lua", matt .. [[glint.point_light { position = { 3, 6, 4 } },
   glint.sphere { center = { 0, -1e7, 0 }, radius = 1e7 }]]) .. " --knobs precision --size 160x120")
@@ -377,7 +377,7 @@ local float, double = find(ground, "precision", "float"), find(ground, "precisio
 check(float.wrong_object + float.wrong_shadow > 0, "float on a huge ground: no pixel wrong")
 check(double.wrong_object + double.wrong_shadow == 0, "double: %d wrong", double.wrong_object + double.wrong_shadow)
 
--- ---- Within groups ----
+-- ---- Inside groups ----
 
 local grouped = study("grouped", still("grouped.lua", [[glint.point_light { position = { 0, 6, 3 } },
   glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } }, glint.group { glint.group { glint.sphere {
@@ -432,7 +432,7 @@ check(find(open, "ambient_occlusion_samples", 2).default, "its own among the val
 check(find(open, "ambient_occlusion_samples", 64).rmse < find(open, "ambient_occlusion_samples", 1).rmse,
   "error falls with the rays")
 
--- ---- For people; the report ----
+-- ---- Output for people; the report ----
 
 check(run(film .. " --quick --knobs samples,encode --report " .. work .. "/a/b") == 0, "report: %s", read "err")
 local table_text = read "out"
@@ -468,7 +468,7 @@ refuses("a budget in words", film .. " --budget soon", "got 'soon'")
 check(run(film .. " --quick --json --knobs model,reuse --frame 1 --quiet") == 0 and read "err" == "", "--quiet: %s", read "err")
 refuses("an option of another command", film .. " --force", "this command does not have this option")
 
--- ---- Cut short ----
+-- ---- Truncated runs ----
 
 check(run(film .. " --size 640x480 --json --budget 0.5") == 0, "--budget: %s", read "err")
 local short, short_advice = rows_of "budget"

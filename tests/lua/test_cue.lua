@@ -1,4 +1,4 @@
--- Depth cue: every term by its formula, for every sample; unaffected passes; wrong values.
+-- Depth cueing: every term by its formula, for every sample; unaffected passes; wrong values.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -40,7 +40,7 @@ local function sum(image, x, y)
   return all
 end
 
--- One sample: by the formula, from the picture without it.
+-- One sample: by the formula, from the picture without depth cueing.
 local near, far, color = 8, 14, { 0.9, 0.1, 0.3 }
 for _, projection in ipairs { "perspective", "orthographic" } do
   for _, precision in ipairs { "double", "float" } do
@@ -71,8 +71,8 @@ for _, projection in ipairs { "perspective", "orthographic" } do
   end
 end
 
--- Several samples: each by its own depth. A uniform scene of one light: the mean is within the fade of the extremes, and a
--- cue that is far away changes nothing.
+-- Several samples: each by its own depth. In a uniform scene with one light the mean is between the extremes of the
+-- fade, and a cue at a large distance changes nothing.
 local scene = make "perspective"
 local plain = render(scene, { samples = 4 })
 scene.depth_cue = { near = 1e12, far = 2e12 }
@@ -85,7 +85,7 @@ for y = 0, 35 do
     local a, b, share = { plain:pixel(x, y) }, { distant:pixel(x, y) }, opaque:pixel(x, y, "alpha")
     local got, sky = { full:pixel(x, y) }, { 0.2, 0.5, 0.8 }
     for c = 1, 3 do
-      same = same and math.abs(a[c] - b[c]) <= 2 ^ -21 * a[c] -- samples are added up in another order
+      same = same and math.abs(a[c] - b[c]) <= 2 ^ -21 * a[c] -- samples are summed in another order
       covered = covered and math.abs(got[c] - (share * color[c] + (1 - share) * sky[c])) < 1e-6
     end
   end
@@ -93,7 +93,7 @@ end
 check(same, "a cue beyond everything changes nothing")
 check(covered, "a cue before everything leaves its colour, and the background where nothing is hit")
 
--- The colour follows the background; alpha leaves the background out, and not the cue.
+-- The colour follows the background. Alpha excludes the background, but not the cue.
 scene = make "perspective"
 scene.depth_cue = { near = near, far = far }
 local follows = render(scene)

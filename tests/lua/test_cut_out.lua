@@ -1,4 +1,4 @@
--- Opacity that cuts: surfaces that are not there where it is below one half, against the same scenes with and without them.
+-- Opacity that cuts: surfaces vanish where opacity is below one half; against the same scenes with and without them.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
@@ -12,7 +12,7 @@ local function raises(want, call, ...)
   check(not good and tostring(message):find(want, 1, true), "'%s' expected, got %s", want, tostring(message))
 end
 
--- Where `pane` may stand between the eye, the lamp, the floor and a ball.
+-- A scene with an optional `pane` between the eye, the light, the floor and a ball.
 local function scene_of(pane, fields)
   local scene = glint.scene {
     camera = glint.camera { eye = EYE, at = { 0, 0.8, 0 }, fov = 50 }, ambient = 0.1, background = { 0.2, 0.3, 0.5 },
@@ -32,13 +32,13 @@ local function render(scene, fields)
 end
 
 local function bits(image, pass, x, y)
-  local r, g, b = image:pixel(x, y, pass) -- of some passes one number
+  local r, g, b = image:pixel(x, y, pass) -- some passes have one number
   return ("%a %a %a"):format(r, g or 0, b or 0)
 end
 
 local function depth(image, x, y) return (image:pixel(x, y, "depth")) end
 
--- How many pixels of a pass differ.
+-- Counts the pixels of a pass that differ.
 local function differing(a, b, pass)
   local count = 0
   for y = 0, HEIGHT - 1 do
@@ -73,7 +73,7 @@ end
 
 local tests = {}
 
--- An invisible surface changes no bit of the surfaces behind it, nor of their light.
+-- An invisible surface changes no bit of the surfaces behind it or of their light.
 function tests.what_is_not_there_changes_nothing()
   local gone = glint.pattern(function(p) return glint.select(glint.less(p.y, 1e9), 0, 1) end)
   local lights = {
@@ -106,7 +106,7 @@ function tests.what_is_not_there_changes_nothing()
   end
 end
 
--- The surface in a hole is a part, which is not a primitive that rays hit on its own.
+-- A surface seen through a hole can be a part of a CSG shape, which rays do not hit as a primitive of its own.
 function tests.combined_solids_are_seen_through_holes()
   local red, grey = glint.material { diffuse = "red" }, glint.material { diffuse = "grey" }
   local parts = {
@@ -142,7 +142,7 @@ function tests.combined_solids_are_seen_through_holes()
   end
 end
 
--- A pane before them makes the hole in a flat part another one than the first of its ray.
+-- With a pane in front, the hole in a flat part is no longer the first hole of its ray.
 function tests.flat_parts_have_holes()
   local red, gone = glint.material { diffuse = "red" }, glint.material { opacity = 0 }
   local function half(z) return glint.plane { point = { 0, 1, 0.3 }, normal = { 0.2, 0.1, z }, material = gone } end
@@ -175,7 +175,7 @@ end
 
 local function rings(p) return glint.fract(3 * glint.sqrt(p.x * p.x + (p.y - 1) * (p.y - 1)) + 0.2 * p.z) end
 
--- Each pixel shows the pane, with the depth of the whole one, or what is behind, with the depth that it has without.
+-- Each pixel shows the pane, at the whole pane's depth, or what is behind it, at the depth without the pane.
 function tests.eyes_see_through_holes()
   for _, name in ipairs { "disk", "quad", "wall" } do
     local cut = scene_of(shapes(glint.material { opacity = glint.pattern(rings) })[name])
@@ -200,7 +200,7 @@ function tests.eyes_see_through_holes()
   end
 end
 
--- Points of the floor are lit as without the pane where the way to the lamp goes through a hole, else as behind the whole one.
+-- Floor points are lit as without the pane where light passes a hole, otherwise as behind a whole pane.
 function tests.light_goes_through_holes()
   for _, name in ipairs { "disk", "quad" } do
     local cut = scene_of(shapes(glint.material { opacity = glint.pattern(rings) })[name])
@@ -227,7 +227,7 @@ function tests.light_goes_through_holes()
   end
 end
 
--- Through holes in the front of a ball its back is seen, where that has none.
+-- Holes in the front of a ball show its back, except where the back has holes too.
 function tests.the_inside_is_seen()
   local function bands(p) return glint.fract(4 * p.y + 0.7 * p.x) end
   local centre <const>, radius <const> = glint.vector { 0.3, 1.2, 1 }, 1
@@ -251,7 +251,7 @@ function tests.the_inside_is_seen()
   check(seen[1] > 20 and seen[2] > 10 and seen[3] > 10, "%d front, %d back, %d beyond", seen[1], seen[2], seen[3])
 end
 
--- A surface in the plane of a hole is seen in it.
+-- A surface coplanar with a hole is visible in the hole.
 function tests.a_label_shows_its_wall()
   local wall = glint.mesh { vertices = { { -3, 0, 0 }, { 3, 0, 0 }, { 3, 3, 0 }, { -3, 3, 0 } }, faces = { { 1, 2, 3, 4 } },
     material = glint.material { diffuse = "red" } }
@@ -271,7 +271,7 @@ function tests.a_label_shows_its_wall()
   check(seen.red > 50 and seen.blue > 10, "%d red, %d blue", seen.red, seen.blue)
 end
 
--- Mirrors, glass and indirect light: a hole is also a hole for them, except for rounding.
+-- Mirrors, glass and indirect light: rays pass a hole as if nothing were there, except for rounding.
 function tests.other_rays_go_through_holes()
   local gone = glint.material { opacity = glint.pattern(function(p) return glint.select(glint.less(p.y, 1e9), 0, 1) end) }
   local changes = {
@@ -296,7 +296,7 @@ function tests.other_rays_go_through_holes()
   end
 end
 
--- Coloured glass with holes: light keeps its colour where it went through one, and takes the glass's elsewhere.
+-- Coloured glass with holes: light is unchanged through a hole, and tinted by the glass elsewhere.
 function tests.glass_may_have_holes()
   local function pane(opacity)
     return shapes(glint.material { diffuse = 0, transmission = { 0.9, 0.2, 0.1 }, ior = 1, opacity = opacity }).quad

@@ -1,4 +1,4 @@
--- scripts/lib/glint: the readers on good and bad files, elements, builder; and the scripts that make figures of them.
+-- scripts/lib/glint: the readers on good and bad files, elements, builder; and the scripts that make figures from data.
 local build = os.getenv "BUILD" or "build"
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
@@ -31,7 +31,7 @@ local function slurp(path)
   return text
 end
 
--- All that a frame has, as a list of { label, x, y, z, radius }.
+-- All atoms of a frame, as a list of { label, x, y, z, radius }.
 local function all(frame)
   local list = {}
   for label, x, y, z, radius in frame:atoms() do list[#list + 1] = { label, x, y, z, radius } end
@@ -46,7 +46,7 @@ local function is(atom, ...)
   return true
 end
 
--- Reading a file with this text raises exactly FILE:LINE: the message.
+-- Reading a file with this text must raise exactly "FILE:LINE: message".
 local function refuses(text, line, message, f)
   local path = write("bad", text)
   local ok, got = pcall(f, path)
@@ -84,7 +84,7 @@ function tests.elements()
   check(count == 109, "109 elements, got %d", count)
 end
 
--- Bonds are pairs nearer than a bond of their elements can be long.
+-- Bonds are pairs closer than the longest bond of their elements.
 function tests.caffeine()
   local frame = xyz.frame "scripts/data/caffeine.xyz"
   local atoms, formula, joins = all(frame), {}, {}
@@ -280,7 +280,7 @@ function tests.edges()
   check(group.count == 8 + 12, "eight corners, twelve edges, got %d", group.count)
   local scene = glint.scene { group }
   near(scene:cast({ 1, 9, 2 }, { 0, -1, 0 }).point.y, 5.25, 1e-9, "the top of the far edge along a")
-  local hit = scene:cast({ -0.5, 3, 9 }, { 0, 0, -1 }) -- b goes from -1, 0 to 0, 5; above it c is 0.5 further in y
+  local hit = scene:cast({ -0.5, 3, 9 }, { 0, 0, -1 }) -- b: from (-1, 0) to (0, 5); above it c is shifted by 0.5 in y
   near(hit.point.z, 8.25, 1e-9, "the top of the upper edge along b")
   local cell = boxes.edges { origin = { 0, 0, 0 }, a = { 0, 4, 0 }, b = { 4, 0, 0 }, c = { 0, 0, 4 } }
   near(glint.scene { cell }:cast({ 2, 9, 0 }, { 0, -1, 0 }).t, 5 - math.sqrt(48) / 250, 1e-9, "a cell; the radius is 1/250")
@@ -292,7 +292,7 @@ function tests.edges()
   check(select(2, pcall(boxes.edges, { size = { 1, 1, 1 } }, { raduis = 1 })):find("box.raduis: no such option", 1, true), "options")
 end
 
--- Frames in any order, each as a walk from the start gives it; the file is read once.
+-- Frames read in any order equal those of a sequential read. The file is read once.
 function tests.films()
   local texts = { xyz = {}, pdb = {}, lammps = {} }
   for n = 1, 9 do
@@ -330,7 +330,7 @@ function tests.films()
   refuses("1\n\nC 0 0 0\n2\n\nC 0 0 0\n", 7, "atom 2 of 2 expected, got the end of the file", function(path)
     xyz.film(path):length()
   end)
-  local large = {} -- a walk reads each block once: the last frames take no longer than the first
+  local large = {} -- sequential reading reads each block once: the last frames take no longer than the first
   for n = 1, 400 do large[n] = ("50\n%d\n"):format(n) .. ("C 1 2 3\n"):rep(50) end
   local film, reads = xyz.film(write("large.xyz", table.concat(large))), 0
   local file = film.source.file
@@ -423,11 +423,11 @@ function tests.particles()
     function(path) particles.new():add_frame(points.frame(path)) end)
 end
 
--- Memory per atom while a file is read: 36 bytes, not a table.
+-- Memory per atom after reading: 36 bytes, not a table.
 function tests.memory()
   local path = write("large.xyz", "50000\n" .. ("\nC 1 2.5 0"):rep(50000))
   collectgarbage()
-  collectgarbage() -- what has a finalizer goes in the second round
+  collectgarbage() -- objects with finalizers are freed in the second cycle
   local before, set = collectgarbage "count", particles.new()
   set:add_frame(xyz.frame(path))
   collectgarbage()
@@ -436,7 +436,7 @@ function tests.memory()
   check(set.count == 50000 and bytes > 30 and bytes < 45, "36 bytes an atom and little more, got %g", bytes)
 end
 
--- The camera of a set sees the box around it whole.
+-- The camera of a set shows the whole bounding box.
 function tests.camera()
   local set = particles.new { radius = 0.1 }
   for _, x in ipairs { -3, 5 } do set:add("C", x, 2 * x, 1) end
@@ -494,7 +494,7 @@ function tests.bonds()
       check((found[i][j] or 0) == ((d <= reach[i] + reach[j] and d > 0.4) and 1 or 0), "pair %d, %d at %g", i, j, d)
     end
   end
-  set = particles.new { format = "f32" } -- a grid of 13 x 13 x 13, in another order
+  set = particles.new { format = "f32" } -- a grid of 13 x 13 x 13, in shuffled order
   for n = 0, 13 ^ 3 - 1 do
     local i = n * 1000 % 2197
     set:add("point", i % 13 - 50, i // 13 % 13 + 1e3, i // 169)
@@ -517,7 +517,7 @@ function tests.bonds()
   check(not pcall(bonds.new, set, { distance = 1 }), "after spheres() there is nothing left")
 end
 
--- The bonds of atoms in a box against every pair and every repetition of it, one by one.
+-- Bonds in a periodic box, against a test of every pair and every periodic image.
 local function count_across(box, atoms, longest)
   local count, s = 0, box.size
   for i, a in ipairs(atoms) do
@@ -551,7 +551,7 @@ function tests.periodic_bonds()
   check(select(2, bonds.new(load(), { box = { size = { 12, 10, 10 } } })) == 0, "another box")
   local set = particles.new()
   set:add("C", 0.5, 5, 5)
-  set:add("C", -9.5 + 10 * 7, 5, 5) -- unwrapped, seven boxes away
+  set:add("C", -9.5 + 10 * 7, 5, 5) -- unwrapped, seven periods away
   _, count = bonds.new(set, { box = { size = { 10, 10, 10 }, periodic = { true, false, false } } })
   check(count == 0, "the same place, not a bond: %d", count)
   set = particles.new()
@@ -581,7 +581,7 @@ function tests.periodic_bonds()
     end
   end
   set = particles.new()
-  set:add("point", 0, 0, 0) -- a crystal of one atom: a bond along each side
+  set:add("point", 0, 0, 0) -- a crystal with one atom: one bond along each side
   _, count = bonds.new(set, { distance = 1.1, box = { size = { 1, 1, 1 } } })
   check(count == 3, "a simple cubic crystal has three bonds an atom, got %d", count)
   for given, message in pairs {
@@ -603,7 +603,7 @@ function tests.sphereflake()
   local list = {}
   sphereflake.each(2, function(x, y, z, radius) list[#list + 1] = { x, y, z, radius } end)
   check(#list == 91, "1 + 9 + 81 spheres, got %d", #list)
-  for i = 2, #list do -- each touches its parent: for those of the first ring that is the first sphere
+  for i = 2, #list do -- each touches its parent: in the first ring that is the first sphere
     local s = list[i]
     if s[4] > 0.1 then near(math.sqrt(s[1] ^ 2 + s[2] ^ 2 + s[3] ^ 2), 2 / 3, 1e-12, "distance of a child") end
   end
@@ -678,7 +678,7 @@ function tests.nff()
   refuses(head .. "torus 1 2\n", 12, 'v, b, l, f, s, p, pp, c or # expected, got "torus 1 2"', nff.load)
 end
 
--- A script by the command, in a folder that is not its own; what it printed.
+-- Runs a script through the command, in another folder. Returns its output.
 local root = assert(io.popen "pwd"):read "l"
 local command = os.getenv "GLINT" or root .. "/" .. build .. "/glint"
 local function run(arguments)
@@ -688,7 +688,7 @@ local function run(arguments)
   return ok, text
 end
 
--- Numbers of a .pfm: width, height, and a function of x, y (from the top left), channel.
+-- The contents of a .pfm: width, height, and a function of x, y (from the top left) and channel.
 local function read_pfm(path)
   local text = slurp(path)
   local kind, width, height, start = text:match "^(P[Ff])%s(%d+)%s(%d+)%s%-[%d.]+%s()"
@@ -699,7 +699,7 @@ local function read_pfm(path)
   end
 end
 
--- How many different colours a picture has, of those on a grid.
+-- Counts the different colours of a picture, sampled on a grid.
 local function colors_of(path)
   local width, height, at = read_pfm(path)
   local seen, count = {}, 0
@@ -733,7 +733,7 @@ function tests.pictures()
   check(not ok and text:find("nothing.xyz: No such file", 1, true), "no file: %s", text)
 end
 
--- Lights from the third on cost no cast; what they show is the albedo times n.l of the normal map.
+-- From the third light on, lights cost no casts. Pictures equal albedo times n.l of the normal map.
 function tests.photometric()
   local ok, text = run(root .. "/scripts/photometric.lua --json --size 64x64 --set lights=7 --set shadows=false " ..
     "--set spread=30 --set exact=true")
@@ -785,7 +785,7 @@ function tests.one_range_over_all_frames()
   check(not pcall(particles.range, xyz.frames(path), "speed") and not pcall(particles.range, function() end, "q"))
 end
 
--- --size and -o are obeyed, and Normal_gt.mat has the numbers of Normal_gt.npy, column by column.
+-- --size and -o apply, and Normal_gt.mat has the numbers of Normal_gt.npy, column by column.
 function tests.photometric_obeys_the_command_line()
   local script = root .. "/scripts/photometric.lua -q --set lights=2 --size 24x16 "
   local ok, text = run(script .. "--set layout=diligent --set objects=sphere --set folder=wide")

@@ -1,6 +1,6 @@
--- Backgrounds that a picture or a function gives, by the direction in which rays leave the scene: each direction of a
--- picture of few pixels, its seam and its poles; mirrors and glass, with directions computed here; indirect
--- light under an even sky; and one picture by every way to render it.
+-- Backgrounds from a picture or a function, by the direction in which rays leave the scene: each direction of a small
+-- picture, its seam and its poles; mirrors and glass, with directions computed here; indirect light under a uniform
+-- sky; and identical pictures in every configuration.
 local tally = dofile "tests/lua/tally.lua"
 package.path = "scripts/lib/?.lua;" .. package.path
 local check, near = tally.check, tally.near
@@ -9,20 +9,20 @@ local png = require "glint.png"
 local tests = {}
 
 local ROUNDING <const> = 2 ^ -23 -- of a float32 near 1
-local LOSS <const> = 2 ^ -20 -- of light, what weak rays may hold that are not followed
+local LOSS <const> = 2 ^ -20 -- light that dropped weak rays may carry
 
 local function raises(message, f, ...)
   local ok, got = pcall(f, ...)
   check(not ok and tostring(got):find(message, 1, true), "%s: got %s", message, tostring(got))
 end
 
--- A linear value whose code is k.
+-- The linear value of the 8-bit pixel value k.
 local function decoded(k)
   local x = k / 255
   return x <= 0.04045 and x / 12.92 or ((x + 0.055) / 1.055) ^ 2.4
 end
 
--- A picture of codes: code(x, y), y from the top; read as they are.
+-- A picture of 8-bit values: code(x, y), y from the top; read as linear.
 local function picture_of(width, height, code, fields)
   local name, picture = os.tmpname() .. ".png", png.grey(width, height)
   for y = 0, height - 1 do
@@ -38,7 +38,7 @@ end
 
 local function up_beside(d) return math.abs(d[2]) > 0.9 and { 0, 0, -1 } or { 0, 1, 0 } end
 
--- The middle pixel of parallel rays along `direction`.
+-- The centre pixel of parallel rays along `direction`.
 local function look(direction, background, objects, more)
   local fields = { background = background, camera = glint.camera { projection = "orthographic", eye = { 0, 0, 0 },
     direction = direction, up = up_beside(direction), height = 1e-3 }, table.unpack(objects or {}) }
@@ -49,7 +49,7 @@ local function look(direction, background, objects, more)
   return r, g, b, image
 end
 
--- The direction of the place u, v: 0, 0 the lower left corner; the picture's middle is -z.
+-- The direction for u, v: 0, 0 is the lower left corner; the picture's centre is -z.
 local function direction_of(u, v)
   local turn, height = 2 * math.pi * (u - 0.5), -math.cos(math.pi * v)
   local flat = math.sin(math.pi * v)
@@ -74,11 +74,11 @@ function tests.each_pixel_is_where_it_belongs()
   end
 end
 
--- The manual's table of a picture's columns.
+-- The manual's table of panorama columns.
 function tests.axes_are_columns_of_the_table()
   local columns = picture_of(360, 180, function(x) return x // 2 end)
   local axes = { { { 0, 0, -1 }, 180 }, { { 1, 0, 0 }, 270 }, { { -1, 0, 0 }, 90 } }
-  for _, axis in ipairs(axes) do -- between the column before and its own, of codes x // 2
+  for _, axis in ipairs(axes) do -- between its own column and the previous one, of values x // 2
     near(255 * look(axis[1], columns), axis[2] / 2 - 0.5, 1e-4, "column " .. axis[2])
   end
   near(255 * look({ 0, 0, 1 }, columns), (0 + 179) / 2, 1e-4, "the first and the last meet at +z")
@@ -86,7 +86,7 @@ end
 
 function tests.the_seam_is_none()
   local sky = picture_of(W, H, function(x) return x == 0 and 200 or x == W - 1 and 100 or 10 end)
-  for _, shift in ipairs { -0.4, -0.1, 0, 0.1, 0.4 } do -- in columns, from the seam to the right
+  for _, shift in ipairs { -0.4, -0.1, 0, 0.1, 0.4 } do -- in columns, to the right of the seam
     local d = direction_of(shift / W, 0.5)
     near(255 * look(d, sky), 150 + 100 * shift, 1e-3, ("%g columns from the seam"):format(shift))
   end
@@ -101,14 +101,14 @@ function tests.poles_are_the_first_and_last_rows()
   near(255 * look({ 0, 1, 0 }, sky), 200, 1e-4, "up")
   near(255 * look({ 0, -1, 0 }, sky), 50, 1e-4, "down")
   near(255 * look({ 0, 0, -1 }, sky), 120, 1e-4, "ahead")
-  local picture = sky -- inside a function the texture's own wrap counts
+  local picture = sky -- inside a function the texture's own wrap applies
   local own = glint.pattern(function(_, s) return picture(s.uv) end)
   near(255 * look({ 0, 1, 0 }, own), 125, 1e-3, "repeat: the first row and the last")
   local around = picture_of(W, H, function(_, y) return y == 0 and 200 or y == H - 1 and 50 or 120 end, { wrap = "around" })
   near(255 * look({ 0, 1, 0 }, glint.pattern(function(_, s) return around(s.uv) end)), 200, 1e-3, "around")
 end
 
--- A colour by which the direction can be read.
+-- A colour that encodes the direction.
 local compass = glint.pattern(function(d) return d * 0.5 + 0.5 end)
 local function expect(got, d, tolerance, name)
   for c = 1, 3 do near(got[c], d[c] * 0.5 + 0.5, tolerance, ("%s, %s"):format(name, ("xyz"):sub(c, c))) end
@@ -148,8 +148,8 @@ function tests.s_is_that_of_a_direction()
   near(g, r / (2 * math.pi), 1e-5, "as part of a turn")
 end
 
--- Parallel rays along -z to a mirror: at x, y on the unit ball the normal is (x, y, z), and the ray goes on as
--- (2 z x, 2 z y, 2 z^2 - 1).
+-- Parallel rays along -z towards a mirror ball: at x, y on the unit ball the normal is (x, y, z), and the reflected
+-- ray is (2 z x, 2 z y, 2 z^2 - 1).
 function tests.a_ball_mirrors_it()
   local size = 16
   local image = glint.scene { background = compass,
@@ -183,7 +183,7 @@ function tests.it_is_seen_through_glass()
     local u = glint.unit(d)
     expect({ look({ u.x, u.y, u.z }, compass, { pane(1) }) }, { u.x, u.y, u.z }, 4 * ROUNDING, "of index 1")
   end
-  -- Off the middle by b the ray meets a ball of index n at sin a = b, is turned by a - asin(b / n) twice, towards the axis.
+  -- At an offset b the ray hits a ball of index n at sin a = b, and turns twice by a - asin(b / n), towards the axis.
   local b, n = 0.5, 1.5
   local turn = 2 * (math.asin(b) - math.asin(b / n))
   local image = glint.scene { background = compass,
@@ -193,7 +193,7 @@ function tests.it_is_seen_through_glass()
   expect({ image:pixel(0, 0) }, { 0, -math.sin(turn), -math.cos(turn) }, 8 * ROUNDING, "of index 1.5")
 end
 
--- A function that is not known to be even, and is.
+-- A uniform colour that the tracer cannot recognise as constant.
 local function even(color)
   return glint.pattern(function(d) return glint.vector(color) + 0 * d.x end)
 end
@@ -221,9 +221,9 @@ function tests.an_even_one_is_a_plain_background()
         end
       end
     end
-    near(worst, 0, 4 * LOSS, "the greatest difference") -- other rays are too weak
+    near(worst, 0, 4 * LOSS, "the greatest difference") -- more dropped rays
   end
-  -- Under an even sky of L a floor gets kd L.
+  -- Under a uniform sky of radiance L a floor shows kd L.
   local open = glint.scene { background = even(color), indirect = { samples = 4, bounces = 1 },
     camera = glint.camera { eye = { 0, 3, 0 }, direction = { 0, -1, 0 }, up = { 0, 0, -1 } },
     glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0.5 } } }:render { width = 4, height = 4, output = "none" }
@@ -231,7 +231,7 @@ function tests.an_even_one_is_a_plain_background()
   near(r, 0.125, ROUNDING, "red") near(g, 0.25, ROUNDING, "green") near(b, 0.375, ROUNDING, "blue")
 end
 
--- The mean over the cosine of light that is L above one height: of d.y > h, that is L (1 - h^2).
+-- The cosine-weighted mean of a sky that is L for d.y > h and 0 below: L (1 - h^2).
 function tests.indirect_light_is_its_mean_by_the_cosine()
   for _, h in ipairs { 0.3, 0.6, 0.9 } do
     local scene = glint.scene { background = glint.pattern(function(d) return glint.less(h, d.y) end), indirect = { samples = 1024, bounces = 1 },
@@ -301,7 +301,7 @@ function tests.errors_name_the_field()
   os.remove(name)
 end
 
--- ---- One picture by every way --------------------------------------------------------------------------------------------
+-- ---- Identical pictures in every configuration ---------------------------------------------------------------------------
 
 local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
 local script = os.tmpname()

@@ -1,4 +1,4 @@
--- glint.fit: numbers of a scene found from a picture of it, with their uncertainty.
+-- glint.fit: parameters of a scene recovered from a picture of it, with their uncertainty.
 package.path = "scripts/lib/?.lua;" .. package.path
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
@@ -33,7 +33,7 @@ function tests.an_image_gives_its_numbers()
   check(found.converged and found.steps < 15 and found.error < 1e-6, "%d steps, error %g", found.steps, found.error)
 end
 
--- A photo of 8 bits is coarse: the numbers are near, and steps end by themselves.
+-- An 8-bit photo is coarse: the parameters are approximate, and the iteration stops on its own.
 function tests.a_photo_gives_them()
   assert(render(TRUE):save(PATH))
   local calls = 0
@@ -43,7 +43,7 @@ function tests.a_photo_gives_them()
   os.remove(PATH)
 end
 
--- With noise of 0.01 on every value the numbers are off by about their standard deviations, which fall with the noise.
+-- With noise of 0.01 on every value, the parameters' errors match their standard deviations, which fall with the noise.
 function tests.the_uncertainty_is_that_of_the_noise()
   math.randomseed(7)
   local image, sigma = render(TRUE), {}
@@ -71,7 +71,7 @@ function tests.the_uncertainty_is_that_of_the_noise()
   end
 end
 
--- Full white of a photo may be any light: with a lamp that burns the ball out the fit still finds it.
+-- Full white in a photo can be any light: the fit converges even when the light overexposes the ball.
 function tests.clipped_values_do_not_count()
   TRUE.power = 2.2
   assert(render(TRUE):save(PATH, { bits = 16 }))

@@ -1,5 +1,5 @@
--- The gr dialect: pictures against tests/gr/witness.lua pixel by pixel, both generations and how they are distinguished,
--- what the old Luas had, where files are found, the command's options, wrong input.
+-- The gr dialect: pictures against tests/gr/witness.lua pixel by pixel, both generations and their detection,
+-- features of old Lua versions, search paths of files, the command's options, wrong input.
 local build = os.getenv "BUILD" or "build"
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
@@ -24,13 +24,13 @@ local function write(name, text)
   file:close()
 end
 
--- Runs a shell line in the folder; what it says on both streams, and its exit code.
+-- Runs a shell command in the folder. Returns its combined output and its exit code.
 local function run(line)
   local text = output_of(("cd '%s' && { %s; } 2>&1 </dev/null; echo \" exit $?\""):format(folder, line))
   return text, tonumber(text:match "exit (%d+)\n$")
 end
 
--- Runs a scene of this text.
+-- Runs a scene with this text.
 local function scene(text, options)
   write("scene.lua", text)
   return run(("'%s' --dialect gr scene.lua --quiet -t 1 %s"):format(glint, options or ""))
@@ -47,7 +47,7 @@ end
 
 -- ---- Pictures against the witness ----
 
-local TIE = 1e-5 -- of a pixel: what this moves to the picture's code is a tie of two surfaces or at a shadow's edge
+local TIE = 1e-5 -- in pixels: a difference that such a shift explains is a tie of two surfaces or at a shadow's edge
 
 local function largest_difference(want, codes, at)
   local largest = 0
@@ -111,7 +111,7 @@ against_witness("lamps", "pre")
 against_witness("lamps", "pre", "--gr-specular blinn", { specular = "blinn" })
 against_witness("frames", "pre")
 against_witness("frames", "pre", "--no-reuse")
--- Scenes as students write them, each odd in another way.
+-- Scenes as students write them, each unusual in another way.
 for name, order in pairs {
   both = "pre", cameras = "pre", carried = "post", classes = "pre", comments = "pre", deep = "pre", dents = "post",
   family = "pre", film = "pre", globals = "pre", helpers = "post", lights = "pre", mirrored = "pre", nested = "post",
@@ -119,7 +119,7 @@ for name, order in pairs {
 } do
   against_witness("odd/" .. name, order)
 end
--- Random scenes: GLINT_SEED=N for others, GLINT_SCENES=N for more.
+-- Random scenes. GLINT_SEED=N selects others, GLINT_SCENES=N sets their number.
 local seed, scenes = tonumber(os.getenv "GLINT_SEED" or 1), tonumber(os.getenv "GLINT_SCENES" or 30)
 for i = seed * 1000 + 1, seed * 1000 + scenes do
   local text, order = random_scene(i, here .. "/tests/gr/scenes/models")
@@ -170,7 +170,7 @@ write("bare.lua", "local n = gr.node('n')")
 said, code = run(("'%s' bare.lua"):format(glint))
 check(code == 2 and said:find "is it a scene for %-%-dialect gr%?", "a scene without the option: %s", said)
 
--- Codes are linear and the file does not say so, as the course's; the same codes under --transfer linear, which says so.
+-- Pixel values are linear without a gamma chunk, as in the course; --transfer linear adds the chunk.
 local function bytes_of(name)
   local file = assert(io.open(folder .. "/" .. name, "rb"))
   local bytes = file:read "a"
@@ -187,7 +187,7 @@ local _, _, ball = read_codes(folder .. "/ball.png")
 local _, _, linear = read_codes(folder .. "/linear.png")
 check(ball == linear and ball:byte(3 * (16 * 8 + 8) + 1) == 153, "the codes are the same")
 
--- Names are what they say: nothing in them is a place for a number.
+-- Names are literal: % and # are not placeholders for a number.
 run "rm -f *.png"
 scene [[for _, name in ipairs { 'a#1.png', '50%.PNG', '%d', 'x/y', 'dot.jpg', 7 } do
   gr.render(gr.node('r'), name, 4, 4, {0,0,1}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {})
@@ -215,7 +215,7 @@ said, code = run(("cd '%s/tests/gr/scenes' && '%s' first.lua --dialect gr --quie
   .. "cmp below.png first.png"):format(here, glint, folder, glint, folder, folder))
 check(code == 0, "from the scene's folder and from another: %s", said)
 
--- Models in the scene's folder, the folder above, and the working directory.
+-- Models in the scene's folder, its parent folder, and the working directory.
 local TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 write("deep/above.obj", TRIANGLE)
 write("deep/scenes/beside.obj", TRIANGLE)
@@ -239,7 +239,7 @@ write("own.lua", "require 'readobj' assert(readobj() == 'the scene has its own')
 said, code = run(("cp own.lua deep/scenes; '%s' --dialect gr deep/scenes/own.lua -o none --quiet"):format(glint))
 check(code == 0, "a readobj of the scene's own: %s", said)
 
--- ---- What the old Luas had ----
+-- ---- Features of old Lua versions ----
 
 write("old.lua", "module('old', package.seeall)\npi = math.pi\nfunction twice(x) return 2 * x end\n")
 said, code = scene([[
@@ -297,9 +297,9 @@ says("gr.mesh('a', {}, {}) gr.mesh('b', 'b.obj')", nil, nil)
 says("function unpack(t) end my.unpack(t) t:unpack(1) unrequire(x) x.require(y)", nil, nil)
 says("n:rotate('x', 1)", nil, nil)
 
--- ---- Combined solids ----
+-- ---- CSG shapes ----
 
--- The codes of a scene whose root has what `text` adds; its shapes have flat faces and round sides, no spheres, whose parts are others.
+-- Pixel values of a scene with `text` added. Its shapes have flat faces or round sides; spheres have other parts.
 local function combined_codes(text)
   local output, status = scene([[
 red = gr.material({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20)
@@ -322,7 +322,7 @@ gr.render(root, 'combined.png', 64, 48, {0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 50, {0
 end
 
 local both = combined_codes "root:add_child(box) root:add_child(post)"
--- Forms whose operation and parts follow.
+-- Forms that set the operation and parts later.
 local function later(text) return "(function() local c = " .. text .. " return c end)()" end
 for _, text in ipairs { "gr.union('u', box, post)", "gr.union(box, post)", "gr.csg_union('u', box, post)",
   "gr.csg('u', box, '+', post, 2)", "gr.csg(box, post, 'union')", later "gr.union('u') c:add_children(box, post)",
@@ -367,7 +367,7 @@ for text, message in pairs {
   check(output:find(message, 1, true), "%s expected, got %s", message, output)
 end
 
--- ---- Wrong input: the function, the argument, the value; at the scene's line ----
+-- ---- Wrong input: the message names the function, the argument and the value, at the scene's line ----
 
 local function refuses(text, message, options)
   local got, exit = scene("local gr, kd, ks = gr, {1, 1, 1}, {0, 0, 0}\n" .. text, options)
@@ -470,7 +470,7 @@ gr.options.background, gr.options.pixel = "#102030", "0"
 check(gr.options.pixel == 0 and math.floor(255 * gr.options.background[1]) == 0x10, "gr.options are read back")
 check(gr.missing and not rawget(gr, "missing") and gr.__gc == nil and gr[1] == nil, "names that are not there")
 
--- ---- What must pass: edges of the rules ----
+-- ---- Valid input at the limits of the rules ----
 
 said, code = scene([[
   local m = gr.material({1, 1, 1}, {1, 1, 1}, 1e300)

@@ -1,5 +1,5 @@
--- The gr dialect's variants of surfaces: pictures and reliefs on them, mirrors and glass. The forms in which scenes say the
--- same make the same codes; the values are known on paper. Meaningless arguments give one warning.
+-- The gr dialect's surface variants: textures and bump maps, mirrors and glass. Equivalent forms must give the same
+-- pixel values, which are known in closed form. Meaningless arguments give one warning.
 local build = os.getenv "BUILD" or "build"
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
@@ -21,7 +21,7 @@ local function write(name, text)
   file:write(text)
 end
 
--- Runs a scene of this text; what it says, and its exit code.
+-- Runs a scene with this text. Returns its output and its exit code.
 local function run(text, options)
   write("scene.lua", text)
   local said = output_of(("cd '%s' && { '%s/%s/glint' --dialect gr scene.lua --quiet -t 1 %s; } 2>&1 </dev/null; echo \" exit $?\"")
@@ -29,7 +29,7 @@ local function run(text, options)
   return said, tonumber(said:match "exit (%d+)\n$")
 end
 
--- The middle of the shape `s` that the text makes, which is 1 wide, seen along -z in ambient light only.
+-- Renders the shape `s` that the text makes, 1 wide, seen along -z in ambient light only.
 local SIZE <const> = 16
 local function look(text, options)
   local said, code = run(text .. [[
@@ -51,7 +51,7 @@ local function is(pixel, x, y, want, name)
   check(got == want, "%s: pixel %d, %d: %s expected, got %s", name, x, y, want, got)
 end
 
--- All texts make the same codes.
+-- Checks that all texts give the same pixel values.
 local function same(texts, options)
   local first
   for _, text in ipairs(texts) do
@@ -63,7 +63,7 @@ local function same(texts, options)
   return texts.pixel
 end
 
--- Red and green over blue and white.
+-- Red and green above blue and white.
 local four, COLORS = png.new(SIZE, SIZE), { [0] = { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 1, 1 } }
 for y = 0, SIZE - 1 do
   for x = 0, SIZE - 1 do four:set(x, y, COLORS[2 * (2 * y // SIZE) + 2 * x // SIZE]) end
@@ -105,7 +105,7 @@ function tests.it_repeats()
   end
 end
 
--- Codes are numbers as they are: 128 of 255 shows as such.
+-- Pixel values are used directly: 128 of 255 stays 128.
 function tests.codes_are_not_decoded()
   local grey = png.grey(1, 1)
   grey:set(0, 0, ((128 / 255 + 0.055) / 1.055) ^ 2.4)
@@ -114,7 +114,7 @@ function tests.codes_are_not_decoded()
   check(r == 128 or r == 127, "128 expected, got %d", r)
 end
 
--- A picture has the light and the highlight of its material.
+-- A texture has the light and the highlight of its material.
 function tests.it_is_lit_as_its_colour()
   write("white.txt", "")
   local white = png.new(1, 1)
@@ -172,7 +172,7 @@ function tests.reliefs_turn_normals()
     BALL .. "s:set_bump(gr.bump 'hill.png')", BALL .. "s:set_bump('hill.png')", BALL .. "s:set_bumpmap('hill.png', 0.05)",
     BALL .. "s:set_bump_map(gr.bump_map('hill.png'))", BALL .. "m:set_bump('hill.png')", BALL .. "m:set_bumpmap(gr.bumpmap('hill.png'))",
     BALL .. "gr.bump(m, 'hill.png')", BALL .. "gr.load_bumpmap(m, 'hill.png')", BALL .. "s:set_bump(gr.bump('hill.png', 0.05))",
-    -- as high as the shape is large: of a ball of another radius, under another scale
+    -- The height scales with the shape: a ball of another radius, under another scale.
     LAMP .. "s = gr.nh_sphere('s', {0, 0, 0}, 20) s:scale(1 / 40, 1 / 40, 1 / 40) s:set_bump('hill.png')",
   }
   local _, bumped = look(BALL .. "s:set_bump('hill.png')")
@@ -181,7 +181,7 @@ function tests.reliefs_turn_normals()
   check(none == flat, "a relief without height does not")
 end
 
--- A face that looks at the eye mirrors what is behind that: nothing but the background.
+-- A face towards the eye mirrors what is behind the eye: only the background.
 function tests.mirrors_add_their_share()
   local options = "--gr-background 0.2,0.4,0.6"
   local KD <const> = "m = gr.material({0.2, 0, 0.11}, {0, 0, 0}, 0"
@@ -190,7 +190,7 @@ function tests.mirrors_add_their_share()
     CUBE .. KD .. ") m:set_reflect(0.5)", CUBE .. KD .. ") m:reflection(0.5)",
     CUBE .. "m = gr.reflective_material({0.2, 0, 0.11}, {0, 0, 0}, 0, 0.5)", CUBE .. "m = gr.material_refl({0.2, 0, 0.11}, {0, 0, 0}, 0, 0.5)",
   }, options)
-  is(pixel, 8, 8, "76,51,104", "kd + half of the background") -- 0.3, 0.2, 0.41 of 255, cut
+  is(pixel, 8, 8, "76,51,104", "kd + half of the background") -- 0.3, 0.2, 0.41 of 255, truncated
   pixel = same({ CUBE .. "m = gr.material({0, 0, 0}, {1, 1, 1}, 5, 1)", CUBE .. "m = gr.reflective()",
     CUBE .. "m = gr.material({0, 0, 0}, {0, 0, 0}, 0, 1.0)" }, options)
   is(pixel, 8, 8, "51,102,153", "all of it")
@@ -209,8 +209,8 @@ function tests.glass_is_seen_through()
   }, options)
   same({ CUBE .. KD .. ", 0, 0.8, 1.33)", CUBE .. KD .. ", 1.33, 0.8)", CUBE .. KD .. ", 0, 0, 0.8, 1.33)",
     CUBE .. "m = gr.material_refr({0, 0, 0}, {0, 0, 0}, 0, 0.8, 1.33)" }, options)
-  -- All light is either mirrored or goes through: before an even background a ball of glass looks like the background, except for
-  -- what is still within after 5 surfaces.
+  -- All light is either reflected or transmitted: in front of a uniform background a glass ball looks like the
+  -- background, except for light still inside after 5 surfaces.
   local r = look("s = gr.sphere('s') s:scale(0.5, 0.5, 0.5) " .. KD .. ", 1.5)", options)(8, 8)
   check(r >= 101 and r <= 102, "glass before an even background: 102 expected, got %d", r)
 end
@@ -260,7 +260,7 @@ end
 
 local PAINT <const> = PLAIN .. "m:set_texture('four.png') "
 
--- Squares of every form, looked at from the side of their normal, and from behind, show the picture as a cube's face does.
+-- Squares of every form, seen from their front and from behind, show the texture like a cube's face.
 function tests.planes_are_squares()
   same {
     CUBE .. PAINT,
@@ -277,7 +277,7 @@ function tests.planes_are_squares()
   local pixel = same { PAINT .. "s = gr.plane('s', {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0.5, 0.5)", PAINT
     .. "gr.options.plane = 'xy-corner' s = gr.plane('s') s:scale(0.5, 0.5, 0.5)" }
   is(pixel, 4, 4, "0,0,0", "a corner at the origin: nothing to the left") is(pixel, 9, 2, "255,0,0", "above and right of it")
-  -- Lit from the eye's side, whichever way it looks.
+  -- Lit from the eye's side, whichever way the square faces.
   local LIT <const> = PLAIN .. "lights = { gr.light({0, 0, 9}, {0.5, 0.4, 0.3}, {1, 0, 0}) } "
   same { LIT .. "s = gr.plane('s', {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1)", LIT .. "s = gr.plane('s', {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, 1)" }
 end
@@ -293,7 +293,7 @@ function tests.an_unsaid_plane_is_told_of_once()
   check(code == 2 and said:find('--gr-plane: "xz", "xz-2", "xz-corner", "xy", "xy-2" or "xy-corner" expected, got "yz"', 1, true), "%s", said)
 end
 
--- About another axis a solid is as if it were turned.
+-- A solid about another axis equals the rotated one.
 function tests.round_solids_have_an_axis()
   for _, shape in ipairs { "cylinder", "cone" } do
     local TURNED <const> = PLAIN .. "lights = { gr.light({5, 9, 9}, {0.5, 0.4, 0.3}, {1, 0, 0}) } "
@@ -306,7 +306,7 @@ function tests.round_solids_have_an_axis()
   end
 end
 
--- A floor under a ball and a lamp over it.
+-- A floor under a ball, and a light above it.
 local FLOOR <const> = "m = gr.material({0.4, 0.4, 0.4}, {0, 0, 0}, 0) s = gr.plane('s', {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1) "
   .. "b = gr.nh_sphere('b', {-0.2, 0, 0.2}, 0.1) b:set_material(m) s:add_child(b) lights = { %s }"
 
@@ -317,7 +317,7 @@ function tests.lamps_have_a_surface()
     FLOOR:format "gr.arealight({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, 0, 40)", FLOOR:format "gr.sphericallight({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, 0)",
   }
   local _, sharp = look(point)
-  for _, form in ipairs { -- small ones are points, large ones have soft shadows
+  for _, form in ipairs { -- small ones equal points, large ones have soft shadows
     "gr.area_light({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, %g / 2, 20)",
     "gr.area_light({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, {0, 0, -1}, {0, 1, 0}, %g, 30)",
     "gr.area_light({0.3 - %g / 2, -%g / 2, 1}, {%g, 0, 0}, 5, {0, %g, 0}, 8, {1, 0.8, 0.6}, {1, 0.1, 0})",
@@ -334,7 +334,7 @@ function tests.lamps_have_a_surface()
   end
 end
 
--- Different forms make the same lamp; a further list of lights is part of the first.
+-- Different forms give the same light. An additional list of lights is appended to the first.
 function tests.lamps_of_several_forms_are_one()
   same {
     FLOOR:format "gr.rect_light({0.3, 0, 1}, 0.4, 0.2, {0.5, 0.4, 0.3}, {1, 0, 0}, 40)",
@@ -406,7 +406,7 @@ function tests.errors_name_the_call()
   refuses("gr.bump('four.png'):remap(1)", "bump:remap: this method is not part of the dialect")
 end
 
--- A material that is changed after a picture, shapes under several maps, and the same picture as fresh.
+-- A material changed after a picture, and shapes under several maps, give the same picture as a fresh scene.
 function tests.later_changes_show()
   local pixel = look(CUBE .. PLAIN .. [[
     s:set_material(m)
@@ -416,9 +416,9 @@ function tests.later_changes_show()
   is(pixel, 2, 2, "255,0,0", "after two pictures")
 end
 
--- ---- What is seen through, mirrors in colour, noise ----
+-- ---- Translucency, coloured mirrors, noise ----
 
--- In front of a red wall that gives 0.5 of its own.
+-- A red wall with a brightness of 0.5.
 local WALL <const> = [[
   m = gr.material({0.5, 0, 0}, {0, 0, 0}, 0)
   wall = gr.nh_box('w', {-5, -5, -20}, 10) wall:set_material(m) ]]
@@ -447,7 +447,7 @@ end
 
 -- ---- Normals ----
 
--- The value of a matt grey in ambient light of 1 and one light from l, where its normal is n.
+-- The value of a matt grey in ambient light of 1 and one light from l, for a normal n.
 local function shade_of(n, l)
   local function unit(v) return (v[1] * v[1] + v[2] * v[2] + v[3] * v[3]) ^ 0.5 end
   local cosine = (n[1] * l[1] + n[2] * l[2] + n[3] * l[3]) / (unit(n) * unit(l))
@@ -456,7 +456,7 @@ end
 
 local function decode(x) return ((x + 0.055) / 1.055) ^ 2.4 end
 
-local LEAN <const> = { 204 / 255, 153 / 255, 1 } -- 0.6 along u, 0.2 along v, 1 outward
+local LEAN <const> = { 204 / 255, 153 / 255, 1 } -- 0.6 along u, 0.2 along v, 1 along the normal
 local function lit(text, l)
   local lean = png.new(1, 1)
   lean:set(0, 0, { decode(LEAN[1]), decode(LEAN[2]), 1 })
@@ -488,7 +488,7 @@ function tests.normals_lie_on_faces()
     5, 9, { 0.6, 0.2, 1 }, "beside a ball with the same map")
 end
 
--- Normals that lean up by 0.6 on a cube of index 1.3 turn a level ray down on both faces, by Snell's law to (0, -0.395, -0.919).
+-- Normals tilted up by 0.6 on a cube of index 1.3 bend a level ray down at both faces, to (0, -0.395, -0.919).
 function tests.normals_lean_alike_from_within()
   local up = png.new(1, 1)
   up:set(0, 0, { decode(128 / 255), decode(204 / 255), 1 })
@@ -505,7 +505,7 @@ end
 
 function tests.normals_lie_on_balls()
   local map = " s:set_normal(gr.normal_map 'lean.png')"
-  local x, y = (2 * 10 + 1 - SIZE) / SIZE, (SIZE - 2 * 4 - 1) / SIZE -- of pixel 10, 4, nearly: it is seen from afar
+  local x, y = (2 * 10 + 1 - SIZE) / SIZE, (SIZE - 2 * 4 - 1) / SIZE -- about pixel 10, 4: seen from far away
   local z = math.sqrt(1 - x * x - y * y)
   local round = math.sqrt(x * x + z * z)
   local u = { z / round, 0, -x / round }

@@ -1,5 +1,5 @@
--- Indirect light against closed forms: even enclosures, planes and balls under an even sky, parallel plates, a glowing ball
--- above a floor; the rate at which errors fall; and one picture by every way to render it.
+-- Indirect light against closed forms: uniform enclosures, planes and balls under a uniform sky, parallel plates, a
+-- glowing ball above a floor; the convergence rate; and identical pictures in every configuration.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
@@ -8,7 +8,7 @@ local function near3(r, g, b, want, tolerance, name)
   for c, got in ipairs { r, g, b } do near(got, want[c], tolerance, name .. ", channel " .. c) end
 end
 
-local LOSS = 2 ^ -20 -- of light, what weak ways may hold that are not followed
+local LOSS = 2 ^ -20 -- light that dropped weak paths may carry
 local ROUNDING = 2 ^ -23 -- of a float32 near 1
 
 local function ball(radius, material, center)
@@ -27,7 +27,7 @@ local function look(eye, direction, fields, more)
   return scene:render(options), scene
 end
 
--- ---- Even enclosures: geometric series, exactly -----------------------------------------------------------------------
+-- ---- Uniform enclosures: exact geometric series -----------------------------------------------------------------------
 
 local kd = { 0.5, 0.25, 0.75 }
 local function series(first, bounces)
@@ -43,7 +43,7 @@ local function plain(fields)
   return glint.material(fields)
 end
 
--- Each wall point of a ball with a lamp in its middle gets n.l = 1, and so does each point it looks at.
+-- Each wall point of a ball with a light at its centre has n.l = 1, and so does each point that it sees.
 for _, precision in ipairs { "double", "float" } do
   for _, bounces in ipairs { 1, 2, 5, 40 } do
     local image = look({ 0.3, 0.2, 0.1 }, { 1, 0, 0 }, {
@@ -57,8 +57,8 @@ for _, precision in ipairs { "double", "float" } do
   end
 end
 
--- The walls' own light: what `ambient` has beyond `diffuse`. Where ways end, Ia stands for the rest: if it is what the
--- enclosure holds, the number of bounces does not matter.
+-- The walls' emission: the excess of `ambient` over `diffuse`. At the end of paths, Ia replaces the rest: if it
+-- equals the enclosure's light, the number of bounces does not matter.
 do
   local glow, own = { 0.5 + 0.25, 0.25 + 0.5, 0.75 + 0.125 }, { 0.25, 0.5, 0.125 }
   for _, bounces in ipairs { 1, 3, 60 } do
@@ -80,7 +80,7 @@ do
   end
 end
 
--- ---- Under an even sky --------------------------------------------------------------------------------------------------
+-- ---- Under a uniform sky ------------------------------------------------------------------------------------------------
 
 local sky = { 0.5, 1, 2 }
 local under_sky = { kd[1] * sky[1], kd[2] * sky[2], kd[3] * sky[3] }
@@ -105,7 +105,7 @@ for name, shape in pairs(shapes) do
   end
 end
 
--- ---- Parallel plates: every way from one leads to the other ------------------------------------------------------------
+-- ---- Parallel plates: every path from one leads to the other -----------------------------------------------------------
 
 do -- matt below, matt above: L1 = e1 + k1 L2, L2 = e2 + k2 L1
   local low = glint.material { diffuse = 0.5, ambient = 0.75 }
@@ -115,7 +115,7 @@ do -- matt below, matt above: L1 = e1 + k1 L2, L2 = e2 + k2 L1
   })
   near(image:pixel(4, 3), (0.25 + 0.5 * 0.5) / (1 - 0.5 * 0.25), 2 * ROUNDING + LOSS, "matt plates")
 end
-do -- a mirror above: what the floor sends up comes down again, with no bounce in between
+do -- a mirror above: the floor's light comes back without another bounce
   local image = look({ 0, 1, 0 }, { 0, -1, 0.1 }, {
     ambient = 1, indirect = { samples = 4, bounces = 30 }, floor(glint.material { diffuse = 0.5, ambient = 0.75 }, 0),
     floor(glint.material { diffuse = 0, mirror = 0.5 }, 2, -1),
@@ -128,7 +128,7 @@ do -- a mirror above: what the floor sends up comes down again, with no bounce i
   near(seen:pixel(4, 3, "mirror"), 0.5 * 0.25 / (1 - 0.25), 2 * ROUNDING + 4 * LOSS, "and what it shows")
   check(seen:pixel(4, 3, "indirect") == 0, "a mirror without diffuse has no indirect light of its own")
 end
-do -- glass that does not bend between floor and sky, its shadow and its light tinted alike
+do -- non-refracting glass between floor and sky, which tints its shadow and its light alike
   local pane = glint.material { diffuse = 0, transmission = { 0.5, 0.8, 0.2 }, ior = 1 }
   local image = look({ 0, 1, 0 }, { 0, -1, 0.1 }, {
     background = 1, indirect = { samples = 4, bounces = 3 }, floor(plain {}, 0), floor(pane, 2),
@@ -136,7 +136,7 @@ do -- glass that does not bend between floor and sky, its shadow and its light t
   local r, g, b = image:pixel(4, 3)
   near3(r, g, b, { 0.25, 0.2, 0.15 }, 2 * ROUNDING, "through a pane")
 end
-do -- a surface that scatters, mirrors and lets through at once: chosen by chance, right in the mean
+do -- a surface that scatters, reflects and transmits: chosen at random, right on average
   local mixed = glint.material { diffuse = { 0.3, 0.1, 0.2 }, ambient = 0, mirror = { 0.1, 0.4, 0.2 }, transmission = 0.25, ior = 1 }
   local image = look({ 0, 1, 0 }, { 0, -1, 0.1 }, {
     background = 1, indirect = { samples = 256, bounces = 1 },
@@ -148,13 +148,13 @@ do -- a surface that scatters, mirrors and lets through at once: chosen by chanc
       for c, got in ipairs { image:pixel(x, y, "indirect") } do sum[c] = sum[c] + got / 63 end
     end
   end
-  -- scattered by `mixed`, a way of one bounce ends there; mirrored back, it ends on the floor; through, it finds the sky
+  -- After `mixed`, a path with one bounce ends if scattered, ends on the floor if reflected, or reaches the sky.
   near3(sum[1], sum[2], sum[3], { 0.25, 0.25, 0.25 }, 2e-3, "a mixed surface, one bounce")
 end
 
 -- ---- A glowing ball above a floor: the hemisphere integral kd L (R / d)^2 cos -------------------------------------------------
 
--- Returns the root of the mean squared error of the whole picture.
+-- Returns the root mean square error of the whole picture.
 local function error_of_ball(samples, pixel_samples, seed)
   local height, radius = 2, 1.2
   local image = look({ 0, 8, 0 }, { 0, -1, 0 }, {
@@ -165,7 +165,7 @@ local function error_of_ball(samples, pixel_samples, seed)
   local half, sum, count = 8 * math.tan(math.rad(20)), 0, 0
   for y = 0, 47 do
     for x = 0, 47 do
-      -- seen from above, with the top of the picture towards +z, right is -x
+      -- Seen from above, with the top of the picture towards +z, right is -x.
       local px, pz = (2 * (x + 0.5) / 48 - 1) * half, (1 - 2 * (y + 0.5) / 48) * half
       local right, up = -px, pz
       local d2 = (right - 4) ^ 2 + height ^ 2 + up ^ 2
@@ -186,13 +186,13 @@ do
   check(finest < coarse / 8, "error: 16 ways %g, 1024 ways %g", coarse, finest)
   check(finest < fine / 4.5, "better than the root: 64 ways %g, 1024 ways %g", fine, finest)
   check(finest < 1.5e-3, "it converges to the integral: %g", finest)
-  local both = error_of_ball(16, 16) -- samples of the pixel are further samples of the hemisphere
+  local both = error_of_ball(16, 16) -- samples of the pixel are additional samples of the hemisphere
   check(both < fine / 1.5, "16 ways for 16 samples %g, 64 for one %g", both, fine)
   local other = error_of_ball(64, 1, 3)
   check(other ~= fine and other < 1.5 * fine and fine < 1.5 * other, "seeds are equally good: %g, %g", fine, other)
 end
 
--- An area light shines on surfaces that light others: each way asks one of its samples, all of them in turn.
+-- An area light shines on surfaces that light others: each path uses one of its samples, in rotation.
 do
   local image = look({ 2.9, 0, 0 }, { 1, 0, 0 }, {
       indirect = { samples = 256, bounces = 1 }, ball(3, plain { diffuse = 0.5 }),
@@ -207,7 +207,7 @@ do
   near(sum, 0.25 / 36, 1e-4, "and what the ball sends back: half")
 end
 
--- A light that is seen counts once: what it gives to points it gives as a light, not as a surface that ways find.
+-- A visible light counts once: points receive its light directly, not through paths that hit its surface.
 do
   local function plain_room(visible)
     local room = {
@@ -223,7 +223,7 @@ do
   check(same == 63, "a light that is seen counts once: %d of 63 pixels", same)
 end
 
--- ---- Only what is called for, depth, sums, wrong input -------------------------------------------------------------------
+-- ---- Only when needed, depth, sums, wrong input --------------------------------------------------------------------------
 
 local function off(scene)
   return scene:render { width = 16, height = 12, output = "none", passes = "beauty,ambient,indirect" }
@@ -248,7 +248,7 @@ do
   scene.indirect = nil
   check(scene.indirect == nil, "nil turns it off")
 end
-do -- a long way in a white room ends by itself; depth of mirrors bounds ways too
+do -- a long path in a white room ends on its own; the mirror depth also limits paths
   local image = look({ 0, 0, 0 }, { 1, 0, 0 }, {
     indirect = { samples = 1, bounces = 2 ^ 31 }, glint.point_light { position = { 0, 0, 0 } }, ball(2, plain { diffuse = 0.9 }),
   })
@@ -314,7 +314,7 @@ do -- a finalizer that changes the scene while a table is read
   check(busy.indirect.samples == 3 and busy.camera.eye.z == 2, "finalizers may change the scene")
 end
 
--- ---- One picture by every way --------------------------------------------------------------------------------------------
+-- ---- Identical pictures in every configuration ---------------------------------------------------------------------------
 
 local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
 local script = os.tmpname()

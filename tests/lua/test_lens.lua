@@ -1,9 +1,9 @@
--- Cameras with a lens: blur disks as they are on paper, what stays sharp, which rays shading sees, what passes hold, and errors.
+-- Cameras with a lens: blur disks in closed form, sharp areas, rays used for shading, contents of passes, and errors.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
 
-local SIDE = 65 -- pixels, odd: the middle is a pixel's centre
+local SIDE = 65 -- pixels, odd: a pixel's centre is in the middle
 local EYE = 10 -- on the z axis
 
 local function camera(more)
@@ -20,7 +20,7 @@ local function render(scene, more)
   return scene:render(fields)
 end
 
--- Pixels of a picture around its middle, x to the right and y up, and the light of each.
+-- Calls `visit` for the pixels of a picture with x to the right and y up from the middle, and the light.
 local function each(image, visit, pass)
   for row = 0, image.height - 1 do
     for column = 0, image.width - 1 do
@@ -29,7 +29,7 @@ local function each(image, visit, pass)
   end
 end
 
--- Whether two pictures have the same bits in a pass.
+-- Returns whether two pictures have the same bits in a pass.
 local function same(a, b, pass)
   for row = 0, a.height - 1 do
     for column = 0, a.width - 1 do
@@ -43,8 +43,8 @@ end
 -- Width of a pixel at distance 1 from the eye.
 local function pixel_width(fov) return 2 * math.tan(math.rad(fov or 20) / 2) / SIDE end
 
--- The light of a small ball in the middle, seen through a lens: how much it is, its mean square distance from the middle, and
--- how far it goes; in pixels.
+-- The light of a small ball in the middle, seen through a lens: its sum, its mean square distance from the middle,
+-- and its largest distance; in pixels.
 local function blur_of(more, depth, radius, extra)
   local scene = glint.scene { camera = camera(more), ambient = 1,
     glint.sphere { center = { 0, 0, EYE - depth }, radius = radius, material = bright() } }
@@ -59,7 +59,7 @@ end
 
 local tests = {}
 
--- A point at depth d is a disk of radius a |1 - d / f| in its plane, evenly lit: half its square is the mean of squares.
+-- A point at depth d is a uniform disk of radius a |1 - d / f| in its plane: the mean square is half its square.
 function tests.blur_disk()
   for _, case in ipairs {
     { focus = 10, depth = 20, aperture = 0.9 }, { focus = 10, depth = 7, aperture = 1 }, { focus = 40, depth = 12, aperture = 0.7 },
@@ -80,14 +80,14 @@ function tests.blur_disk()
   end
 end
 
--- The quarters and rings of the disk, of equal area, get equal light.
+-- Quarters and rings of equal area in the disk receive equal light.
 function tests.even_disk()
   local scene = glint.scene { camera = camera { aperture = 1, focus = 5 }, ambient = 1,
     glint.sphere { center = { 0, 0, 0 }, radius = 0.06, material = bright() } }
   local radius, parts, total = 1 / (EYE * pixel_width()), { 0, 0, 0, 0, 0, 0, 0, 0 }, 0
   each(render(scene, { samples = 4096 }), function(x, y, light)
     local ring = math.min(math.floor(2 * (x * x + y * y) / (radius * radius)), 1)
-    -- on an axis a pixel is half in each part
+    -- A pixel on an axis belongs half to each part.
     for _, part in ipairs { 1 + (x > 0 and 1 or 0) + (y > 0 and 2 or 0), 1 + (x >= 0 and 1 or 0) + (y >= 0 and 2 or 0) } do
       parts[part + 4 * ring] = parts[part + 4 * ring] + light / 2
     end
@@ -96,7 +96,7 @@ function tests.even_disk()
   for i = 1, 8 do near(parts[i] / total, 1 / 8, 0.012, "part " .. i) end
 end
 
--- A polygon has its corner up; behind what is in focus the picture of the lens stands upright, before it on its head.
+-- A polygon has a corner at the top. Behind the focus its image is upright, in front of the focus upside down.
 function tests.blades()
   for _, case in ipairs { { 3, 0, 20 }, { 3, 0, 7 }, { 5, 0, 20 }, { 4, 45, 20 }, { 6, 30, 20 } } do
     local blades, rotation, depth = case[1], case[2], case[3]
@@ -110,7 +110,7 @@ function tests.blades()
       corner[i] = { sign * radius * math.cos(angle), sign * radius * math.sin(angle), 0 }
     end
     each(render(scene, { samples = 1024 }), function(x, y, light)
-      local over = -math.huge -- the side that it is farthest outside of
+      local over = -math.huge -- largest signed distance from a side
       for i = 1, blades do
         local angle = math.pi / 2 + math.rad(rotation) + 2 * math.pi * (i + 0.5) / blades
         over = math.max(over, sign * (x * math.cos(angle) + y * math.sin(angle)) - radius * math.cos(math.pi / blades))
@@ -123,7 +123,7 @@ function tests.blades()
     local name = ("%d blades, depth %g"):format(blades, depth)
     check(outside < 1.7, "%s: %.2f pixels outside", name, outside)
     for i = 1, blades do check(corner[i][3] > 0, "%s: corner %d is dark", name, i) end
-    -- the mean square of a regular polygon's points from its middle
+    -- Mean square distance of a regular polygon's points from its centre.
     local want = radius * radius * (2 + math.cos(2 * math.pi / blades)) / 6 + 0.32
     near(squares / sum, want, 0.03 * want, name .. ": evenly over the polygon")
   end
@@ -141,7 +141,7 @@ local function tiles(shift)
   return list
 end
 
--- Points in the plane of focus have the bits of the pinhole's picture: such a point looks the same from the whole lens.
+-- Points in the plane of focus have the same bits as in the pinhole's picture: they look the same from the whole lens.
 function tests.in_focus()
   for _, projection in ipairs { "perspective", "orthographic" } do
     for _, samples in ipairs { 1, 7, 16 } do
@@ -161,7 +161,7 @@ function tests.in_focus()
   end
 end
 
--- A camera that looks elsewhere has its focus there; a camera with a direction has it along the direction.
+-- A camera that looks at another point focuses there. A camera with a direction focuses along it.
 function tests.focus_follows()
   local view = camera { aperture = 0.5 }
   local scene = glint.scene { camera = view, ambient = 1, background = 0.2,
@@ -179,7 +179,7 @@ function tests.focus_follows()
   check(view.focus.z == 3, "the field reads as it was set")
 end
 
--- Depth, normal, object and outline belong to the ray through the middle of the lens: the pinhole's, with any samples.
+-- Depth, normal, object and outline belong to the ray through the lens's centre, as for a pinhole, with any samples.
 function tests.geometry_of_the_middle()
   for _, more in ipairs { { samples = 1 }, { samples = 5 }, { samples = 16, adaptive = 0.1 } } do
     for _, projection in ipairs { "perspective", "orthographic" } do
@@ -201,7 +201,7 @@ function tests.geometry_of_the_middle()
   end
 end
 
--- A highlight is computed for each point of the lens: here its mean over a fine grid on the disk.
+-- A highlight is computed for each point of the lens: compares with the mean over a fine grid on the disk.
 function tests.highlights()
   local shiny = glint.material { model = "phong", diffuse = 0, specular = 1, shininess = 40 }
   local lamp, aperture = { 1, 2, 6 }, 2
@@ -226,7 +226,7 @@ function tests.highlights()
   check(worst < 0.01, "off by %.2g", worst)
 end
 
--- A mirror shows what stands before it as far away as the way there is long.
+-- A mirror image is blurred by the length of the whole path.
 function tests.mirrors()
   local mirror = glint.plane { point = { 0, 0, EYE - 8 }, normal = { 0, 0, 1 },
     material = glint.material { diffuse = 0, ambient = 0, mirror = 1 } }
@@ -248,7 +248,7 @@ function tests.mirrors()
   near(second / sum, radius * radius / 2 + ball * ball / 2, 0.03 * radius * radius, "how wide it is")
 end
 
--- A lamp that is seen is blurred as a ball of its size; what is not there, or is clear, changes no bit or hardly one.
+-- A visible light is blurred like a ball of its size. Absent or clear surfaces change nothing, up to rounding.
 function tests.what_rays_go_through()
   local view = camera { aperture = 0.8, focus = 6 }
   local function picture(...)
@@ -268,13 +268,13 @@ function tests.what_rays_go_through()
   check(same(plain, cut, "beauty"), "a surface that is not there")
 end
 
--- Aperture larger than the way to the nearest ball, an eye next to one, a focus next to the eye and next to infinity: all light
--- is that of the object, and none is lost.
+-- An aperture larger than the distance to the nearest ball, an eye next to a ball, a focus next to the eye and close
+-- to infinity: all light comes from the object, and none is lost.
 function tests.hard_places()
   for _, case in ipairs {
     { { aperture = 3, focus = 12 }, { 0, 0, EYE - 2.5 }, 0.5 }, { { aperture = 1, focus = 5 }, { 0, 0, EYE - 0.50001 }, 0.5 },
     { { aperture = 0.01, focus = 1e-6 }, { 0, 0, 4 }, 1 }, { { aperture = 0.01, focus = 1e7 }, { 0, 0, 4 }, 1 },
-    { { aperture = 2, focus = 3 }, { 1.2, 0, EYE }, 0.5 }, -- the ball is in the lens
+    { { aperture = 2, focus = 3 }, { 1.2, 0, EYE }, 0.5 }, -- the ball is inside the lens
   } do
     for _, precision in ipairs { "double", "float" } do
       local scene = glint.scene { camera = camera(case[1]), ambient = 1, background = 0.25,
@@ -291,7 +291,7 @@ function tests.hard_places()
   end
 end
 
--- More samples are taken where the blur shows, and nowhere inside sharp areas.
+-- More samples are taken where the blur is visible, and none inside sharp areas.
 function tests.adaptive()
   local function scene(aperture)
     local s = glint.scene { camera = camera { aperture = aperture, focus = 10 }, ambient = 0.2,
@@ -315,7 +315,7 @@ function tests.adaptive()
   check(count > 300 and count < SIDE * SIDE / 2, "%d pixels were sampled", count)
 end
 
--- Any part of a picture, any number of threads, kept or not: the same bits.
+-- Any region, any number of threads, with or without reuse: the same bits.
 function tests.parts()
   local view = camera { aperture = 0.5, focus = 7, blades = 6 }
   local ball = glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material { specular = 0.5 } }
@@ -336,7 +336,7 @@ function tests.parts()
   check(same(smaller, render(scene, { samples = 9 }), "beauty"), "a lens that was stopped down and opened")
 end
 
--- The plan says who called for a lens, and how far away its focus is; without an aperture there is none.
+-- The plan names the reason for the lens and its focus distance. Without an aperture there is no lens.
 function tests.explained()
   local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
   local function lens_of(options)

@@ -1,5 +1,5 @@
--- Lights have a grid of the spheres before them where a frame is large enough to pay for it: small parts of a picture, which have
--- none, equal the whole, bit for bit.
+-- Lights have a grid of the spheres in front of them when a frame is large enough to benefit. Small regions of a
+-- picture, which have no grid, must equal the whole bit for bit.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -7,8 +7,8 @@ local glint = require "glint"
 local WIDTH <const>, HEIGHT <const> = 480, 360
 local PARTS <const> = { { 160, 100, 24, 16 }, { 225, 165, 24, 16 }, { 90, 225, 24, 16 }, { 330, 255, 24, 16 } }
 
--- Small balls above a floor and a few large ones among them: so many that pixels beside each other look into cells of their own, or few
--- and larger.
+-- Small balls above a floor, with a few large ones among them: so many that adjacent pixels use different cells, or
+-- fewer and larger ones.
 local MANY <const>, FEW <const> = { 8000, 0.045 }, { 900, 0.15 }
 
 local function scene_of(lights, balls)
@@ -41,7 +41,7 @@ local function check_parts(name, lights, balls)
   end
   local camera = scene.camera
   scene.camera = glint.camera { eye = { 0, 5, 11 }, at = { 0, 1, 0 }, fov = 41 }
-  scene:render { width = WIDTH, height = HEIGHT } -- with many threads a grid is made in the second frame
+  scene:render { width = WIDTH, height = HEIGHT } -- with several threads the grid is built in the second frame
   scene.camera = camera
   local whole, differ, dark = scene:render { width = WIDTH, height = HEIGHT }, 0, 0
   for i, r in ipairs(PARTS) do
@@ -66,7 +66,7 @@ function tests.few_afar() check_parts("few, afar", { glint.directional_light { d
 
 function tests.afar() check_parts("afar", { glint.directional_light { direction = { -1, -2, -0.5 } } }) end
 
--- Among the spheres there is no grid, beside it there is.
+-- No grid for a light among the spheres, a grid for a light next to them.
 function tests.several()
   check_parts("several", { glint.point_light { position = { 0, 1.5, 0 }, intensity = 0.5 },
     glint.point_light { position = { -9, 6, 0 }, intensity = 0.5 } })

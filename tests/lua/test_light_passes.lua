@@ -1,11 +1,11 @@
--- Passes light:NAME on random scenes: beauty is the same with and without them, they add up to it, each is the picture of its own
--- lights, "ambient" is the rest; groups, names, and errors.
+-- Passes light:NAME on random scenes: beauty is identical with and without them and equals their sum; each equals the
+-- picture of its own lights, "ambient" is the rest; groups, names, and errors.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
 
-local SUM = 2 ^ -21 -- of a pixel: what rounding to float32 leaves between beauty and the sum of all passes
-local LOST = 2 ^ -20 -- of linear light: weak rays that bounces do not follow, see max_depth in the manual
+local SUM = 2 ^ -21 -- in pixels: float32 rounding between beauty and the sum of all passes
+local LOST = 2 ^ -20 -- linear light in weak rays that bounces do not trace, see max_depth in the manual
 local W, H = 48, 40
 
 local function raises(want, f, ...)
@@ -43,7 +43,7 @@ local function shape()
   return glint.sphere { center = place(4), radius = random(0.4, 2), material = material() }
 end
 
--- hidden: no surface of it is seen, which would hide what is behind it also where it does not shine.
+-- hidden: the light's surface is invisible; a visible surface would hide objects even when the light is off.
 local function light(name, hidden)
   local fields = { name = name, color = color(), intensity = random(0.2, 1.5), shadows = math.random() < 0.8 }
   if math.random() < 0.3 then fields.ambient = color(0.2) end
@@ -60,7 +60,7 @@ local function light(name, hidden)
   return glint.point_light(fields)
 end
 
--- A scene that is made again the same: `only` has the names of the lights that shine, nil: all, and the rest.
+-- Rebuilds the same scene. only: names of the lights that shine; nil: all, plus the rest.
 local function make(seed, only)
   math.randomseed(seed)
   local fields = { camera = glint.camera { eye = { 0, 3, 14 }, at = { 0, 0, 0 }, fov = 45, aperture = math.random() < 0.2 and 0.3 or 0 } }
@@ -125,7 +125,7 @@ local function compare(seed)
   return image, names, options
 end
 
--- Each pass is the picture of its lights.
+-- Checks that each pass equals the picture of its lights.
 local function compare_each(seed, image, names, options)
   for name in pairs(names) do
     local own = render(seed, nil, { [name] = true })

@@ -1,4 +1,4 @@
--- Spot and area lights against closed forms. Every scene is a white matt plane, or a point of one seen from near by.
+-- Spot and area lights against closed forms. Every scene is a white matt plane, or a point of it seen from close up.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
@@ -23,7 +23,7 @@ local function render(scene, pixels, more)
   return scene:render(fields)
 end
 
--- The light at the middle of the floor: mean and root mean square error of the 16 pixels of a block around it.
+-- The light at the middle of the floor: mean and root mean square error of a block of 16 pixels.
 local function irradiance(light, want, width)
   local image = render(above(light, width or 1e-6), 4)
   local sum, square = 0, 0
@@ -36,7 +36,7 @@ local function irradiance(light, want, width)
   return sum / 16, math.sqrt(square / 16)
 end
 
--- Every pixel's bits.
+-- The bits of every pixel.
 local function bits(image)
   local out = {}
   for y = 0, image.height - 1 do
@@ -54,7 +54,7 @@ function tests.profile()
   local x = (c - glint.cos(math.rad(30))) / (glint.cos(math.rad(20)) - glint.cos(math.rad(30)))
   local step = x * x * (3 - 2 * x)
   near(step, 0.5700181842, 1e-10, "the formula itself")
-  local axis = { glint.sin(math.rad(25)), -glint.cos(math.rad(25)), 0 } -- the floor below is 25 degrees off the axis
+  local axis = { glint.sin(math.rad(25)), -glint.cos(math.rad(25)), 0 } -- the floor's point is 25 degrees off the axis
   local function spot(fields)
     local f = { position = { 0, 4, 0 }, direction = axis, inner = 20, outer = 30 }
     for name, value in pairs(fields or {}) do f[name] = value end
@@ -70,7 +70,7 @@ function tests.profile()
   near(spot { inner = 0, outer = 0, direction = { 0, -1, 0 } }, 1, 1, "no angle at all: no NaN")
 end
 
--- A picture of many tiles: each spot lights what its cone holds, however little of a tile that is.
+-- A picture of many tiles: each spot light lights everything in its cone, however small its part of a tile.
 function tests.spots_on_tiles()
   local pixels, width, height = 160, 12, 3
   local wrong, lit, unlit = 0, 0, 0
@@ -106,9 +106,9 @@ function tests.whole_spot()
   check(bits(spot) == bits(point), "180 degrees: a point light")
 end
 
--- ---- One plain lamp, whose light is found with the surface ----
+-- ---- One plain light, whose light is computed together with the surface ----
 
--- The light of a lamp of intensity 2 at a point: n.l / (c0 + c1 d + c2 d^2) on paper.
+-- The light at a point from a light of intensity 2, in closed form: n.l / (c0 + c1 d + c2 d^2).
 local function given(hit, place, c)
   local l, d = {}, 0
   for k = 1, 3 do
@@ -120,7 +120,7 @@ local function given(hit, place, c)
   return 2 * math.max(cosine, 0) / (c[1] + c[2] * d + c[3] * d * d)
 end
 
--- Points of a ball on a floor or a hill, seen from near by and from far away.
+-- Points of a ball on a floor or a hill, seen from close up and from far away.
 function tests.attenuated()
   local place, c = { 3, 4, 1 }, { 0.5, 0.1, 0.01 }
   local ball = glint.sphere { center = { 0, 1, 0 }, radius = 1, material = WHITE }
@@ -143,7 +143,7 @@ function tests.attenuated()
   check(seen[true] > 15 and seen[false] > 15, "lit: %d of the ball, %d below it", seen[true], seen[false])
 end
 
--- ---- Small and near ----
+-- ---- Small and close ----
 
 function tests.radius_0()
   local ball = glint.sphere { center = { 0, 1, 0 }, radius = 1, material = glint.material { specular = 0.5 } }
@@ -172,15 +172,15 @@ function tests.near_light()
       samples = 1024 }, 0, math.min(distance / 1000, 1))
     near(x, math.pi / 4, 0.02, "a sphere at distance " .. distance)
   end
-  for _, kind in ipairs { "disk_light", "sphere_light" } do -- the floor goes through the light
+  for _, kind in ipairs { "disk_light", "sphere_light" } do -- the floor passes through the light
     local x = e(glint[kind] { position = { 0, 0, 0 }, normal = kind == "disk_light" and { 0, -1, 0 } or nil, radius = 1 })
     check(x == x and x >= 0 and x < 1e9, "%s on the floor: finite, got %g", kind, x)
   end
 end
 
--- ---- Irradiance in closed form, and how fast it is approached ----
+-- ---- Irradiance in closed form, and the convergence rate ----
 
--- Lambert's formula: the integral of L cos cos' / d^2 over a polygon wholly above the floor's point.
+-- Lambert's formula: the integral of L cos cos' / d^2 over a polygon entirely above the floor's point.
 local function lambert(corners)
   local sum = 0
   local function unit(a)
@@ -203,8 +203,8 @@ local function polygon(corners, more)
 end
 
 local SQUARE = { { -1, 2, -1 }, { 1, 2, -1 }, { 1, 2, 1 }, { -1, 2, 1 } } -- shines down
-local TILTED = { { 1, 1, -2 }, { 1.5, 3, -1.5 }, { 1.45, 2.9, 1 }, { 0.95, 0.9, 0.5 } } -- four, no parallelogram
-local FIVE = {} -- a regular pentagon, tilted and aside
+local TILTED = { { 1, 1, -2 }, { 1.5, 3, -1.5 }, { 1.45, 2.9, 1 }, { 0.95, 0.9, 0.5 } } -- four, not a parallelogram
+local FIVE = {} -- a regular pentagon, tilted and off-centre
 for i = 0, 4 do
   local a = 2 * math.pi * i / 5
   FIVE[i + 1] = { 1 + 0.9 * math.cos(a), 2 + 0.3 * math.cos(a), -1 + 0.8 * math.sin(a) }
@@ -238,7 +238,7 @@ function tests.closed_forms()
   end
 end
 
--- One side is dark unless two_sided; the sides are equally bright; corners counter-clockwise face the side that shines.
+-- One side is dark unless two_sided; both are equally bright; the side with counter-clockwise corners shines.
 function tests.sides()
   local up = { SQUARE[4], SQUARE[3], SQUARE[2], SQUARE[1] }
   local function e(make, fields) return (irradiance(make(fields), 0)) end
@@ -255,7 +255,7 @@ function tests.sides()
   end
 end
 
--- By intensity: the mean over the surface of n.l, for a disk over the point: 2 h (sqrt(h^2 + r^2) - h) / r^2.
+-- By intensity: the mean of n.l over the surface; for a disk above the point 2 h (sqrt(h^2 + r^2) - h) / r^2.
 function tests.intensity()
   local h, r = 2, 1
   local disk = { position = { 0, h, 0 }, normal = { 0, -1, 0 }, radius = r, samples = 1024 }
@@ -268,7 +268,7 @@ end
 
 -- ---- Penumbra ----
 
--- A sphere light of radius 0.5 at height 4 over a sphere of radius 0.5 at height 2: umbra 0.5, penumbra sqrt(3).
+-- A sphere light of radius 0.5 at height 4 above a sphere of radius 0.5 at height 2: umbra 0.5, penumbra sqrt(3).
 function tests.penumbra()
   local light = glint.sphere_light { position = { 0, 4, 0 }, radius = 0.5, samples = 64 }
   local ball = glint.sphere { center = { 0, 2, 0 }, radius = 0.5, material = WHITE }
@@ -281,7 +281,7 @@ function tests.penumbra()
   for y = 0, 239 do
     for x = 0, 239 do
       if shadowed:pixel(x, y, "object_id") == 2 then
-        -- the floor's point, by the same ray as the pixel's centre
+        -- The floor's point on the ray through the pixel's centre.
         local eye = scene.camera.eye
         local f = { -3 / math.sqrt(10.96), -1.4 / math.sqrt(10.96), 0 }
         local up, half = { f[2], -f[1], 0 }, math.tan(math.rad(35))
@@ -306,8 +306,8 @@ function tests.penumbra()
   check(dark > 100 and partial > 1000, "%d pixels of umbra, %d of penumbra", dark, partial)
 end
 
--- By radiance a radius is squared: the least and the largest give finite light, others are refused.
--- A lamp so far away that float has no number for where it is throws the shadows of a parallel light.
+-- A light too far away for float casts the shadows of a directional light. In extreme_radii, radiance needs the
+-- squared radius: the smallest and largest allowed radii give finite light, others are refused.
 function tests.beyond_float()
   local function picture(light)
     return render(above(light, 12, {
@@ -343,7 +343,7 @@ function tests.extreme_radii()
   end
 end
 
--- A light whose middle is below a face that some of it is above: one ray to the middle decides, whatever the face is of.
+-- A light with its centre below a face and a part above: one ray to the centre decides, for any kind of shape.
 function tests.the_middle_behind_a_face()
   local function faces(shape)
     return glint.scene { camera = glint.camera { eye = { 2, 3, 4 }, at = { 0, 0, 0 }, fov = 40 }, shape,
@@ -360,7 +360,7 @@ function tests.the_middle_behind_a_face()
   check(top == 0, "the face that the middle is below")
 end
 
--- ---- Same picture whatever renders it ----
+-- ---- Identical pictures in every configuration ----
 
 function tests.seeds_and_blocks()
   local light = glint.disk_light { position = { 1, 3, 0 }, normal = { 0, -1, 0 }, radius = 1, samples = 4 }

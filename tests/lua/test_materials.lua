@@ -1,4 +1,4 @@
--- Materials against their definitions in doubles, and against what physics asks of a reflectance: white furnace,
+-- Materials against their definitions in doubles, and against physical properties of a reflectance: white furnace,
 -- reciprocity, integrals over the hemisphere, small roughness.
 local glint = require "glint"
 
@@ -34,7 +34,7 @@ end
 
 local UP = { 0, 0, 1 }
 
--- A direction above the surface: its cosine and azimuth.
+-- A direction above the surface, from its cosine and azimuth.
 local function above(cosine, azimuth)
   local sine = math.sqrt(1 - cosine * cosine)
   return { sine * math.cos(azimuth), sine * math.sin(azimuth), cosine }
@@ -61,7 +61,7 @@ local function blinn(m, l, v)
   return m.normalized and (s + 2) * (s + 4) / (8 * (2 ^ (-s / 2) + s)) * lobe * l[3] or lobe
 end
 
--- Smith's Lambda (Heitz 2014); t: tangent of the angle to the normal.
+-- Smith's Lambda (Heitz 2014). t: tangent of the angle to the normal.
 local function lambda(m, alpha, t)
   if m.distribution == "ggx" then
     return (math.sqrt(1 + (alpha * t) ^ 2) - 1) / 2
@@ -111,8 +111,8 @@ local function random_pair()
   return above(math.max(math.random(), 1e-3), 7 * math.random()), above(math.max(math.random(), 1e-3), 7 * math.random())
 end
 
--- The error of float arithmetic: roundings of 2^-24, and as many of the exponent where there is one. A power below 2^-40
--- is 0. Beckmann's exponent has the squared cosine of the half vector as 1 less the squared sine, one rounding of 1.
+-- The error of float arithmetic: roundings of 2^-24, and as many in the exponent if there is one. A power below 2^-40
+-- is 0. Beckmann's exponent uses the half vector's squared cosine as 1 minus the squared sine, one rounding of 1.
 local function definitions()
   math.randomseed(4)
   for _, fields in ipairs(MATERIALS) do
@@ -134,8 +134,8 @@ end
 
 -- ---- Physics ----
 
--- The share of light from everywhere that leaves towards v: the midpoint rule in rings about the mirror's direction,
--- which crowd there.
+-- The albedo towards v: the midpoint rule over rings around the mirror direction, which are denser close to
+-- it.
 local function albedo(m, v, n)
   local sum, r = 0, { -v[1], -v[2], v[3] }
   local side = unit(cross(r, math.abs(r[1]) < 0.5 and { 1, 0, 0 } or { 0, 1, 0 }))
@@ -178,7 +178,7 @@ local function furnace()
       ok(fine <= 1 + err and err < 0.01, string.format("furnace: %s, n.v = %g", name_of(m), cosine), "%g +- %g", fine, err)
     end
   end
-  for _, model in ipairs { "phong", "blinn_phong" } do -- what normalises them is their share seen from above
+  for _, model in ipairs { "phong", "blinn_phong" } do -- they are normalised by their albedo seen from above
     for _, s in ipairs { 1, 4, 30 } do
       local m = glint.material { model = model, specular = 1, normalized = true, shininess = s }
       local share = albedo(m, UP, 80)
@@ -205,10 +205,10 @@ for _, distribution in ipairs { "ggx", "beckmann" } do
   end
 end
 
--- A half vector at share u of the projected area of facets, from those that look up outwards, and the density there.
+-- The half vector at quantile u of the facets' projected area, from vertical outwards, and its density.
 local function facet(m, u, azimuth)
   local a2 = m.roughness ^ 4
-  local t2 = m.distribution == "ggx" and a2 * u / (1 - u) or -a2 * math.log(1 - u) -- of the tangent of its angle
+  local t2 = m.distribution == "ggx" and a2 * u / (1 - u) or -a2 * math.log(1 - u) -- squared tangent of its angle
   local c2 = 1 / (1 + t2)
   local density = m.distribution == "ggx" and 1 / (math.pi * a2 * c2 ^ 1.5 * (1 + t2 / a2) ^ 2) or math.exp(-t2 / a2) / (math.pi * a2 * c2 ^ 1.5)
   local sine = math.sqrt(t2 * c2)
@@ -220,8 +220,8 @@ local function mirrored(v, h)
   return { d * h[1] - v[1], d * h[2] - v[2], d * h[3] - v[3] }
 end
 
--- As `albedo`, by the midpoint rule over half vectors, which lie as dense as the lobe is high; and what of it the
--- definition leaves, for which density and lobe cancel: what is neither hidden nor shadowed of the facets.
+-- Like `albedo`, by the midpoint rule over half vectors, whose density follows the lobe; and the value from the
+-- definition, where density and lobe cancel: the facets that are neither masked nor shadowed.
 local function narrow_albedo(m, v, n)
   local function tangent(w) return math.sqrt(math.max(1 - w[3] * w[3], 0)) / w[3] end
   local sum, open = 0, 0
@@ -332,11 +332,11 @@ local function fields()
   raises("material.roughnes: no such field; did you mean 'roughness'?", function() m.roughnes = 1 end)
 end
 
--- ---- What a frame with them asks for ----
+-- ---- Effects that a frame with them uses ----
 
 local GLINT = os.getenv("GLINT") or "build/glint"
 
--- The command's output for a script that renders three frames while `change` is made.
+-- The command's output for a script that renders three frames while `change` is applied.
 local function stages_of(change)
   local path = os.tmpname()
   local file <close> = assert(io.open(path, "w"))

@@ -1,5 +1,5 @@
--- Meshes from files: every kind gives the same triangles; materials of .obj files by face; faults are reported, wherever a
--- file ends.
+-- Meshes from files: every format gives the same triangles; materials of .obj files by face; errors are reported
+-- wherever a file ends.
 local build = os.getenv "BUILD" or "build"
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
@@ -26,7 +26,7 @@ local function refuses(want, name, ...)
   check(not good and message == path .. want, "<%s> expected, got <%s>", want, message)
 end
 
--- ---- A box of six faces in every format ----
+-- ---- A box with six faces in every format ----
 
 local CORNERS, FACES = {}, { { 0, 1, 3, 2 }, { 4, 6, 7, 5 }, { 0, 4, 5, 1 }, { 2, 3, 7, 6 }, { 0, 2, 6, 4 }, { 1, 5, 7, 3 } }
 for i = 0, 7 do CORNERS[i] = { 2 * (i // 4) - 1, 1.25 * (i // 2 % 2), 3 * (i % 2) - 0.5 } end
@@ -67,7 +67,7 @@ local function binary_stl()
   return table.concat(text)
 end
 
--- With properties that mean nothing to a mesh, before, between and after.
+-- With properties that a mesh does not use, before, between and after.
 local function ply(format, before, after)
   local text = { "ply\nformat ", format, " 1.0\ncomment of a test\nobj_info x\nelement note 1\nproperty list uint16 int8 words\n",
     "element vertex 8\n", before or "", "property double x\nproperty float y\nproperty float32 z\nproperty ushort kind\n",
@@ -133,7 +133,7 @@ function tests.normals_and_coordinates_of_ply()
   end
   local flat = pixels(load("box.obj", obj()))
   check(want ~= flat, "normals and coordinates show")
-  -- a normal of 0 is none: that corner has its face's
+  -- A normal of 0 is ignored: that corner has its face's normal.
   local head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
   local mesh = load("zero.ply", head, normals, "element face 1\nproperty list uchar int vertex_index\nend_header\n",
     "0 0 0 0 0 0\n1 0 0 1 0 1\n0 1 0 0 nan 0\n3 0 1 2\n")
@@ -210,10 +210,10 @@ function tests.colours_by_face()
     "a pattern in place of Kd stays with the scene")
 end
 
--- The right plate's upper half is cut out, and its highlight is the picture's: red and half of the blue below.
+-- The right plate's upper half is cut out, and its highlight comes from the picture: red, and half of the blue below.
 function tests.pictures_of_highlights_and_holes()
   os.execute("mkdir -p " .. folder .. "/sub")
-  local function halves(name, upper, lower) -- linear codes
+  local function halves(name, upper, lower) -- linear pixel values
     glint.scene { camera = glint.camera { eye = { 0, 1, 9 }, at = { 0, 1, 0 } }, ambient = 1, background = upper,
       glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = lower } },
     }:render { width = 8, height = 8, transfer = "linear", bits = 16 }:save(folder .. "/sub/" .. name,
@@ -244,7 +244,7 @@ function tests.pictures_of_highlights_and_holes()
   check(image:pixel(36, 21, "specular") == 0, "illum 1 has no highlight")
 end
 
--- A relief is the bump pattern that a script would write, whatever its spelling, as high as -bm says.
+-- A bump map equals the bump pattern that a script would write, in any spelling, with the height of -bm.
 function tests.reliefs()
   os.execute("mkdir -p " .. folder .. "/sub")
   glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1,
@@ -300,7 +300,7 @@ function tests.what_lets_light_through()
   near(got, 0.375 + 0.25 * 0.5, 1e-6, "Kd d + behind (1 - d)")
 end
 
--- Vertices that faces of two materials share are lit for each of them.
+-- Vertices shared by faces of two materials are lit for each material.
 function tests.materials_meet_in_vertices()
   local text = "mtllib m.mtl\nv -2 -1 0\nv 0 -1 0\nv 0 1 0\nv -2 1 0\nv 2 -1 0\nv 2 1 0\nusemtl a\nf 1 2 3 4\nusemtl b\nf 2 5 6 3\n"
   write("m.mtl", "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 0 1\n")
@@ -322,7 +322,7 @@ end
 
 -- ---- Colours of .ply ----
 
--- Two triangles beside each other before the eye, with colours of corners, of faces or of both; nil: none.
+-- Two adjacent triangles in front of the eye, with colours of corners, of faces or of both; nil: none.
 local function colored(format, corners, faces)
   local names = "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n"
   local text = { "ply\nformat ", format, " 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n",
@@ -365,7 +365,7 @@ function tests.colours_of_ply()
     mesh = shows("corners.ply", colored(format, { SKY, SKY, SKY, RED, RED, RED }), SKY, RED)
     check(#mesh.materials == 2, "corners that agree")
     shows("both.ply", colored(format, { RED, RED, RED, RED, RED, RED }, { SKY, BLUE }), SKY, BLUE)
-    -- the mean of light, as the nearest code: two thirds of it red, one third blue
+    -- The mean in linear light, as the closest pixel value: two thirds red, one third blue.
     local r, b = 0, 0
     while light_of(r + 0.5) < 2 / 3 do r = r + 1 end
     while light_of(b + 0.5) < 1 / 3 do b = b + 1 end
@@ -380,7 +380,7 @@ function tests.colours_of_ply()
   refuses(":20: face 1 of 2: a colour's code, 0 .. 255, expected, got 0.5", "a.ply", colored("ascii", nil, { { 0, 0, 0.5 }, RED }))
 end
 
--- ---- Files that are not as they should be ----
+-- ---- Invalid files ----
 
 function tests.refused()
   local head = "ply\nformat ascii 1.0\n"
@@ -425,7 +425,7 @@ function tests.refused()
   refuses(": faces expected, got only such with a vertex that is not finite", "a.stl", ("\0"):rep(80) .. "\1\0\0\0" .. ("<f"):pack(0 / 0):rep(12) .. "\0\0")
 end
 
--- A mesh or a message, wherever a file ends and whatever a byte of it is.
+-- A mesh or a message, wherever a file is truncated and whatever a byte is changed to.
 function tests.cut_short_and_changed()
   write("some file.mtl", MATERIALS)
   local files = { { "cut.obj", PLATES }, { "cut.stl", text_stl() }, { "bin.stl", binary_stl() }, { "cut.ply", ply "ascii" },
@@ -444,6 +444,6 @@ function tests.cut_short_and_changed()
   end
 end
 
-tests.colours_by_face_again = tests.colours_by_face -- after the others' files
+tests.colours_by_face_again = tests.colours_by_face -- after the files of the other tests
 tally.run(tests)
 tally.finish()

@@ -1,5 +1,5 @@
--- Files of meshes as programs write them, beside what the formats' descriptions show: line ends, byte order marks, faces and
--- normals that are none, colours, strips, statements of other uses, lines of .mtl files that are wrong, other formats.
+-- Mesh files as real programs write them, beyond the formats' own examples: line ends, byte order marks, degenerate
+-- faces and normals, colours, strips, unrelated statements, wrong lines in .mtl files, other formats.
 local build = os.getenv "BUILD" or "build"
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
@@ -66,7 +66,7 @@ function tests.line_ends_and_marks()
       refuses(":5: a number expected, got 'zero 0'", "b.obj", mark .. (TRIANGLE .. "\nv 0 zero 0\n"):gsub("\n", ending))
     end
   end
-  -- what follows the head may begin with any byte
+  -- The data after the header may begin with any byte.
   for _, ending in ipairs { "\n", "\r\n", "\r" } do
     for _, first in ipairs { "\n", "\r", "\xef" } do
       local head = ("ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar kind\n" .. VERTEX .. FACE .. "end_header\n")
@@ -349,10 +349,10 @@ local PARTS <const> = "ffd8ffe000104a46494600010100000100010000ffdb0043000101010
   "0101010101010101010101010101010101010101010101010101010101ffc0000b080010001001011100ffc400150001010000000000000000000000" ..
   "0000000a0bffc40014100100000000000000000000000000000000ffda0008010100003f009ff9541541543fffd9"
 
--- What the Exif tag Orientation says of the corners, from the stored ones 1 2 / 3 4.
+-- The corners for each value of the Exif tag Orientation, from the stored ones 1 2 / 3 4.
 local TURNED <const> = { "1234", "2143", "4321", "3412", "1324", "3142", "4231", "2413" }
 
--- A JPEG with an Exif block of one tag, in either byte order.
+-- A JPEG with an Exif block with one tag, in either byte order.
 local function turned(orientation, order)
   local tiff = ((order == "<" and "II" or "MM") .. (order .. "I2I4I2I2I2I4I2I2I4"):pack(42, 8, 1, 0x112, 3, 1, orientation, 0, 0))
   local block = "Exif\0\0" .. tiff

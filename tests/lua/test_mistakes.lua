@@ -1,11 +1,11 @@
--- Mistakes as they are made: each message names its cure.
+-- Typical mistakes: each message names its fix.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
 
 local tests = {}
 
--- The code runs with these names; the message must have `want` as it stands.
+-- Runs the code with these names. The message must contain `want` literally.
 local function wrong(want, code)
   local env = setmetatable({
     glint = glint,
@@ -65,7 +65,7 @@ function tests.dots_and_colons()
   wrong("sin: write glint.sin with a dot, not with a colon", "glint:sin(1)")
 end
 
--- The place is the pattern's function, not the call that rendered.
+-- The reported position is the pattern's function, not the call that rendered.
 function tests.patterns_of_one_number_have_a_place()
   local code = "local three = glint.pattern(function(p) return { p.x, 1, 1 } end)\n"
     .. "scene:add(glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material { shininess = three, specular = 1 } })\n"

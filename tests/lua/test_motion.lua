@@ -1,4 +1,4 @@
--- glint.ease and glint.keys: values on paper, ends, vectors and lists, cycles, splines, and refused values.
+-- glint.ease and glint.keys: values in closed form, ends, vectors and lists, cycles, splines, and refused values.
 package.path = "tests/lua/?.lua;" .. package.path
 local glint = require "glint"
 local tally = require "tally"
@@ -44,7 +44,7 @@ local line = keys { { 0, 1 }, { 0.5, 2 }, { 2, 5 }, { 3, 7 }, ease = "spline" }
 for i = 0, 30 do check(math.abs(line(i / 10) - (1 + 2 * i / 10)) < 1e-14, "what is straight stays straight: %.17g", line(i / 10)) end
 local hill = keys { { 0, 0 }, { 1, 1 }, { 2, 0 }, { 3, 1 }, ease = "spline" }
 check(hill(1) == 1 and hill(2) == 0 and hill(1.5) == 0.5, "through its keys")
--- Hermite's form at 1/2: (a + b)/2 + (m0 - m1)/8, of slopes 1 at the end and 0 at the key
+-- Hermite's form at 1/2: (a + b)/2 + (m0 - m1)/8, with slopes 1 at the end and 0 at the key.
 check(hill(0.5) == 0.5 + 1 / 8, "slopes of the neighbours: %.17g", hill(0.5))
 local step = 2 ^ -20
 for _, at in ipairs { 1, 2 } do
@@ -53,7 +53,7 @@ end
 local wheel = keys { { 0, 0 }, { 1, 1 }, { 2, 0 }, { 3, -1 }, { 4, 0 }, ease = "spline", cyclic = true }
 check(math.abs((wheel(4 + step) - wheel(4)) - (wheel(4) - wheel(4 - step))) < 1e-9, "nor where the cycle begins again")
 
--- ---- What they refuse ----
+-- ---- Refused values ----
 
 local function refuses(message, call, ...)
   local ok, got = pcall(call, ...)

@@ -1,12 +1,12 @@
--- Ambient occlusion against closed forms: walls, a ball at rest, a limit of distance, panes of glass; which part of the ambient
--- light it is of; its fields and errors.
+-- Ambient occlusion against closed forms: walls, a ball on the floor, a limited distance, panes of glass; which part
+-- of the ambient light it affects; its fields and errors.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
 
 local ROUNDING = 2 ^ -22
 local SAMPLES = 16384
-local NOISE = 0.002 -- of so many samples: half of what it would be if they were drawn at random
+local NOISE = 0.002 -- for this many samples: half of the error of random sampling
 
 local function raises(want, f, ...)
   local good, message = pcall(f, ...)
@@ -16,7 +16,7 @@ end
 local matt = glint.material { diffuse = 1 }
 local function floor(material) return glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = material or matt } end
 
--- The image of a scene that looks straight down at the point x, 0, z from very near.
+-- The image of a scene that looks straight down at the point x, 0, z from very close.
 local function at(x, z, fields, more)
   fields.camera = glint.camera { eye = { x, 1e-3, z }, direction = { 0, -1, 0 }, up = { 0, 0, 1 }, fov = 1 }
   fields.ambient = fields.ambient or 1
@@ -43,7 +43,7 @@ function tests.all_and_nothing()
   near(lit:pixel(0, 0, "diffuse"), 1, ROUNDING, "beside their light")
 end
 
--- Beside a wall without end half of the sky is left, wherever; beside one of height h (1 + d / sqrt(d^2 + h^2)) / 2.
+-- Next to an infinite wall half of the sky is visible; next to one of height h, (1 + d / sqrt(d^2 + h^2)) / 2.
 function tests.walls()
   local half_space = glint.plane { point = { 0, 0, 0 }, normal = { 1, 0, 0 }, material = matt }
   for _, d in ipairs { 0.01, 1, 100 } do near(open_at(d, 0, { floor(), half_space }), 0.5, NOISE, "a wall, " .. d) end
@@ -53,7 +53,7 @@ function tests.walls()
   end
 end
 
--- A ball on the floor: 1 - (r / D)^3, D from its centre; one above the point: 1 - (r / height)^2.
+-- A ball on the floor: 1 - (r / D)^3, D from its centre. A ball above the point: 1 - (r / height)^2.
 function tests.balls()
   local ball = glint.sphere { center = { 0, 1, 0 }, radius = 1, material = matt }
   for _, x in ipairs { 0.4, 1, 2.5 } do
@@ -64,7 +64,7 @@ function tests.balls()
   near(open_at(0, 0, { floor(), ball }), 1 - 1 / 2.5 ^ 2, NOISE, "a ball above")
 end
 
--- For an infinite wall at d, the part within L: the part of the unit disk beyond c = d / L.
+-- For an infinite wall at distance d, the part within L: the part of the unit disk beyond c = d / L.
 function tests.distance()
   local half_space = glint.plane { point = { 0, 0, 0 }, normal = { 1, 0, 0 }, material = matt }
   for _, c in ipairs { 0.1, 0.5, 0.9 } do
@@ -83,7 +83,7 @@ function tests.distance()
   near(open_at(1, 0, { floor(), holes, ambient_occlusion = { samples = SAMPLES, distance = 0.9 } }), 1, ROUNDING, "and far")
 end
 
--- Glass that does not bend: what it lets through, once for each pane; an opaque wall beyond it closes.
+-- Non-refracting glass tints once per pane. An opaque wall behind it occludes.
 function tests.glass()
   local function pane(y, transmission)
     return glint.plane { point = { 0, y, 0 }, normal = { 0, 1, 0 },
@@ -103,7 +103,7 @@ function tests.glass()
   near(r, 0.375, NOISE, "and a plain one") near(g, 0.5, NOISE, "green") near(b, 0.1, NOISE, "blue")
 end
 
--- min(ka, kd) Ia is what is closed off; beyond it `ambient` is light of the surface's own.
+-- Occlusion applies to min(ka, kd) Ia. The excess of `ambient` is the surface's emission.
 function tests.materials()
   local half_space = glint.plane { point = { 0, 0, 0 }, normal = { 1, 0, 0 }, material = matt }
   local image = at(1, 0, { ambient = 0.5, floor(glint.material { diffuse = { 0.8, 0.4, 0.6 }, ambient = { 0.3, 1, 0.6 } }), half_space })
@@ -128,7 +128,7 @@ function tests.mirror()
   near(open_at(0, 0, { mirror, disk }), 0.5 * (1 - 1 / (1 + 16)), NOISE, "a disk of radius 1, at 4: 1 - 1 / 17 of the sky")
 end
 
--- The same pixels with other threads' tiles, kept or fresh; a region is the whole's part.
+-- The same pixels with any threads, with or without reuse. A region equals that part of the whole.
 function tests.ways()
   local ball = glint.sphere { center = { 0, 1, 0 }, radius = 1 }
   local scene = glint.scene { camera = glint.camera { eye = { 0, 3, 8 }, at = { 0, 1, 0 } }, ambient = 1, floor(), ball,

@@ -1,5 +1,5 @@
--- Labels, colour bars and axes: fields and errors, frames that set them, extreme places and sizes. What they draw:
--- tests/engine/test_overlays.c.
+-- Labels, colour bars and axes: fields and errors, frames that set them, extreme positions and sizes. For their
+-- pixels see tests/engine/test_overlays.c.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -124,8 +124,8 @@ function tests.errors()
   raises("scene.overlay: not in the scene", scene.remove, scene, l)
 end
 
--- With a label, a picture is another file with the same light; without it, it is as before.
--- A logarithmic bar has powers of ten at equal distances; colours of one's own lie along it.
+-- A logarithmic bar has powers of ten at equal distances; the user's own colours spread along it.
+-- An overlay changes only the file, not the light; without it the picture is as before.
 function tests.bars_of_ones_own()
   local function picture(fields)
     local given = { map = "viridis", low = 0.01, high = 100, size = 10, length = 100, ticks = { 0.1, 1, 10 }, position = { 5, 5 } }
@@ -180,9 +180,9 @@ function tests.pictures()
   end
 end
 
--- ---- A cell, broken lines, letters ----
+-- ---- A cell, wrapped lines, letters ----
 
--- The file of a scene with one overlay, 200 x 200 pixels, 50 a unit, (1, 0.75) in its middle.
+-- The file of a scene with one overlay, 200 x 200 pixels, 50 per unit, with (1, 0.75) in the middle.
 local function file_with(overlay, width)
   local camera = glint.camera { eye = { 1, 0.75, 10 }, direction = { 0, 0, -1 }, projection = "orthographic", height = 4 }
   local scene = glint.scene { camera = camera, overlay }
@@ -193,7 +193,7 @@ local function file_with(overlay, width)
   return picture, bytes:match "IDAT.*"
 end
 
--- How many of 21 points between two places of the world are bright in a picture, within a pixel.
+-- Counts how many of 21 points between two world positions are bright in a picture, within a pixel.
 local function count_bright(picture, from, to)
   local count = 0
   for i = 0, 20 do
@@ -260,7 +260,7 @@ function tests.letters_that_run_left()
   check(glint.label { text = "αβ Ж 中 →" }.text == "αβ Ж 中 →", "others are drawn")
 end
 
--- Whatever the size and the place, there is a picture.
+-- Every size and position gives a picture.
 function tests.extremes()
   local scene = scene_of()
   local names = { "top left", "top", "top right", "left", "center", "right", "bottom left", "bottom", "bottom right" }

@@ -1,4 +1,4 @@
--- Materials whose fields hold patterns: read and written, called once a frame, and seen in pictures.
+-- Materials whose fields hold patterns: read and written, called once per frame, and visible in pictures.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -74,7 +74,7 @@ end
 
 function tests.minus_0_is_0()
   local function lit(shininess) return (picture(make_scene(glint.material { specular = 0.3, shininess = shininess }))) end
-  local minus = lit(-0.0) -- first, so that nothing is cached of the other
+  local minus = lit(-0.0) -- first, so that nothing is cached from the other
   check(minus == lit(glint.pattern(function() return -0.0 end)), "as a pattern")
   check(minus == lit(0.0), "as 0")
 end
@@ -82,7 +82,7 @@ end
 -- A cap or a base is at one end of the coordinates from base to top, and so in one row of a texture.
 function tests.ends_are_in_one_row()
   local halves = glint.pattern(function(_, s) return glint.floor(2 * glint.fract(s.uv.v)) end)
-  local function count(shape) -- pixels of the lower and of the upper half, from above, where its end hides all else
+  local function count(shape) -- pixels of the lower and upper halves, from above, where the end hides everything else
     local image = glint.scene { camera = glint.camera { eye = { 0.1, 9, 0 }, at = { 0, 0, 0 }, fov = 20 }, ambient = 1, shape }
       :render { width = 96, height = 96, passes = { "albedo", "object_id" } }
     local seen = { [0] = 0, 0 }
@@ -104,7 +104,7 @@ function tests.ends_are_in_one_row()
   end
 end
 
--- The pass albedo is the function of the point that plain Lua gives, rounded to float.
+-- The pass albedo equals the function evaluated by plain Lua at the point, rounded to float.
 function tests.albedo_is_what_plain_lua_says()
   local function f(p) return glint.mix({ 0.1, 0.2, 0.9 }, { 1, 0.5, 0.25 }, glint.smoothstep(-0.2, 0.2, glint.noise(p * 1.7))) end
   local ball = glint.sphere { center = { 0, 0.5, 0 }, radius = 1.5, material = glint.material { diffuse = glint.pattern(f) } }
@@ -237,7 +237,7 @@ function tests.evaluate_runs_shaders()
   check(toon:evaluate(at).diffuse.x == 0, "a light behind the surface")
 end
 
--- Phong's model as a shader equals the built-in one, except for rounding to float.
+-- Phong's model as a shader equals the built-in model, except for rounding to float.
 function tests.phong_as_a_shader_is_phong()
   local shader = glint.shader(function(s)
     return s.kd * s.light * s.n:dot(s.l), s.ks * s.light * glint.highlight((-s.l):reflect(s.n):dot(s.v), s.shininess)
@@ -255,7 +255,7 @@ function tests.phong_as_a_shader_is_phong()
   tally.near(worst, 0, 2e-6, "the greatest difference")
 end
 
--- A height of a x tilts the normal of a floor to (-a, 1, 0).
+-- A height of a x tilts a floor's normal to (-a, 1, 0).
 function tests.a_bump_of_a_slope_tilts_the_normal()
   local slope = 0.25
   local function lit(fields, direction)
@@ -272,7 +272,7 @@ function tests.a_bump_of_a_slope_tilts_the_normal()
   tally.near(lit({ diffuse = 0.8, bump = glint.pattern(function() return 3 end) }, -l), 0.8 * l.y, 1e-6, "a height without slope")
 end
 
--- The remaining ambient light of a pattern is not in a table of numbers: frames that reuse the rest must not reuse that.
+-- A pattern's remaining ambient light is not in a material's constants: frames that reuse the rest must not reuse it.
 function tests.ambient_light_changes_what_patterns_show()
   local wave = glint.pattern(function(p) return 0.25 + glint.fract(p.x) / 2 end)
   local shader = glint.shader(function(s) return s.kd end)

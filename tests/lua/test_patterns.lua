@@ -1,4 +1,4 @@
--- Patterns and shaders: functions that are traced to programs, against the same functions run by plain Lua.
+-- Patterns and shaders: functions traced to programs, against the same functions run by plain Lua.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -14,7 +14,7 @@ local function compare(f, text)
   return got
 end
 
--- Under another instruction set the same functions give the same text here.
+-- A child process with another instruction set runs this and must print the same text.
 if arg[1] == "digest" then
   math.randomseed(7)
   local sums = {}
@@ -73,7 +73,7 @@ function tests.operations_take_plain_numbers()
   check(glint.hash(1, 2, 3) ~= glint.hash(1, 2, 4) and glint.hash(1, 2, 3) == glint.hash { 1, 2, 3 })
 end
 
--- Within a pattern the plain numbers of the 64 points go through the same operations.
+-- Inside a pattern, the plain numbers of the 64 test points go through the same operations.
 function tests.exp_log_tan_min_and_max_take_symbols()
   local at = { p = { 0.3, 1.2, -0.7 } }
   local function value(f) return glint.pattern(f):evaluate(at).x end
@@ -126,7 +126,7 @@ function tests.checker_is_the_parity_of_floors()
   end
 end
 
--- Against sums over the box. The z of p lies in the plane of the surface, whose both sides are not seen.
+-- Against sums over the box. The surface is at one value of p.z, whose cells on either side are not visible.
 function tests.footprints_are_box_integrals()
   math.randomseed(5)
   for _ = 1, 100 do
@@ -194,7 +194,7 @@ end
 
 local HERE = "test_patterns.lua"
 
--- The message names this file and the function's line (by `line`, its offset from the line of `make`), and has `want`.
+-- Checks that the message names this file and the line of f (`line` after that of `make`) and contains `want`.
 local function raises(want, make, call)
   local line = debug.getinfo(make, "S").linedefined
   local last = debug.getinfo(make, "S").lastlinedefined
@@ -284,7 +284,7 @@ function tests.symbols_do_not_outlive_their_call()
   check(not pcall(function() return kept + 1 end))
 end
 
--- ---- The 64 points ----
+-- ---- The 64 test points ----
 
 local function is_found(f)
   local line = debug.getinfo(f, "S").linedefined
@@ -304,7 +304,7 @@ function tests.the_64_points_find_branches()
   is_found(function(p) calls = calls + 1 return p.x + calls end)
 end
 
--- To Lua 0 is true, as symbols are: none of the 64 points shows these.
+-- In Lua 0 and symbols are both true, so none of the 64 test points reveals these.
 local function is_refused(f)
   raises("an `if`, `and` or `or` on what this gives", f)
 end
@@ -365,7 +365,7 @@ function tests.powers_are_let_pass()
   end
 end
 
--- Rounding took means below 0 and above 1 by 1e-15.
+-- Rounding once moved means below 0 and above 1 by 1e-15.
 function tests.means_of_tilings_stay_in_range()
   local least, most = math.huge, -math.huge
   math.randomseed(5)

@@ -1,4 +1,4 @@
--- Pictures as numbers: image:bytes, glint.read_image; what a scene holds; the camera of a scene that has none.
+-- Pictures as numbers: image:bytes, glint.read_image; contents of a scene; the default camera of a scene.
 package.path = "scripts/lib/?.lua;" .. package.path
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
@@ -70,7 +70,7 @@ function tests.a_scene_lists_its_objects()
   check(#scene == 3 and scene:objects()[1] == b and #glint.scene {} == 0 and #glint.scene {}:objects() == 0)
 end
 
--- Every pixel at the picture's edge sees past the shapes, and some pixel sees each of them.
+-- Every pixel at the picture's edge shows background, and each shape is visible in some pixel.
 function tests.a_scene_without_a_camera_gets_one()
   local scene = glint.scene { ball(3, 1, -2, 1), glint.group { ball(0, 0, 0, 0.5), transform = glint.translate(-4, 0, 0) },
     glint.plane { point = { 0, -50, 0 }, normal = { 0, 1, 0 } }, ambient = 1 }

@@ -1,4 +1,4 @@
--- Programs under lights of every kind: Lambert's law as a shader gives what the built-in one gives, and a bump without slope
+-- Programs under every kind of light: Lambert's law as a shader equals the built-in model, and a bump without slope
 -- changes nothing.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check

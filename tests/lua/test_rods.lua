@@ -1,10 +1,10 @@
--- Solids that are longer than wide, under an index: each shows where a scene with no other object shows it.
+-- Elongated solids in a BVH: each appears at the same pixels as in a scene with no other object.
 local tally = dofile "tests/lua/tally.lua"
 local glint = require "glint"
 
 local SIZE = { width = 160, height = 90, passes = "object_id" }
 
--- The pixels of each object by its number.
+-- The pixels of each object, by its id.
 local function count(image)
   local pixels = {}
   for y = 0, image.height - 1 do

@@ -1,5 +1,5 @@
--- Flat and Gouraud shading against light computed here, a face and a vertex at a time; neighbours must not shadow,
--- and a moving camera does not change it.
+-- Flat and Gouraud shading against light computed here, for each face and vertex; neighbours must not shadow each
+-- other, and a moving camera must not change the light.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -17,7 +17,7 @@ local function times(a, s) return { a[1] * s, a[2] * s, a[3] * s } end
 local function unit(a) return times(a, 1 / math.sqrt(dot(a, a))) end
 local function xyz(v) return { v.x, v.y, v.z } end
 
--- Every pixel's bits.
+-- The bits of every pixel.
 local function bits(image)
   local out = {}
   for y = 0, image.height - 1 do
@@ -28,7 +28,7 @@ end
 
 -- ---- The truth ----
 
--- Where a segment from p to q meets the triangle, as a part of its length; nil: it does not.
+-- Returns where a segment from p to q hits the triangle, as a fraction of its length; nil: a miss.
 local function crossing(p, q, a, b, c)
   local e, f, d = minus(b, a), minus(c, a), minus(q, p)
   local n = cross(e, f)
@@ -41,7 +41,7 @@ local function crossing(p, q, a, b, c)
   return t
 end
 
--- The light a site sends to the eye. faces: of corners, which stand in the way unless they touch the site.
+-- The light that a site sends to the eye. faces: lists of corners, which occlude unless they touch the site.
 local function evaluate(model, site, normal, eye)
   local total = { 0, 0, 0 }
   for _, lamp in ipairs(model.lamps) do
@@ -80,7 +80,7 @@ local function centroid(face)
   return times(sum, 1 / total), unit(n)
 end
 
--- ---- A folded sheet of quadrangles in planes, seen from anywhere ----
+-- ---- A folded sheet of planar quads, seen from anywhere ----
 
 local function sheet()
   local model = { vertices = {}, numbers = {}, faces = {}, lamps = { vector(9), vector(9) } }
@@ -100,7 +100,7 @@ local function sheet()
   return model
 end
 
--- A rotation around a random axis, then a translation: three rows and an offset.
+-- A rotation about a random axis, then a translation: three rows and an offset.
 local function random_map(turned, way)
   if not turned then return { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, way } end
   local x = unit(vector(1))
@@ -119,7 +119,7 @@ local function as_transform(map)
   return glint.matrix(rows)
 end
 
--- The same sheet where its map puts it, and the normals of its vertices.
+-- Places the sheet with a map, and computes the normals of its vertices.
 local function place(model, map)
   model.placed, model.faces, model.normals = {}, {}, {}
   for i, v in ipairs(model.vertices) do
@@ -146,7 +146,7 @@ local function smooth(model)
   end
 end
 
--- The light of both sides of each face or vertex, as the eye sees it: [1] with the normal, [-1] with its opposite.
+-- The light of both sides of each face or vertex, as seen by the eye: [1] with the normal, [-1] with its opposite.
 local function light_sites(model, shading, eye)
   local out = { [1] = {}, [-1] = {} }
   for side, list in pairs(out) do
@@ -219,7 +219,7 @@ function tests.truth()
   end
 end
 
--- A ball's faces and vertices never shadow each other, wherever it is and however large: what faces the light has it all.
+-- A ball's faces and vertices never shadow each other, at any position and size: if they face the light, they are lit.
 function tests.no_shadow_by_neighbours()
   for _, case in ipairs { { 0, 1 }, { 1e7, 1 }, { 3, 1e-5 }, { -40, 1e5 } } do
     local at, size = case[1], case[2]
@@ -239,7 +239,7 @@ function tests.no_shadow_by_neighbours()
   end
 end
 
--- A floor of quadrangles: what stands above some of its faces is in their light, and in no other's.
+-- A floor of quads: an occluder shadows the faces below it, and no others.
 function tests.shadows()
   local vertices, faces = {}, {}
   for z = 0, 4 do
@@ -252,7 +252,7 @@ function tests.shadows()
     return glint.scene {
       camera = glint.camera { eye = { 2, 20, 2 }, at = { 2, 0, 2 }, up = { 0, 0, -1 }, projection = "orthographic", height = 4 },
       glint.mesh { vertices = vertices, faces = faces, shading = shading, material = glint.material { diffuse = 1, ambient = 0 } },
-      glint.sphere { center = { 1, 30, 1 }, radius = 0.7 + 0.1 }, -- over the corner of four faces
+      glint.sphere { center = { 1, 30, 1 }, radius = 0.7 + 0.1 }, -- above the corner shared by four faces
       glint.directional_light { direction = { 0, -1, 0 } },
     }:render { width = 16, height = 16, output = "none" }
   end
@@ -263,13 +263,13 @@ function tests.shadows()
       check(flat:pixel(x, y) == (dark and 0 or 1), "flat %d, %d: %g", x, y, (flat:pixel(x, y)))
     end
   end
-  -- one vertex is dark; halfway to its neighbours the light is back to its half
+  -- One vertex is dark; halfway to its neighbours the light is back to one half.
   check(math.abs(gouraud:pixel(4, 4) - 0.25) < 0.2 and gouraud:pixel(10, 10) == 1, "between a dark vertex and lit ones")
   check(gouraud:pixel(3, 3) < gouraud:pixel(1, 1) and gouraud:pixel(1, 1) < 1, "it grows away from the dark one")
 end
 
--- A corner with a normal of its own is a vertex of its own: a box of eight vertices with a normal for each corner of a
--- face is that of 24 vertices.
+-- A corner with its own normal is a separate vertex: a box with eight vertices and a normal for each corner of a face
+-- equals one with 24 vertices.
 function tests.corner_normals()
   local corners, faces, normals, apart, each, own = {}, {}, {}, {}, {}, {}
   for i = 0, 7 do corners[i + 1] = { i % 2 * 2 - 1, i // 2 % 2 * 2 - 1, i // 4 * 2 - 1 } end
@@ -298,7 +298,7 @@ function tests.corner_normals()
   check(shared ~= picture { vertices = corners, faces = faces }, "is not one of smooth corners")
 end
 
--- A vertex's normal may lean so far from the eye that it points away from the halfway vector: (n.h) < 0 and no
+-- A vertex's normal may be tilted so far from the eye that it points away from the halfway vector: (n.h) < 0 and no
 -- highlight, however broad.
 function tests.normals_that_look_away()
   local lean, v = unit { 2, 0, 1 }, unit { -8, 0, 1 }
@@ -317,7 +317,7 @@ function tests.normals_that_look_away()
   end
 end
 
--- Passes add up, samples meet in the mean, and one-sided backs have only ambient light.
+-- Passes sum up, samples average, and one-sided backs have only ambient light.
 function tests.terms()
   local ball = glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 10, shading = "gouraud",
     material = glint.material { diffuse = 0.7, specular = 0.5, ambient = 0.3 } }
@@ -349,7 +349,7 @@ function tests.terms()
   end
 end
 
--- ---- The stages of a frame, and those that it reuses ----
+-- ---- The stages of a frame, and which of them it reuses ----
 
 local scratch = os.getenv "SCRATCH" or os.tmpname() .. ".d"
 os.execute("mkdir -p '" .. scratch .. "'")
@@ -386,7 +386,7 @@ function tests.reuse()
     local script = MOVING:gsub("SHADING", case[1]):gsub("SPECULAR", case[2]):gsub("MOVE", case[3])
     local text, states = run(script), {}
     for state in text:gmatch '"vertex":"(%a+)"' do states[#states + 1] = state end
-    -- faces that come into sight are computed then: nearly all were there
+    -- Faces that become visible are computed then: nearly all were visible before.
     local last = states[3] == "partial" and "reused" or states[3]
     check(states[1] == "run" and last == case[4], "%s, specular %s, %s: %s", case[1], case[2], case[3],
       table.concat(states, " ") .. text:sub(1, 300))
@@ -412,7 +412,7 @@ end
 do
   local corners = { unit { 0.3, -0.2, 1 }, unit { -0.6, 0.1, 1 }, unit { 0.2, 0.7, 0.8 } }
   local map = glint.translate(0.5, -1, 2) * glint.scale(2, 3, 0.25)
-  local function between(shares, lengths) -- of the corners' normals under diag(1/2, 1/3, 4), `lengths`: made unit before or after
+  local function between(shares, lengths) -- blends normals under diag(1/2, 1/3, 4); lengths: unnormalised
     local sum = { 0, 0, 0 }
     for i, n in ipairs(corners) do
       local m = { n[1] / 2, n[2] / 3, n[3] * 4 }
@@ -447,7 +447,7 @@ do
   end
 end
 
--- ---- In mirrors, instances, threads and with soft light: the same bits ----
+-- ---- Identical bits in mirrors, instances, threads and soft light ----
 
 local BITS = [[
   local glint = require "glint"

@@ -1,4 +1,4 @@
--- A shutter that stays open: the picture is the mean of stills at its times, by whichever way it is made.
+-- An open shutter: the picture is the mean of stills at its times, however it is computed.
 package.path = "tests/lua/?.lua;" .. package.path
 local tally = require "tally"
 local glint = require "glint"
@@ -8,7 +8,7 @@ local folder = os.tmpname()
 os.remove(folder)
 os.execute("mkdir -p " .. folder)
 
-local WIDTH, HEIGHT = 45, 34 -- more than one tile, and no whole number of them
+local WIDTH, HEIGHT = 45, 34 -- more than one tile, and not a whole number of tiles
 
 -- The floats of a .pfm, bottom row first.
 local function read_pfm(path)
@@ -25,7 +25,7 @@ end
 
 local function float(x) return (string.unpack("<f", string.pack("<f", x))) end
 
--- Renders frame 2 of an animation, 3 in all. Returns its values by pass.
+-- Renders frame 2 of an animation of 3. Returns its values by pass.
 local function expose(scene, frame, options)
   local fields = { scene = scene, frames = 3, frame = frame, width = WIDTH, height = HEIGHT,
     output = folder .. "/shutter_%04d.pfm" }
@@ -46,7 +46,7 @@ local function times_of(camera)
   return times
 end
 
--- The mean of stills at the same times, each as a file of its own.
+-- The mean of stills at the same times, each written to its own file.
 local function mean_of_stills(scene, frame, options, pass)
   local camera = scene.camera
   local times, share = times_of(camera), camera.shutter
@@ -82,7 +82,7 @@ local function with(more)
   return glint.camera(fields)
 end
 
--- A small room; `light` shines, `more` objects stand in it.
+-- A small room lit by `light`, with `more` objects in it.
 local function room(light, fields, ...)
   local parts = {
     red = glint.material { diffuse = { 0.8, 0.3, 0.2 }, specular = 0.5, shininess = 40 },
@@ -100,7 +100,7 @@ end
 
 local function circle(t, height) return { 6 * math.cos(4 * t), height or 6, 6 * math.sin(4 * t) } end
 
--- ---- Only lights move: they add up ----
+-- ---- Only lights move: their light is summed ----
 
 local function place(light) return function(t) light.position = circle(t) end end
 local glass = glint.sphere { center = { 2.5, 1, 1 }, radius = 0.9, material = glint.material { diffuse = 0.1, transmission = 0.8, mirror = 0.1 } }
@@ -134,7 +134,7 @@ for name, case in pairs(lit) do
   check(differ > 20, "%s: it moves", name) -- so that the checks above can fail
 end
 
-do -- a light that stays is there once: nothing moves, not a bit differs
+do -- a static light counts once: nothing moves, not a bit differs
   local parts = room(glint.point_light { position = { 5, 6, 5 } })
   local got = expose(parts.scene, function() end).beauty
   parts.camera.shutter = 0
@@ -142,7 +142,7 @@ do -- a light that stays is there once: nothing moves, not a bit differs
   check(differ == 0, "nothing moves: %d values differ", differ)
 end
 
--- ---- What else moves: the mean of pictures, to the last bit ----
+-- ---- Other motion: the mean of pictures, bit for bit ----
 
 local moved = {
   ball = function(parts) return function(t) parts.ball.center = { 3 * t, 1 + t, t } end end,
@@ -167,7 +167,7 @@ for name, make in pairs(moved) do
   end
 end
 
-do -- a lamp that is seen, a user's shader, light of its own: pictures, too
+do -- a visible light, a user's shader, emission: also averages pictures
   local shader = glint.shader(function(s) return glint.max(s.n:dot(s.l), 0) ^ 2, 0 end)
   for name, case in pairs {
     seen = { glint.sphere_light { position = { 0, 4, 0 }, radius = 0.5, samples = 4, visible = true } },
@@ -211,14 +211,14 @@ do
   end
 end
 
--- ---- Derivatives: of the mean, the mean of the times' ----
+-- ---- Derivatives: the derivative of the mean is the mean of the times' derivatives ----
 
 do
   local v = glint.variable("v", 1.25)
   local light = glint.point_light { position = { 5, 6, 5 } }
   local parts = room(light)
   local function is_gone(t) return t > 0.1 and t < 0.4 end
-  local frames = { -- only lights move, which add up otherwise; a ball moves; nothing depends on the parameter at one of the times
+  local frames = { -- only lights move, which are summed; a ball moves; some times lack the parameter
     light = function(t) light.position = { 6 * v * (t + 0.1), 6, 5 } end,
     ball = function(t) parts.ball.center = { v * (t + 0.1), 1, 0 } end,
     gone = function(t) light.intensity = is_gone(t) and 1 or v * (t + 0.1) end,
@@ -250,7 +250,7 @@ do
   end
 end
 
--- ---- When it is called ----
+-- ---- Calls of the frame function ----
 
 local function calls_of(fields, camera)
   local calls = {}
@@ -268,7 +268,7 @@ local function told(list)
   for i, t in ipairs(list) do words[i] = ("%.6g"):format(t) end
   return table.concat(words, " ")
 end
--- Each frame is built once, then at its times, and at last in its own instant again.
+-- Each frame is built once, then at its times, and finally at its own time again.
 local open = calls_of({ frames = 3 }, { shutter = 0.5, shutter_times = 2 })
 check(told(open[1]) == "0 0 0.0625 0", "the first of three: %s", told(open[1]))
 check(told(open[2]) == "0.5 0.4375 0.5625 0.5", "the second: %s", told(open[2]))

@@ -1,5 +1,5 @@
--- Shadows through transparent shapes: a ray to a light is followed only where bounds of these let it meet one. A transparent
--- plane under the opaque floor, which no ray meets but which has no bounds, has all rays followed: the same picture, bit for bit.
+-- Shadows through transparent shapes: a shadow ray is traced only if the shapes' bounds allow a hit. A transparent
+-- plane under the opaque floor, which no ray hits but which has no bounds, forces tracing all rays: identical pictures.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -74,7 +74,7 @@ local function render(shape, lamps, settings, everywhere)
   return scene:render { width = 48, height = 36, output = "none", samples = settings.samples, precision = settings.precision }
 end
 
--- How many pixels differ.
+-- Counts the pixels that differ.
 local function differences(a, b)
   local count = 0
   for y = 0, 35 do
@@ -89,7 +89,7 @@ end
 
 local settings = {
   {}, { samples = 2 }, { precision = "float" },
-  { eye = { 1, 2.2, 0.3 } }, -- within the ball
+  { eye = { 1, 2.2, 0.3 } }, -- inside the ball
 }
 for name, shape in pairs(shapes) do
   for kind, lamps in pairs(lights) do
@@ -101,7 +101,7 @@ for name, shape in pairs(shapes) do
   end
 end
 
-do -- that is not so because nothing gets through
+do -- checks that some light is transmitted at all
   local function ball(transmission)
     return function()
       return glint.sphere { center = { 1, 2, 0 }, radius = 1.2,

@@ -1,4 +1,4 @@
--- glint.torus: hits of rays, shadows on itself, coordinates, and refused values.
+-- glint.torus: hits of rays, self-shadowing, coordinates, and refused values.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
@@ -17,18 +17,18 @@ local function ring(fields)
   return glint.torus(given)
 end
 
--- Where a ray meets the torus of radii 2 and 0.5 around the y axis, and the normal there.
+-- Hits of rays on the torus of radii 2 and 0.5 around the y axis, and their normals.
 function tests.what_rays_meet()
   local scene = glint.scene { ring() }
   local cases = { -- origin, direction, t, normal
-    { { 5, 0, 0 }, { -1, 0, 0 }, 2.5, { 1, 0, 0 } }, -- its outside
+    { { 5, 0, 0 }, { -1, 0, 0 }, 2.5, { 1, 0, 0 } }, -- the outside
     { { 0, 0, 0 }, { 0, 0, 2 }, 0.75, { 0, 0, -1 } }, -- the inside of the ring
-    { { 2, 0, 0 }, { 1, 0, 0 }, 0.5, { 1, 0, 0 } }, -- from within the tube
-    { { 2, 4, 0 }, { 0, -1, 0 }, 3.5, { 0, 1, 0 } }, -- its top
+    { { 2, 0, 0 }, { 1, 0, 0 }, 0.5, { 1, 0, 0 } }, -- from inside the tube
+    { { 2, 4, 0 }, { 0, -1, 0 }, 3.5, { 0, 1, 0 } }, -- the top
     { { 0, 5, 0 }, { 0, -1, 0 } }, -- along the axis, through the hole
-    { { 5, 0.5000001, 0 }, { -1, 0, 0 } }, -- just over it
+    { { 5, 0.5000001, 0 }, { -1, 0, 0 } }, -- just above it
     { { 1.6, 0.3, 9 }, { 0, 0, -1 }, 9 - math.sqrt(2.4 ^ 2 - 1.6 ^ 2), { 1.6 / 3, 0.6, math.sqrt(2.4 ^ 2 - 1.6 ^ 2) / 3 } },
-    { { 2.6, 0, -9 }, { 0, 0, 1 } }, -- beside it
+    { { 2.6, 0, -9 }, { 0, 0, 1 } }, -- next to it
   }
   for i, case in ipairs(cases) do
     local hit = scene:cast(case[1], case[2])
@@ -44,7 +44,7 @@ function tests.what_rays_meet()
   end
 end
 
--- Every surface on a line, one after the other: from each the next is looked for beyond it.
+-- All surfaces on a line, one after the other: the search for the next starts at each hit.
 function tests.four_crossings()
   local scene = glint.scene { ring { axis = { 0, 0, 3 } } }
   local from, met = -5, {}
@@ -58,7 +58,7 @@ function tests.four_crossings()
   for i, want in ipairs { -2.5, -1.5, 1.5, 2.5 } do near(met[i], want, 1e-8, "crossing " .. i) end
 end
 
--- A transform moves a torus exactly as its own fields do; what is stretched is met as in its own space.
+-- A transform moves a torus exactly as its own fields do. A stretched torus is hit as in its own space.
 function tests.transforms()
   local own = glint.scene { ring { center = { 1, 2, 3 }, axis = { 0, 0, 1 }, major = 4, minor = 1 } }
   local moved = glint.scene { ring { transform = glint.translate(1, 2, 3) * glint.rotate("x", 90) * glint.scale(2) } }
@@ -111,7 +111,7 @@ function tests.shadows_of_itself()
   end
 end
 
--- Straight through glass of index 1 whatever was behind it is seen, through four surfaces, and dimmed once a surface.
+-- Straight through glass of index 1 the background is visible through four surfaces, dimmed once per surface.
 function tests.glass_is_crossed_four_times()
   local wall = glint.box { min = { -9, -9, -9 }, max = { 9, 9, -8 }, material = glint.material { ambient = 1, diffuse = 0 } }
   local glass = glint.material { diffuse = 0, transmission = 0.5, ior = 1 }
@@ -125,7 +125,7 @@ function tests.glass_is_crossed_four_times()
   near(on_end:render({ width = 61, height = 61 }):pixel(30, 30), 1, 1e-6, "through its hole")
 end
 
--- A mirror shows itself: the ray that leaves the inside of the ring meets the other side of it.
+-- A mirror reflects itself: the ray from the inside of the ring hits the opposite side.
 function tests.a_mirror_shows_itself()
   local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 0 }, direction = { 1, 0, 0 }, fov = 1 }, background = 0.25, ambient = 1,
     ring { material = glint.material { ambient = 0.5, diffuse = 0, mirror = 0.5 } } }
@@ -134,7 +134,7 @@ function tests.a_mirror_shows_itself()
   end
 end
 
--- u is around the axis, v around the tube: 0.5 outside, 0.75 on top, and a seam inside.
+-- u is around the axis, v around the tube: 0.5 outside, 0.75 at the top, with a seam inside.
 function tests.coordinates()
   local UV <const> = glint.pattern(function(_, s) return { s.uv.u, s.uv.v, 0 } end)
   local material = glint.material { ambient = UV, diffuse = 0 }
@@ -152,7 +152,7 @@ function tests.coordinates()
   near(math.abs(quarter - u) % 0.5, 0.25, 1e-5, "u a quarter on")
 end
 
--- As close up: a height of v has everywhere the slope that is known on paper, but where the seam is.
+-- Close up: a height of v has the closed-form slope everywhere, except at the seam.
 function tests.bumps_follow_the_tube()
   local size = { width = 40, height = 30, passes = { "normal" } }
   local function normals(material)

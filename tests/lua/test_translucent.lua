@@ -1,11 +1,11 @@
--- Opacity between 0 and 1: what a surface of opacity o gives counts o times, and 1 - o of the light goes straight on, for the eye, for
--- shadows, mirrors, glass and indirect light. Values on paper, and sums of the same scenes with the surface and without it.
+-- Opacity between 0 and 1: a surface of opacity o contributes o of its light and passes 1 - o straight on, for the eye,
+-- shadows, mirrors, glass and indirect light. Closed forms, and blends of the same scenes with and without the surface.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
 local BUILD = os.getenv "BUILD" or "build"
 
-local ROUNDING <const> = 2e-6 -- of light near 1: float32, and weak rays that are not followed
+local ROUNDING <const> = 2e-6 -- of light near 1: float32, and dropped weak rays
 
 local function raises(want, call, ...)
   local good, message = pcall(call, ...)
@@ -18,7 +18,7 @@ local function camera(fields)
   return glint.camera(all)
 end
 
--- A square of side 2 s across the z axis.
+-- A square of side 2 s perpendicular to the z axis.
 local function sheet(z, material, s)
   s = s or 1
   return glint.mesh { vertices = { { -s, -s, z }, { s, -s, z }, { s, s, z }, { -s, s, z } }, faces = { { 1, 2, 3, 4 } }, material = material }
@@ -30,7 +30,7 @@ local function plain(color, fields)
   return glint.material(all)
 end
 
--- The middle of a picture of these objects under ambient light alone.
+-- The centre of a picture of these objects under ambient light only.
 local function look(objects, fields, options)
   local all, render = { camera = camera(), ambient = 1, background = { 0.2, 0.4, 0.6 } }, { width = 9, height = 9 }
   for name, value in pairs(fields or {}) do all[name] = value end
@@ -46,7 +46,7 @@ end
 
 local tests = {}
 
--- ---- On paper ----
+-- ---- Closed forms ----
 
 function tests.one_sheet_and_two()
   for _, o in ipairs { 0.1, 0.3, 0.5, 0.7, 0.99 } do
@@ -59,7 +59,7 @@ function tests.one_sheet_and_two()
   end
 end
 
--- A ball has two surfaces: the inside of the farther one is seen through the nearer one.
+-- A ball has two surfaces: the inside of the farther one is visible through the nearer one.
 function tests.a_ball_has_two_surfaces()
   for _, projection in ipairs { "perspective", "orthographic" } do
     local o, material = 0.3, plain({ 1, 0, 0 }, { opacity = 0.3 })
@@ -80,11 +80,11 @@ function tests.a_ball_has_two_surfaces()
   end
 end
 
--- No option ends a chain of sheets; past 16 surfaces nothing is left to chance.
+-- No option limits a chain of sheets, and it stays exact, without random choices, beyond 16 surfaces.
 function tests.many_sheets_in_any_order()
   for _, count in ipairs { 20, 60 } do
     local objects, o, want, left = {}, 0.05, { 0, 0, 0 }, 1
-    for i = count, 1, -1 do -- 7 has no divisor among the counts: the sheets stand in another order than they are listed
+    for i = count, 1, -1 do -- 7 is coprime to the counts: the sheets are ordered differently from the list
       local k = i * 7 % count + 1
       objects[#objects + 1] = sheet(-0.01 * k, plain({ k / count, 1 - k / count, 0.5 }, { opacity = o }))
     end
@@ -98,7 +98,7 @@ function tests.many_sheets_in_any_order()
   end
 end
 
--- What lights a floor through a sheet that is between all of it and the light.
+-- Lights that light a floor through a sheet between all of the floor and the light.
 local lights = {
   point = function() return glint.point_light { position = { 1, 8, 1 } } end,
   near = function() return glint.point_light { position = { 1, 8, 1 }, attenuation = { 0, 0, 0.03 } } end,
@@ -130,7 +130,7 @@ function tests.shadows_keep_their_share_of_light()
   }
   local floor = glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = plain({ 0.9, 0.5, 0.2 }, { specular = 0.4 }) }
   for kind, light in pairs(lights) do
-    local buried = glint.sphere { center = { 0, -60, 0 }, radius = 1, material = veil } -- the light is the same without a cover
+    local buried = glint.sphere { center = { 0, -60, 0 }, radius = 1, material = veil } -- same light without a cover
     local function picture(cover)
       local scene = glint.scene { camera = glint.camera { eye = { 0, 2, 5 }, at = { 0, 0, 0 } }, light(), floor, buried }
       if cover then scene:add(cover) end
@@ -150,14 +150,14 @@ function tests.shadows_keep_their_share_of_light()
   end
 end
 
--- ---- One sheet before anything: light is linear in its opacity where no light casts shadows ----
+-- ---- One sheet in front: without shadows, light is linear in its opacity ----
 
 local W <const>, H <const> = 24, 18
 
 local function backdrop() return sheet(-3, plain({ 0.1, 0.6, 0.3 }, { specular = 0.5 }), 6) end
 
--- The largest distance of a picture with opacity o from o times the opaque one and 1 - o times the one without, and how far these are
--- apart. make: a shape of a material; fields: of the material but for its opacity.
+-- The largest error of a picture with opacity o as a blend of the opaque picture (o) and the one without the shape (1
+-- - o), and how far those two differ. make: a shape from a material; fields: of the material, without opacity.
 local function superposition(make, fields, o, scene_fields, options)
   local function picture(opacity, mode)
     local own = { opacity = opacity, opacity_mode = mode }
@@ -277,7 +277,7 @@ function tests.numbers_blend_and_patterns_cut()
   raises('material.opacity_mode: "auto", "cut" or "blend" expected', glint.material, { opacity_mode = "mix" })
 end
 
--- A pattern that blends: at each point as the number that it gives there; beyond 0 .. 1 as these, and NaN as 0.
+-- A blending pattern equals its value at each point; values are clamped to 0 .. 1, and NaN becomes 0.
 function tests.patterns_may_blend()
   for name, fields in pairs(looks) do
     local constant = glint.pattern(function(p) return 0.3 + 0 * p.x end)
@@ -308,7 +308,7 @@ end
 
 -- ---- Indirect light ----
 
--- In a white world of light 1 everything looks like light 1, however much of it is translucent: no light is lost or made.
+-- In a white world with light 1 everything looks like light 1, however much of it is translucent: energy is conserved.
 function tests.no_light_is_lost()
   local o = 0.4
   local white = plain(1, { opacity = o })
@@ -328,7 +328,7 @@ function tests.no_light_is_lost()
   end
 end
 
--- Black sheets over a white floor leave it (1 - o)^n of the light from above, with no noise.
+-- Black sheets above a white floor leave (1 - o)^n of the light from above, without noise.
 function tests.light_from_all_around_goes_through()
   local o = 0.3
   local black = plain(0, { opacity = o })
@@ -357,7 +357,7 @@ function tests.passes_are_of_the_first_surface()
   near((image:pixel(4, 4, "object_id")), 1, 0, "the first object")
 end
 
--- The light of each lamp is that of the picture without the others.
+-- Each light's pass equals the picture without the other lights.
 function tests.light_passes_add_up()
   local function picture(only)
     local scene = glint.scene { camera = camera { eye = { 1, 2, 7 } }, ambient = only and 0 or 0.2, background = only and 0 or { 0.2, 0.4, 0.6 },
@@ -383,7 +383,7 @@ end
 
 -- ---- Alpha ----
 
--- Alpha is 1 less the light that comes from behind; the colour is without it.
+-- Alpha is 1 minus the light from the background; the colour excludes the background.
 function tests.alpha_follows_what_is_let_through()
   local o, red = 0.3, plain({ 1, 0, 0 }, { opacity = 0.3 })
   local pane = plain(0, { transmission = { 0.9, 0.6, 0.3 }, ior = 1 })
@@ -394,7 +394,7 @@ function tests.alpha_follows_what_is_let_through()
     { "before something", { sheet(0, red), sheet(-1, plain { 0, 1, 0 }) }, 1, { o, 1 - o, 0 } },
     { "a clear pane", { sheet(0, pane) }, 0.4, { 0, 0, 0 } },
     { "a clear ball", { glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glass } }, 1 - 0.81, { 0, 0, 0 } },
-    { "before a mirror", -- which shows its other side, and the background
+    { "before a mirror", -- it reflects the sheet's other side and the background
       { sheet(0, red), sheet(-1, plain(0, { mirror = 1 })) }, 1, { o + (1 - o) * (o + (1 - o) * 0.2), (1 - o) ^ 2 * 0.4, (1 - o) ^ 2 * 0.6 } },
     { "more than all", { sheet(0, plain(0, { transmission = 3, ior = 1 })) }, 0, { 0, 0, 0 } },
     { "nothing", {}, 0, { 0, 0, 0 } },
@@ -478,7 +478,7 @@ function tests.light_has_derivatives_by_opacity()
     { sheet(0, plain({ x, 0, 0 }, { opacity = glint.pattern(function(p) return p.y end), opacity_mode = "blend" })) }, {}, { passes = "d:x" })
 end
 
--- ---- What the plan says ----
+-- ---- The plan ----
 
 function tests.explain_names_translucent_materials()
   local pipe = assert(io.popen(BUILD .. "/glint explain scripts/translucent.lua 2>&1"))
@@ -544,7 +544,7 @@ function tests.instruction_sets_agree()
     local pipe = assert(io.popen(("BUILD=%s GLINT_ISA=%s %s %s digest 2>/dev/null"):format(BUILD, isa, arg[-1] or "lua5.4", arg[0])))
     local text = pipe:read "a"
     pipe:close()
-    if text ~= "" then -- else this machine or build lacks it
+    if text ~= "" then -- empty when this machine or build lacks it
       count, first = count + 1, first or text
       check(#text > 24 * W * H * 20, "%s: %s", isa, text:sub(1, 200))
       check(text == first, "%s has the bits of ref", isa)
@@ -553,7 +553,7 @@ function tests.instruction_sets_agree()
   check(count >= 2, "some instruction sets were compared")
 end
 
--- What is kept between frames serves only where it is the same: a scene that changes has the bits of one made anew.
+-- Cached results are used only where they still apply: a changing scene has the same bits as one rendered afresh.
 function tests.frames_that_reuse_have_the_same_bits()
   for seed = 1, 12 do
     local scene, fields = random_scene(seed)

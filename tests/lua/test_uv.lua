@@ -1,4 +1,4 @@
--- s.uv: of meshes from vt and uv, in patterns, textures and bumps, against the same by hand.
+-- s.uv: coordinates of meshes from vt and uv, in patterns, textures and bumps, against values computed here.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
@@ -50,13 +50,13 @@ end
 
 local tests = {}
 
--- Triangles under a general map, with their own coordinates: by the areas that the point cuts off.
+-- Triangles under a general map, with their own coordinates: interpolated by the areas at the point.
 function tests.between_corners_by_areas()
   local vertices = { { -2, -1.2, 0 }, { 1.5, -1, 0.4 }, { 1.8, 1.3, -0.3 }, { -1.6, 1.1, 0.5 } }
   local uv = { { 0.1, 0.2 }, { 0.9, 0.1 }, { 0.7, 0.8 }, { 0.3, 0.4 }, { 0.6, 0.9 }, { 0.2, 0.5 } }
   local faces = { { 1, 2, 3 }, { 1, 3, 4 } }
   local map = glint.translate(0.2, 0.1, 0) * glint.rotate("y", 20) * glint.scale(-1, 0.8, 1.2)
-  local function placed(i) -- what the map does, step by step
+  local function placed(i) -- the map, step by step
     local v = glint.vector { -vertices[i][1], 0.8 * vertices[i][2], 1.2 * vertices[i][3] }
     local c, s = math.cos(math.rad(20)), math.sin(math.rad(20))
     return glint.vector { c * v.x + s * v.z + 0.2, v.y + 0.1, c * v.z - s * v.x }
@@ -146,7 +146,7 @@ function tests.errors_name_the_field()
   end
 end
 
--- If all corners of a face agree, all its points have that value, to the last bit; no point leaves the range of the corners.
+-- If all corners of a face agree, all its points have that exact value. No point leaves the range of the corners.
 function tests.rounding_stays_within_the_corners()
   local level = glint.pattern(function(_, s) return { glint.equal(s.uv.u, 0.3), glint.lesseq(s.uv.v, 0.7), glint.lesseq(0.1, s.uv.v) } end)
   local vertices, faces, uv, n = {}, {}, {}, 12
@@ -169,14 +169,14 @@ function tests.rounding_stays_within_the_corners()
   check(count > 300, "%d pixels", count)
 end
 
--- A pixel is as wide in u and v as the one of the two that grows faster makes it: here v, half as wide as the world.
+-- A pixel's footprint in uv uses whichever of u and v grows faster: here v, half as wide as in the world.
 function tests.the_footprint_is_that_of_the_steeper_one()
   local ratio = glint.pattern(function(_, s) return s.uv_footprint / s.footprint end)
   local scene = scene_of(quad { uv = { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } }, material = glint.material { diffuse = ratio } })
   near((scene:render(PASSES):pixel(20, 15, "albedo")), 0.5, 1e-6, "footprint")
 end
 
--- A picture laid on a quad and seen from the front is that picture: the right way up and the right way round.
+-- A picture on a quad, seen from the front, looks like the picture: upright and not mirrored.
 function tests.a_texture_lies_on_a_mesh()
   local name = os.tmpname() .. ".png"
   local camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 }, projection = "orthographic", height = 2 }
@@ -234,7 +234,7 @@ local function each_tilt(make, bump, f)
   end)
 end
 
--- A height of a u or a v has everywhere the slope that is known on paper.
+-- A height of a u or a v has the closed-form slope everywhere.
 function tests.bumps_follow_the_surface()
   local TURN <const>, a <const> = 2 * math.pi, 0.7
   local cases = {
@@ -261,7 +261,7 @@ function tests.bumps_follow_the_surface()
   end
 end
 
--- Around a ball the slope grows towards the poles as circles shrink; a height of both is the same as by the point itself.
+-- On a ball the slope in u grows towards the poles. A height in u and v equals the same height computed from the point.
 function tests.a_bump_by_uv_is_one_by_the_point()
   local function ball(m) return glint.sphere { center = { 0, 0, 0 }, radius = 1.5, material = m } end
   local by_uv = glint.pattern(function(_, s) return 0.1 * glint.sin(40 * s.uv.v) + 0.3 * s.uv.u end)
@@ -278,7 +278,7 @@ function tests.a_bump_by_uv_is_one_by_the_point()
   check(count > 150, "%d pixels", count)
 end
 
--- A bump by a picture against differences of its own values.
+-- A bump from a texture against differences of its own values.
 function tests.bumps_by_texture()
   local name = os.tmpname() .. ".png"
   glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 }, projection = "orthographic", height = 2 }, ambient = 1,

@@ -1,4 +1,4 @@
--- Visible lights: position, brightness, the objects that they hide, and unaffected passes.
+-- Visible lights: position, brightness, the objects that they occlude, and unaffected passes.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
@@ -19,7 +19,7 @@ local function render(scene, more)
   return scene:render(fields)
 end
 
--- A square, its corners in double; and the shapes that the lights below ought to look like.
+-- A pentagon, made coplanar in double; and the shapes that the lights below should look like.
 local CORNERS = { { -1, 1, 0.5 }, { 1.2, 0.9, 0 }, { 1.4, 2.7, 0.1 }, { -0.3, 3, 0.6 }, { -1.2, 2.1, 0.7 } }
 do -- in one plane
   local a, b, c = CORNERS[1], CORNERS[2], CORNERS[3]
@@ -48,7 +48,7 @@ local KINDS = {
 
 local tests = {}
 
--- On every pixel a light is seen where a shape of its form is, as far away, with the same normal.
+-- In every pixel a light appears where a shape of its form does, at the same distance, with the same normal.
 function tests.the_form_of_the_shape()
   for name, kind in pairs(KINDS) do
     for _, projection in ipairs { "perspective", "orthographic" } do
@@ -99,7 +99,7 @@ function tests.how_bright()
   near(shown(glint.sphere_light, copy(BALL, { diffuse = 0, specular = 0, color = 0.5 }))[1], 0.5, 0, "its colour alone")
 end
 
--- A white matt surface within a ball that shines shows what the ball shows.
+-- A white matt surface inside a shining ball has the brightness of the ball.
 function tests.furnace()
   local white = glint.material { diffuse = 1, ambient = 0 }
   local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 }, fov = 60 },
@@ -111,7 +111,7 @@ function tests.furnace()
   near(image:pixel(W // 2, H // 2), 0.25 * math.pi, 2e-2, "what it lights")
 end
 
--- From behind, a light of one side is not there.
+-- From behind, a one-sided light is invisible.
 function tests.sides()
   local function sees(make, fields)
     local image = render(glint.scene { camera = camera(), make(copy(fields, { visible = true })) })
@@ -127,7 +127,7 @@ function tests.sides()
   check(not sees(glint.point_light, { position = { 0, 1.5, 0 } }), "a point has no surface")
 end
 
--- Around the light: an opaque ball before it and one behind, a mirror, and glass of index 1.
+-- A light with an opaque ball in front and one behind, a mirror, and glass of index 1.
 local function room(visible)
   return glint.scene { camera = camera(), ambient = 0.1, background = { 0.02, 0.03, 0.05 },
     glint.sphere_light { position = { -0.5, 2.4, 0 }, radius = 0.9, radiance = 0.2, color = { 1, 0.5, 0.25 }, samples = 4,
@@ -172,7 +172,7 @@ function tests.in_the_room()
   check(lamps > 200 and mirrored > 50 and through > 10, "%d, %d mirrored, %d through glass", lamps, mirrored, through)
 end
 
--- It covers what is behind it, in alpha too.
+-- A light covers what is behind it, in alpha too.
 function tests.coverage()
   local scene = glint.scene { camera = camera(), background = 1,
     glint.sphere_light(copy(BALL, { radiance = 0.1, visible = true })) }
@@ -191,7 +191,7 @@ function tests.in_a_mirror()
   near(render(scene, { max_depth = 0 }):pixel(W // 2, H // 2, "mirror"), 0, 0, "not at depth 0")
 end
 
--- A flat light in the plane of a wall hides the wall, seen from anywhere, axis or not.
+-- A flat light in the plane of a wall hides the wall from every direction, axis-aligned or not.
 function tests.in_a_wall()
   local n, u, v = { 2 / 3, 1 / 3, 2 / 3 }, { -1 / math.sqrt(5), 2 / math.sqrt(5), 0 }, {}
   for i = 1, 3 do
@@ -222,7 +222,7 @@ function tests.in_a_wall()
   end
 end
 
--- With several samples a pixel the light is the share of them that see it.
+-- With several samples per pixel, the light's share is the share of samples that see it.
 function tests.samples()
   local scene = glint.scene { camera = camera(), glint.sphere_light(copy(BALL, { radiance = 1 / math.pi, visible = true })) }
   local one, many, edge = render(scene), render(scene, { samples = 16 }), 0
