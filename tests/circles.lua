@@ -1,5 +1,5 @@
--- circles.lua OBJECT...: files of the engine that call each other in a circle, by their symbols: at most 4 a circle.
--- The table of stages (effects/list.c) names all stages so that no other file does; its references do not count.
+-- circles.lua OBJECT...: finds cyclic calls between files of the engine, by their symbols: at most 4 files per cycle.
+-- The table of effects (effects/list.c) names all stages so that no other file needs to; its references do not count.
 local MOST <const> = 4
 
 local definer, wanted, files = {}, {}, {}
@@ -21,7 +21,7 @@ for _, object in ipairs(arg) do
 end
 assert(#files > 0, "objects of the engine expected")
 
--- The files that each file calls, directly or through others.
+-- The files that each file calls, directly or indirectly.
 local function reach(from)
     local found, left = {}, { from }
     while #left > 0 do

@@ -1,9 +1,9 @@
-/// compare16 A.png B.png [MAX_SHARE]: compares two 16-bit RGB PNGs code by code. Prints every pixel with a channel that
-/// is off by more than one code, then a line of totals. Exit 0 when their share is at most MAX_SHARE (default 0.0001),
-/// 1 when it is more, 2 when the files cannot be compared.
+/// compare16 A.png B.png [MAX_SHARE]: compares two 16-bit RGB PNGs value by value. Prints every pixel with a channel
+/// that differs by more than one, then a line of totals. Exits with 0 when their share is at most MAX_SHARE (default
+/// 0.0001), with 1 when it is larger, with 2 when the files cannot be compared.
 ///
-/// compare16 A.png B.png MOST blocks: pictures with noise. The means of blocks of 4 x 4 pixels, of which borders that do not fill
-/// one are left out, differ by at most MOST of full scale, root mean square.
+/// compare16 A.png B.png MOST blocks: for pictures with noise. The means of blocks of 4 x 4 pixels (incomplete blocks
+/// at the borders are ignored) may differ by at most MOST of full scale, root mean square.
 #include <math.h>
 #include <png.h>
 #include <stdbool.h>
@@ -54,7 +54,7 @@ static int code(const png_byte *pixel, int channel)
     return pixel[2 * channel] << 8 | pixel[2 * channel + 1];
 }
 
-/// The largest difference of a pixel's channels, in codes.
+/// The largest difference of a pixel's channels, in 16-bit steps.
 static int pixel_difference(const png_byte *a, const png_byte *b)
 {
     int largest = 0;
@@ -99,7 +99,7 @@ static double block_sum(const picture *p, png_uint_32 x, png_uint_32 y, int chan
     return sum;
 }
 
-/// Root mean square of the differences of blocks, in shares of full scale.
+/// Root mean square of the differences of blocks, relative to full scale.
 static double compare_blocks(const picture *a, const picture *b)
 {
     double squares = 0, count = 0;

@@ -6,7 +6,7 @@
 #                         (the tests under qemu), musl (those of a static command), web (the module for browsers), fuzz (the fuzzers), package (the test of Debian's source package)
 set -eu
 
-# package  how to tell that it is there
+# package, and a test for its presence
 build_required='
 pkg-config      command:pkg-config
 liblua5.4-dev   module:lua5.4|lua-5.4|lua54
@@ -77,7 +77,7 @@ fuzz_required='
 clang           command:clang
 '
 
-# any NAME|NAME... COMMAND...    Whether the command knows one of the names.
+# any NAME|NAME... COMMAND...    Whether the command accepts one of the names.
 any() {
     names=$1
     shift
@@ -96,14 +96,14 @@ present() {
     esac
 }
 
-# Prints the packages of a list that are not there.
+# Prints the missing packages of a list.
 missing() {
     printf '%s' "$1" | while read -r package test; do
         [ -z "$package" ] || present "$test" || printf ' %s' "$package"
     done
 }
 
-# Installs packages; fails when apt does.
+# Installs packages. Fails when apt fails.
 install() {
     if ! command -v apt-get >/dev/null 2>&1; then
         echo "deps: no apt-get on this system; install the equivalents of:$*" >&2

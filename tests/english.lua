@@ -1,6 +1,6 @@
--- english.lua [--list] FILE...: counts comment lines and lines of pages that have a phrase which makes readers read twice.
--- Fails where more than 2 lines in 100 have one. --list prints each of them. It is a net for slips: a sentence can be hard to
--- read without any of these, and a phrase can be right where it stands.
+-- english.lua [--list] FILE...: counts comment lines and lines of pages with a phrase that is hard to read. Fails if
+-- more than 2 lines in 100 have one. --list prints them. This only catches slips: a sentence can be hard to read
+-- without any of these phrases, and a phrase can be right in its context.
 local MOST = 0.02
 
 -- A phrase, and what to write instead. %f[%w] is a word's beginning, %f[%W] its end.

@@ -1,10 +1,10 @@
 #!/bin/bash
-# headers.sh FLAGS...: each header compiles on its own; kernel headers compile for double and for float. simd/avx2.h and simd/avx512.h
-# need their instruction sets. Then tests that unsupported machines are refused.
+# headers.sh FLAGS...: each header compiles on its own; kernel headers compile for double and for float. simd/avx2.h
+# and simd/avx512.h need their instruction sets. Then tests that unsupported machines are refused.
 set -u
 bad=0
 
-# alone HEADER FLAG...: twice, so that the guard holds.
+# alone HEADER FLAG...: includes it twice, to test the guard.
 alone() {
     local header=$1
     shift
@@ -28,14 +28,14 @@ for header in engine/*.h engine/*/*.h engine/stages/*/*.h engine/effects/*/*.h b
     esac
 done
 
-# The public header is for C++, too, by C names.
+# The public header works in C++, with C linkage.
 if command -v c++ >/dev/null && ! printf '#include "engine/glint.h"\nint main() { return glint_sin(0) != 0 || !glint_pass_name(GLINT_PASS_DEPTH); }\n' |
     c++ -I. -Wall -Wextra -Werror -x c++ -S -o - - | grep -q '[^0-9]glint_sin'; then
     echo "engine/glint.h does not compile as C++"
     bad=1
 fi
 
-# refused SENTENCE FLAG...    A machine that the engine does not work on is refused with a sentence.
+# refused SENTENCE FLAG...    Compiling for an unsupported machine must fail with this sentence.
 refused() {
     local sentence=$1 said
     shift
@@ -48,7 +48,7 @@ refused() {
 refused "little-endian machines" -U__BYTE_ORDER__ -D__BYTE_ORDER__=__ORDER_BIG_ENDIAN__
 refused "without excess precision" -U__FLT_EVAL_METHOD__ -D__FLT_EVAL_METHOD__=2
 refused "same bits" -ffast-math
-# Unsupported machines, where the compiler has support for them.
+# Unsupported machines, if the compiler supports them.
 if echo | ${CC:-cc} -m32 -E - >/dev/null 2>&1; then
     refused "without excess precision" -m32 -mfpmath=387 -mno-sse
 fi

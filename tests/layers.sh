@@ -1,6 +1,6 @@
 #!/bin/sh
-# Dependencies go one way: scripts -> bindings -> engine -> engine/stages -> engine/base. Each folder includes its own headers and
-# the headers of the folders named here.
+# Dependencies go one way: scripts -> bindings -> engine -> engine/stages -> engine/base. Each folder includes its own
+# headers and the headers of the folders named here.
 set -u
 bad=0
 
@@ -12,7 +12,7 @@ forbid() {
     fi
 }
 
-# includes FILES FOLDER...: what the sources of a pattern include: headers of these folders, or these headers
+# includes FILES FOLDER...: the files may include only headers of these folders, or these headers
 includes() {
     files=$1
     shift
@@ -25,7 +25,7 @@ includes() {
     fi
 }
 
-# layer FOLDER FOLDER...: what the sources of the first include, beside their own headers
+# layer FOLDER FOLDER...: sources of the first folder may include its own headers and those of the others
 layer() {
     includes "$1/*.[ch]" "$@"
 }
@@ -39,7 +39,7 @@ layer engine/text $base
 layer engine/overlay engine/text $base
 layer engine/film engine/overlay engine/stages $base
 layer engine/program engine/file $stages $base
-# An effect's plan.h belongs to the plan; its other headers belong to the walk of a tile, and to the frame around it.
+# An effect's plan.h belongs to the plan; its other headers belong to tile rendering and to the frame around it.
 effects='engine/effects/[a-z_]*'
 for files in 'engine/plan/*.[ch]' 'engine/effects/*/plan*.[ch]' 'engine/effects/derivative/slopes.h'; do
     includes "$files" engine/plan engine/effects "$effects/(plan|slopes).h" engine/program engine/geometry engine/scene engine/overlay engine/film $stages $base

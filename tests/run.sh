@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Runs JOBS tests at a time. Prints a line when a test ends, and finally the totals: 'N passed, N failed, N skipped'.
 #   run.sh ITEM...    an item is a C test program, a .lua file, a .sh file, make:TARGET, or fuzz:NAME
-# From the environment: BUILD (the build folder), T (run the items whose name has it), JOBS (as many as there are
-# processors), PRELOAD (a sanitizer's runtime, for the Lua tests), LUA, MAKE, EMULATOR (what C tests run under), TEST_LIMIT_S
-# (for one item). A test exits 0
-# when it passed and 77 when it cannot run here. Its output goes to BUILD/tests/log/NAME and is shown when it fails.
-# Cases are counted from a line of totals like our own, from cmocka's lines or from TAP; a test that prints none of
-# these counts as one. Tests run in parallel, so each test keeps its files in its own folder.
+# From the environment: BUILD (the build folder), T (runs only items whose name contains it), JOBS (default: the
+# number of processors), PRELOAD (a sanitizer's runtime, for the Lua tests), LUA, MAKE, EMULATOR (the program that
+# runs C tests), TEST_LIMIT_S (for one item). A test exits with 0 when it passes and with 77 when it cannot run here.
+# Its output goes to BUILD/tests/log/NAME and is shown when it fails. Cases are counted from a line of totals like the
+# one here, from cmocka's lines or from TAP; a test that prints none of these counts as one. Tests run in parallel, so
+# each test keeps its files in its own folder.
 set -u
 
 BUILD=${BUILD:-build}
@@ -29,7 +29,7 @@ run_item() {
 
 count() { grep -cE "$1" "$2" || true; }
 
-# Sets good, bad and skips from a test's log: its own closing line of totals, else cmocka's lines and TAP.
+# Sets good, bad and skips from a test's log: its final line of totals, otherwise cmocka's lines and TAP.
 read_cases() {
     local totals
     totals=$(grep -E '^[0-9]+ passed, [0-9]+ failed(, [0-9]+ skipped)?$' "$1" | tail -n 1 | tr -dc '0-9 ')
@@ -63,7 +63,7 @@ tell() {
     grep -E '(^|# )(skip|SKIP|skipped|\[  SKIPPED \] [a-zA-Z_]+)( |:|$)' "$log" | sort -u | sed 's/^/        /'
 }
 
-# Runs one item; its lines go out together, its totals to NAME.count.
+# Runs one item. Prints its lines together, and writes its totals to NAME.count.
 if [ "${1:-}" = --one ]; then
     name=$(basename "${2#*:}")
     log=$log_folder/$name

@@ -1,7 +1,7 @@
 #!/bin/sh
-# symbols.sh MODULE OBJECT...: kernel objects define the entries and the table of their instruction set, and have no hardening; the
-# module exports one function.
-# A shared inline function compiled for AVX and picked by the linker would run on a processor without it.
+# symbols.sh MODULE OBJECT...: kernel objects define only the entry points and the table of their instruction set, and
+# have no hardening; the module exports one function. A shared inline function compiled for AVX and chosen by the
+# linker would fail on a processor without AVX.
 set -u
 module=$1
 shift

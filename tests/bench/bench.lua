@@ -1,8 +1,8 @@
--- make bench: all sides in turn, one table, one CSV.   lua5.4 tests/bench/bench.lua BUILD COMPILER [PART,PART...|all] [RUNS]
+-- make bench: all sides, one table, one CSV.   lua5.4 tests/bench/bench.lua BUILD COMPILER [PART,PART...|all] [RUNS]
 --
--- Parts: frame reuse jobs many lamps ways solids programs encode stages peers, and slow (minutes), which runs only when named. At least 7
--- runs of everything but the slow renderers, in an order shuffled anew for each round; medians, with quartiles. The part `readme`, which
--- the default has, prints the README's table.
+-- Parts: frame reuse jobs many lamps ways solids programs encode stages peers, and slow (minutes), which runs only on
+-- request. All but the slow renderers run at least 7 times, shuffled in each round, for medians and quartiles. The
+-- part `readme`, on by default, prints the README's table.
 package.path = "tests/bench/?.lua;" .. package.path
 local cases, measure = require "cases", require "measure"
 
@@ -32,7 +32,7 @@ local function parts_of(text)
   return parts
 end
 
--- The ids that the rows of these parts name.
+-- The ids of measurements that the rows of these parts need.
 local function wanted_by(parts)
   local wanted = {}
   for _, row in ipairs(cases.rows) do
@@ -67,7 +67,7 @@ end
 local by_id = {}
 for _, m in ipairs(cases.measurements) do by_id[m[1]] = m end
 
--- "id:name" -> samples, or nil and why there are none
+-- "id:name" -> samples, or nil and the reason why there are none
 local function samples_of(name)
   local id, value = name:match "^(.-):(.+)$"
   local m = assert(by_id[id], name)
@@ -101,7 +101,7 @@ local function verdict(row, ratio)
   return ("%s %-5s %s"):format(row.more and ">=" or "<=", number(row.bar), met and "met" or "MISSED")
 end
 
--- The other of a peer's two times: its clock beside its processor time, or that beside its clock.
+-- A peer's other time: its processor time if the row has its clock time, and vice versa.
 local function beside(name)
   local id, value = name:match "^(.-):(.+)$"
   local samples = by_id[id].samples or {}
@@ -147,7 +147,7 @@ local function print_rows(parts)
   end
 end
 
--- Nanoseconds a pixel of every stage, one column an instruction set.
+-- Nanoseconds per pixel of every stage, one column per instruction set.
 local function print_stages()
   local names, seen = {}, {}
   for _, id in ipairs(cases.stage_sides) do

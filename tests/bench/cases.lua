@@ -1,10 +1,10 @@
--- What `make bench` measures, and the rows of its table.
+-- The measurements of `make bench`, and the rows of its table. A measurement { id, side, arguments, runs = at most }
+-- runs a side's program once per round, if a row of a selected part uses it. The program prints lines "name unit
+-- value"; rows refer to them as "id:name".
 --
--- A measurement runs a side's program once a round, when a row of a selected part names it: { id, side, arguments,
--- runs = at most }. The program prints lines "name unit value"; a row names one as "id:name".
--- A row: { part, title, ours, theirs, bar = , more = true when the bar is a least, note = }. `ours` and `theirs` are such
--- names; the ratio is ours / theirs, or theirs / ours where `more`. `ours` nil: `note` tells why glint has no number. Frames of POV-Ray
--- are by its processor time of tracing, since its clock runs on while it waits; what the other of its two times is stands behind.
+-- A row is { part, title, ours, theirs, bar = , more = true if the bar is a minimum, note = }. The ratio of the
+-- references is ours / theirs, or theirs / ours with `more`. Without `ours`, `note` says why glint has no value.
+-- POV-Ray's frames use processor time of tracing, as its clock includes waiting; the other time is shown after it.
 local measurements = {
   -- one frame of the workshop, 1920x1080
   { "g.frame", "glint", "frame" },
@@ -23,13 +23,13 @@ local measurements = {
   { "e.4", "embree", "frame samples=4" },
   { "e.area", "embree", "frame area=1" },
 
-  -- pixels that are more than two codes from glint's
+  -- pixels that differ from glint's by more than two 8-bit steps
   { "u.hand", "unlike hand", "scene=workshop", runs = 1 },
   { "u.embree", "unlike embree", "scene=workshop", runs = 1 },
   { "u.float", "unlike glint", "float=1", runs = 1 },
   { "u.1k", "unlike embree", "scene=1k", runs = 1 },
 
-  -- render only, in one process, frame after frame of a job
+  -- rendering only, in one process, successive frames of a job
   { "g.moved", "glint", "reuse change=light" },
   { "g.ball", "glint", "reuse change=sphere" },
   { "g.shutter.light", "glint", "reuse change=light times=8" },
@@ -84,7 +84,7 @@ local measurements = {
   { "e.mesh", "embree", "frame scene=mesh" },
   { "e.mesh100k", "embree", "frame scene=mesh100k" },
 
-  -- rays that go every way
+  -- rays in all directions: indirect light
   { "g.ways", "glint", "frame indirect=16" },
   { "g.ways.1k", "glint", "frame scene=1k indirect=16" },
   { "c.ways", "plain", "frame indirect=16", runs = 3 },
@@ -94,13 +94,13 @@ local measurements = {
   { "g.mirror.floor", "glint", "frame scene=mirrorfloor" },
   { "g.glass.floor", "glint", "frame scene=glassfloor area=1" },
 
-  -- all 16 samples only where they are needed
+  -- all 16 samples only where needed
   { "g.adaptive", "glint", "frame samples=16 adaptive=1" },
   { "g.molecule.adaptive", "glint", "frame scene=molecule samples=16 adaptive=1" },
   { "g.glassball", "glint", "frame scene=glassball area=1" },
   { "g.glassball.adaptive", "glint", "frame scene=glassball area=1 samples=16 adaptive=1" },
 
-  -- combined solids, tori, a lens
+  -- CSG shapes, tori, a lens
   { "g.cut", "glint", "frame scene=cut1k" },
   { "g.pieces", "glint", "frame scene=pieces1k" },
   { "g.tori", "glint", "frame scene=tori" },
@@ -110,7 +110,7 @@ local measurements = {
   { "g.encode", "glint", "encode out=$OUT" },
   { "h.encode", "hand", "encode" },
 
-  -- a pass of how fast the picture changes
+  -- a pass with the derivative of the picture
   { "g.eye", "glint", "frame derivative=eye" },
   { "g.lamp", "glint", "frame derivative=lamp" },
   { "g.shininess", "glint", "frame derivative=shininess" },
@@ -119,7 +119,7 @@ local measurements = {
   { "g.phong.lamp", "glint", "frame pattern=phong derivative=lamp" },
   { "g.phong.eye", "glint", "frame pattern=phong derivative=eye" },
 
-  -- patterns and shaders: only the kernel; the floor of the workshop; everything with Phong as a program
+  -- patterns and shaders: the kernel only; the workshop's floor; everything with Phong as a program
   { "g.program", "glint", "program" },
   { "h.program", "hand", "program" },
   { "l.program", "lua", "" },
@@ -135,7 +135,7 @@ local measurements = {
   { "g.avx2", "glint", "stages isa=avx2" },
   { "g.avx512", "glint", "stages isa=avx512" },
 
-  -- the slow ones; a job's time is that of its first 6 frames, times 10
+  -- the slow ones; a job's time is 10 times that of its first 6 frames
   { "p.frame", "povray", "frame", runs = 3 },
   { "p.bare", "povray", "frame shadows=0", runs = 3 },
   { "p.4", "povray", "frame samples=4", runs = 3 },
@@ -323,10 +323,10 @@ local rows = {
   { "encode", "size small / libpng defaults", "g.encode:small_size", "h.encode:libpng_size" },
 }
 
--- Stages by instruction set: one row for each that the engine names, found as they come.
+-- Stages by instruction set: one row for each stage that the engine reports.
 local stage_sides = { "g.ref", "g.generic", "g.avx2", "g.avx512" }
 
--- The README's table, by the processor's time of one thread: what it is, then glint, hand-written, Embree, POV-Ray, where they have one.
+-- The README's table, by processor time of one thread: title, glint, hand-written, Embree, POV-Ray (optional).
 local readme = {
   { "workshop: 5 spheres, one lamp", "g.frame:cpu", "h.frame:cpu", "e.frame:cpu", "p.frame:cpu" },
   { "the same, only the lamp moved", "g.moved:kept_cpu" },

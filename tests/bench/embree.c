@@ -1,7 +1,7 @@
-/// Embree 3, used as one uses it for speed: packets of sixteen rays, and for spheres user geometry with our own
-/// AVX-512 kernel of one sphere against sixteen rays, which is several times faster than Embree's native spheres. Meshes
-/// are Embree's native triangles. Shading, samples and bands are as in the hand-written program. Cases that its callbacks
-/// leave out (a ray that starts inside a sphere, normals of hits that are later hidden) are in its favour.
+/// Embree 3, used for speed: packets of sixteen rays, and for spheres user geometry with our own AVX-512 kernel of
+/// one sphere against sixteen rays, which is several times faster than Embree's native spheres. Meshes are Embree's
+/// native triangles. Shading, samples and bands are as in the hand-written program. Its callbacks omit some cases (a
+/// ray that starts inside a sphere, normals of hits that are later occluded), which is in Embree's favour.
 ///
 ///   embree frame scene=NAME [threads=N] [samples=N] [shadows=0] [area=1]    ms: build, render
 ///   embree picture out=FILE scene=...
@@ -23,7 +23,7 @@ typedef struct embree_scene {
     enum RTCIntersectContextFlags flags;
 } embree_scene;
 
-/// The faster choice for each scene, as measured: coherent packets lose where there are five spheres to test.
+/// The faster choice for each scene, as measured: coherent packets are slower with only five spheres.
 static enum RTCIntersectContextFlags best_flags(const bench_scene *plain)
 {
     bool few = plain->sphere_count > 0 && plain->sphere_count < 100;
@@ -32,7 +32,7 @@ static enum RTCIntersectContextFlags best_flags(const bench_scene *plain)
 
 // ---- One sphere against up to sixteen rays ----
 
-/// The arrays of a packet of n rays lie one after the other, in the order of struct RTCRay and then RTCHit.
+/// The arrays of a packet of n rays are consecutive, in the order of struct RTCRay and then RTCHit.
 enum ray_field { ORG_X, ORG_Y, ORG_Z, T_NEAR, DIR_X, DIR_Y, DIR_Z, TIME, T_FAR, HIT_PRIM = 17, HIT_GEOM = 18 };
 
 typedef struct sphere_test {

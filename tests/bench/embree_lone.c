@@ -1,5 +1,5 @@
-/// Indirect light by Embree 3, one ray at a time: its native spheres, rtcIntersect1 and rtcOccluded1 instead of the plain program's
-/// loop over all of them.
+/// Indirect light by Embree 3, one ray at a time: its native spheres, rtcIntersect1 and rtcOccluded1 instead of the
+/// plain program's loop over all spheres.
 ///
 ///   embree_lone frame indirect=SAMPLES scene=1k    ms
 #include <embree3/rtcore.h>
@@ -28,7 +28,7 @@ static size_t nearest(const plain_scene *s, const double origin[3], const double
                                       .mask = UINT32_MAX },
                              .hit = { .geomID = RTC_INVALID_GEOMETRY_ID } };
     rtcInitIntersectContext(&context);
-    if (*far <= 1) { // a shadow
+    if (*far <= 1) { // a shadow ray
         rtcOccluded1(side->scene, &context, &ray.ray);
         return ray.ray.tfar < 0 ? 0 : NO_SPHERE;
     }

@@ -16,7 +16,8 @@ typedef struct frame_state {
     int frames;
 } frame_state;
 
-/// processor_ms: the processor's time, without the share that the codes take of the whole; NULL: it is not wanted.
+/// Renders a frame and returns its milliseconds. *processor_ms, if not NULL: the processor time, without the share
+/// for pixel values.
 static double render(glint_renderer *renderer, const glint_plan *plan, glint_frame_stats *stats, double *processor_ms)
 {
     glint_error error;
@@ -54,7 +55,7 @@ static glint_renderer *renderer_or_exit(const bench_options *options)
     return renderer;
 }
 
-/// A frame that takes this long is not measured: the driver reads that and continues.
+/// Ends the measurement of a frame that takes too long. The driver reads the message and continues.
 static void give_up(int signal)
 {
     (void)signal;
@@ -63,8 +64,8 @@ static void give_up(int signal)
     _exit(written > 0 ? 0 : 1);
 }
 
-/// Prints the peak memory of the process without this program's own scene, including the film; and the size of its spheres as doubles, with a
-/// material each.
+/// Prints the peak memory of the process without this program's own scene, including the film; and the size of its
+/// spheres stored as doubles, each with a material.
 static void say_memory(const bench_scene *scene)
 {
     struct rusage usage;
@@ -98,8 +99,8 @@ void side_run_frame(const bench_options *options)
     side_scene_free(&scene);
 }
 
-/// A small frame of a scene that the engine has not seen. Returns the time of its index; `ready_ms` is the whole time from
-/// the described scene to the film, plan and snapshot included.
+/// Renders a small frame of a new scene. Returns the time to build its BVH. *ready_ms: the whole time from the
+/// described scene to the film, including plan and snapshot.
 static double build_once(const bench_options *options, double *ready_ms)
 {
     glint_error error;
@@ -132,7 +133,7 @@ void side_run_build(const bench_options *options)
     bench_say("ready", "ms", bench_median_of(ready_ms, TIMES));
 }
 
-/// Nanoseconds a pixel of each stage, on one thread.
+/// Prints the nanoseconds per pixel of each stage, on one thread.
 void side_run_stages(const bench_options *options)
 {
     bench_options fresh = *options;
@@ -159,8 +160,8 @@ void side_run_stages(const bench_options *options)
     side_scene_free(&scene);
 }
 
-/// Frames of a job in a row, each rendered afresh by one renderer and with reuse by another, which sees several times of it
-/// where the options say so.
+/// Renders successive frames of a job, afresh with one renderer and with reuse in another. With the option `times`,
+/// the second one renders several shutter times of each frame.
 void side_run_reuse(const bench_options *options)
 {
     bench_options fresh_options = *options;

@@ -1,15 +1,16 @@
-/// glint, measured by its public API: what a program that links it gets, in its default double precision.
+/// glint through its public API, as a linked program uses it, in its default double precision.
 ///
-///   glint_side frame scene=NAME [lamps=N] [threads=N] [samples=N] [shadows=0] [indirect=N] [isa=NAME] [float=1] [pattern=NAME]
-///   glint_side build scene=1M [threads=N]                ms of the index, and of a scene's first (small) frame
-///   glint_side stages [isa=NAME]                         ns a pixel
+///   glint_side frame scene=NAME [lamps=N] [threads=N] [samples=N] [shadows=0] [indirect=N] [isa=NAME] [float=1]
+///       [pattern=NAME]
+///   glint_side build scene=1M [threads=N]                ms to build the BVH, and for a scene's first (small) frame
+///   glint_side stages [isa=NAME]                         ns per pixel
 ///   glint_side reuse change=light|sphere|shininess|number [pattern=NAME]  ms of a frame without and with reuse
 ///   glint_side job change=light|sphere|shininess out=FOLDER [threads=N] [reuse=0] [float=1]
 ///   glint_side encode out=FOLDER
-///   glint_side program                                   ns a point of patterns and a shader, by the kernel alone
+///   glint_side program                                   ns per point of patterns and a shader, in the kernel only
 ///   glint_side picture out=FILE [scene=...]
-///   glint_side isa                                       the best this machine has
-///   glint_side compare out=A with=B                      how many pixels differ by more than two 8-bit codes
+///   glint_side isa                                       the best instruction set of this machine
+///   glint_side compare out=A with=B                      number of pixels that differ by more than two 8-bit steps
 #include <stdio.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/// Programs by the frame's kernel, 128 points at a time: nanoseconds a point, the store as reflectances included.
+/// Programs in the frame's kernel, 128 points at a time: nanoseconds per point, including the store as reflectances.
 #include <string.h>
 
 #include "engine/program/program.h"
@@ -7,7 +7,7 @@
 
 static glint_builder *builder;
 static glint_error error;
-static double dark; ///< the darker of a pattern's colours
+static double dark; ///< the darker colour of a pattern
 
 static glint_value number(double x)
 {
@@ -103,7 +103,7 @@ static size_t cells(glint_value out[6])
 typedef struct named {
     const char *name;
     glint_program_kind kind;
-    size_t (*make)(glint_value out[6]); ///< returns how many outputs it has
+    size_t (*make)(glint_value out[6]); ///< returns the number of outputs
 } named;
 
 static const named programs[] = {

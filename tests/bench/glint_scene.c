@@ -18,7 +18,8 @@ static void widen(const float from[3], double to[3])
         to[c] = (double)from[c];
 }
 
-/// Gives the material what the pattern's name says: a shader, or of the first material the diffuse reflectance.
+/// Sets the named pattern's program: "phong" as every material's shader, others as the first material's diffuse
+/// reflectance.
 static void set_program(const side_scene *s, int material, double number, glint_material_desc *d)
 {
     const bool shader = strcmp(s->pattern, "phong") == 0;
@@ -57,7 +58,7 @@ static void add_shape(side_scene *s, glint_shape *shape)
     glint_shape_release(shape);
 }
 
-/// A few spheres are shapes of their own, as a script would have them; many but the last are one shape.
+/// Up to 100 spheres are separate shapes, as a script would create them. Otherwise all except the last are one shape.
 static void add_spheres(side_scene *s)
 {
     const bench_scene *p = &s->plain;
@@ -94,7 +95,7 @@ static glint_shape *new_shape(const glint_shape_desc *d)
     return shape;
 }
 
-/// Puts a part into the combined solid, or by itself into the scene where there is none.
+/// Adds a part to the CSG shape, or directly to the scene if `whole` is NULL.
 static void add_part(side_scene *s, glint_shape *whole, glint_shape *part)
 {
     glint_error error;
@@ -106,7 +107,7 @@ static void add_part(side_scene *s, glint_shape *whole, glint_shape *part)
     glint_shape_release(part);
 }
 
-/// A cylinder or a cone.
+/// Adds a cylinder or a cone.
 static void add_rod(side_scene *s, const bench_solid *rod)
 {
     glint_shape_desc d = glint_shape_desc_default(rod->kind == BENCH_ROD ? GLINT_SHAPE_CYLINDER : GLINT_SHAPE_CONE);
@@ -201,7 +202,7 @@ static void set_camera(side_scene *s, const bench_options *options)
     glint_camera_release(camera);
 }
 
-/// Adds one of the lamps; `lamp` is the last.
+/// Adds one of the lights. `lamp` is the last one added.
 static void add_lamp(side_scene *s, const bench_options *options, int i)
 {
     glint_error error;
@@ -303,8 +304,8 @@ static glint_render_desc frame_desc(const bench_options *options)
     return d;
 }
 
-/// Sets the derivative's parameter: a step of the eye or the lamp to the right, or of the exponent of all shiny materials. Returns the number
-/// fields that are.
+/// Sets the derivative's parameter: a step of the eye or the light to the right, or of the exponent of all shiny
+/// materials. Returns the number of fields.
 static size_t find_slopes(const side_scene *s, const char *derivative, glint_slope *out)
 {
     size_t count = 0;

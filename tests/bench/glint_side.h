@@ -6,14 +6,14 @@
 #include "tests/bench/options.h"
 #include "tests/bench/scenes.h"
 
-/// One of the scenes, described to glint.
+/// A scene described to glint.
 typedef struct side_scene {
     bench_scene plain;
     glint_scene *scene;
     glint_light *lamp;
     glint_material *materials[BENCH_MATERIALS];
-    glint_shape *ball; ///< the last sphere of few; the scene's
-    const char *pattern; ///< of the options
+    glint_shape *ball; ///< the last sphere of a small scene, owned by the scene
+    const char *pattern; ///< from the options
 } side_scene;
 
 /// Ends the program with the message unless the status is GLINT_OK.
@@ -21,15 +21,15 @@ void side_must(glint_status status, const glint_error *error);
 
 side_scene side_scene_create(const bench_options *options);
 void side_scene_free(side_scene *scene);
-/// Frame `frame` of a job: moves the lamp, lifts the last of few spheres, changes a number of the pattern, or the shininess of
-/// every material that shines.
+/// Sets frame `frame` of a job: moves the light, lifts the last sphere of a small scene, changes a number of the
+/// pattern, or the shininess of every shiny material.
 void side_scene_set_frame(side_scene *scene, const char *change, int frame);
 
-/// NULL when this machine lacks the instruction set the options name.
+/// Returns NULL when this machine lacks the instruction set that the options name.
 glint_renderer *side_renderer_create(const bench_options *options);
-/// 1920 x 1080, codes and no passes.
+/// 1920 x 1080, pixel values only, no passes.
 glint_plan *side_plan_create(const side_scene *scene, const bench_options *options);
-/// The same, seen at several times of frame `frame` of a job.
+/// The same, exposed over several times of frame `frame` of a job.
 glint_plan *side_plan_create_exposed(side_scene *scene, const bench_options *options, int frame);
 
 void side_run_frame(const bench_options *options);
@@ -38,9 +38,10 @@ void side_run_stages(const bench_options *options);
 void side_run_reuse(const bench_options *options);
 void side_run_encode(const bench_options *options);
 void side_run_job(const bench_options *options);
-/// A program of bench_options.pattern, to be released; `number`, 0 .. 1: the darker of its colours. NULL: "none".
+/// Creates the program of bench_options.pattern; the caller releases it. `number`, 0 .. 1: its darker colour. Returns
+/// NULL for "none".
 glint_program *side_program_create(const char *pattern, double number);
-/// Only the kernel of programs, which no public function runs.
+/// Times only the kernel of programs, which no public function runs.
 void side_run_program(const bench_options *options);
 
 #endif

@@ -1,13 +1,14 @@
-/// The hand-written program: what an expert writes in an afternoon for this one job, and so the honest limit to compare
-/// with. Sixteen rays a vector in AVX-512, float throughout with fused multiply-add and -ffast-math, no index, hard
-/// shadows, a polynomial power, 8-bit sRGB without a table in memory, PNG by zlib at level 1, frames of a job in parallel.
-/// It takes what glint does not allow itself: its shadows and horizon are some hundred pixels off (float against a
-/// ground of radius 10000), and its files are not synced.
+/// The hand-written program: what an expert writes in an afternoon for this one job, and so a fair limit to compare
+/// with. Sixteen rays per vector in AVX-512, float throughout with fused multiply-add and -ffast-math, no BVH, hard
+/// shadows, a polynomial power, 8-bit sRGB without a lookup table in memory, PNG with zlib at level 1, frames of a
+/// job in parallel. It takes liberties that glint does not: some hundred pixels at shadows and horizon are wrong
+/// (float against a ground of radius 10000), and its files are not synced.
 ///
-///   hand frame [scene=workshop] [threads=N] [samples=N] [shadows=0] [area=1]    ms to linear light, and to codes
+///   hand frame [scene=workshop] [threads=N] [samples=N] [shadows=0] [area=1]    ms to linear light, and to pixel
+///   values
 ///   hand job change=light|shininess out=FOLDER [threads=N]                      seconds for 60 PNGs
 ///   hand encode                                                                 ms and kB of one PNG
-///   hand program                                                                ns a point of Phong's shader
+///   hand program                                                                ns per point of Phong's shader
 ///   hand picture out=FILE
 #include <pthread.h>
 #include <stdatomic.h>
@@ -25,7 +26,7 @@ enum { SPHERE_MAX = 16 };
 
 typedef struct hand_scene {
     int count;
-    float from_eye[SPHERE_MAX][3], eye_power[SPHERE_MAX]; ///< centre - eye; its square minus the radius's square
+    float from_eye[SPHERE_MAX][3], eye_power[SPHERE_MAX]; ///< centre - eye; its square minus the squared radius
     float center[SPHERE_MAX][3], square_radius[SPHERE_MAX];
     vf x, y, z, inverse_radius; ///< tables by sphere
     vi material;
@@ -56,8 +57,8 @@ static inline packet_hit trace(const packet_scene *s, vec dir)
     return hit;
 }
 
-/// A sphere that neither end lies in hides the light when the line meets it between them. The point's own sphere lies
-/// behind it, and fails the first test.
+/// A sphere occludes the light if the segment's line hits it between the two ends, assuming neither end is inside.
+/// The point's own sphere is behind the point and fails the first test.
 static inline vm hidden(const packet_scene *s, vec point, vec l, vf distance, vm mask)
 {
     const hand_scene *h = s->side;
@@ -153,7 +154,7 @@ static void write_shown(const char *path)
     picture_write(bytes, size, path);
 }
 
-// ---- A job: frames in parallel, each thread with all it needs ----
+// ---- A job: frames in parallel, each thread with its own state ----
 
 typedef struct job {
     const packet_scene *scene;

@@ -1,8 +1,8 @@
--- Patterns by plain Lua, a point at a time, and how long a trace takes. LUA_CPATH finds glint.so.
--- Prints "name unit value": nanoseconds a point of checker and marble as glint_program.c has them, microseconds a trace.
+-- Patterns in plain Lua, one point at a time, and the time of a trace. LUA_CPATH must find glint.so. Prints "name
+-- unit value": nanoseconds per point of checker and marble as in glint_program.c, microseconds per trace.
 local glint = require "glint"
 
--- Runs a function for a tenth of a second at least; seconds a call.
+-- Runs a function for at least a tenth of a second. Returns seconds per call.
 local function time_of(f)
   local calls = 1
   while true do
@@ -37,7 +37,7 @@ local function marble(i)
   return 0.9 + share * (0.05 - 0.9), 0.9 + share * (0.15 - 0.9), 0.9 + share * (0.25 - 0.9)
 end
 
--- Bricks with a grain; each number is one that the next frame could change, so that the trace is a frame's.
+-- Bricks with a grain. Each number could change in the next frame, so that the trace equals that of a frame.
 local height = 1
 local bricks = glint.pattern(function(p)
   local row = glint.floor(p.y / height)

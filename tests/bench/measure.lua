@@ -1,4 +1,4 @@
--- Runs the measurements in rounds, each round in an order of its own, and keeps what their programs print.
+-- Runs the measurements in rounds, each in a shuffled order, and collects the values that their programs print.
 local M = {}
 
 local absent = {
@@ -19,7 +19,7 @@ local function installed(command)
   return os.execute("command -v " .. command .. " >/dev/null 2>&1") == true
 end
 
--- The command of a side, or nil and why there is none. "unlike SIDE" compares that side's picture with glint's.
+-- The command of a side, or nil and the reason. "unlike SIDE" compares that side's picture with glint's.
 local function command_of(side, build)
   if side == "povray" or side == "tachyon" then
     if not installed(side) then return nil, absent[side] end
@@ -33,7 +33,7 @@ local function command_of(side, build)
   return compared and ("BUILD='%s' tests/bench/unlike.sh %s"):format(build, name) or program
 end
 
--- The lines "name unit value" of a command; nil and why, when it fails or says that it cannot.
+-- The lines "name unit value" of a command; nil and the reason when it fails or refuses.
 local function run(command)
   local pipe = assert(io.popen(command, "r"))
   local values, refusal = {}, nil
@@ -52,7 +52,7 @@ local function run(command)
   return values
 end
 
--- Runs one measurement once and appends its values to their samples. A side that refuses is not asked again.
+-- Runs one measurement once and appends its values to its samples. A side that refuses is not run again.
 local function measure(m, folder)
   local arguments = m[3]:gsub("%$OUT", folder)
   local values, why = run(m.command .. " " .. arguments)
@@ -74,7 +74,7 @@ local function shuffle(list)
   end
 end
 
--- The wanted measurements whose side is there; `command` is set in them, `refused` in the others.
+-- The wanted measurements whose side is available, with `command` set. The others get `refused`.
 local function selected_of(measurements, options)
   local selected = {}
   for _, m in ipairs(measurements) do
@@ -89,7 +89,7 @@ local function selected_of(measurements, options)
   return selected
 end
 
--- Runs every wanted measurement; each gets `samples` by name, and `refused` where it has none.
+-- Runs every wanted measurement. Each gets `samples` by name, or `refused`.
 -- options: build, runs, wanted (set of ids), folder (for files), progress (a line on stderr)
 function M.run(measurements, options)
   local selected = selected_of(measurements, options)

@@ -1,20 +1,20 @@
-/// Sixteen rays of 4 x 4 pixels: Phong's formula and the samples of pixels and lights. The file that includes this defines
+/// Sixteen rays of 4 x 4 pixels: Phong's formula and the samples of pixels and lights. The including file defines
 /// `trace` and `hidden`, which are inlined here.
 #ifndef GLINT_BENCH_PACKET_LIGHT_H
 #define GLINT_BENCH_PACKET_LIGHT_H
 
 #include "tests/bench/packet.h"
 
-/// The first thing that the rays from the eye hit; `dir` is of unit length.
+/// The nearest hits of rays from the eye. `dir` has unit length.
 static inline packet_hit trace(const packet_scene *s, vec dir);
-/// The lanes of `mask` for which something lies between the point and the light `distance` away along `l`.
+/// The lanes of `mask` with an occluder between the point and the light at `distance` along `l`.
 static inline vm hidden(const packet_scene *s, vec point, vec l, vf distance, vm mask);
 
 typedef struct light_sum {
     vf diffuse, highlight; ///< sums of n.l and of (r.v)^shininess
 } light_sum;
 
-/// Adds what comes from one point of light.
+/// Adds the light from one point of a light.
 static inline void add_light(const packet_scene *s, const packet_hit *hit, vec dir, vec light, vf shininess, vm glossy,
                              light_sum *sum)
 {

@@ -1,10 +1,11 @@
 #!/bin/sh
-# Renders a scene with POV-Ray or Tachyon, and prints what the driver reads: name, unit, value.
-#   peer.sh povray|tachyon frame [scene=...] [threads=N] [samples=4] [shadows=0] [area=1] [lamps=N] [adaptive=1] [lens=1]
-#       setup (parsing, bounding) and render (tracing) by the program's own clock; wall with everything; cpu: processor time, of
-#       POV-Ray that of tracing, which it tells, of Tachyon that of everything
+# Renders a scene with POV-Ray or Tachyon, and prints results in the driver's format: name, unit, value.
+#   peer.sh povray|tachyon frame [scene=...] [threads=N] [samples=4] [shadows=0] [area=1] [lamps=N]
+#           [adaptive=1] [lens=1]
+#       setup (parsing, bounding) and render (tracing) by the program's own clock; wall: everything; cpu: processor
+#       time, for POV-Ray of tracing only, as it reports it, for Tachyon of everything
 #   peer.sh povray job change=light|shininess [threads=N]
-#       seconds for the job's 60 frames: its first FRAMES are rendered, and the time multiplied; cpu likewise
+#       seconds for the job's 60 frames: the first FRAMES are rendered and the time is scaled; cpu likewise
 set -eu
 FRAMES=6
 program=$1 mode=$2
@@ -27,7 +28,7 @@ trap 'rm -rf "$folder"' EXIT
 case $program in
 povray)
     set -- "+I$folder/scene" "+O$folder/out.png" +W1920 +H1080 +FN8 -D "+WT$threads"
-    # method 1: R x R samples wherever neighbours differ by more than the threshold; a lens has samples of its own
+    # method 1: R x R samples where neighbours differ by more than the threshold; a lens has its own samples
     if [ "$adaptive" = 1 ]; then set -- "$@" +AM1 +A0.1 +R4 -J; elif [ "$samples" -gt 1 ] && [ "$lens" = 0 ]; then set -- "$@" +AM1 +A0.0 +R2 -J; else set -- "$@" -A; fi
     if [ "$mode" = job ]; then set -- "$@" +KFI1 "+KFF$FRAMES"; fi
     ;;
@@ -49,7 +50,7 @@ begin=$(date +%s%N)
 }
 end=$(date +%s%N)
 times >"$folder/after"
-# The second line is of the children: "0m0.60s 0m0.01s", user and system.
+# The second line has the children's times: "0m0.60s 0m0.01s", user and system.
 cpu=$(awk 'FNR == 2 { sign = FILENAME ~ /after$/ ? 1 : -1
     for (i = 1; i <= 2; i++) { split($i, part, "m"); sum += sign * (60 * part[1] + part[2]) } }
     END { print sum }' "$folder/before" "$folder/after")

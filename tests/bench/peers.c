@@ -1,11 +1,11 @@
-/// Writes a scene to stdout for POV-Ray 3.7 or Tachyon 0.99, so that they render what the other sides do.
+/// Writes a scene to stdout for POV-Ray 3.7 or Tachyon 0.99, so that they render the same as the other sides.
 ///
 ///   peers povray|tachyon [scene=NAME] [shadows=0] [lens=1] [samples=N]
 ///       [area=1] [lamps=N] [change=light|shininess]
 ///       [pattern=NAME]
 ///
-/// POV-Ray: the formulas match ours term by term (tests/povray/pov.lua tells how); with change=... the scene is that of
-/// the job's frame `frame_number`. Tachyon: Phong as well; it has no area lights, and writes linear codes.
+/// POV-Ray: the formulas match ours term by term (see tests/povray/pov.lua). With change=... the scene is that of the
+/// job's frame `frame_number`. Tachyon: also Phong; it has no area lights, and writes linear pixel values.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,7 +17,7 @@ static void print3(const char *format, const float v[3]) { printf(format, (doubl
 
 // ---- POV-Ray ----
 
-/// aperture: four times the radius of the lens, as tests/povray/pov.lua tells.
+/// aperture: four times the radius of the lens, see tests/povray/pov.lua.
 static void povray_lens(const bench_scene *s, const bench_options *o, const double forward[3])
 {
     const double focus = (double)s->lens_focus;
@@ -58,8 +58,8 @@ static void povray_light(const bench_scene *s, const bench_options *o, const dou
     puts(o->shadows ? " }" : " shadowless }");
 }
 
-/// The first material. Shows the same as glint's programs of these names, except for the shapes of noise: glint's `p` is above
-/// POV-Ray's by the floor's radius, a whole number. f_noise3d is 0 .. 1.
+/// The first material. Gives the same pattern as glint's program of this name, except for the noise function: glint's
+/// `p` is higher than POV-Ray's by the floor's radius, an integer. f_noise3d is 0 .. 1.
 static void povray_pigment(const bench_material *p, const char *pattern)
 {
     const char *map = "color_map { [0 rgb 0.9] [1 rgb <0.05, 0.15, 0.25>] }";
@@ -149,7 +149,7 @@ static void write_povray(const bench_scene *s, const bench_options *o)
     bool changes = strcmp(o->change, "none") != 0, shines = strcmp(o->change, "shininess") == 0;
     puts("#version 3.7;\nglobal_settings { assumed_gamma 1.0 ambient_light rgb 1 max_trace_level 6 }"); // glint's max_depth 5
     if (strstr(o->pattern, "-function"))
-        puts("#declare f_noise3d = function(x, y, z) { internal(76) };"); // as functions.inc has it
+        puts("#declare f_noise3d = function(x, y, z) { internal(76) };"); // as in functions.inc
     print3("background { rgb <%.9g, %.9g, %.9g> }\n", s->background);
     povray_camera(s, o);
     for (int i = 0; i < o->lamps; i++) {
@@ -194,7 +194,7 @@ static void print_mirrored(const char *format, const float v[3])
     printf(format, (double)v[0], (double)v[1], -(double)v[2]);
 }
 
-/// Its world is left-handed: z is turned round.
+/// Tachyon's world is left-handed: z is mirrored.
 static void write_tachyon(const bench_scene *s, const bench_options *o)
 {
     bench_camera c = bench_camera_of(s);

@@ -19,7 +19,7 @@ struct picture_writer {
 
 // ---- Tone ----
 
-/// Sixteen pixels to 48 bytes (64 are written).
+/// Stores sixteen pixels as 48 bytes (writes 64).
 static inline void store_codes(vi r, vi g, vi b, uint8_t *out)
 {
     const vi three_of_four =
@@ -69,7 +69,7 @@ static void put32(uint8_t *out, uint32_t value)
         out[i] = (uint8_t)(value >> (24 - 8 * i));
 }
 
-/// Puts length, type and checksum around the `length` bytes that stand at file + size + 8.
+/// Adds length, type and checksum around the `length` bytes at file + size + 8.
 static void close_chunk(picture_writer *w, const char *type, size_t length)
 {
     uint8_t *chunk = w->file + w->size;

@@ -1,6 +1,6 @@
 /// Indirect light in plain C, as written in an hour: every ray against every sphere, one at a time, in double.
 ///
-///   plain frame indirect=SAMPLES [scene=workshop]    ms; one bounce, without highlights, which the ways are blind to
+///   plain frame indirect=SAMPLES [scene=workshop]    ms; one bounce, without highlights, which indirect paths ignore
 #include "tests/bench/plain_path.h"
 
 static size_t nearest(const plain_scene *s, const double origin[3], const double dir[3], size_t leaving, double *far)

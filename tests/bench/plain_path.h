@@ -1,5 +1,5 @@
-/// Indirect light one ray at a time, in plain C, as written in an hour: a ray of the eye, a shadow, and from its hit some paths
-/// over the hemisphere, as dense as their cosine. The program that includes this defines `nearest`.
+/// Indirect light one ray at a time, in plain C, as written in an hour: an eye ray, a shadow ray, and from the hit
+/// some cosine-weighted paths over the hemisphere. The including program defines `nearest`.
 #ifndef GLINT_BENCH_PLAIN_PATH_H
 #define GLINT_BENCH_PLAIN_PATH_H
 
@@ -14,11 +14,12 @@
 typedef struct plain_scene {
     bench_scene plain;
     bench_options options;
-    void *side; ///< the program's own
+    void *side; ///< private to the program
     float *film; ///< red, green, blue of each pixel
 } plain_scene;
 
-/// The nearest sphere that a ray meets before t = *far but the one it leaves, and where; NO_SPHERE: none.
+/// Returns the nearest sphere that a ray hits before t = *far, except the one that it leaves; NO_SPHERE: none. *far:
+/// the hit's t.
 static size_t nearest(const plain_scene *s, const double origin[3], const double dir[3], size_t leaving, double *far);
 
 static double plain_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -30,7 +31,7 @@ static void plain_unit(double v[3])
         v[c] /= length;
 }
 
-/// 0 .. 1, by xorshift.
+/// A random number in 0 .. 1, by xorshift.
 static double plain_random(uint64_t *state)
 {
     *state ^= *state << 13;
@@ -49,7 +50,7 @@ static void plain_scatter(const double n[3], uint64_t *state, double out[3])
         out[c] = x * a[c] + y * b[c] + h * n[c];
 }
 
-/// A point of a sphere, and its light from the lamp.
+/// A point on a sphere, and its light from the lamp.
 typedef struct plain_point {
     double at[3], normal[3], lit;
     size_t sphere;
@@ -119,7 +120,7 @@ static double plain_frame(void *scene)
     return bench_now_ms() - start;
 }
 
-/// Says the frame's time, and the mean of its light: that of glint's within noise.
+/// Prints the frame's time, and the mean of its light, which equals glint's within noise.
 static void plain_measure(plain_scene *s)
 {
     double sum = 0;
@@ -127,7 +128,7 @@ static void plain_measure(plain_scene *s)
     s->film = malloc(count * sizeof *s->film);
     if (!s->film)
         bench_fail("plain", "out of memory");
-    bench_say("render", "ms", plain_frame(s)); // seconds: one is enough
+    bench_say("render", "ms", plain_frame(s)); // takes seconds: one run is enough
     for (size_t i = 0; i < count; i++)
         sum += (double)s->film[i];
     bench_say("light", "-", sum / (double)count);

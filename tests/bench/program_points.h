@@ -1,4 +1,5 @@
-/// The points that programs are timed with: what a pattern or shader reads of 128 of them, and where results go.
+/// The points that programs are timed with: the inputs of a pattern or shader for 128 points, and buffers for the
+/// results.
 #ifndef GLINT_BENCH_PROGRAM_POINTS_H
 #define GLINT_BENCH_PROGRAM_POINTS_H
 
@@ -13,7 +14,8 @@ typedef struct program_points {
     _Alignas(64) float plane[6][PROGRAM_POINTS];
 } program_points;
 
-/// Places in -10 .. 10; everything else in 0 .. 1, so that about half of the highlights show; shininess below 64.
+/// Positions in -10 .. 10; other inputs in 0 .. 1, so that about half of the highlights are nonzero; shininess below
+/// 64.
 static inline void program_points_fill(program_points *points)
 {
     uint64_t state = 1;

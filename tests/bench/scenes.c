@@ -61,14 +61,14 @@ static void make_workshop(bench_scene *s, size_t count)
     s->lens_focus = 17;
 }
 
-/// The ball in front is of glass.
+/// The workshop with a glass ball in front.
 static void make_glass_ball(bench_scene *s, size_t count)
 {
     make_workshop(s, count);
     s->materials[count - 1] = (bench_material) { .transmission = 0.9F };
 }
 
-/// splitmix64, as a number in 0 .. 1 of 24 bits.
+/// splitmix64, as a 24-bit number in 0 .. 1.
 static float random_unit(uint64_t *state)
 {
     uint64_t z = *state += 0x9e3779b97f4a7c15u;
@@ -117,7 +117,7 @@ static void make_palette(bench_scene *s, uint64_t *state)
     }
 }
 
-/// The radii go with the mean spacing, so that a cloud of any count hides about as much.
+/// The radii scale with the mean spacing, so that a cloud of any count covers about as much.
 static void make_cloud(bench_scene *s, size_t count)
 {
     static const float size[3] = { 32, 18, 18 };
@@ -137,14 +137,14 @@ static void make_cloud(bench_scene *s, size_t count)
     set3(s->light, 25, 30, 30);
 }
 
-/// As materials scientists look at particles: all of a box of them, by parallel rays.
+/// A whole box of particles in an orthographic view, as materials scientists look at them.
 static void make_box(bench_scene *s, size_t count)
 {
     make_cloud(s, count);
     s->height = 18;
 }
 
-/// The same, seen and lit from within.
+/// The same, seen and lit from inside.
 static void make_inside(bench_scene *s, size_t count)
 {
     make_cloud(s, count);
@@ -154,7 +154,7 @@ static void make_inside(bench_scene *s, size_t count)
     set3(s->light, 2, 1, 0.5F);
 }
 
-/// A chain of balls with a rod between each two; every fourth carries a tip.
+/// A chain of balls connected by rods; every fourth ball has a tip.
 static void make_molecule(bench_scene *s, size_t count)
 {
     uint64_t state = count;
@@ -189,9 +189,9 @@ static void make_molecule(bench_scene *s, size_t count)
     set3(s->light, 15, 20, 20);
 }
 
-// ---- Spheres that rest on a floor, and throw shadows on it and on each other ----
+// ---- Spheres on a floor, which shadow it and each other ----
 
-/// The floor is 40 x 40 of a large ball's top; the radii go with the spacing, as in a cloud.
+/// The floor is a 40 x 40 part of a large ball's top. The radii scale with the spacing, as in a cloud.
 static void make_floor(bench_scene *s, size_t count)
 {
     static const float ground[4] = { 0, -1000, 0, 1000 }, side = 40;
@@ -213,14 +213,14 @@ static void make_floor(bench_scene *s, size_t count)
     set3(s->light, 9, 20, 6);
 }
 
-/// Makes the floor, and everything of its material, a mirror.
+/// Makes the floor, and everything with its material, a mirror.
 static void make_mirror_floor(bench_scene *s, size_t count)
 {
     make_floor(s, count);
     s->materials[0] = (bench_material) { .diffuse = { 0.1F, 0.1F, 0.12F }, .mirror = 0.8F };
 }
 
-/// Every second is of glass.
+/// Every second sphere is of glass.
 static void make_glass_floor(bench_scene *s, size_t count)
 {
     make_floor(s, count);
@@ -228,7 +228,7 @@ static void make_glass_floor(bench_scene *s, size_t count)
         s->materials[i] = (bench_material) { .transmission = 0.9F };
 }
 
-/// Solids of one kind that stand on the floor instead of spheres.
+/// Solids of one kind on the floor instead of spheres.
 static void make_solids(bench_scene *s, size_t count, bench_solid_kind kind)
 {
     uint64_t state = 7 * count;
@@ -245,7 +245,7 @@ static void make_solids(bench_scene *s, size_t count, bench_solid_kind kind)
             solid->ball[c] = random_unit(&state) - (c == 1 ? 0 : 0.5F);
             length += solid->ball[c] * solid->ball[c];
         }
-        for (int c = 0; c < 3; c++) // the cutting ball is over a corner or an edge of the box's upper side
+        for (int c = 0; c < 3; c++) // the cutting ball is at a corner or an edge of the box's upper side
             solid->ball[c] = kind == BENCH_TORUS ? solid->ball[c] / sqrtf(length)
                                                  : ball[c] + ball[3] * (c == 1 ? 1 : 2 * solid->ball[c]);
         solid->ball[3] = kind == BENCH_TORUS ? (0.2F + 0.3F * random_unit(&state)) * ball[3] : 0.8F * ball[3];
@@ -267,7 +267,7 @@ static void make_cloud_over_floor(bench_scene *s, size_t count)
     memcpy(s->spheres, ground, sizeof ground);
 }
 
-// ---- A mesh: a knobbly torus of quadrangles, as many around as along ----
+// ---- A mesh: a knobbly torus of quads, equally many in both directions ----
 
 static void make_mesh(bench_scene *s, size_t quadrangles)
 {

@@ -1,5 +1,5 @@
 #!/bin/sh
-# How many pixels of a side's picture are more than two 8-bit codes from glint's (which the tests hold to an oracle).
+# Counts the pixels in which a side's picture differs by more than two 8-bit steps from glint's (which the tests check).
 #   unlike.sh hand|embree|glint_side WORDS...     prints: differ pixels COUNT
 set -eu
 programs=${BUILD:-build}/tests/bench

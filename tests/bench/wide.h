@@ -1,6 +1,7 @@
-/// Sixteen floats at a time, for the comparators: AVX-512 and whatever -ffast-math may do with it.
+/// Sixteen floats at a time, for the comparators: AVX-512, with all that -ffast-math allows.
 ///
-/// The logarithm, the power and the sRGB curve are polynomials on the mantissa, good to 3e-6: far below an 8-bit step.
+/// The logarithm, the power and the sRGB curve are polynomials of the mantissa with an error of 3e-6, far below an
+/// 8-bit step.
 #ifndef GLINT_BENCH_WIDE_H
 #define GLINT_BENCH_WIDE_H
 
@@ -26,7 +27,7 @@ static inline vec minus(vec a, vec b) { return (vec) { a.x - b.x, a.y - b.y, a.z
 static inline vec scaled(vec a, vf s) { return (vec) { a.x * s, a.y * s, a.z * s }; }
 static inline vec all3(const float v[3]) { return (vec) { all(v[0]), all(v[1]), all(v[2]) }; }
 
-/// The estimate of 14 bits, and one step of Newton's.
+/// The 14-bit estimate, and one Newton step.
 static inline vf inverse_sqrt(vf x)
 {
     vf r = _mm512_rsqrt14_ps(x);
@@ -58,13 +59,13 @@ static inline vf exp2_of(vf x)
     return _mm512_scalef_ps(p, whole);
 }
 
-/// Codes 0 .. 255 of linear light: 1.055 x^(1/2.4) - 0.055, or 12.92 x for the dark.
+/// 8-bit sRGB values of linear light: 1.055 x^(1/2.4) - 0.055, or 12.92 x for dark values.
 static inline vi srgb_of(vf x)
 {
     x = _mm512_max_ps(_mm512_min_ps(x, all(1)), all(0));
     vf m = _mm512_getmant_ps(x, _MM_MANT_NORM_1_2, _MM_MANT_SIGN_zero);
-    vi exponent = _mm512_srli_epi32(_mm512_castps_si512(x), 23); // its low four bits are the table's entry
-    // 255 1.055 2^(5/12 (k - 15)): entry 15 is the octave from 1; the low ones lie in the straight part
+    vi exponent = _mm512_srli_epi32(_mm512_castps_si512(x), 23); // its low four bits select the table entry
+    // 255 1.055 2^(5/12 (k - 15)): entry 15 is the octave from 1; the lowest entries are in the linear part.
     const vf octave =
         _mm512_setr_ps(3.534721F, 4.718287F, 6.298157F, 8.407031F, 11.22204F, 14.97963F, 19.9954F, 26.69066F, 35.62776F,
                        47.55735F, 63.48145F, 84.73757F, 113.1111F, 150.9852F, 201.541F, 269.025F);

@@ -1,14 +1,14 @@
---- The effects that a scene may call for, a row each:
----   name       of the parameter `effect` in scene.lua
----   part       of engine/stages/contract/with.h: what a build without the effect leaves out; nil: it has no kernel of its own
----   stage, rays    its counter: the stage's name or the kind of ray in the events of --json; nil: it has none
----   functions  Lua patterns of the names of its functions; with the effect at least one is called. {}: what it does is
----              compiled into functions of all
----   file       what the frame is written as, where the effect is of writing: functions of the whole program count, and the frame
----              without it is a .png; nil: nothing is written, and functions within tiles count
----   library    without which the effect is left out; as `glint --version --verbose` has it
----   call       makes the scene call for it: gets glint, the scene's parts, and the scene
----   frame      what the script does at a time; gets the parts and the time
+--- The effects that a scene can use, one row each:
+---   name       value of the parameter `effect` in scene.lua
+---   part       in engine/stages/contract/with.h, omitted in a build without the effect; nil: it has no own kernel
+---   stage, rays    its counter: the stage's name or the kind of ray in the events of --json;
+---              nil: it has none
+---   functions  Lua patterns of its functions' names; the effect calls at least one. {}: part of shared functions
+---   file       the frame's file type, for effects of writing: functions of the whole program count, and without the
+---              effect the file is a .png; nil: nothing is written, and only functions within tiles count
+---   library    without which the effect is unavailable, as `glint --version --verbose` names it
+---   call       makes the scene use the effect: receives glint, the scene's parts, and the scene
+---   frame      the frame function of the script; receives the parts and the time
 return {
   { name = "shadows", part = "SHADOW", stage = "occlude", rays = "shadow", functions = { "^occlude" },
     call = function(_, parts) parts.lamp.shadows = true end },

@@ -1,4 +1,4 @@
---- Spheres and one lamp, and one effect at most: see rows.lua.
+--- Spheres, one light, and at most one effect: see rows.lua.
 local glint = require "glint"
 local rows = dofile((arg and arg[0] or "tests/effects/scene.lua"):gsub("[^/]*$", "") .. "rows.lua")
 

@@ -1,8 +1,8 @@
---- Only what is called for: what every effect costs a scene that does not call for it.
----   table.lua check BUILD    its counters show 0 and none of its functions is called; with the effect, both show some
----   table.lua bench BUILD    that as a table, and instructions beside BUILD/without/PART/glint, which lacks the effect
----   table.lua parts          the parts that there are such builds of
---- Instructions and calls are valgrind's, of all that happens within tiles, on AVX2, which valgrind knows, or generic kernels.
+--- Unused effects cost nothing: measures the cost of every effect in a scene that does not use it.
+---   table.lua check BUILD    checks its counters and its calls: 0 without the effect, nonzero with it
+---   table.lua bench BUILD    prints these, and the instructions of BUILD and of BUILD/without/PART, which lacks it
+---   table.lua parts          the parts for which there are such builds
+--- Instructions and calls are counted by valgrind, within tiles, for AVX2, which it supports, or generic kernels.
 local here = arg[0]:gsub("[^/]*$", "")
 local rows = dofile(here .. "rows.lua")
 local LIMIT = 0.01 -- of the instructions
@@ -23,7 +23,7 @@ local function arguments(row, more, file)
     file or "none", row and row.options or "", more)
 end
 
---- The counter of an effect in the events of a frame with `called` (a row, or nil) called for.
+--- The counter of an effect in the events of a frame that uses `called` (a row, or nil).
 local function counted(row, called)
   local text = output(("%s/glint %s"):format(build, arguments(called, "--json")))
   local stages = assert(text:match '},"stages":(%b{})', text)
@@ -31,8 +31,8 @@ local function counted(row, called)
   return row.rays and tonumber(text:match(('"%s":(%%d+)'):format(row.rays))) + found or found
 end
 
---- Instructions within tiles, or in total if a picture with that ending is written, by function and altogether. For a copy
---- without notes for debuggers: valgrind does not read all that clang writes there, and the symbols have the names.
+--- Instructions by function and in total: within tiles, or of the whole program if a picture with that ending is
+--- written. Uses a copy without debug information: valgrind cannot read all of clang's, and symbols have the names.
 local function traced(folder, row, ending)
   local file, bare = os.tmpname(), os.tmpname()
   local picture = ending and ("%s.%s"):format(file, ending)

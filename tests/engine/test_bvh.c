@@ -1,5 +1,4 @@
-/// The BVH: complete, tight, identical for any number of threads, and of good quality, for easy and hard sets of
-/// boxes.
+/// The BVH: complete, tight, identical for any number of threads, and of good quality, for easy and hard sets of boxes.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -412,8 +411,7 @@ static void test_quality(void **unused)
     }
 }
 
-/// A giant among small boxes is split off early: the only nodes of its size are the root and one or two below the
-/// root.
+/// A giant among small boxes is split off early: the only nodes of its size are the root and one or two below the root.
 static void test_giant(void **unused)
 {
     (void)unused;

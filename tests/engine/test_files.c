@@ -381,8 +381,7 @@ static void test_writer_cancel(void **state)
     glint_image_release(image);
 }
 
-/// An unchanged picture is written again without deflating it again. The file does not depend on the number of
-/// threads.
+/// An unchanged picture is written again without deflating it again. The file does not depend on the number of threads.
 static void test_writer_reuse(void **state)
 {
     (void)state;

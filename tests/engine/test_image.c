@@ -49,8 +49,7 @@ static void check_code(const glint_tone_table *table, float x)
                  want);
 }
 
-/// Checks every float where the pixel value could step: the inverse of each value, and up to 20 floats on either
-/// side.
+/// Checks every float where the pixel value could step: the inverse of each value, and up to 20 floats on either side.
 static void check_every_step(const glint_tone_desc *desc)
 {
     const glint_tone_table *table;

@@ -409,8 +409,7 @@ static void test_reuse(void **state)
     drop_world(&w);
 }
 
-/// Pictures of a job through the writer, which caches bands of the previous picture, equal pictures written
-/// separately.
+/// Pictures of a job through the writer, which caches bands of the previous picture, equal pictures written separately.
 static void test_writer(void **state)
 {
     (void)state;

@@ -1,5 +1,4 @@
-/// Frames whose materials have programs, against the same functions in plain C at the points that the contracts
-/// define.
+/// Frames whose materials have programs, against the same functions in plain C at the points that the contracts define.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -64,8 +64,7 @@ static void test_noise_scale(void **state)
     assert_true(sum * 0.9649 <= 1 && sum * 0.9649 > 0.9999);
 }
 
-/// Noise and its slope are continuous across the faces of cubes. Noise is 0 at integers, and works far from the
-/// origin.
+/// Noise and its slope are continuous across the faces of cubes. Noise is 0 at integers, and works far from the origin.
 static void test_noise_continuity(void **state)
 {
     (void)state;

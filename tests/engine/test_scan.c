@@ -280,8 +280,7 @@ static void same_on_every_instruction_set(void **unused)
     }
 }
 
-/// One renderer alternates between frames with and without a BVH: cached results of one frame stay valid for the
-/// next.
+/// One renderer alternates between frames with and without a BVH: cached results of one frame stay valid for the next.
 static void in_turn(void **unused)
 {
     (void)unused;

@@ -226,8 +226,7 @@ static recipe any_field(bool one)
     return r;
 }
 
-/// A typical pattern: checkers, bands or noise of a scaled point, in two colours; sometimes NaN on one side of a
-/// line.
+/// A typical pattern: checkers, bands or noise of a scaled point, in two colours; sometimes NaN on one side of a line.
 static recipe usual_field(bool one)
 {
     recipe r = { .output_count = one ? 1 : 3 };

@@ -62,8 +62,7 @@ typedef struct answer {
     bool total;
 } answer;
 
-/// Reflects and refracts a ray in the plane z = 0 that falls on the floor y = 0 from the left at an angle of this
-/// sine.
+/// Reflects and refracts a ray in the plane z = 0 that falls on the floor y = 0 from the left at an angle of this sine.
 static answer ask(double ratio, double sine, double cosine)
 {
     static ALIGNED double direction[3][GLINT_GROUP], normal[3][GLINT_GROUP], ratios[GLINT_GROUP];

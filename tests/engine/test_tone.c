@@ -201,8 +201,7 @@ static void tone_floats(const glint_stages *stages, const glint_tone_table *tabl
     stages->tone(&args);
 }
 
-/// The estimate must never be wrong: tests every float that has an sRGB pixel value, and one in seven for other
-/// tables.
+/// The estimate must never be wrong: tests every float that has an sRGB pixel value, and one in seven for other tables.
 static void test_tone_every_float(void **state)
 {
     (void)state;

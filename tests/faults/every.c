@@ -1,9 +1,9 @@
-// Runs a command again and again, and lets each of its allocations or writes fail in its turn.
+// Runs a command repeatedly, and makes each of its allocations or writes fail in turn.
 //   every KIND LIBRARY FOLDER COMMAND...    KIND: alloc or write; LIBRARY: fail.c's; FOLDER: where COMMAND runs
-// What COMMAND makes goes into FOLDER/out, which is empty before each run, and to stdout. A run that succeeds has to make
-// the same bytes as the first, with no fault. One that fails has to say why ("memory", or "space" with exit code 75), and
-// to leave in out only files that are whole. From the environment: EVERY_STEP runs each so-manieth point only.
-// Prints a line for each point that is wrong, then "POINTS points, SAME the same, REFUSED refused, WRONG wrong".
+// COMMAND writes to FOLDER/out, which is empty before each run, and to stdout. A successful run must produce the same
+// bytes as the first, fault-free run. A failing run must give the reason ("memory", or "space" with exit code 75),
+// and must leave only complete files in out. From the environment: EVERY_STEP runs only every n-th point.
+// Prints a line for each wrong point, then "POINTS points, SAME the same, REFUSED refused, WRONG wrong".
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <errno.h>
@@ -78,8 +78,8 @@ static void release(made *m)
     }
 }
 
-// Removes all in `path`, and the folders in it; what is a file is first taken into `m`, unless that is NULL. The whole frames
-// of a film that failed stay in NAME.frames, for the next run to go on from: they are as they should be.
+// Empties `path` and its subfolders. Reads each file into `m` first, unless that is NULL. Complete frames of a failed
+// film may stay in NAME.frames, so that the next run can continue.
 static void empty(const char *path, made *m)
 {
     char name[700];
@@ -158,7 +158,7 @@ static const bytes *find(const made *m, const char *name)
     return NULL;
 }
 
-// NULL: as it should be; else what is wrong.
+// Returns NULL if the run is correct, otherwise the error.
 static const char *judge(const plan *p, const made *want, const made *got, bool *refused)
 {
     const bool is_alloc = strcmp(p->kind, "alloc") == 0;

@@ -1,6 +1,7 @@
-// A library to preload: it counts what a process allocates, or writes, and lets one of those calls fail, or from one on
-// all. From the environment: FAULT_KIND "alloc" or "write", FAULT_AT the number of the call, 0 for none, FAULT_ON to let
-// those after it fail too, FAULT_FD where the count goes at the end. glibc alone has the names behind malloc.
+// A library to preload. It counts a process's allocations or writes, and makes one of those calls fail, or all calls
+// from that one on. From the environment: FAULT_KIND "alloc" or "write", FAULT_AT the number of the call, 0 for none,
+// FAULT_ON to let later calls fail too, FAULT_FD the descriptor to write the count to at the end. Only glibc exports
+// the functions behind malloc.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -29,7 +30,7 @@ __attribute__((constructor)) static void read_environment(void)
     at = number ? atol(number) : 0;
     goes_on = getenv("FAULT_ON") != NULL;
     count_fd = fd ? atoi(fd) : -1;
-    alloc_count = 0; // allocations of the loader are not reported
+    alloc_count = 0; // ignores allocations of the loader
 }
 
 __attribute__((destructor)) static void tell_count(void)

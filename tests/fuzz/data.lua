@@ -1,5 +1,5 @@
--- Bytes as a file of data, the first of them choosing the reader: what it finds, or an error that names file and line. An error of
--- Lua's own (a nil indexed, a nil added to) is a finding.
+-- Bytes as a data file; the first selects the reader. The reader returns data, or an error that names file and line.
+-- An error of Lua itself (a nil indexed, a nil added to) is a finding.
 package.path = "scripts/lib/?.lua;" .. package.path
 local path = ("/dev/shm/glint-fuzz-data-%d"):format(io.open("/proc/self/stat"):read "n")
 
@@ -11,7 +11,7 @@ local function walk(frames)
   end
 end
 
--- The columns of all frames by name, and the frames once more in another order.
+-- Reads the columns of all frames by name, then the frames again in another order.
 local function run(reader)
   return function()
     local film = reader.film(path)
@@ -43,7 +43,7 @@ return function(bytes)
   os.remove(path)
   if ok then return end
   assert(type(message) == "string", "an error that is no text")
-  message = message:gsub("^%S+%.lua:%d+: ", "") -- the rest may quote the file
+  message = message:gsub("^%S+%.lua:%d+: ", "") -- the rest of the message may quote the file
   for _, own in ipairs { "attempt to", "bad argument", "stack overflow", "malformed", "number has no" } do
     assert(message:find(own, 1, true) ~= 1, message)
   end

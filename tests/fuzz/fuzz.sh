@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# fuzz.sh NAME...: runs each fuzzer from its corpus for FUZZ_SECONDS (60) or FUZZ_RUNS inputs, from FUZZ_SEED, and prints
-# a line of TAP for it. Inputs that fail are stored in $FUZZ/found/NAME-*, and the fuzzer's report is printed above the line.
-# New inputs that reach more code are stored in $FUZZ/corpus/NAME.
+# fuzz.sh NAME...: runs each fuzzer from its corpus for FUZZ_SECONDS (60) or FUZZ_RUNS inputs, with FUZZ_SEED, and
+# prints a line of TAP for it. Failing inputs are stored in $FUZZ/found/NAME-*, and the fuzzer's report is printed
+# above the line. New inputs that reach more code are stored in $FUZZ/corpus/NAME.
 set -u
 seconds=${FUZZ_SECONDS:-60}
 bad=0

@@ -1,4 +1,4 @@
-/// Lines as the words of a command line: options, or a message of one line.
+/// Lines as the words of a command line: gives options, or a message of one line.
 #include "bindings/command/cli.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -21,7 +21,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (at)
             *at++ = 0;
     }
-    optind = 0; // a new line for getopt
+    optind = 0; // restarts getopt
     if (!cli_read_options(count, words, &options, message)) {
         FUZZ_CHECK(*message && memchr(message, 0, sizeof message), "a message");
         FUZZ_CHECK(!strchr(message, '\n'), "a message of one line: %s", message);

@@ -1,4 +1,4 @@
-/// Bytes to the function that the Lua file DRIVER returns. An error of the driver's own is a finding.
+/// Passes bytes to the function that the Lua file DRIVER returns. An error in the driver is a finding.
 #include "bindings/value/glintL.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -19,7 +19,7 @@ static void open_state(void)
     FUZZ_CHECK(!luaL_dofile(state, DRIVER), "%s", lua_tostring(state, -1));
 }
 
-/// A small heap after each input, so that what leaks or grows shows soon.
+/// Collects garbage after each input, so that leaks and growth appear early.
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     if (!state)

@@ -1,5 +1,5 @@
-/// Bytes as a file of a mesh, of the kind that they begin like, or as the materials of one: a mesh, which is then seen from the
-/// front in a small picture, or a message.
+/// Bytes as a mesh file, whose type is detected from the first bytes, or as its material file: gives a mesh, which is
+/// rendered from the front in a small picture, or a message.
 #include "engine/glint.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -33,7 +33,7 @@ static void see(glint_shape *shape)
     glint_camera_release(camera);
 }
 
-/// An .obj file whose materials the bytes are.
+/// An .obj file with the bytes as its material file.
 static const char *mesh_with(const uint8_t *data, size_t size)
 {
     char text[256];

@@ -1,5 +1,5 @@
--- Bytes as choices: a function, as a pattern and as a shader. The program has the bits of plain Lua; where a material or a
--- background takes it, a picture is rendered, or refused with a message.
+-- Bytes as choices: a function, as a pattern and as a shader. The program must give the bits of plain Lua. Where a
+-- material or a background accepts it, a picture is rendered, or refused with a message.
 local glint = require "glint"
 
 local bytes, at = "", 1
@@ -24,7 +24,7 @@ local function refused(message)
   end
 end
 
--- A number outside of the function, which changes from frame to frame.
+-- A number outside the function that changes from frame to frame.
 local outside = 0
 
 local function material_of(f)

@@ -1,5 +1,5 @@
--- Bytes as choices: objects with fields of every kind and size, edits of them, and small pictures. Objects and fields are good or
--- refused with a message; a picture is rendered or refused; an error of Lua's own from inside the module is a finding.
+-- Bytes as choices: objects with fields of every kind and size, edits of them, and small pictures, which are all
+-- valid or refused with a message. An error of Lua itself from inside the module is a finding.
 local glint = require "glint"
 
 local bytes, at = "", 1
@@ -73,7 +73,7 @@ local NAMES = {}
 for name in pairs(FIELDS) do NAMES[#NAMES + 1] = name end
 table.sort(NAMES)
 
--- The calls of the module that a message may come from; Lua's own words for a mistake in a program are not among them.
+-- The functions of the module that may raise a message. Lua's own messages for a programming error are not accepted.
 local function refused(message)
   assert(type(message) == "string", "an error that is no text")
   for _, own in ipairs { "attempt to", "stack overflow", "not enough memory", "out of memory" } do
@@ -81,7 +81,7 @@ local function refused(message)
   end
 end
 
--- The first values are good, so that most changed objects are still valid.
+-- The first values are valid, so that most edited objects stay valid.
 local GOOD = {
   sphere = { center = { 0, 0, 0 }, radius = 1 }, plane = { point = { 0, -1, 0 }, normal = { 0, 1, 0 } },
   box = { min = { -1, -1, -1 }, max = { 1, 1, 1 } }, disk = { center = { 0, 0, 0 }, normal = { 0, 1, 0 }, radius = 1 },
@@ -99,7 +99,7 @@ local GOOD = {
   ambient_occlusion = { samples = 2 }, label = { text = "a" }, colorbar = { map = "magma", low = 0, high = 1 }, axes = {},
 }
 
--- Shapes that may be parts of a combined solid, and some that may not.
+-- Shapes that can be parts of a CSG shape, and some that cannot.
 local PARTS = { "sphere", "box", "torus", "cylinder", "cone", "plane", "disk", "mesh", "group", "union", "difference" }
 
 local function field_value(field, made)
@@ -109,7 +109,7 @@ local function field_value(field, made)
     return ok and t or glint.translate(0, 0, 0)
   end
   if field == "samples" then return 1 + next_byte() % 4 end
-  if field == "segments" then return next_byte() % 40 end -- 16384 is good, and takes long
+  if field == "segments" then return next_byte() % 40 end -- 16384 is valid but slow
   return value()
 end
 

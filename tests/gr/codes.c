@@ -1,5 +1,5 @@
-/// codes FILE.png: the codes of an 8-bit RGB PNG as they are in the file, on stdout: "WIDTH HEIGHT\n", then three bytes
-/// a pixel, top row first.
+/// codes FILE.png: prints the pixel values of an 8-bit RGB PNG as stored, on stdout: "WIDTH HEIGHT\n", then three
+/// bytes per pixel, top row first.
 #include <png.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 -- Random gr scenes: a graph whose nodes have several parents, every shape, maps that stretch, mirror and shear.
 --   random_scene(seed, models) -> text, order     models: the folder of tests/gr/scenes/models
--- No two shapes have a surface in common: there two right renderers may show either.
+-- No two shapes have coincident surfaces, where two correct renderers may show either one.
 local TETRA = "{{1, 1, 1}, {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}}, {{0, 1, 3}, {0, 2, 1}, {0, 3, 2}, {1, 2, 3}}"
 
 local function between(a, b) return a + (b - a) * math.random() end

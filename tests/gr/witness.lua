@@ -1,11 +1,11 @@
--- A plain renderer of the gr dialect, written only from its formulas: one ray per pixel, every shape tried, one after the
--- other. It knows nothing of glint and checks no arguments; tests/lua/test_gr.lua sets its pictures beside the engine's.
+-- A plain renderer of the gr dialect, written only from its formulas: one ray per pixel, tested against every shape.
+-- It shares no code with glint and checks no arguments. tests/lua/test_gr.lua compares its pictures with the engine's.
 --
 --   witness.run(path, order, options) -> list of pictures { file, width, height, codes = function(x, y, dx, dy) }
---   order "pre"|"post"; options.pixel, options.specular, options.background (three codes)
+--   order "pre"|"post"; options.pixel, options.specular, options.background (three 8-bit values)
 local witness = {}
 
-local EPSILON = 1e-7 -- of a shadow ray's way, and of the eye's
+local EPSILON = 1e-7 -- of the length of shadow and eye rays
 
 -- ---- Matrices: rows of 4, the last row is 0 0 0 1 ----
 
@@ -22,7 +22,7 @@ end
 
 local function identity() return { { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } } end
 
--- By Gauss and Jordan; nil for a matrix that flattens.
+-- Gauss-Jordan elimination; nil for a singular matrix.
 local function inverse(m)
   local rows = {}
   for i = 1, 3 do
@@ -120,7 +120,7 @@ local function round(r0, slope)
   end
 end
 
--- Where a place is to a tube around the circle of radius `ring`: by steps along the ray, and halving where the sign changes.
+-- A tube around the circle of radius `ring`, by steps along the ray, and bisection where the sign changes.
 local function torus(tube, ring)
   local function off(q)
     local away = math.sqrt(q[1] * q[1] + q[2] * q[2]) - ring
@@ -146,7 +146,7 @@ local function torus(tube, ring)
   end
 end
 
--- By crossing number in the plane across the normal's largest component.
+-- Crossing number in the coordinate plane perpendicular to the normal's largest component.
 local function inside(corners, q, j, k)
   local within, last = false, corners[#corners]
   for _, corner in ipairs(corners) do
@@ -221,7 +221,7 @@ end
 
 -- ---- A picture ----
 
--- The shapes where they stand: hits, map, its inverse, material.
+-- The shapes in world space: hits, inverse map, material.
 local function collect(node, map, order, out)
   map = product(map, order == "pre" and node.pre or node.post)
   local back = inverse(map)
@@ -289,7 +289,7 @@ local function shade(picture, p, d)
   return color
 end
 
--- The codes of a pixel; dx and dy move its ray by so many pixels.
+-- The 8-bit values of a pixel; dx and dy shift its ray by fractions of a pixel.
 local function codes(picture, x, y, dx, dy)
   local size = math.tan(math.rad(picture.fov) / 2)
   local a = (2 * (x + picture.pixel + dx) / picture.width - 1) * size * picture.width / picture.height
@@ -362,7 +362,7 @@ local function new_gr(folder, order, options, pictures)
   return gr
 end
 
---- Runs a scene; what Lua 5.0 to 5.3 had is there for it.
+--- Runs a scene, with the library functions of Lua 5.0 to 5.3.
 function witness.run(path, order, options)
   local folder, pictures = path:match "^(.*/)", {}
   local env = setmetatable({}, { __index = _G })

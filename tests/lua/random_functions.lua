@@ -1,6 +1,6 @@
--- Random functions for patterns, against the same functions run by plain Lua.
---   dofile "tests/lua/random_functions.lua"(random)    `random` needs these two forms of math.random:
---   () for 0 .. 1, (n) or (a, b) for an integer
+--- Random functions for patterns, against the same functions run by plain Lua.
+---   dofile "tests/lua/random_functions.lua"(random)    `random` needs these two forms of math.random:
+---                                                      () for 0 .. 1, (n) or (a, b) for an integer
 local glint = require "glint"
 local V = glint.vector
 
@@ -74,7 +74,7 @@ return function(random)
     return { value.x, value.y, value.z }
   end
 
-  -- Compares the pattern with f at a random point. Returns the value, or nil and a message.
+  --- Compares the pattern with f at a random point. Returns the value, or nil and a message.
   local function compare(f, text)
     local pattern = glint.pattern(function(p, s) return f(p, s) end)
     local point = random_point()

@@ -1,6 +1,6 @@
 #!/bin/sh
-# sysroot.sh FOLDER: Debian's arm64 libraries and headers, unpacked into FOLDER as a root file system to compile and to run
-# against. The machine's own packages and architectures stay as they are; needs apt-get and dpkg, not root.
+# arm64_sysroot.sh FOLDER: unpacks Debian's arm64 libraries and headers into FOLDER as a root file system to compile
+# and run against. The machine's own packages and architectures stay unchanged; needs apt-get and dpkg, not root.
 set -eu
 mkdir -p "$1/apt/lists/partial" "$1/apt/cache/archives/partial" "$1/usr/lib"
 root=$(cd "$1" && pwd)
@@ -18,7 +18,7 @@ for package in "$root"/apt/cache/archives/lib*.deb "$root"/apt/cache/archives/*z
     "$root"/apt/cache/archives/linux-libc-dev*.deb; do
     dpkg-deb -x "$package" "$root"
 done
-# A link to /lib/... is meant for the root of the file system.
+# A link to /lib/... is relative to the root of that file system.
 find "$root" -type l -lname '/*' | while read -r link; do
     ln -sfn "$root$(readlink "$link")" "$link"
 done

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# elsewhere.sh: compares the pictures of a command built for another machine or C library with the goldens and with this machine's.
+# elsewhere.sh: compares the pictures of a command built for another machine or C library with the goldens and with
+# this machine's.
 #   ELSEWHERE      its build folder
-#   EMULATOR       what runs it; empty: it runs here
-#   ENCODERS=same  it has the encoder libraries that this one has
+#   EMULATOR       the program that runs it; empty: it runs directly
+#   ENCODERS=same  it has the same encoder libraries as this build
 #   LACKS          an instruction set that it does not have; empty: none is known
 set -u
 native=$GLINT scratch=$ELSEWHERE/tests/elsewhere
@@ -27,7 +28,7 @@ check() {
 
 sums() { (cd "$1" && sha256sum -- *); }
 
-# both NAME SCRIPT OPTION...    The same job here and there; NAME has the ending of its files.
+# both NAME SCRIPT OPTION...    Runs the same job here and there. NAME includes the extension of its files.
 both() {
     local name=$1
     shift

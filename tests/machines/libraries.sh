@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# libraries.sh FOLDER CC AR: builds zlib, libpng, Lua and xxHash as static libraries for another machine into FOLDER, with the
-# compiler CC and the archiver AR. The sources come from the Debian packages that this machine's own apt knows. The machine's
-# packages and lists stay as they are. Needs apt-get, not root.
+# libraries.sh FOLDER CC AR: builds zlib, libpng, Lua and xxHash as static libraries for another machine into FOLDER,
+# with the compiler CC and the archiver AR. The sources come from Debian's source packages through this machine's apt.
+# The machine's packages and lists stay unchanged. Needs apt-get, not root.
 set -eu
 mkdir -p "$1/sources/lists/partial" "$1/lib/pkgconfig" "$1/include"
 prefix=$(cd "$1" && pwd)
@@ -9,8 +9,8 @@ export CC=$2 AR=$3 RANLIB="$3 s" CFLAGS=-O2
 [ ! -e "$prefix/complete" ] || exit 0
 cd "$prefix/sources"
 
-# The lists that this machine has of the release, without its updates, as lists of sources: the ones in paragraphs and the ones in
-# lines.
+# Turns this machine's apt lists for the release, without its updates, into source lists: both the paragraph and the
+# line format.
 . /etc/os-release
 mkdir -p parts
 for list in /etc/apt/sources.list.d/*.sources; do
@@ -31,7 +31,7 @@ fetch source --download-only zlib libpng1.6 lua5.4 xxhash >/dev/null
 for archive in *.orig.tar.*; do tar -xf "$archive"; done
 unset MAKEFLAGS MAKEOVERRIDES # of the make that this is run by
 
-# configure's tests run no program of the other machine.
+# configure's tests must not run programs of the other machine.
 (cd zlib-* && CHOST=$($CC -dumpmachine) ./configure --static --prefix="$prefix" && make AR="$AR" ARFLAGS=rc RANLIB=true libz.a &&
     cp zlib.h zconf.h "$prefix/include" && cp libz.a "$prefix/lib" && cp zlib.pc "$prefix/lib/pkgconfig") >zlib.log 2>&1
 (cd libpng-* && CPPFLAGS=-I"$prefix/include" LDFLAGS=-L"$prefix/lib" ./configure --host=none --disable-shared --enable-hardware-optimizations=no \
@@ -40,7 +40,7 @@ unset MAKEFLAGS MAKEOVERRIDES # of the make that this is run by
 (cd lua-* && make -C src CC="$CC" AR="$AR rcu" RANLIB=true SYSCFLAGS=-DLUA_USE_POSIX liblua.a &&
     cp src/lua.h src/luaconf.h src/lauxlib.h src/lualib.h "$prefix/include" && cp src/liblua.a "$prefix/lib") >lua.log 2>&1
 (cd xxHash-* && make CC="$CC" AR="$AR" libxxhash.a && cp xxhash.h xxh3.h "$prefix/include" && cp libxxhash.a "$prefix/lib") >xxhash.log 2>&1
-# The two that have no .pc of their own, or one for their own install.
+# These two install no .pc file, or only by their own install rule.
 for library in lua5.4:lua libxxhash:xxhash; do
     printf 'Name: %s\nDescription: for the test\nVersion: 5.4.0\nCflags: -I%s/include\nLibs: -L%s/lib -l%s\n' \
         "${library%:*}" "$prefix" "$prefix" "${library#*:}" >"$prefix/lib/pkgconfig/${library%:*}.pc"

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Tests the Makefile for macOS and BSDs on this machine: `make install` with these systems' names for the compiler's target and for
-# Lua, and with stand-ins for their tools that refuse GNU-only options. No built program runs: only a real machine can test that.
+# Tests the Makefile for macOS and BSDs on this machine: runs `make install` with these systems' names for the
+# compiler's target and for Lua, and with stand-ins for their tools that refuse GNU-only options. No built program
+# runs: only a real machine can test that.
 . tests/command/prelude.sh
 tools=$work/tools
 mkdir "$tools"
 
-# tool NAME PATTERN REAL    A tool that refuses arguments like PATTERN, and is REAL otherwise.
+# tool NAME PATTERN REAL    Makes a tool that refuses arguments like PATTERN, and otherwise runs REAL.
 tool() {
     printf '#!/bin/sh\nfor a; do case $a in %s) echo "%s: what is $a?" >&2; exit 64 ;; esac; done\nexec %s "$@"\n' \
         "$2" "$1" "$3" >"$tools/$1"
@@ -15,7 +16,7 @@ tool install '-D|-t|--*' "$(command -v install)"
 tool sed '--*|*"\\|"*|*"\\+"*' "$(command -v sed) --posix" # which knows nothing of GNU's
 tool ln '-*[rTt]*' "$(command -v ln)"
 
-# The compiler: tells its machine, writes its arguments down, and makes what it is to make: of programs one that runs.
+# The compiler: prints its machine, logs its arguments, and creates its output; programs are scripts that run.
 cat >"$tools/cc" <<'END'
 #!/bin/sh
 case $1 in
@@ -30,7 +31,7 @@ done
 END
 printf '#!/bin/sh\n: >"$2"\n' >"$tools/ar" # qcs ARCHIVE
 printf '#!/bin/sh\necho "strip $*" >>"$CALLS"\n' >"$tools/strip"
-# Packages as these systems name them: Lua under its own name, and only the other libraries that glint requires.
+# Packages under these systems' names: Lua's own name, and only the other libraries that glint requires.
 cat >"$tools/pkg-config" <<'END'
 #!/bin/sh
 for a; do case $a in -*) ;; *)
@@ -40,7 +41,8 @@ esac; done
 END
 chmod +x "$tools"/*
 
-# system NAME MACHINE LUA    Installs as there, into $there; $calls has the compiler's arguments, a line a call.
+# system NAME MACHINE LUA    Installs for that system into $there. $calls has the compiler's arguments, one call per
+# line.
 system() {
     there=$work/$1 calls=$work/$1.calls name=$1
     check "$1: make install" env -i PATH="$tools:$PATH" HOME="$HOME" MACHINE="$2" LUA_IS="$3" CALLS="$calls" \

@@ -1,4 +1,4 @@
--- tests/command/povray.sh renders this and compares it with POV-Ray's picture of the same numbers.
+-- tests/command/povray.sh renders this scene and compares it with POV-Ray's picture of the same numbers.
 local glint = require "glint"
 local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },
@@ -40,7 +40,7 @@ else
 end
 if P.surfaces == "lens" then camera.aperture, camera.focus = w.lens.aperture, w.lens.focus end
 
--- A transparent material has no colour of its own.
+-- A transparent material has no diffuse colour.
 local function material(surface, fields)
   if surface.transmission then fields.ambient, fields.diffuse = 0, 0 end
   for name, value in pairs(surface) do
@@ -54,7 +54,7 @@ local function material(surface, fields)
   return glint.material(fields)
 end
 
--- A part of a combined solid.
+-- A part of a CSG shape.
 local function part(s)
   if s.kind == "ball" then return glint.sphere { center = s.center, radius = s.radius } end
   if s.kind == "box" then return glint.box { min = s.min, max = s.max } end
@@ -64,7 +64,7 @@ local function part(s)
   return glint[s.kind](fields)
 end
 
--- A shape at the place of a sphere.
+-- A shape in place of a sphere.
 local function shape(s, sphere, surface, coat)
   local center = { sphere[1][1], sphere[1][2] + (surface.lift or 0), sphere[1][3] }
   if not s then return glint.sphere { center = center, radius = sphere[2], material = coat } end
@@ -88,7 +88,7 @@ local function shape(s, sphere, surface, coat)
   return glint[s.kind] { base = s.base, top = s.top, radius = s.radius, capped = not s.open, material = coat }
 end
 
--- Where materials have patterns, all of them have an ambient that follows the diffuse reflectance: less light for that.
+-- With patterns, all materials have an ambient equal to the diffuse reflectance, so the ambient light is reduced.
 local follows = P.surfaces == "checker"
 local scene = glint.scene { camera = glint.camera(camera), ambient = follows and w.ambient / w.diffuse or 1, background = w.background }
 if P.surfaces == "sky" then scene.background = glint.texture { file = P.sky, filter = "nearest", transfer = "linear" } end

@@ -1,9 +1,9 @@
--- Writes the workshop's sky as a PNG file, of linear codes:  lua5.4 sky.lua FILE
+-- Writes the workshop's sky as a PNG file with linear pixel values:  lua5.4 sky.lua FILE
 package.path = "scripts/lib/?.lua;" .. package.path
 local png = require "glint.png"
 local sky = dofile("tests/povray/workshop.lua").sky
 
--- The light that the encoder turns into the value 255 c.
+-- The linear light that the encoder turns into the pixel value 255 c.
 local function decoded(c) return c <= 0.04045 and c / 12.92 or ((c + 0.055) / 1.055) ^ 2.4 end
 
 local picture = png.new(sky.width, sky.height)

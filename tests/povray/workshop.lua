@@ -1,10 +1,10 @@
--- The workshop scene as plain numbers, for both renderers: scene.lua hands it to glint, pov.lua writes it for POV-Ray.
--- All values stay below 1, since POV-Ray clips.
+-- The workshop scene as plain numbers for both renderers: scene.lua passes it to glint, pov.lua writes it for
+-- POV-Ray. All values stay below 1, as POV-Ray clips.
 
 local function float(x) return (string.unpack("f", string.pack("f", x))) end
 
--- A wavy sheet that faces eye and light, of 24 x 16 quadrangles: POV-Ray keeps corners and normals of meshes in float,
--- and turns a normal that looks away from the eye. `scale`: of a map that makes it of the sheet that is returned.
+-- A wavy sheet facing eye and light, of 24 x 16 quads. POV-Ray stores corners and normals of meshes in float, and
+-- turns normals that point away from the eye. scale: of a map that turns the result into this sheet.
 local function sheet(scale)
   local s = scale or { 1, 1, 1 }
   local vertices, normals, faces, across, down = {}, {}, {}, 24, 16
@@ -13,7 +13,7 @@ local function sheet(scale)
       local u, v = i / across, j / down
       local x, y = -7 + 6 * u, 1 + 5 * (1 - v)
       local z = float(-2 + 5 * v + 0.35 * math.sin(7 * u) * math.cos(5 * v))
-      local du = 0.35 * 7 * math.cos(7 * u) * math.cos(5 * v) / 6 -- of z, by x and by y
+      local du = 0.35 * 7 * math.cos(7 * u) * math.cos(5 * v) / 6 -- derivatives of z by x and by y
       local dv = -(5 - 0.35 * 5 * math.sin(7 * u) * math.sin(5 * v)) / 5
       local l = math.sqrt(du * du + dv * dv + 1)
       local n = { -du / l * s[1], -dv / l * s[2], s[3] / l }
@@ -34,19 +34,19 @@ return {
   eye = { 0, 6.2, 20.5 },
   at = { 0, 3.8, 0 },
   fov = 42, -- degrees, vertical
-  height = 15, -- world units, of the orthographic view
+  height = 15, -- world units, for the orthographic view
   background = { 0.2, 0.3, 0.5 },
-  sky = { -- of the surfaces of that name: a picture of all directions, of red, green and blue at x, y from the top left, 0 .. 1
+  sky = { -- for the surfaces `sky`: a panorama with red, green and blue at x, y from the top left, 0 .. 1
     width = 64, height = 32,
     color = function(x, y) return { 0.1 + 0.6 * x, 0.1 + 0.6 * y, 0.2 + 0.3 * ((64 * x // 4 + 32 * y // 4) % 2) } end,
   },
   light = { color = { 0.8, 0.75, 0.7 }, position = { 0, 20, 0 }, direction = { -3, -5, -2 } },
-  spot = { inner = 8, outer = 14, direction = { 0.05, -1, 0.08 } }, -- at the light's place; POV-Ray: radius, falloff
-  fade = 15, -- distance at which the light is as strong as without fall-off
+  spot = { inner = 8, outer = 14, direction = { 0.05, -1, 0.08 } }, -- at the light's position; POV-Ray: radius, falloff
+  fade = 15, -- distance at which fall-off leaves the light unchanged
   grid = { side = 5, width = 4 }, -- an area light: side x side point lights
-  ambient = 0.1, diffuse = 0.7, specular = 0.35, shininess = 128, -- of every sphere
-  max_depth = 16, -- as deep as both rays of a surface are followed
-  shapes = { -- what stands in the place of some of the spheres
+  ambient = 0.1, diffuse = 0.7, specular = 0.35, shininess = 128, -- for every sphere
+  max_depth = 16, -- limit up to which both rays of a surface are traced
+  shapes = { -- replacements for some of the spheres
     solids = {
       [2] = { kind = "box", min = { -4.5, 0, -7 }, max = { 1.5, 6, -2.5 } },
       [3] = { kind = "cylinder", base = { 5, 0.5, -1 }, top = { 7, 5, -2 }, radius = 1.8 },
@@ -93,12 +93,12 @@ return {
     smooth = { [4] = { kind = "mesh", mesh = sheet(), smooth = true } },
     stretched = { [4] = { kind = "mesh", mesh = sheet { 2, 0.5, 4 }, smooth = true, scale = { 2, 0.5, 4 } } },
   },
-  surfaces = { -- what becomes of some of the spheres, by number; `lift`: POV-Ray sees no hit nearer than 1e-3, and glass that
+  surfaces = { -- changes of some spheres, by number; `lift`: POV-Ray ignores hits nearer than 1e-3, and glass that
     -- stands on the ground shows that, enlarged
     plain = {},
     checker = { [2] = { checker = { 0.1, 0.2, 0.3 } }, [3] = { checker = { 0.1, 0.1, 0.1 } }, [4] = { checker = { 0.9, 0.9, 0.8 } } },
     sky = { [2] = { mirror = 0.5 }, [5] = { lift = 0.5, transmission = 0.8, ior = 1.5 } },
-    translucent = { -- POV-Ray's highlights stay whole
+    translucent = { -- because POV-Ray does not dim highlights
       [2] = { opacity = 0.6, specular = 0 }, [3] = { opacity = 0.3, specular = 0 }, [5] = { lift = 0.5, opacity = 0.45, specular = 0 },
     },
     mirror = { [2] = { mirror = 0.5 }, [4] = { mirror = 0.3 } },
@@ -110,9 +110,9 @@ return {
     absorbing = { [5] = { lift = 0.5, transmission = 0.9, ior = 1.5, absorption = 0.2, specular = 0 }, [2] = { mirror = 0.4 } },
     fresnel = { [5] = { lift = 0.5, transmission = 1, ior = 1.5, fresnel = true }, [3] = { lift = 0.5, transmission = 1, ior = 1.2, fresnel = true } },
   },
-  more = { -- spheres of glass besides
+  more = { -- additional spheres of glass
     inside = { { center = { 0.4, 5.9, 21 }, radius = 1.5, transmission = 0.9, ior = 1.5, absorption = 0.2, specular = 0 } }, -- it holds the eye
-    nested = { -- in the fifth sphere, one in the other, each of another index
+    nested = { -- nested in the fifth sphere, each with another index
       { center = { 0.8, 2.5, 4.3 }, radius = 1.3, transmission = 0.95, ior = 1.1, absorption = 0, specular = 0 },
       { center = { 0.7, 2.4, 4.5 }, radius = 0.7, transmission = 0.9, ior = 1.8, absorption = 0.1, specular = 0 },
     },

@@ -1,4 +1,4 @@
--- Twenty cylinders in two rows, with an index over them: the first two are mirror images.
+-- Twenty cylinders in two rows in a BVH: the first two are mirror images.
 local glint = require "glint"
 local scene = glint.scene { camera = glint.camera { eye = { 0, 2, 22 }, at = { 0, 2.4, 0 }, fov = 55 }, ambient = 1 }
 for i = 0, 19 do

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# module.sh: the module of `make web` in node, see module.mjs.
+# module.sh: tests the module of `make web` in node, see module.mjs.
 set -u
 command -v node >/dev/null || {
     echo "node is not installed"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# pages.sh: the pages of `make web` in headless Chromium, see pages.mjs. Exit 77: no browser.
+# pages.sh: tests the pages of `make web` in headless Chromium, see pages.mjs. Exits with 77 without a browser.
 set -u
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || {
     echo "skip: Chromium is not installed; get it with:  apt-get install chromium"

@@ -135,8 +135,7 @@ static inline int quad_crossing(double corner[3][3], const quad from[3], const d
     return side[0] < 0 && side[1] < 0 && side[2] < 0 ? -1 : 0;
 }
 
-/// Returns how many meshes contain the point (negative for inverted winding), using a ray that passes close to no
-/// edge.
+/// Returns how many meshes contain the point (negative for inverted winding), using a ray that passes close to no edge.
 static inline int times_inside(closed_mesh *mesh, const quad place[3])
 {
     for (int attempt = 0; attempt < 64; attempt++) {

@@ -155,8 +155,7 @@ static inline void output3(void *array[3], const char *name, array_kind kind, ui
         array[c] = output(name, kind, count);
 }
 
-/// Compares bits, except that all NaNs are equal: the payload depends on the order of operands that the compiler
-/// chose.
+/// Compares bits, except that all NaNs are equal: the payload depends on the order of operands that the compiler chose.
 static inline bool same_element(const test_array *a, const test_array *b, uint32_t i)
 {
     size_t size = element_size(a->kind);

@@ -39,7 +39,7 @@ for word in string.gfind("one two", "%a+") do
   scene:add_child(s)
 end
 
-table = gr.cube('table') -- the library's name is gone
+table = gr.cube('table') -- the library's name is overwritten
 table:translate(-9, 0, 2)
 table:scale(3, 1.5, 4)
 table:set_material(grass)

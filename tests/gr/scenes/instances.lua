@@ -1,5 +1,5 @@
--- Nodes with several parents: what is called on them later shows everywhere. Calls as functions and as methods; the
--- nodes' metatable is gr itself, and the scene gives it functions of its own.
+-- Nodes with several parents: later calls on them apply everywhere. Calls as functions and as methods. The nodes'
+-- metatable is gr itself, and the scene adds its own functions to it.
 stone = gr.material({0.8, 0.7, 0.7}, {0.0, 0.0, 0.0}, 0)
 gold = gr.material({0.9, 0.8, 0.4}, {0.8, 0.8, 0.4}, 25)
 
@@ -44,7 +44,7 @@ end
 scene = gr.node('scene')
 scene:rotate('X', 23)
 scene:add_all { ring, ring:place(0, 4.6, 0) }
-scene:add_child(ring) -- twice at one place
+scene:add_child(ring) -- twice at one position
 
 p1:set_material(stone)
 s:rotate('z', 5)

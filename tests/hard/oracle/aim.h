@@ -12,8 +12,7 @@ void aim_at_sphere(hard_ray *ray, hard_sphere *sphere);
 /// A plane and a ray. Half of the rays are grazing, at 1e-2 .. 1e-16. Origins are on the plane, near it and far away.
 void aim_at_plane(hard_ray *ray, hard_plane *plane);
 
-/// `count` spheres around one point, concentric with radii a few ulp apart, identical, or separate; and a ray at
-/// them.
+/// `count` spheres around one point, concentric with radii a few ulp apart, identical, or separate; and a ray at them.
 void aim_at_many(hard_ray *ray, hard_sphere *spheres, int count);
 
 #endif

@@ -29,8 +29,7 @@ void hard_absent(const char *id, const char *what);
 /// Prints the totals. Returns the exit code for main.
 int hard_end(void);
 
-/// In tables, prints the heading, and a line for each test as it ends, for programs whose tests have no values to
-/// show.
+/// In tables, prints the heading, and a line for each test as it ends, for programs whose tests have no values to show.
 void hard_list_tests(const char *title);
 /// In tables, prints the heading of lines of values.
 void hard_columns(const char *title);

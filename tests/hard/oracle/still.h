@@ -34,8 +34,7 @@ still_pixel still_trace_113(const hard_still *still, int width, int height, int 
 still_pixel still_trace_53(const hard_still *still, int width, int height, int x, int y);
 still_pixel still_trace_24(const hard_still *still, int width, int height, int x, int y);
 
-/// A heap of spheres of about the size `scale` within `away` of the origin, sometimes on a ground, in a room, or
-/// both.
+/// A heap of spheres of about the size `scale` within `away` of the origin, sometimes on a ground, in a room, or both.
 hard_still still_random(double scale, double away);
 
 /// The same scene for the engine.
