@@ -13,7 +13,7 @@ CC       ?= cc
 AR       ?= ar
 CFLAGS   ?= -O2 -g
 KERNEL_CFLAGS ?= -O3
-# As Debian, FreeBSD and OpenBSD name it.
+# Names used by Debian, FreeBSD and OpenBSD.
 LUA_NAMES := lua5.4 lua-5.4 lua54
 LUA      ?= $(shell for name in $(LUA_NAMES); do command -v $$name >/dev/null && echo $$name && break; done)
 LUA_PACKAGE := $(shell for name in $(LUA_NAMES); do pkg-config --exists $$name 2>/dev/null && echo $$name && break; done)
@@ -34,16 +34,16 @@ VERSION := $(shell sed -n 's/^.define GLINT_VERSION "\(.*\)"/\1/p' engine/glint.
 
 # ---- Flags ----
 
-# Same bits everywhere: no contraction, and nothing of the user's that picks instructions or loosens arithmetic.
+# The same bits everywhere: no contraction, and no user flags that select instructions or relax arithmetic.
 UNWANTED := -march=% -mcpu=% -mavx% -msse% -mfma -Of% -ffast% -funsafe% -ffp-contract=% -flto%
 WARN := -Wall -Wextra -Wpedantic
 WARN += -Wshadow
 WARN += -Wstrict-prototypes
 TARGET := $(shell $(CC) -dumpmachine)
-# The default uses everything Linux offers. PORTABLE=1 uses only POSIX 2008 (and anonymous pages, which POSIX has since 2024):
-# any other system call does not compile.
+# The default uses everything that Linux offers. PORTABLE=1 uses only POSIX 2008 (and anonymous mappings, which are in
+# POSIX since 2024): any other system call does not compile.
 FEATURES := $(if $(and $(PORTABLE),$(findstring linux,$(TARGET))),-D_XOPEN_SOURCE=700 -DMAP_ANONYMOUS=0x20,-D_GNU_SOURCE)
-# THREADS= is for machines without threads: all work is the caller's. WebAssembly has none, and no code to be placed anywhere.
+# THREADS= is for machines without threads: the caller does all work. WebAssembly has no threads, and needs no -fPIC.
 WASM    := $(findstring wasm,$(TARGET))
 THREADS ?= $(if $(WASM),,yes)
 PTHREAD := $(if $(THREADS),-pthread)
@@ -63,7 +63,8 @@ STRIP_LOCAL  := $(if $(MACOS),-S -x,--strip-unneeded)
 
 have = $(shell pkg-config --exists $(1) 2>/dev/null && echo yes)
 PACKAGES := libpng zlib libxxhash
-# ISA-L's bytes depend on where its stream lies (engine/file/deflate.c), and ThreadSanitizer allows no such places.
+# ISA-L's output depends on the address of its stream (engine/file/deflate.c), and ThreadSanitizer does not allow the
+# necessary addresses.
 ifeq ($(call have,libisal)$(filter thread,$(SANITIZE)),yes)
   PACKAGES += libisal
   DEFINES += -DGLINT_HAVE_ISAL
@@ -72,17 +73,17 @@ ifeq ($(call have,libdeflate),yes)
   PACKAGES += libdeflate
   DEFINES += -DGLINT_HAVE_LIBDEFLATE
 endif
-# One file has it: the kernels are not compiled again for it.
+# Only one file uses it, so that the kernels are not compiled again for it.
 ifeq ($(call have,freetype2),yes)
   FONT_CFLAGS := -DGLINT_HAVE_FREETYPE $(shell pkg-config --cflags freetype2)
   FONT_LIBS := $(shell pkg-config --libs freetype2)
 endif
-# Likewise: JPEG pictures as textures.
+# Likewise for JPEG textures.
 ifeq ($(call have,libjpeg),yes)
   JPEG_CFLAGS := -DGLINT_HAVE_JPEG $(shell pkg-config --cflags libjpeg)
   JPEG_LIBS := $(shell pkg-config --libs libjpeg)
 endif
-# Likewise: what draws in terminals.
+# Likewise for drawing in terminals.
 ifeq ($(call have,libsixel),yes)
   SIXEL_CFLAGS := -DGLINT_HAVE_SIXEL $(shell pkg-config --cflags libsixel)
   SIXEL_LIBS := $(shell pkg-config --libs libsixel)
@@ -97,8 +98,9 @@ ifeq ($(if $(PORTABLE),,$(call have,libseccomp)),yes)
   DEFINES += -DGLINT_HAVE_SECCOMP
 endif
 
-# Checks at run time, for all but the kernels, which read and write where they are told and are timed to the instruction: they are
-# plain also where the compiler or a package's flags harden by default. A sanitizer has its own.
+# Run-time checks, for all files except the kernels, whose bounds the caller guarantees and whose speed matters to the
+# instruction. Kernels have no checks even where the compiler or a package's flags harden by default. A sanitizer
+# brings its own.
 OPTIMIZED := $(filter -O1 -O2 -O3 -Os -Og,$(CFLAGS))
 PLAIN := -fno-stack-protector -U_FORTIFY_SOURCE
 ifeq ($(SANITIZE)$(WASM),)
@@ -106,11 +108,11 @@ ifeq ($(SANITIZE)$(WASM),)
   HARDEN_LINK := $(if $(MACOS),,-Wl,-z,relro -Wl,-z,now)
 endif
 
-# WITHOUT=MESH leaves a part of the kernels out, see engine/stages/contract/with.h.
+# WITHOUT=MESH omits a part of the kernels, see engine/stages/contract/with.h.
 DEFINES += $(WITHOUT:%=-DGLINT_WITH_%=0) $(if $(WITHOUT),-Wno-type-limits)
 
-# PORTABLE=1 builds on this machine what other machines get: generic kernels, POSIX instead of inotify, eventfd and the like,
-# and no --untrusted.
+# PORTABLE=1 builds here as for other machines: generic kernels, POSIX instead of inotify, eventfd etc., and no
+# --untrusted.
 DEFINES += $(if $(PORTABLE),-DGLINT_PORTABLE) $(if $(THREADS),,-DGLINT_NO_THREADS)
 
 # SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
@@ -118,10 +120,11 @@ ifdef SANITIZE
   SAN_FLAGS := -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer
 endif
 
-# The folder of the build is in no object, so that two of them give the same bytes.
+# Objects do not contain the build folder, so that builds in two folders give the same bytes.
 HERE := -ffile-prefix-map="$(CURDIR)"=.
 
-# GCC for x86 would fill and copy structs of some hundred bytes by `rep`, which takes as long to begin as the arithmetic of a group.
+# GCC for x86 would fill and copy structs of some hundred bytes with `rep`, whose start-up takes as long as the
+# arithmetic of a group.
 MOVES := -mmemset-strategy=unrolled_loop:512:noalign,libcall:-1:noalign -mmemcpy-strategy=unrolled_loop:512:noalign,libcall:-1:noalign
 MOVES := $(shell $(CC) -Werror $(MOVES) -x c -S -o /dev/null /dev/null 2>/dev/null && echo '$(MOVES)')
 
@@ -136,12 +139,12 @@ LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(if $(WASM),,$(LINK_NEEDED
 # ---- Sources ----
 
 ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/*/*/*.c))
-# The module for browsers has its own way in, and of the command what it needs.
+# The module for browsers has its own entry points, and only some files of the command.
 WEB_SRC      := $(filter-out bindings/run/film_pipe.c,$(wildcard $(addsuffix /*.c,$(addprefix bindings/,lua pattern run value web)))) \
                   $(addprefix bindings/command/,$(addsuffix .c,describe events explain json output progress script signals untrusted_lua))
 BINDINGS_SRC := $(sort $(if $(WASM),$(WEB_SRC),$(filter-out bindings/web/%,$(wildcard bindings/*/*.c))))
-# The instruction sets of this kind of machine. KERNELS=native compiles only the best one of this very machine, KERNELS=avx2
-# only that one, for work on a kernel.
+# The instruction sets for this kind of machine. KERNELS=native compiles only the best one of this very machine,
+# KERNELS=avx2 only that one, for work on a kernel.
 KERNELS := generic $(if $(PORTABLE),,$(if $(filter x86_64-% amd64-%,$(TARGET)),avx2 avx512))
 NATIVE   = $(shell $(CC) -march=native -dM -E - </dev/null 2>/dev/null)
 native_has = $(if $(PORTABLE),,$(if $(filter-out $(foreach one,$(1),$(findstring $(one),$(NATIVE))),$(1)),,yes))
@@ -176,7 +179,7 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 .PHONY: all need deps check check-run asan tsan hard hard-run soak soak-run bench demo demo-run install uninstall \
         install-rock golden-update gallery check-layers check-symbols check-headers lint clean help tests FORCE
 
-# The manual page and the API for editors: the new program puts the engine's tables of fields into them, where it can run.
+# The manual page and the API for editors: the new program inserts the engine's tables of fields, if it can run here.
 FILLED := $(BUILD)/glint.1 $(BUILD)/meta/glint.lua
 $(FILLED): $(BUILD)/%: bindings/% bindings/meta/fill.lua $(BUILD)/glint
 	@mkdir -p $(@D)
@@ -184,8 +187,8 @@ $(FILLED): $(BUILD)/%: bindings/% bindings/meta/fill.lua $(BUILD)/glint
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a $(if $(filter $(shell uname -m)-%,$(TARGET)),$(FILLED)) ## the command build/glint and the Lua module build/glint.so
 
-# Only stages are compiled for an instruction set, except ref.c. Unrolling pays only in these files.
-# Processors with AVX2 also have BMI and POPCNT for masks; select.c checks for all of them.
+# Only stages are compiled for an instruction set, except ref.c. Unrolling helps only in these files. Processors with
+# AVX2 also have BMI and POPCNT for masks; select.c checks for all of them.
 X86_BITS := -mbmi -mbmi2 -mpopcnt
 FLAGS_avx2   := $(X86_BITS) -mavx2 -mfma
 FLAGS_avx512 := -mavx512f -mavx512dq -mavx512vl -mavx512bw $(FLAGS_avx2)
@@ -198,7 +201,7 @@ $$(BUILD)/engine/stages/%.$(1).o: engine/stages/%.c $$(BUILD)/flags | need
 endef
 $(foreach isa,$(KERNELS),$(foreach real,64 32,$(eval $(call stage_rule,$(isa).f$(real),$(isa),-DGLINT_REAL=$(real)))) \
     $(eval $(call stage_rule,$(isa),$(isa))))
-# An engine's object has the flags of its own in the archive and in the shared library.
+# The objects of some sources in the archive and in the shared library, which take flags of their own.
 objects_of = $(foreach source,$(1),$(source:%.c=$(BUILD)/%.o) $(source:%.c=$(BUILD)/shared/%.o))
 UNROLLED := $(addprefix engine/,compare/flip.c frame/stats.c tile/batch.c $(addprefix effects/,adaptive/choose.c bounce/bounce.c \
               derivative/bend.c derivative/derivative.c derivative/fade.c derivative/shader.c environment/environment.c \
@@ -213,14 +216,14 @@ $(call objects_of,engine/file/jpeg.c): OWN := $(JPEG_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)
 
-# Files that the command carries with it, as C: bindings/watch/page.html.h has the bytes of bindings/watch/page.html.
+# Files embedded in the command, as C: bindings/watch/page.html.h has the bytes of bindings/watch/page.html.
 CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/*/*.css $(filter-out bindings/meta/%,$(wildcard bindings/*/*.lua)) scripts/lib/gr.lua scripts/lib/gr/*.lua))
 $(CARRIED): $(BUILD)/%.h: %
 	@mkdir -p $(@D)
 	@{ echo '// The bytes of $<.'; od -An -v -tu1 $< | sed 's/[0-9][0-9]*/&,/g'; } > $@
 $(BINDINGS_OBJ): | $(CARRIED)
 
-# The modules glint.* as C, for a module that has no files: { name, bytes, size } each. Comments become empty lines.
+# The modules glint.* as C, for a module without files: { name, bytes, size } each. Comments become empty lines.
 LIBRARY := $(sort $(wildcard scripts/lib/glint/*.lua))
 $(BUILD)/bindings/web/library.h: $(LIBRARY)
 	@mkdir -p $(@D)
@@ -249,8 +252,8 @@ $(BUILD)/libglint.a: $(ENGINE_OBJ)
 	$(call say,AR)
 	$(Q)$(AR) qcs $@ $(ENGINE_OBJ) # q: sources of two folders may have one name
 
-# The shared library: its version of the ABI is in its name (what that promises: engine/README.md), its symbols are those of
-# glint.h. The kernels' objects are the static library's; they have nothing that is seen.
+# The shared library: its name includes the ABI version (for its guarantees see engine/README.md), its symbols are
+# those of glint.h. The kernels' objects are shared with the static library; none of their symbols is visible.
 ABI        := $(if $(filter 0.%,$(VERSION)),$(basename $(VERSION)),$(firstword $(subst ., ,$(VERSION))))
 shared_name = $(if $(MACOS),libglint$(1:%=.%).dylib,libglint.so$(1:%=.%))
 SHARED     := $(call shared_name,$(VERSION))
@@ -262,7 +265,7 @@ $(BUILD)/shared/%.o: %.c $(BUILD)/flags | need
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(HARDEN) $(OWN) -fvisibility=default -fno-semantic-interposition -MMD -MP -c $< -o $@
 
-# A version script; of Apple's linker a list of names.
+# A version script; for Apple's linker a list of names.
 $(BUILD)/libglint.map: engine/glint.h
 	@mkdir -p $(@D)
 	@sed -nE '/^(typedef|static|#|\/\/)/d; s/^[a-z].*[ *](glint_[a-z0-9_]+)\(.*/\1/p' $< | sort -u | $(if $(MACOS),sed 's/^/_/', \
@@ -275,7 +278,7 @@ $(BUILD)/$(SHARED): $(SHARED_OBJ) $(BUILD)/libglint.map
 .PHONY: shared
 shared: $(BUILD)/$(SHARED) ## the shared library, build/libglint.so.VERSION
 
-# Other flags or libraries than last time: everything is compiled again. Other kernels: only their table is.
+# When flags or libraries change, everything is compiled again. When kernels change, only their table is.
 $(BUILD)/flags: SAID = $(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(JPEG_CFLAGS) $(SIXEL_CFLAGS)
 $(BUILD)/kernels: SAID = $(KERNELS)
 $(BUILD)/flags $(BUILD)/kernels: FORCE
@@ -294,14 +297,14 @@ $(BUILD)/tests/%: tests/%.c $(BUILD)/libglint.a $(BUILD)/flags
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) -MMD -MP $< $(LINK) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
 
-# The walls of --untrusted, attacked from the inside.
+# The sandbox of --untrusted, attacked from the inside.
 $(BUILD)/tests/command/walls: tests/command/walls.c $(BUILD)/bindings/command/walls.o
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(LUA_CFLAGS) -MMD -MP $< $(BUILD)/bindings/command/walls.o $(LINK) $(LIBS) $(COMMAND_LIBS) -o $@
 
 $(HARD_OBJ): OWN := -D_GNU_SOURCE # arithmetic in _Float128
-# The hard cases: each hard_*.c is a program; the other files are shared by them. They use only the public API.
+# The hard cases: each hard_*.c is a program; the other files are shared. They use only the public API.
 $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call say,CC)
@@ -320,11 +323,11 @@ check: ## every test; T=name runs those whose name has it
 check-run: tests
 	@T="$(T)" $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
 
-# Tests worth running under a sanitizer: C, Lua and the command line. Left out are tests of other programs and of installed files, and
-# the ones that only run scripts which other tests run, too.
+# Tests worth running under a sanitizer: C, Lua and the command line. Excludes tests of other programs and of
+# installed files, and tests that only run scripts which other tests also run.
 SANITIZED := $(filter-out $(addprefix tests/,$(addprefix command/,povray.sh gallery.sh install.sh readme.sh) machines/systems.sh),$(SCRIPTED))
-# Tests of threads: tiles, index, bands of rows, the writer, the cache between frames, the server of watch. With two of
-# the instruction sets: what threads share is the same in all.
+# Tests of threads: tiles, BVH, bands of rows, the writer, the cache between frames, the server of watch. Two of the
+# instruction sets suffice: threads share the same data in all of them.
 THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image reuse reuse_turns soft) \
                hard/hard_limits) tests/lua/test_patterned.lua tests/command/watch.sh
 
@@ -359,8 +362,7 @@ check-rock: ## the rock of make dist into a folder of its own; installs luarocks
 	@tests/deps.sh build rock
 	@TEST_LIMIT_S=1200 $(RUNNER) tests/command/rock.sh
 
-# The least that glint is made of: POSIX, generic kernels, no optional library, no optimization (of kernels a
-# little: patience).
+# The minimal build: POSIX, generic kernels, no optional library, no optimization (a little for kernels, for speed).
 PORTABLE_MAKE  := $(MAKE) --no-print-directory BUILD=build-portable PORTABLE=1 have= CFLAGS="-O0 -Werror" KERNEL_CFLAGS="-O1 -Werror"
 PORTABLE_TESTS := $(addprefix $(BUILD)/tests/engine/test_,bands carry_turns deflate files image open picture reuse_turns) \
                     $(addprefix tests/lua/test_,$(addsuffix .lua,api data mesh_files)) \
@@ -433,7 +435,7 @@ check-musl: ## goldens and a job's pixels by a static command on musl, with no o
 check-musl-run:
 	@ELSEWHERE=$(MUSL) EMULATOR= LACKS=avx512 $(RUNNER) tests/machines/elsewhere.sh
 
-# libFuzzer is clang's. The kernels are compiled without its counters: other tests are for them.
+# Only clang has libFuzzer. The kernels are compiled without its counters: other tests cover them.
 FUZZ       := build-fuzz
 FUZZERS    := picture mesh command data scene pattern
 FUZZ_CC    ?= clang
@@ -488,7 +490,7 @@ soak: ## random edits against fresh frames for SOAK_SECONDS, then the hard cases
 	@tests/deps.sh build test
 	@$(MAKE) --no-print-directory soak-run
 
-# Other seeds than the check's, so that both see something new.
+# Other seeds than those of the check, so that both test new cases.
 soak-run: all $(HARD_BIN) $(BUILD)/tests/engine/test_reuse $(BUILD)/tests/engine/test_carry
 	@GLINT_SOAK_SECONDS=$(SOAK_SECONDS) GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/engine/test_reuse
 	@GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/engine/test_carry
@@ -519,9 +521,9 @@ lint: ## luacheck and cppcheck, where installed
 
 BENCH_H := $(wildcard tests/bench/*.h)
 bench_c  = $(addprefix tests/bench/,$(addsuffix .c,$(1)))
-# The comparators are no part of the engine: they may have all that makes them fast.
+# The comparators are not part of the engine: they may use any flags for speed.
 FAST    := -I. -std=c11 -D_GNU_SOURCE $(WARN) -O3 -march=native -ffast-math -ffp-contract=fast -pthread
-# Asked when the bench is made: may this machine run AVX-512 (NATIVE), and is Embree there?
+# Evaluated when the bench is made: whether this machine can run AVX-512 (NATIVE), and whether Embree is installed.
 EMBREE   = $(shell echo '\#include <embree3/rtcore.h>' | $(CC) -E - >/dev/null 2>&1 && echo embree)
 PACKETS  = $(if $(and $(findstring __AVX512BW__,$(NATIVE)),$(findstring __AVX512DQ__,$(NATIVE))),hand $(EMBREE))
 
@@ -572,7 +574,7 @@ check-without: ## a build without programs: patterns are errors with their line,
 	@$(MAKE) --no-print-directory $(BUILD)/without/PROGRAM/glint
 	@$(RUNNER) tests/command/without.sh
 
-# The bindings do not depend on the parts that the engine leaves out.
+# The bindings do not depend on the parts that the engine omits.
 $(BUILD)/without/%/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	@$(MAKE) --no-print-directory -s BUILD=$(@D) WITHOUT=$* $(@D)/libglint.a
 	$(call say,LINK)
@@ -593,11 +595,11 @@ demo-run: all
 	@echo "  ffmpeg -framerate 24 -i $(BUILD)/demo/moving_light_%04d.png -pix_fmt yuv420p $(BUILD)/demo/moving_light.mp4"
 	@echo "Try:  $(BUILD)/glint scripts/moving_light.lua --help"
 
-# The modules in Lua: gr.lua is `require "gr"`, glint/xyz.lua is `require "glint.xyz"`.
+# The Lua modules: gr.lua is `require "gr"`, glint/xyz.lua is `require "glint.xyz"`.
 LUA_LIBRARY := $(patsubst scripts/lib/%,%,$(sort $(wildcard scripts/lib/*.lua scripts/lib/*/*.lua)))
 
-# The pages by topic, and the examples with what they read. Links from page to page follow the names they have there; those to
-# pages of the sources alone are words. Commands name the examples where they are installed.
+# The pages by topic, and the examples with their data. Links between pages use their installed names; links to pages
+# that only the sources have become plain text. Commands name the installed examples.
 docdir   := $(datadir)/doc/glint
 examples := $(datadir)/glint/examples
 PAGES    := README.md:README.md learn.md:bindings/docs/learn.md how-to.md:bindings/docs/how-to.md explain.md:bindings/docs/explain.md \
@@ -625,7 +627,7 @@ pages: $(BUILD)/doc/data.md ## the installed manual by topic, in build/doc/
 
 # ---- The module for browsers and Node ----
 
-# Emscripten of Debian wants to be shown the modules of its loader.
+# Debian's Emscripten needs the path of its loader's modules.
 EM          := env NODE_PATH=/usr/share/nodejs
 WEB_OBJECTS := build-web
 WEB_MAKE    := PKG_CONFIG_LIBDIR=$(CURDIR)/$(WEB_OBJECTS)/libraries/lib/pkgconfig $(MAKE) --no-print-directory BUILD=$(WEB_OBJECTS) \
@@ -656,12 +658,12 @@ $(WEB)/glint.wasm: $(BUILD)/glint.js
 	@mkdir -p $(@D)
 	@cp $(BUILD)/glint.wasm $@
 
-# The loader that emscripten writes and the worker around it are one file.
+# The loader from emscripten and the worker around it become one file.
 $(BUILD)/worker.mjs: $(BUILD)/glint.js bindings/web/worker.mjs
 	@cat $^ > $@
 endif
 
-# The pages. npm brings the editor, the bundler and the tools of tests, as package-lock.json has them.
+# The pages. npm brings the editor, the bundler and the test tools, in the versions of package-lock.json.
 NPM         := $(BUILD)/npm
 PAGES_SRC   := $(wildcard bindings/web/pages/*.js bindings/web/pages/*.mjs)
 COURSE      := $(wildcard scripts/course/*.lua)
@@ -678,7 +680,7 @@ $(NPM)/node_modules: $(addprefix bindings/web/pages/,package.json package-lock.j
 	$(Q)cd $(NPM) && npm ci --silent
 	@touch $@
 
-# esbuild finds packages beside the sources.
+# esbuild finds packages next to the sources.
 $(NPM)/sources: $(PAGES_SRC) bindings/web/glint.mjs $(WEB_OBJECTS)/worker.mjs | $(NPM)/node_modules
 	@cp $^ $(NPM)
 	@touch $@
@@ -757,7 +759,7 @@ $(foreach file,$(EXAMPLES),$(if $(filter %.sh,$(file)),755,644) scripts/$(file) 
 endef
 export INSTALLED
 
-# The installed tree may be moved: its prefix is found from where glint.pc lies, where the libraries are below the prefix.
+# The installed tree can be moved: glint.pc finds the prefix relative to itself, if the libraries are below the prefix.
 pc_prefix = $(if $(filter $(PREFIX)/%,$(libdir)),$${pcfiledir}/..$(shell echo '$(libdir:$(PREFIX)/%=/%)' | sed 's|/[^/]*|/..|g'),$(PREFIX))
 $(BUILD)/glint.pc: engine/glint.pc.in FORCE
 	@sed -e 's|@prefix@|$(pc_prefix)|' -e 's|@libdir@|$(libdir:$(PREFIX)/%=$${prefix}/%)|' \
@@ -770,7 +772,7 @@ $(BUILD)/completion/%: $(BUILD)/glint
 
 # Debug information is nine tenths of the command and the archive. STRIP=: keeps it.
 STRIP ?= strip
-# put MODE FROM TO; of install(1) what all systems have.
+# put MODE FROM TO; uses only options of install(1) that all systems have.
 PUT   := put() { echo "  INSTALL	$$3"; mkdir -p "$$(dirname "$$3")" && install -m "$$1" "$$2" "$$3"; }
 LINKS  = $(SONAME) $(call shared_name,)
 install: all shared pages $(BUILD)/glint.pc $(FILLED) $(addprefix $(BUILD)/completion/,bash zsh fish) ## PREFIX=/usr/local, DESTDIR=
@@ -780,8 +782,8 @@ install: all shared pages $(BUILD)/glint.pc $(FILLED) $(addprefix $(BUILD)/compl
 	    */bin/glint | *.so | *.so.* | *.dylib) $(STRIP) $(STRIP_LOCAL) "$(DESTDIR)$$to" ;; esac || exit 1; done
 	@for link in $(LINKS); do ln -sf $(SHARED) "$(DESTDIR)$(libdir)/$$link" || exit 1; done
 
-# What a release publishes, of what git has committed: the archive of the sources, whose bytes depend on the commit alone, and the
-# rock that holds it.
+# Files that a release publishes, from the committed state: the source archive, whose bytes depend only on the commit,
+# and the rock that contains it.
 DIST := $(BUILD)/dist
 ROCK := glint-$(VERSION)-1
 
@@ -793,7 +795,7 @@ dist: ## build/dist: the archive of the sources, and with zip the rock that hold
 	@if command -v zip >/dev/null; then cd $(DIST) && zip -qX $(ROCK).src.rock $(ROCK).rockspec glint-$(VERSION).tar.gz; fi
 	@ls $(DIST)/*
 
-# The rockspec's: LuaRocks copies what it finds in its folders.
+# For the rockspec: LuaRocks copies the files in its folders.
 install-rock: all
 	@$(PUT); put 755 $(BUILD)/glint $(bindir)/glint && put 755 $(BUILD)/glint.so $(luadir)/glint.so && \
 	    for module in $(LUA_LIBRARY); do put 644 scripts/lib/$$module $(luasharedir)/$$module || exit 1; done

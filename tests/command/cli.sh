@@ -121,8 +121,8 @@ script stubborn 'while true do pcall(function() while true do end end) end'
 script slow 'local g, S = require "glint", require "scene"
 return g.animation { scene = S.scene, frames = 400, width = 1600, height = 1200, samples = 64, frame = function(t) S.lamp.x = t end }'
 
-# Every kind of light and surface. Frames depend on cached results of earlier ones: the first half moves a light, the second
-# a mesh.
+# Every kind of light and surface. Frames depend on cached results of earlier ones: in the first half a light moves,
+# in the second half a mesh.
 cat >everything.lua <<'END'
 local glint = require "glint"
 local metal = glint.material { model = "cook_torrance", f0 = 0.8, roughness = 0.3, diffuse = 0.1 }
@@ -192,7 +192,7 @@ for _, name in ipairs { "x.png", "y.png" } do S.scene:render { width = 40, heigh
     files "single call under -o" s.png
 }
 
-# Two pictures of one name: a warning. One picture that is written twice loses nothing.
+# Two pictures with one name give a warning. One picture written twice is complete.
 same_name() {
     local name
     for name in same.png same.pfm ././same.png; do
@@ -230,7 +230,7 @@ traced() { # NAME WANT ARGUMENTS...: the frame function is called for these fram
     if [ "$have" = "$want" ] && [ "$status" -eq 0 ]; then pass; else fail "$name: frames $have, exit $status"; fi
 }
 
-# A selection that leaves nothing is a mistake; a shard without frames is not.
+# A selection without frames is an error; a shard without frames is not.
 left_nothing() {
     local options
     for options in "-f 11" "-s 11" "-f 0" "-f 0-1:5" "-f 11-20,30-" "-j 3 -s 12" "-f 11 --shard 1/2"; do
@@ -765,7 +765,7 @@ signals() {
         signalled "SIGINT in a loop that catches errors" INT 130 stubborn.lua
         ;;
     esac
-    # A script that waits within C: the first is heard when that ends, the second ends the process.
+    # A script that waits inside C: the first signal takes effect when the wait ends, the second ends the process.
     mkfifo waits
     echo 'io.open "waits"' >waiting.lua
     "$GLINT" waiting.lua -o none >out 2>err </dev/null &
@@ -792,7 +792,7 @@ signals() {
     find . -name '*many*' -delete
 }
 
-# ---- The same bits ----
+# ---- Identical pictures ----
 
 same_bits() {
     mkdir -p base
@@ -853,8 +853,8 @@ comparing() {
     clean
 }
 
-# Numbers of a pattern that change one by one and together, and a camera that goes and comes back: results cached for fewer
-# numbers is met again after there was no room for what more of them need.
+# Numbers of a pattern that change separately and together, and a camera that returns: results cached for fewer
+# numbers are found again after memory did not suffice for results with more of them.
 little_memory() {
     script knobs 'local glint = require "glint"
 local a, b = { x = 0.5 }, { x = 0.3 }

@@ -12,7 +12,7 @@ check "an unknown shell is an error" test $? -eq 2
 
 # ---- bash ----
 
-# offers WORDS...: what is offered for the last word, a line each
+# offers WORDS...: prints the offers for the last word, one per line
 offers() {
     COMP_WORDS=(glint "$@")
     COMP_CWORD=$#
@@ -44,12 +44,12 @@ check "bash: a new name is nobody's to know" lacks picture.png new p
 check "bash: commands" has explain exp
 check "bash: shells" has fish completion f
 
-# Every option that --help names is offered by some command, and the other way round.
+# Every option that --help names is offered by some command, and vice versa.
 cd - >/dev/null || exit 1
 "$glint" --help | grep -oE -- '--[a-z][a-z-]*' | sort -u >"$work/helped"
 grep -oE 'options="[^"]*"' "$work/bash" | grep -oE -- '--[a-z-]+' | sort -u >"$work/offered"
 check "the options of --help" diff "$work/helped" "$work/offered"
-# The manual page has a heading for each of them, with the same letter and the same text, and lists the same passes.
+# The manual page must have a heading for each of them, with the same letter and text, and must list the same passes.
 cat >"$work/heads.lua" <<'END'
 local page = io.read "a"
 local options = page:match "\n%.SH OPTIONS\n(.-)\n%.SH "
@@ -69,7 +69,7 @@ END
 } | sort >"$work/heads"
 check "the options of the manual page" diff <("${LUA:-lua5.4}" "$work/heads.lua" <bindings/glint.1 | sort) "$work/heads"
 
-# Every choice is accepted by the command.
+# The command must accept every choice.
 cat >"$work/scene.lua" <<'END'
 local glint = require "glint"
 return glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, background = 1 }

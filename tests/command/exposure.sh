@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What is clipped is reported; --exposure auto and --colormap MAP:auto look at all pictures first, and every part of a job finds the same.
+# Clipped values are reported. --exposure auto and --colormap MAP:auto look at all pictures first, and every part of a
+# job determines the same values.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 data=(--bits 16 --transfer linear)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# scripts/farm: GNU parallel runs the shards of a job, and so does a Slurm array on two nodes, one of which dies halfway.
-# The pictures must be complete and byte-identical to a run on one machine. SLURM_CLUSTER names a program that sets up
-# a Slurm of two nodes on this machine (start, kill, stop). Without it the Slurm part is skipped.
+# scripts/farm: GNU parallel runs the shards of a job, and so does a Slurm array on two nodes, one of which dies
+# halfway. The pictures must be complete and byte-identical to a run on one machine. SLURM_CLUSTER names a program
+# that sets up a Slurm of two nodes on this machine (start, kill, stop). Without it the Slurm part is skipped.
 . tests/command/prelude.sh
 slurm=$work/slurm
 frames=32 shards=8
@@ -13,7 +13,7 @@ trap finish EXIT
 
 cd "$work" || exit 1
 mkdir logs
-# FARM_PACE: seconds that each frame takes, so that there is a middle to be killed in.
+# FARM_PACE: seconds per frame, so that a job can be killed halfway.
 cat >film.lua <<END
 local glint = require "glint"
 local pace = os.getenv "FARM_PACE"
@@ -28,12 +28,12 @@ return glint.animation { scene = scene, frames = $frames, width = 160, height = 
 END
 check "one machine" "$GLINT" film.lua -o 'one/%04d.png' --quiet
 
-# same FOLDER: complete, and byte for byte the pictures of one machine
+# same FOLDER: checks that it is complete and byte-identical to the run on one machine
 same() {
     [ "$(ls "$1"/*.png | wc -l)" -eq $frames ] || { echo "$(ls "$1"/*.png | wc -l) of $frames frames"; return 1; }
     for file in one/*.png; do cmp "$file" "$1/${file#one/}" || return 1; done
 }
-# all_kept FOLDER: the whole job finds nothing to do
+# all_kept FOLDER: a run of the whole job finds nothing to do
 all_kept() {
     "$GLINT" film.lua -o "$1/%04d.png" --json --quiet | grep -q "\"event\":\"end\",\"frames\":$frames,\"kept\":$frames,"
 }
@@ -47,7 +47,7 @@ if command -v parallel >/dev/null; then
     check "GNU parallel: a name with blanks" "$root/scripts/farm/parallel.sh" 2 film.lua -f 1-2 -o 'two words/%04d.png'
     check "GNU parallel: and its files" test -s 'two words/0002.png'
     check "GNU parallel: a failure shows" eval "! '$root/scripts/farm/parallel.sh' 2 nowhere.lua"
-    # One big frame, of which a part is killed and run again.
+    # One large frame; one part is killed and run again.
     export GLINT
     check "GNU parallel: one frame in 6 parts" parallel --jobs 2 -N0 "$root/scripts/farm/part.sh" 6 160x90 parts film.lua -f 3 \
         ::: 1 2 3 4 5 6
@@ -124,13 +124,13 @@ check "and kept what was finished" grep -Eq '^frames? [0-9-]+: kept' "$work/logs
 check "the pictures of one machine, complete" same film
 check "the whole job keeps them" all_kept film
 
-# One big frame as an array.
+# One large frame as an array.
 parts=$(sbatch --parsable --array=1-6 --output="$work/logs/%A-%a.txt" "$root/scripts/farm/part.sh" 6 160x90 array film.lua -f 3)
 check "the parts of a frame end" ended "$parts"
 check "they join" "$GLINT" join 'array/0003/####.png' -o array.png
 check "to the frame of one machine" cmp one/0003.png array.png
 
-# One shard again, as the page says.
+# Runs one shard again, as the page says.
 rm film/0009.png
 again=$(submit 0 3 film)
 check "one shard again" ended "$again"

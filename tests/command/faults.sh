@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Makes each allocation and each write of some twenty commands fail, one per run. The run must succeed with the same bytes, or
-# print the reason and leave no partial files (tests/faults/every.c). Tests every seventh; STEP=1 tests all (make soak). Prints TAP.
+# Makes each allocation and each write of some twenty commands fail, one per run. The run must succeed with the same
+# bytes, or print the reason and leave no partial files (tests/faults/every.c). Tests every seventh one; STEP=1 tests
+# all (make soak). Prints TAP.
 set -u
 root=$PWD
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}

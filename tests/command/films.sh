@@ -54,7 +54,7 @@ return glint.animation { scene = S.scene, frames = 400, width = 320, height = 20
 end }
 LUA
 
-# ---- A stand-in for ffmpeg: writes what it was fed, and its arguments, to the last of them ----
+# ---- A stand-in for ffmpeg: writes its arguments and its input's size to the file that the last one names ----
 
 mkdir -p bin none
 cat >bin/ffmpeg <<'SH'

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# gallery.sh [check|update]: compares the pictures of scripts/README.md, pixel for pixel, with the scripts' output. Each script
-# must have a picture, and the page must name it. `update` (make gallery) writes the pictures that differ.
+# gallery.sh [check|update]: compares the pictures of scripts/README.md, pixel by pixel, with the scripts' output.
+# Each script must have a picture, and the page must name it. `update` (make gallery) writes the pictures that differ.
 set -u
 export GLINT_FONT=bitmap # text of the same pixels everywhere
 build=${BUILD:-build}
@@ -14,7 +14,7 @@ say() { # STATUS NAME
     [ "$1" = ok ] || bad=1
 }
 
-# picture NAME OPTION...: scripts/NAME.lua; of several frames, --frames chooses one.
+# picture NAME OPTION...: renders scripts/NAME.lua; with several frames, --frames chooses one.
 picture() {
     local name=$1 made
     shift
@@ -27,7 +27,7 @@ picture() {
     keep "$name" "$made"
 }
 
-# steps NAME OPTION...: all pictures of scripts/NAME.lua on a sheet, with their differences from the first.
+# steps NAME OPTION...: puts all pictures of scripts/NAME.lua on a sheet, with their differences from the first.
 steps() {
     local name=$1
     shift
@@ -40,7 +40,7 @@ steps() {
     fi
 }
 
-# keep NAME FILE: the picture of a script as it is now.
+# keep NAME FILE: compares or updates a script's picture.
 keep() {
     local name=$1 kept=scripts/pictures/$1.png made=$2
     if "$glint" compare "$kept" "$made" --fail 0 --warn 0 >/dev/null 2>&1; then

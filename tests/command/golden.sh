@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# golden.sh [check|update]: compares small pictures of the scripts with tests/golden/, as decoded pixels, with tolerance
-# 0: the engine promises the same pixels on every machine. A failure leaves both pictures in the build folder. `update`
-# writes new goldens and prints the differences; the commit must say why they changed.
+# golden.sh [check|update]: compares small pictures of the scripts with tests/golden/, as decoded pixels, with
+# tolerance 0: the engine guarantees the same pixels on every machine. A failure leaves both pictures in the build
+# folder. `update` writes new goldens and prints the differences; the commit must say why they changed.
 set -u
 export GLINT_FONT=bitmap # text of the same pixels everywhere
 build=${BUILD:-build}
@@ -10,7 +10,7 @@ out=$build/tests/golden
 mode=${1:-check}
 bad=0
 
-# picture NAME SCRIPT OPTION...    A number of four digits at the end of NAME is the frame's, which glint adds by itself.
+# picture NAME SCRIPT OPTION...    A four-digit number at the end of NAME is the frame number that glint adds.
 picture() {
     local name=$1 pattern=${1%_[0-9][0-9][0-9][0-9]}
     shift

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Hostile inputs: endless files, files that block their reader, and files that claim a larger size than they have. glint must refuse
-# them at once, using little memory, everywhere it reads a file.
+# Hostile inputs: endless files, files that block their reader, and files that claim a larger size than they have.
+# glint must refuse them quickly and with little memory, everywhere it reads a file.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 seconds=5
@@ -33,7 +33,7 @@ printf "$ply" 4000000000 >claims.ply
 limited() {
     if [[ $build = *-asan ]]; then "$@"; else (ulimit -v $memory_kib && exec "$@"); fi
 }
-# refused NAME PATTERN ARGUMENTS...: an error that matches, within its time
+# refused NAME PATTERN ARGUMENTS...: expects an error that matches, within a time limit
 refused() {
     local name=$1 pattern=$2
     shift 2
@@ -42,7 +42,7 @@ refused() {
     [ $code -gt 0 ] && [ $code -lt 100 ] && grep -qE -- "$pattern" err
     result $? "$name: exit $code"
 }
-# script NAME PATTERN LINE...: a script with these lines
+# script NAME PATTERN LINE...: runs a script with these lines
 script() {
     local name=$1 pattern=$2
     shift 2

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # make install into an empty folder: the command, the module, the manual page, the completions, and a C program built
-# only against the installed files. make uninstall leaves nothing.
+# only against the installed files. make uninstall removes everything.
 . tests/command/prelude.sh
 prefix=$work/usr
 
@@ -32,7 +32,7 @@ check "found by PATH" env PATH="/nowhere:$prefix/bin:$PATH" bash -c "$(declare -
 check "found by an empty folder of PATH" env PATH=":$PATH" bash -c "$(declare -f found_by); prefix='$prefix' work='$work' found_by glint"
 check "found by a path from here" found_by ./glint
 check "found by a link" found_by "$work/link"
-# Another version beside the first, whose engine and modules are of no use to it: each has its own.
+# Another version next to the first, with an incompatible engine and modules: each must use its own.
 cp -r "$prefix" "$work/second"
 echo 'error "a module of the second"' | tee "$work/second/share/lua/5.4/glint/"{particles,xyz}.lua >/dev/null
 echo 'the engine of the second' >"$work/second/lib/lua/5.4/glint.so"
@@ -120,7 +120,7 @@ for file in bin/glint lib/libglint.so lib/lua/5.4/glint.so; do
         '! readelf -SW "$prefix/$file" | grep -q debug_info && readelf -dW "$prefix/$file" | grep -qE "BIND_NOW|NOW" &&
          readelf -lW "$prefix/$file" | grep -q GNU_RELRO && nm -D "$prefix/$file" | grep -q __stack_chk_fail'
 done
-# Optimized, calls of the C library that are told how large their memory is are checked against it.
+# In optimized builds, calls of the C library with a known buffer size are checked.
 fortified() { nm -D "$1" | grep -qE ' U __(mem|str|v?s?n?f?printf|f?read|f?gets)[a-z]*_chk'; }
 for file in bin/glint lib/libglint.so lib/lua/5.4/glint.so; do
     if grep -q -- '-O[1-3s]' "$build/flags"; then
@@ -141,7 +141,7 @@ END
 check "the same scene from Lua" eval '(cd "$work" && "$prefix/bin/glint" same.lua --quiet)'
 check "has the same pixels" "$prefix/bin/glint" compare "$work/c_example.png" "$work/same.png" --fail 0 --warn 0
 
-# The same bytes wherever it is built: the folder is in nothing, and objects with their notes for debuggers are equal.
+# Objects are identical wherever they are built: they do not contain the build folder, not even in debug information.
 check "the folder of the build is in no object" eval '! grep -qF "$root/" "$build/glint" "$build/glint.so" "$build/libglint.a"'
 objects="build/engine/base/pool.o build/engine/file/png.o build/bindings/command/output.o build/libglint.map"
 for folder in one another/folder; do

@@ -27,7 +27,7 @@ LUA
 
 hidden() { find . -name '.*.tmp' -o -path './tmp/glint*'; }
 
-# killed SIGNAL COMMAND...: ends the command at some moment of its first 60 ms
+# killed SIGNAL COMMAND...: ends the command at a random time in its first 60 ms
 killed() {
     local signal=$1 pid
     shift
@@ -70,7 +70,7 @@ kill $alive
 result $? "files of living processes, of other hosts and of other names stay"
 rm -f out/.*.tmp
 
-# A run that has nothing left to write removes them as well, and the folder of a film's frames goes.
+# A run with nothing left to write also removes them, and the folder of a film's frames.
 "$glint" scene.lua -o 'kept/k_%d.png' -q
 mkdir f.apng.frames
 cp kept/k_1.png "kept/.k_1.png.$host.$dead.0.tmp"
@@ -81,7 +81,7 @@ cp kept/k_1.png "f.apng.frames/.0001.png.$host.$dead.7.tmp"
 "$glint" scene.lua -o f.apng --json 2>err | grep -q '"kept":6' && [ -e f.apng ] && [ ! -e f.apng.frames ]
 result $? "a film whose frames are all there"
 
-# Signals that can be caught leave nothing, at any moment.
+# Catchable signals leave nothing behind at any time.
 bad_before=$bad
 for ((i = 0; i < kills; i++)); do
     signal=TERM

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Memory leaks: the memory of a run must not grow with the number of scenes, meshes and frames that it has released. A
-# script reads the resident bytes of its own process after a full collection. The test compares the minimum of the second
-# tenth of the rounds with the minimum of the last tenth (memory cached by malloc varies by a megabyte). Prints TAP.
+# script reads the resident bytes of its own process after a full collection. The test compares the minimum of the
+# second tenth of the rounds with the minimum of the last tenth (memory cached by malloc varies by a megabyte). Prints
+# TAP.
 set -u
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}
 if [ -n "${PRELOAD:-}" ] || ldd "$glint" | grep -qE "lib[at]san"; then
@@ -14,7 +15,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 bad=0
 
-# grows NAME MOST OPTION...: scene.lua prints by how many bytes it has grown; more than MOST is a failure
+# grows NAME MOST OPTION...: scene.lua prints its growth in bytes; more than MOST is a failure
 grows() {
     local name=$1 most=$2 grown
     shift 2
@@ -25,7 +26,7 @@ grows() {
         bad=1
     fi
 }
-# script COUNT LINE...: what a script of COUNT rounds measures, then the lines
+# script COUNT LINE...: writes a script of COUNT rounds with the measuring code, then the lines
 script() {
     cat >scene.lua <<LUA
 local glint = require "glint"
@@ -46,7 +47,7 @@ LUA
     printf '%s\n' "$@" >>scene.lua
 }
 
-# Materials without a highlight, shapes that no frame shows, groups: all that warnings keep account of.
+# Materials without a highlight, shapes that no frame shows, groups: everything that warnings track.
 script 20000 'for i = 1, rounds do' \
     '  local dull = glint.material { diffuse = 0.5, shininess = 64 }' \
     '  local box = glint.box { min = { 0, 0, 0 }, max = { 1, 1, 1 }, material = dull }' \
@@ -100,8 +101,8 @@ for most in 24 48; do
 done
 unset GLIBC_TUNABLES
 
-# Spheres given as data, four doubles each, take at most six times that at the peak of a run, beside what a run of one takes: as they
-# are indexed, and with the grid that the light of a large picture has of them.
+# Spheres given as data, four doubles each, take at most six times that at the peak of a run, compared with a run with
+# one sphere: with their BVH, and with the grid that a light has in a large picture.
 cat >write.lua <<'LUA'
 local glint = require "glint"
 local file, state = io.open("spheres", "wb"), 1
@@ -128,7 +129,7 @@ end
 collectgarbage() collectgarbage()
 scene:render { width = P.width, height = P.width * 9 // 16 }
 LUA
-# peak COUNT WIDTH: the most memory of a run of so many spheres, in bytes
+# peak COUNT WIDTH: the peak memory, in bytes, of a run with COUNT spheres
 peak() { "$glint" read.lua --set count="$1" --set width="$2" -t 1 --json -o none 2>err </dev/null | grep -o '"peak_bytes":[0-9]*' | cut -d: -f2; }
 "$glint" write.lua -t 1 -q -o none
 for width in 64 1600; do

@@ -3,7 +3,7 @@
 . tests/command/prelude.sh
 cd "$work" || exit 1
 
-# scene NAME CODE: a script whose ball has the pattern `f` that the code defines
+# scene NAME CODE: writes a script whose ball has the pattern `f` that the code defines
 scene() {
     printf '%s\n' 'local glint = require "glint"' "$2" 'return glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } },
   glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material { ambient = glint.pattern(f) } } }' >"$1.lua"
@@ -38,7 +38,7 @@ print "after"'
 exits 0 "print is there again" prints_again.lua --size 4x4 -o none
 check "print is there again" grep -qx after out
 
-# Numbers of a pattern that cannot be taken: each kind has a message.
+# Numbers that a pattern must not give: each kind has a message.
 scene odd 'local f = function(p) return { glint.sqrt(p.x), 1, 1 } end'
 exits 0 "NaN" odd.lua --size 16x16 -o none
 says "NaN" "frame 1: material\.ambient: the pattern is NaN at [0-9]+ points, such as .*; it is taken as 0 there; look for 0 / 0"
@@ -57,7 +57,7 @@ exits 0 "two kinds" odd.lua --size 16x16 -o none
 [ "$(grep -c 'the pattern is' err)" -eq 2 ]
 result $? "two kinds, two messages"
 
-# What glint makes itself is in range, and nobody is blamed.
+# Patterns made only by glint are in range, and give no warning.
 for f in 'glint.checker(4 * p, 4 * s.footprint)' 'glint.checker(p)' 'glint.stripe(7 * p.x, 7 * s.footprint)' 'glint.stripe(p.x)' \
     '(glint.cell(9 * p))' 'glint.hash(9 * p)' 'glint.parity(3 * p)' 'glint.brick(5 * p, 0.1, 5 * s.footprint)' 'glint.brick(5 * p, 0.1)' 'glint.colormap("turbo")(9 * p.x)' \
     'glint.smoothstep(0, 1, p.x)' 'glint.clamp(p.x, 0, 1)'; do

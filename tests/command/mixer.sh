@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The page of `glint relight -o mixer.html` in a browser: at several settings it must show the pixel values that glint relight writes.
-# Also tests its controls and texts, and the time for a picture of 1280x720 with six lights. Exit 77: no browser.
+# The page of `glint relight -o mixer.html` in a browser: at several settings it must show the pixel values that glint
+# relight writes. Also tests its controls and texts, and the time for a picture of 1280x720 with six lights. Exits
+# with 77 without a browser.
 . tests/command/prelude.sh
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || {
     echo "skip: Chromium is not installed; get it with:  apt-get install chromium"
@@ -8,13 +9,13 @@ browser=$(command -v chromium || command -v chromium-browser || command -v googl
 }
 cd "$work" || exit 1
 
-# browse URL: the document after its scripts have run, in dom; the console in log
+# browse URL: writes the document after its scripts have run to dom, and the console to log
 browse() {
     HOME=$work timeout 120 "$browser" --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --window-size=1300,900 \
         --virtual-time-budget=600000 --enable-logging=stderr --dump-dom "$1" >dom 2>log </dev/null
 }
 
-# page NAME JAVASCRIPT: the page NAME.html with a script at its end, whose notes are in notes
+# page NAME JAVASCRIPT: opens NAME.html with a script appended, and writes the script's notes to notes
 page() {
     {
         cat "$1.html"
@@ -85,7 +86,8 @@ done
 check "the command is glint's: $(grep command= notes)" grep -qx "command=glint relight small.exr -o out.png --light key=2.5 --light key=#ffd9a0 --light 'the fill=0' --light 'ä=0.3' --exposure 0.5" notes
 check "the lines are the script's: $(grep lua= notes)" grep -qx 'lua=key.color = { 2.5 \* key.color\[1\], 1.73468 \* key.color\[2\], 0.878831 \* key.color\[3\] }' notes
 
-# The browser's own clock stands still while it draws: two runs of different length say how long a picture takes.
+# The browser's own clock stops while it draws. The difference of two runs of different length gives the time of a
+# picture.
 run_for() { # PICTURES: seconds
     local start=$EPOCHREALTIME
     page large "mixer.set({ lights: LIGHTS.map((l, k) => ({ strength: 0.5 + 0.1 * k, color: '#ffd9a0' })) });

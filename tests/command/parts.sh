@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# --region and glint join: the joined parts are byte-identical to the whole frame, also with effects that read neighbouring pixels
-# and with caches between frames. Wrong input gives a clear message.
+# --region and glint join: the joined parts are byte-identical to the whole frame, also with effects that read
+# neighbouring pixels and with caches between frames. Wrong input gives a clear message.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 scene=$root/scripts/mirror_and_glass.lua
 size=201x133
 regions="0,0,70,50 70,0,131,50 0,50,201,33 0,83,50,50 50,83,151,50" # some edges are those of tiles, some are not
 
-# joined NAME PASSES OPTION...: the whole of five parts
+# joined NAME PASSES OPTION...: compares the whole frame with five joined parts
 joined() {
     local name=$1 passes=$2 n=0 region pass
     shift 2
@@ -36,7 +36,7 @@ check "a part is kept" eval '"$glint" "$scene" --size $size --alpha --outline wh
 check "the whole is kept where join put it" eval '"$glint" "$scene" --size $size --alpha --outline white --encode small \
     --passes alpha -o parts/a.png --json -q | grep -q "\"kept\":1"'
 
-# A moving lamp: parts use the caches between frames, too.
+# A moving light: parts use the caches between frames, too.
 frames="scripts/moving_light.lua --size 150x90 -q -f 1-3"
 check "frames of a film" "$glint" $root/$frames -o 'film/%d.png'
 for region in 0,0,150,41 0,41,77,49 77,41,73,49; do
@@ -77,7 +77,7 @@ END
 exits 0 "a region in a script" say.lua
 prints "its image" '^7	3$'
 
-# ---- What is wrong ----
+# ---- Wrong input ----
 
 exits 2 "a hole" join parts/[1-4].png -o hole.png
 says "a hole is named" 'join: parts: none has pixel 50, 83 of 201 x 133'

@@ -23,7 +23,7 @@ totals() {
     [ "$failed" -eq 0 ]
 }
 
-# check NAME COMMAND...: the command must succeed; what it printed is shown where it does not
+# check NAME COMMAND...: the command must succeed; its output is shown if it fails
 check() {
     local name=$1
     shift
@@ -32,7 +32,7 @@ check() {
         tail -n 20 "$work.log"
     fi
 }
-# result STATUS NAME: 0 is good; out and err are shown where it is not
+# result STATUS NAME: reports success for 0, otherwise shows out and err
 result() {
     if [ "$1" -eq 0 ]; then pass; else
         fail "$2"
@@ -40,12 +40,12 @@ result() {
     fi
 }
 
-# run ARGUMENTS...: the command; its streams in out and err, its exit code in $status
+# run ARGUMENTS...: runs the command with its streams in out and err, and its exit code in $status
 run() {
     timeout 120 "$GLINT" "$@" >out 2>err </dev/null
     status=$?
 }
-# exits WANT NAME ARGUMENTS...
+# exits WANT NAME ARGUMENTS...: the command must exit with WANT
 exits() {
     local want=$1 name=$2
     shift 2

@@ -17,7 +17,7 @@ LUA
 echo 0.5 >data/shade.txt
 has() { check "$1 has $2" grep -qF -- "$2" "$1"; } # FILE TEXT
 
-# ---- What the page holds ----
+# ---- Contents of the page ----
 
 exits 0 "a page" publish scene.lua -o page.html --set size=1.5 --title 'A & B' --source
 has page.html '<title>A &amp; B</title>'
@@ -32,7 +32,7 @@ cd ..
 has far.html '"same":{"../data/shade.txt":"data/shade.txt"}'
 has far.html 'controls="size"'
 
-# ---- What is refused ----
+# ---- Refused input ----
 
 exits 2 "no page" publish scene.lua
 says "no page" 'publish: -o PAGE.html expected'

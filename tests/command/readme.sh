@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Runs every script and every command of the pages: the ```lua blocks by glint at a small size, the ```sh blocks line by line,
-# with the build's glint first in the path, each page in a folder of its own. A block that begins "-- NAME.lua:" is saved under that name
-# for the commands after it, and ```python blocks run where NumPy is installed. Files that pages name must be there, and the pictures of
-# bindings/docs are what its commands make: `readme.sh update` writes those that differ. The two indented make commands of README.md
-# are what this runs under.
+# Runs every script and every command of the pages: the ```lua blocks by glint at a small size, the ```sh blocks line
+# by line, with the build's glint first in the path, each page in its own folder. A block that begins "-- NAME.lua:"
+# is saved under that name for later commands, and ```python blocks run where NumPy is installed. Files that pages
+# name must exist, and the pictures of bindings/docs must equal those that its commands make: `readme.sh update`
+# writes those that differ. The two indented make commands of README.md are not run: this test is part of them.
 set -u
 mode=${1:-check}
 export GLINT_FONT=bitmap # text has the same pixels everywhere
@@ -58,7 +58,7 @@ run_page() {
     done
 }
 
-# The pictures of a page of bindings/docs are those that its commands made; light_01.png is light/01.png.
+# The pictures of a page of bindings/docs equal those that its commands made; light_01.png is light/01.png.
 check_pictures() {
     local folder=$work/${1//\//_} shown=$root/bindings/docs/pictures path made
     for path in $(grep -oE '\]\(pictures/[a-zA-Z_/.0-9]+\)' "$root/$1" | sed -E 's/^..pictures.(.*)\)$/\1/' | sort -u); do
@@ -76,7 +76,8 @@ check_pictures() {
     done
 }
 
-# Files in backquotes are named from the root, from the page's folder or from a folder below it; links from the page's folder.
+# Files in backquotes are relative to the root, the page's folder or a folder below it; links are relative to the
+# page's folder.
 check_paths() {
     local folder path
     folder=$root/$(dirname "$1")
@@ -100,7 +101,7 @@ lines=$(wc -l <"$root/README.md")
 [ "$lines" -le 200 ] || { echo "not ok - README.md has $lines lines, more than a first look takes (200)"; bad=1; }
 cd "$work/README.md" || exit 1
 
-# The study's plot is drawn like the one in README: only the measured values differ.
+# The study's plot has the same style as the one in README: only the measured values differ.
 style() { sed -n '1,/<\/style>/p' "$1"; }
 plot=$root/scripts/pictures/cost.svg
 if [ -s price/plot.svg ] && cmp -s <(style price/plot.svg) <(style "$plot") && grep -q "='samples 64: " price/plot.svg; then

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Films by the real ffmpeg, and animated PNGs and sheets as pages in Chromium: make check-films. Checks whose program is not
-# installed are skipped with a message. Prints each failed check, then "N passed, N failed, N skipped".
+# Films with the real ffmpeg, and animated PNGs and sheets as pages in Chromium: make check-films. Checks whose
+# program is not installed are skipped with a message. Prints each failed check, then "N passed, N failed, N skipped".
 . tests/command/prelude.sh
 
 scripts=$PWD/scripts
@@ -66,7 +66,7 @@ dump() { # PAGE: what the element "result" holds after a while
         --dump-dom "file://$work/$1" 2>log </dev/null | sed -n 's/.*<pre id="result">\(.*\)<\/pre>.*/\1/p'
 }
 
-# Decodes an animated PNG as <img> does, and compares each frame with the picture it was made of.
+# Decodes an animated PNG as <img> does, and compares each frame with its source picture.
 play() { # FILM PICTURE...
     local film=$1 n=0
     shift
@@ -109,7 +109,7 @@ JS
     dump play.html
 }
 
-# Moves the sliders of a page and reads what it shows.
+# Moves the sliders of a page and reads the display.
 move() { # PAGE STEPS: a slider's number and value each
     sed 's|</html>||' "$1" >moved.html
     cat >>moved.html <<JS
@@ -130,7 +130,7 @@ JS
     dump moved.html
 }
 
-# Clicks the picture at this place of the grid, and reads the grid and the page.
+# Clicks the picture at this position of the grid, and reads the grid and the page.
 press() { # PAGE PLACE
     sed 's|</html>||' "$1" >pressed.html
     cat >>pressed.html <<JS
@@ -153,7 +153,8 @@ JS
     dump pressed.html
 }
 
-# Whether the page shows differences from the chosen picture, before and after its box is ticked: of the picture and of the grid.
+# Whether the page shows differences from the chosen picture, before and after ticking its box: of the picture and of
+# the grid.
 differ() { # PAGE
     sed 's|</html>||' "$1" >differing.html
     cat >>differing.html <<'JS'

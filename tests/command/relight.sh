@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Light passes and glint relight: the files of passes and their names; a relit picture equals a rendered one; films and pages; wrong
-# input, which must write nothing. mixer.sh tests the mixer's page.
+# Light passes and glint relight: the files of passes and their names; a relit picture equals a rendered one; films
+# and pages; wrong input, which must write nothing. mixer.sh tests the mixer's page.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 
-# Lamps of all kinds, a mirror and glass; STRENGTH and COLOR are what the key is multiplied by.
+# Lights of all kinds, a mirror and glass; STRENGTH and COLOR multiply the key light.
 cat >scene.lua <<'LUA'
 local glint = require "glint"
 local P = glint.params { strength = 1.0, color = "#ffffff", ambient = 0.1, frames = 1 }
@@ -38,7 +38,7 @@ says "the nearest" "did you mean 'light:key'"
 exits 2 "two files of one name" scene.lua -q -o wrong.png --passes 'light:'
 check "nothing is written" bash -c '! ls wrong* 2>/dev/null'
 
-# ---- From frame to frame ----
+# ---- Across frames ----
 cat >moves.lua <<'LUA'
 local glint = require "glint"
 local P = glint.params { shutter = 0.0 }
@@ -91,7 +91,7 @@ if ! "$GLINT" --version --verbose | grep -q OpenEXR; then
     exit
 fi
 
-# ---- A relit picture is the rendered one ----
+# ---- A relit picture equals the rendered one ----
 exits 0 "a file of layers" scene.lua -q --passes 'light:*' -o a.exr
 exits 0 "as it is" relight a.exr -q -o same.png
 check "is the picture" "$GLINT" compare plain.png same.png --fail 0 --warn 0

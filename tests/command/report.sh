@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The page of `glint cost --report` in a browser: it draws without an error on the console, a point reached by focus or by
-# the pointer shows its setting, a heading sorts the table, and it fits the width of a phone. Exit 77: no browser.
+# The page of `glint cost --report` in a browser: it draws without an error on the console, a focused or hovered point
+# shows its setting, a heading sorts the table, and it fits the width of a phone. Exits with 77 without a browser.
 . tests/command/prelude.sh
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || {
     echo "skip: Chromium is not installed; get it with:  apt-get install chromium"
@@ -9,7 +9,7 @@ browser=$(command -v chromium || command -v chromium-browser || command -v googl
 script=$PWD/scripts/workshop.lua
 cd "$work" || exit 1
 
-# browse WIDTH URL: the document after its scripts have run, in dom; the console in log
+# browse WIDTH URL: writes the document after its scripts have run to dom, and the console to log
 browse() {
     HOME=$work timeout 60 "$browser" --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --window-size="$1,900" \
         --virtual-time-budget=3000 --enable-logging=stderr --dump-dom "$2" >dom 2>log </dev/null
@@ -17,7 +17,7 @@ browse() {
 
 "$GLINT" cost "$script" --size 160x90 --quick --report page --quiet >table || exit 1
 
-# Does what a reader would do, and notes the results at the end of the document.
+# Simulates a reader's actions, and notes the results at the end of the document.
 cat >act.html <<'HTML'
 <script>
 window.addEventListener("load", () => {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The order in which a sweep's frames are rendered: the cheapest axis changes most often. The order must not affect the numbers
-# and bytes of files, the film, shards, or a second run.
+# The order in which a sweep's frames are rendered: the cheapest axis changes most often. The order must not affect
+# the numbers and bytes of files, the film, shards, or a second run.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 
@@ -22,7 +22,7 @@ return glint.sweep { scene = S.scene, width = 48, height = 32, output = "grid/%0
   { S.red, "shininess", { 5, 50, 500, 5000 } } } }
 LUA
 
-# order ARGUMENTS...: the numbers of the frames, as they are completed
+# order ARGUMENTS...: prints the numbers of the frames in the order of completion
 order() { "$GLINT" "$@" --json -q -t 1 2>err | sed -n 's/.*"event":"frame","index":\([0-9]*\),.*/\1/p' | tr '\n' ' '; }
 same() { # NAME FOLDER: holds the pictures of the whole, and no others
     check "$1" diff -r plain "$2"
@@ -61,18 +61,18 @@ prints "and the order" 'order: red.shininess, lamp.position, fov$'
 "$GLINT" explain grid.lua --json >out
 prints "for programs, too" '"sweep":\{"axes":\[\{"name":"fov","stages":"camera, cast, .*"order":\["red.shininess","lamp.position","fov"\]\}'
 
-# Both paints run `shade`. A highlight is in fewer pixels than a colour.
+# Both axes of the material run `shade`. A highlight covers fewer pixels than a colour.
 sed -e '/^  { S.camera/d' -e 's/{ S.red, "shininess".*/{ S.red, "diffuse", { 0.2, 0.8 } }, { S.red, "shininess", { 5, 50 } },/' \
     -e '$a{ S.lamp, "position", { { -3, 9, 1 }, { 3, 9, 1 } } } } }' grid.lua >paint.lua
 check "highlights change more often than colours" test "$(order paint.lua -o none)" = "1 3 4 2 6 8 7 5 "
 
-# A value that cannot be: the frames before it are there, and the message has its number.
+# An invalid value: the earlier frames are written, and the message names the frame's number.
 sed 's/{ 5, 50, 500, 5000 }/{ 5, 50, -1 }/' grid.lua >wrong.lua
 exits 2 "a wrong value" wrong.lua -o 'wrong/%02d.png' -q
 says "is named with its frame" 'frame 13: .*shininess: number >= 0 expected, got -1'
 check "what came before is there" test "$(ls wrong | wc -l)" -eq 12
 
-# ---- --sweep: the runs of the script advance together where that costs less ----
+# ---- --sweep: the script's runs advance together where that is cheaper ----
 
 cat >film.lua <<'LUA'
 local glint, S = require "glint", require "S"
@@ -127,7 +127,7 @@ echo 'local = 3' >syntax.lua
 exits 2 "a script that fails at every value" syntax.lua --sweep n=1:100:100 -q
 check "says so once" test "$(wc -l <err)" -eq 1
 
-# ---- The witness: random sweeps of three axes, in lists, in shards, resumed after a kill, are those without reuse ----
+# ---- The witness: random sweeps over three axes, in lists, in shards, and resumed after a kill, equal those without reuse ----
 
 cat >random.lua <<'LUA'
 local glint, S = require "glint", require "S"

@@ -5,7 +5,7 @@ export ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0 # which traces processes
 cd "$work" || exit 1
 seconds=20
 
-# script LINE...: scene.lua, which renders a small picture when the lines are through
+# script LINE...: writes scene.lua, which runs the lines and then renders a small picture
 script() {
     {
         printf '%s\n' "$@"
@@ -17,12 +17,12 @@ script() {
     } >scene.lua
 }
 run() { timeout 30 "$glint" scene.lua --untrusted="$seconds" "$@" -q >out 2>err </dev/null; }
-# passes NAME: the script goes through
+# passes NAME: the script must succeed
 passes() {
     run -o none
     result $? "$1"
 }
-# refused NAME PATTERN OPTION...: exit 2 with one line that matches, and no new file
+# refused NAME PATTERN OPTION...: expects exit code 2 with one line that matches, and no new file
 refused() {
     local name=$1 pattern=$2 before
     shift 2
@@ -87,11 +87,11 @@ refused "a traced function without an end" "$late" -o a.png
 script 'local kept, glint = {}, require "glint"' \
     'local _ = #glint.pattern(function(p) for i = 1, 1e9 do pcall(function() kept[i] = glint.noise(p + i) end) end end)'
 refused "a traced function that only grows" "$late" -o a.png
-# Within C no hook sees the end of the time: the process is killed.
+# Inside C no hook notices the end of the time: the process is killed.
 slack_ms=1000
 ldd "$glint" | grep -qE 'lib[at]san' && slack_ms=4000
-# in_time MS COMMAND...: runs it; took: its milliseconds. A machine may stand still for a second, so that who is late is run again:
-# late three times in a row is the program's doing.
+# in_time MS COMMAND...: runs it; took: its milliseconds. The machine may stall for a second, so a late run is
+# repeated: three late runs in a row are the program's fault.
 in_time() {
     local most_ms=$1 begun
     shift
@@ -250,7 +250,7 @@ run -o inside/c.png
 [ $? -eq 2 ] && grep -q "$late" err && [ ! -e "$left" ]
 result $? "what a killed script left half written is removed"
 
-# ---- What it writes ----
+# ---- Output files ----
 
 mkdir much
 cat >scene.lua <<'LUA'
@@ -278,7 +278,7 @@ rm -r much
 [ $? -eq 1 ] && grep -q "File too large" err
 result $? "bytes of a file"
 
-# ---- The walls, attacked by a process that runs what it likes ----
+# ---- The sandbox, attacked by a process that runs arbitrary code ----
 
 mkdir walls
 (cd walls && "$root/$build/tests/command/walls") >attacks 2>&1

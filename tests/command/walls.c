@@ -1,5 +1,5 @@
-/// Attacks of a process inside the sandbox of --untrusted that runs arbitrary code: each attack is a function that
-/// returns 0 when it succeeds, else an errno. Prints TAP. To be run in a folder of its own.
+/// Attacks from a process inside the sandbox of --untrusted that runs arbitrary code: each attack is a function that
+/// returns 0 when it succeeds, otherwise an errno. Prints TAP. Must run in its own folder.
 #include "bindings/command/untrusted.h"
 
 #include <arpa/inet.h>
@@ -19,7 +19,7 @@
 #include <unistd.h>
 
 #define INHERITED 57 // a descriptor that the parent left open
-#define DATA 41 // one that stays
+#define DATA 41 // one that stays open
 
 static pid_t parent;
 
@@ -57,7 +57,7 @@ static int uses_inherited(void) { return errno_of(write(INHERITED, "x", 1)); }
 static int reads_input(void)
 {
     char byte;
-    return read(STDIN_FILENO, &byte, 1) == 1 ? 0 : EBADF; // its end at once
+    return read(STDIN_FILENO, &byte, 1) == 1 ? 0 : EBADF; // must be at its end immediately
 }
 
 static int starts_program(void)
@@ -164,7 +164,8 @@ static bool write_file(const char *path)
     return file && fputs("text", file) >= 0 && fclose(file) == 0;
 }
 
-/// In a process of its own: 0 when the attack succeeds, else its errno; 255: the walls could not be built.
+/// Runs an attack in a child process. Returns 0 when it succeeds, otherwise its errno; 255 when the sandbox could not
+/// be built.
 static int result_of(int (*run)(void), bool walls)
 {
     char message[GLINTL_MESSAGE_SIZE] = "", folder[] = "pictures", script[] = "scene.lua";

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Warnings: each appears only where it applies, and only once, also as an event, and as an error on request.
+# Warnings: each appears only where it applies, and only once; also as an event, and as an error on request.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 
 run() { "$glint" "$@" -t 1 -o none --quiet >out 2>err </dev/null; }
 
-# scene LINE...: a script with a camera that looks at the origin, the lines, and `objects` to render
+# scene LINE...: writes a script with a camera that looks at the origin, the lines, and `objects` to render
 scene() {
     {
         echo 'local glint = require "glint"'
@@ -16,14 +16,14 @@ scene() {
         echo 'return glint.animation { scene = scene, frames = 4, width = 32, height = 18, frame = frame or function() end }'
     } >scene.lua
 }
-# warns NAME PATTERN OPTION...: one warning, which matches; the run is good
+# warns NAME PATTERN OPTION...: expects success with one warning, which matches
 warns() {
     local name=$1 pattern=$2
     shift 2
     run scene.lua "$@" && [ "$(wc -l <err)" -eq 1 ] && grep -q "^glint: warning: $pattern" err
     result $? "$name"
 }
-# silent NAME OPTION...: nothing to say
+# silent NAME OPTION...: expects no warnings
 silent() {
     local name=$1
     shift
@@ -46,7 +46,7 @@ silent "a specular that comes in a frame"
 scene 'local m = glint.material { shininess = 64, model = "lambert" }'
 silent "a model without highlights"
 
-# ---- A shutter that nothing moves under ----
+# ---- A shutter without motion ----
 
 still='local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 }, shutter = 0.5 }, ambient = 1, glint.sphere { center = { 0, 0, 0 }, radius = 2 } }'
 for job in 'scene' 'glint.sweep { scene = scene, over = { { scene.camera, "fov", { 40, 50 } } } }' \
@@ -56,7 +56,7 @@ for job in 'scene' 'glint.sweep { scene = scene, over = { { scene.camera, "fov",
     warns "an open shutter: $job" 'camera.shutter: nothing moves while it is open; the frame function of a glint.animation moves things'
 done
 
-# ---- Text that does not show ----
+# ---- Invisible text ----
 
 ball='glint.sphere { center = { 0, 0, 0 }, radius = 2 }'
 label() { scene "objects = { $ball, glint.label { $1 } }"; }
@@ -175,7 +175,8 @@ scene 'objects = { glint.sphere { center = { 0, 0, 0 }, radius = 1, transform = 
     'lamp.position = { 2, 1.5, 0 }'
 silent "of an ellipsoid nothing is said"
 
-# Random scenes, perspective and orthographic: when a warning says that a sphere is unseen, removing it must not change a pixel.
+# Random scenes, perspective and orthographic: when a warning says that a sphere is unseen, removing it must not
+# change a pixel.
 cat >random.lua <<'END'
 local glint = require "glint"
 local P = glint.params { seed = 1 }
@@ -243,7 +244,7 @@ warns "unless it is set, and changes nothing" '--set depth: the script did not r
 scene 'objects = { glint.sphere { center = { 0, 0, 0 }, radius = 3, material = glint.material { ambient = 30 } } }'
 warns "a clipped picture" '[0-9]* % of the pixels are brighter than white'
 
-# ---- What is done with them ----
+# ---- Options for warnings ----
 
 scene 'local m = glint.material { shininess = 64 }' 'local P = glint.params { lost = 1 }'
 run scene.lua --json
@@ -293,7 +294,7 @@ result $? "caps that are rays, once"
 
 # ---- Meshes from files ----
 
-# mesh LINES MATERIALS: m.obj of one triangle with these statements above, and m.mtl
+# mesh LINES MATERIALS: writes m.obj with one triangle after these statements, and m.mtl
 mesh() {
     # shellcheck disable=SC2059 # they have line ends
     printf "$1v -1 0 0\nv 1 0 0\nv 0 1 0\n" >m.obj
@@ -358,7 +359,7 @@ silent "colours that are there"
 scene 'objects = { glint.mesh { file = "m.stl" } }'
 warns "faces without an area" "m.stl: 1 of 2 faces are left out: they have no area$"
 
-# ---- The scripts of the project give no cause ----
+# ---- The project's own scripts give no warnings ----
 
 run "$root/scripts/sphereflake.lua" --size 8x8 --set size=1 --set nff=balls.nff # the file that nff.lua reads
 for script in "$root"/scripts/*.lua; do

@@ -20,7 +20,7 @@ check() { # NAME COMMAND...: the command must succeed
     fi
 }
 
-# Waits up to 8 s for the event number COUNT that matches PATTERN.
+# Waits up to 8 s for the COUNT-th event that matches PATTERN.
 events() { grep -sc -- "$1" "${3:-events}" >count && [ "0$(cat count)" -ge "$2" ]; }
 await() {
     for _ in $(seq 800); do
@@ -50,7 +50,7 @@ echo "return 1" >parts/ball.lua
 printf '#ff0000' >color.txt
 save 0.5
 
-# start SCRIPT OPTIONS...: a watcher in the background
+# start SCRIPT OPTIONS...: starts a watcher in the background
 start() {
     timeout 60 "$glint" watch "$@" >events 2>err </dev/null &
     watchers+=($!)
@@ -134,7 +134,7 @@ check "a warning is told" await '"event":"warning","message":"scene.lua:5: mater
 save 0.6 'local bright = glint.material { diffuse = 2 }'
 check "in each run" await '"event":"warning","message":"scene.lua:5: material.diffuse above 1' 2
 
-# A script that never ends gives way to the next save.
+# The next save interrupts a script that never ends.
 before=$(seen picture)
 save 0.5 "while true do end"
 sleep 0.3
@@ -223,7 +223,7 @@ check "a value out of range is told" await "shade: number 0 .. 1 expected, got '
 ask POST "${path}reset" "" >/dev/null
 check "reset shows again" await '"index":5' 3
 
-# Events: a page that listens gets the state at once and at every change.
+# Events: a listening page gets the state immediately and after every change.
 exec 6<>"/dev/tcp/127.0.0.1/$port"
 printf 'GET %sevents HTTP/1.1\r\nHost: %s\r\n\r\n' "$path" "$host" >&6
 timeout 30 cat <&6 >stream &
@@ -240,7 +240,7 @@ before=$(seen picture)
 sleep 0.1
 save 0.4
 check "a page that has gone does no harm" await '"event":"picture"' $((before + 1))
-# Those that connect and say nothing do not keep others out.
+# Connections that send nothing do not block others.
 for fd in {20..119}; do eval "exec $fd<>/dev/tcp/127.0.0.1/$port"; done
 for fd in {20..50}; do printf 'GET %s' "$path" >&$fd; done 2>/dev/null # half a request
 check "silent ones do not keep others out" is 200 "$(status GET "$path" "")"
@@ -299,7 +299,7 @@ check "a call among jobs" await '"index":2,"width":64,' 1 events5
 ask POST "${path}frame" 9 >/dev/null
 check "the last of all" await '"index":5,"width":32,' 1 events5
 
-# ---- What a terminal gets ----
+# ---- Output to a terminal ----
 
 cat >still.lua <<'END'
 local glint = require "glint"
@@ -321,7 +321,7 @@ check "half blocks, two pixels each, within 80 columns" test "$(grep -oa '▀' d
 check "navy is navy" grep -qa $'\033\[38;2;0;0;128m' drawn.blocks
 check "sixel" draws sixel
 check "its size, and its end" grep -qaP '\x1bP[0-9;]*q"1;1;96;54#' drawn.sixel
-# Labels are on what is written, so on what is shown: a red one on a navy picture.
+# Labels are in the written picture, and so also in the terminal: a red one on a navy picture.
 sed 's/^return scene/scene:add(glint.label { text = "M", at = "top left", color = "red", size = 40 })\nreturn scene/' still.lua >labelled.lua
 for terminal in blocks sixel; do
     COLORTERM=truecolor timeout 60 "$glint" watch labelled.lua --size 96x54 --terminal "$terminal" >/dev/null 2>"labelled.$terminal" </dev/null &

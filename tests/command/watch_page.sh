@@ -46,7 +46,7 @@ mkfifo to from
 pids+=($!)
 exec 8>to 9<from
 
-# send METHOD PARAMS [SESSION]: leaves the reply's text in `reply`
+# send METHOD PARAMS [SESSION]: puts the reply's text into `reply`
 send() {
     last_id=$((last_id + 1))
     printf '{"id":%d,"method":"%s","params":%s%s}\0' $last_id "$1" "$2" "${3:+,\"sessionId\":\"$3\"}" >&8
@@ -63,7 +63,7 @@ send Target.createTarget "{\"url\":\"$url\"}" || exit 1
 send Target.attachToTarget "{\"targetId\":\"$(field targetId)\",\"flatten\":true}" || exit 1
 session=$(field sessionId)
 
-# becomes EXPRESSION: JavaScript that is true within 8 s
+# becomes EXPRESSION: waits up to 8 s until the JavaScript expression is true
 becomes() {
     for _ in $(seq 160); do
         send Runtime.evaluate "{\"expression\":\"!!($1)\"}" "$session" || return 1
@@ -118,7 +118,7 @@ run "get('reset').click()"
 check "reset puts it back" becomes "document.querySelector('[name=shade]').value === '0.6'"
 run "{ const s = get('slider'); s.value = 7; s.dispatchEvent(new Event('input')); }"
 check "frames scrub" becomes "get('frame').textContent === 'frame 7 of 12' && state.frame === 7"
-# A drag of a hundred steps ends where it ended, and no order is lost.
+# A drag of a hundred steps ends at its last value, and no command is lost.
 run "for (let i = 1; i <= 100; i++) { const s = document.querySelector('[name=shade]'); s.value = i / 100 * 0.8; s.dispatchEvent(new Event('input')); }"
 check "a drag ends where it ended" becomes "state.params.find(p => p.name === 'shade').value === 0.8"
 if [ -n "${SHOT:-}" ]; then # a picture of the page, for people

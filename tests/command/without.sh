@@ -5,7 +5,7 @@
 GLINT=$(realpath "$build/without/PROGRAM/glint") || exit 1
 cd "$work" || exit 1
 
-# script NAME FIELD VALUE: a scene whose ball has that field, on line 3
+# script NAME FIELD VALUE: writes a scene whose ball has that field, on line 3
 script() {
     printf 'local glint = require "glint"\nlocal ball = glint.material {}\nball.%s = %s\n' "$1" "$2" >scene.lua
     printf 'return glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }, %s }\n' \

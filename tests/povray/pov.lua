@@ -1,8 +1,8 @@
 -- Writes the workshop as a POV-Ray 3.7 scene to stdout:  lua5.4 pov.lua MODEL LIGHT PROJECTION WIDTH HEIGHT SURFACES SKY
 --
--- How our formulas read in POV-Ray's language (16-bit linear output: +FN16 File_Gamma=1.0, and no +A):
+-- Our formulas in POV-Ray's language (16-bit linear output: +FN16 File_Gamma=1.0, and no +A):
 --   assumed_gamma 1.0, pigment { rgb C }, ambient_light rgb 1
---     pixel = ka C + sum over lights with n.l > 0 that nothing hides of  Lc (kd C (n.l) + ks S);
+--     pixel = ka C + sum over unoccluded lights with n.l > 0 of  Lc (kd C (n.l) + ks S);
 --     the highlight is not multiplied by C, and nothing is divided by pi.
 --   Phong        finish { phong ks phong_size n specular 0 }        S = (r.v)^n
 --   Blinn-Phong  finish { specular ks roughness 1/n phong 0 }       S = (n.h)^n
@@ -11,28 +11,28 @@
 --   spot         light_source { position rgb c  spotlight radius INNER falloff OUTER tightness 0 point_at target }
 --   fall-off     fade_distance d0 fade_power 2 is 2 / (1 + (d/d0)^2): attenuation = { 1/2, 0, 1/(2 d0^2) }
 --   directional  light_source { far * -travel  rgb c  parallel  point_at 0 }
---   mirror       finish { reflection m }: m times what the mirrored ray brings is added
---   transmission pigment { rgb 0 transmit t } diffuse 0, interior { ior n }: t times what the refracted ray brings; where it
---                is totally reflected, all that the mirrored ray brings, and no `reflection` beside it. Shadows: t at each
---                surface, and no bending.
---   opacity      pigment { rgb C transmit 1 - o }: (1 - o) times what is straight behind is added to o times ambient and diffuse light;
---                highlights and mirrors are not weighed there. Shadows: 1 - o at each surface
---   absorption   interior { fade_power 1001 fade_distance 1 fade_color 1 - a }: exp(-a way). Only what is refracted
---                is absorbed there: a highlight on the inside of the far surface comes to the eye whole. Here that is absorbed
---                as all light on that way; so what absorbs has no highlight in the test
+--   mirror       finish { reflection m }: adds m times the reflected ray's light
+--   transmission pigment { rgb 0 transmit t } diffuse 0, interior { ior n }: t times the refracted ray's light; under
+--                total reflection, all of the reflected ray's light, without `reflection`. Shadows: t at each surface, and no
+--                refraction.
+--   opacity      pigment { rgb C transmit 1 - o }: o times ambient and diffuse light plus (1 - o) times the light
+--                from straight behind; highlights and mirrors are not scaled there. Shadows: 1 - o at each surface
+--   absorption   interior { fade_power 1001 fade_distance 1 fade_color 1 - a }: exp(-a length). POV-Ray absorbs only
+--                refracted light: a highlight on the inside of the far surface reaches the eye undimmed. glint absorbs it
+--                like all light on that path, so absorbing materials have no highlight in the test
 --   fresnel      reflection { 0, 1 fresnel on } conserve_energy
 --   shapes       box { min, max }; cylinder { base, top, r } and cone { base, r, top, 0 }, with `open` for capped = false;
 --                an ellipsoid is sphere { 0, 1 scale s translate c }; torus { major, minor sturm } is around the y axis
---   sets         difference, intersection, and merge for union, which leaves no surface inside
---   mesh         mesh { triangle { a, b, c } } is faceted; mesh2 with normal_vectors is shading = "phong". Corners and normals are
---                float there; a normal that looks away from the eye is turned, here one that looks through its face
---   checker      pigment { checker C, D }: D where floor(x) + floor(y) + floor(z) is odd, of coordinates 1e-10 larger
---   background   sky_sphere { pigment { image_map { map_type 1 } } }: there the left edge of a picture is +x, here it is +z, and it
---                runs on as it does here; texels are not mixed
---   lens         aperture 4 r (as measured: its rays start up to a quarter of it from the middle), focal_point a point of the plane of
---                focus, blur_samples n variance 0. A pixel's rays all go through its centre there: blocks of pixels are compared
---   max_depth    max_trace_level - 1, with adc_bailout 0: else weak rays are dropped
--- Shadow rays start at t > 1e-3 there, and at the surface here: pixels at the very edge of a shadow may differ.
+--   sets         difference, intersection, and merge for union, which has no inner surfaces
+--   mesh         mesh { triangle { a, b, c } } is faceted; mesh2 with normal_vectors is shading = "phong". POV-Ray stores them in
+--                float, and flips a normal that points away from the eye, glint one that points behind its face
+--   checker      pigment { checker C, D }: D where floor(x) + floor(y) + floor(z) is odd, with coordinates 1e-10 larger
+--   background   sky_sphere { pigment { image_map { map_type 1 } } }: there the left edge of a picture is +x, here it is +z,
+--                with the same orientation; texels are not interpolated
+--   lens         aperture 4 r (as measured: its rays start within a quarter of it from the centre), focal_point a point of the
+--                plane of focus, blur_samples n variance 0. There all rays of a pixel go through its centre: blocks are compared
+--   max_depth    max_trace_level - 1, with adc_bailout 0, or weak rays are dropped
+-- Shadow rays start at t > 1e-3 there, and at the surface here: pixels at shadow edges may differ.
 local model, light, projection, width, height, surfaces, sky = table.unpack(arg)
 local w = dofile "tests/povray/workshop.lua"
 
