@@ -252,8 +252,8 @@ $(BUILD)/libglint.a: $(ENGINE_OBJ)
 	$(call say,AR)
 	$(Q)$(AR) qcs $@ $(ENGINE_OBJ) # q: sources of two folders may have one name
 
-# The shared library: its name includes the ABI version (for its guarantees see engine/README.md), its symbols are
-# those of glint.h. The kernels' objects are shared with the static library; none of their symbols is visible.
+# The shared library: its name includes the ABI version (for its guarantees see engine/README.md), it exports the
+# symbols of glint.h. The kernels' objects are shared with the static library; none of their symbols is visible.
 ABI        := $(if $(filter 0.%,$(VERSION)),$(basename $(VERSION)),$(firstword $(subst ., ,$(VERSION))))
 shared_name = $(if $(MACOS),libglint$(1:%=.%).dylib,libglint.so$(1:%=.%))
 SHARED     := $(call shared_name,$(VERSION))
@@ -490,7 +490,7 @@ soak: ## random edits against fresh frames for SOAK_SECONDS, then the hard cases
 	@tests/deps.sh build test
 	@$(MAKE) --no-print-directory soak-run
 
-# Other seeds than those of the check, so that both test new cases.
+# The soak uses other seeds than the check, so that both test new cases.
 soak-run: all $(HARD_BIN) $(BUILD)/tests/engine/test_reuse $(BUILD)/tests/engine/test_carry
 	@GLINT_SOAK_SECONDS=$(SOAK_SECONDS) GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/engine/test_reuse
 	@GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/engine/test_carry

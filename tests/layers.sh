@@ -25,7 +25,7 @@ includes() {
     fi
 }
 
-# layer FOLDER FOLDER...: sources of the first folder may include its own headers and those of the others
+# layer FOLDER FOLDER...: sources of the first folder may include headers of all these folders
 layer() {
     includes "$1/*.[ch]" "$@"
 }

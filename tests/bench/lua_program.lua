@@ -37,7 +37,7 @@ local function marble(i)
   return 0.9 + share * (0.05 - 0.9), 0.9 + share * (0.15 - 0.9), 0.9 + share * (0.25 - 0.9)
 end
 
--- Bricks with a grain. Each number could change in the next frame, so that the trace equals that of a frame.
+-- Bricks with a grain. Each number could change in the next frame, so that the trace equals a frame's trace.
 local height = 1
 local bricks = glint.pattern(function(p)
   local row = glint.floor(p.y / height)

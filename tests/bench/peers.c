@@ -4,8 +4,8 @@
 ///       [area=1] [lamps=N] [change=light|shininess]
 ///       [pattern=NAME]
 ///
-/// POV-Ray: the formulas match ours term by term (see tests/povray/pov.lua). With change=... the scene is that of the
-/// job's frame `frame_number`. Tachyon: also Phong; it has no area lights, and writes linear pixel values.
+/// POV-Ray: the formulas match ours term by term (see tests/povray/pov.lua). With change=... it writes the scene of
+/// the job's frame `frame_number`. Tachyon: also Phong; it has no area lights, and writes linear pixel values.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

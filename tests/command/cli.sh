@@ -854,7 +854,7 @@ comparing() {
 }
 
 # Numbers of a pattern that change separately and together, and a camera that returns: results cached for fewer
-# numbers are found again after memory did not suffice for results with more of them.
+# numbers are used again after memory did not suffice for results with more of them.
 little_memory() {
     script knobs 'local glint = require "glint"
 local a, b = { x = 0.5 }, { x = 0.3 }

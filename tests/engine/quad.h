@@ -1,4 +1,4 @@
-/// A float of 113 bits, for witnesses: long double where that has them (ARM, RISC-V), else the compiler's own.
+/// A 113-bit float for reference results: long double where it has 113 bits (ARM, RISC-V), otherwise the compiler's type.
 #ifndef GLINT_TESTS_QUAD_H
 #define GLINT_TESTS_QUAD_H
 

@@ -1,4 +1,4 @@
-/// Deflate in bands of rows: whatever the cache holds from earlier pictures, the file equals that of a fresh encoder.
+/// Deflate in bands of rows: whatever the cache holds from earlier pictures, the file equals a fresh encoder's.
 #include "tests/engine/cases/image_case.h"
 #include "tests/engine/cases/random.h"
 

@@ -1,4 +1,4 @@
-/// Figures of finished files: drafts, files read again, the font, contact sheets, animated PNG.
+/// Figures made from finished files: drafts, reading files back, the font, contact sheets, animated PNG.
 #include "tests/engine/cases/image_case.h"
 
 #include <png.h>

@@ -318,8 +318,8 @@ static void test_writer_order(void **state)
     glint_image_release(image);
 }
 
-/// Files are synced to disk several at a time. Of several submissions for one path, however spelled, the last one
-/// wins, even if it finishes first.
+/// Files are synced to disk several at a time. When several submissions have one path, in any spelling, the last
+/// one wins, even if it finishes first.
 static void test_writer_one_path(void **state)
 {
     (void)state;

@@ -255,7 +255,7 @@ static void test_bytes_again(void **state)
 
 // ---- Outline --------------------------------------------------------------------------------------------------------
 
-/// Returns whether a pixel has a line, from its own hit and those of its neighbours. Only valid for smooth shapes
+/// Returns whether a pixel has a line, from the hits of the pixel and its neighbours. Only valid for smooth shapes
 /// that do not occlude themselves.
 static bool ends_here(const glint_image *image, int x, int y)
 {

@@ -881,8 +881,8 @@ static void a_highlight_that_a_tile_does_not_show(void **unused)
     sweep_shininess(0.1);
 }
 
-/// Moves a light over several frames: hits are reused, and the pictures equal those of a renderer that reuses
-/// nothing. adaptive: the threshold, with four samples per pixel; 0: off.
+/// Moves a light over several frames: hits are reused, and the pictures equal a fresh renderer's.
+/// adaptive: the threshold, with four samples per pixel; 0: off.
 static void move_the_light(double adaptive, int frames, glint_frame_stats *stats)
 {
     world w;

@@ -517,7 +517,7 @@ static void test_turns(void **state)
     release_world(&w);
 }
 
-/// Exponents multiply the normalised highlights, so the cache must follow both programs.
+/// A normalised highlight's colour is multiplied by a factor of its exponent: only the values before that are cached.
 static void test_normalized(void **state)
 {
     (void)state;

@@ -324,7 +324,7 @@ static bool is_read(const world *w, const number *n)
         return !directional;
     if (!strcmp(n->field, "inner_rad") || !strcmp(n->field, "outer_rad") || !strcmp(n->field, "exponent"))
         return spot;
-    // under a directional light, moving the floor along its normal changes nothing on it
+    // under a directional light, hits that move along their rays keep all their angles
     if (!strcmp(n->field, "point"))
         return !directional || w->shader;
     return strcmp(n->field, "direction") != 0 || directional || spot;

@@ -53,7 +53,7 @@ for _, camera in ipairs { {}, { pixel_offset = 0.2 }, { projection = "orthograph
   local want = values(scene_of(copy {}), { samples = 1 })
   for _, mode in ipairs(MODES) do
     local scene, lamp = scene_of(copy {})
-    for frame = 1, 2 do -- the second one reuses what the first one has left
+    for frame = 1, 2 do -- the second one reuses the first one's results
       check(others(want, values(scene, mode)) == 0, "samples %d, seed %s, adaptive %s, frame %d", mode.samples, mode.seed, mode.adaptive, frame)
       lamp.x = -3
     end

@@ -292,7 +292,7 @@ function tests.edges()
   check(select(2, pcall(boxes.edges, { size = { 1, 1, 1 } }, { raduis = 1 })):find("box.raduis: no such option", 1, true), "options")
 end
 
--- Frames read in any order equal those of a sequential read. The file is read once.
+-- Reading frames in any order gives the same as reading in sequence. The file is read once.
 function tests.films()
   local texts = { xyz = {}, pdb = {}, lammps = {} }
   for n = 1, 9 do

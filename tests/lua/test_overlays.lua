@@ -124,8 +124,8 @@ function tests.errors()
   raises("scene.overlay: not in the scene", scene.remove, scene, l)
 end
 
--- A logarithmic bar has powers of ten at equal distances; the user's own colours spread along it.
--- An overlay changes only the file, not the light; without it the picture is as before.
+-- A logarithmic bar has powers of ten at equal distances.
+-- A list of the user's own colours spreads evenly along the bar.
 function tests.bars_of_ones_own()
   local function picture(fields)
     local given = { map = "viridis", low = 0.01, high = 100, size = 10, length = 100, ticks = { 0.1, 1, 10 }, position = { 5, 5 } }

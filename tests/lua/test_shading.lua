@@ -349,7 +349,7 @@ function tests.terms()
   end
 end
 
--- ---- The stages of a frame, and which of them it reuses ----
+-- ---- The stages of a frame, and reused stages ----
 
 local scratch = os.getenv "SCRATCH" or os.tmpname() .. ".d"
 os.execute("mkdir -p '" .. scratch .. "'")

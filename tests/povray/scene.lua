@@ -64,7 +64,7 @@ local function part(s)
   return glint[s.kind](fields)
 end
 
--- A shape in place of a sphere.
+-- A shape instead of a sphere.
 local function shape(s, sphere, surface, coat)
   local center = { sphere[1][1], sphere[1][2] + (surface.lift or 0), sphere[1][3] }
   if not s then return glint.sphere { center = center, radius = sphere[2], material = coat } end

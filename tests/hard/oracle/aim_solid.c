@@ -173,8 +173,8 @@ static void some_point(const hard_solid *s, double p[3])
                                                                       : 1;
     const double within =
         (d->kind == GLINT_SHAPE_CONE || d->kind == GLINT_SHAPE_CYLINDER) && w == 0 ? uniform(0, 1) : 1;
-    const double across = chance(0.5) ? (double)(random_bits() % 4) * 1.5707963267948966 : uniform(0, 6.3); // of a tube: its
-    // outermost, highest, innermost or lowest circle
+    // around a torus's tube: often its outermost, highest, innermost or lowest circle
+    const double across = chance(0.5) ? (double)(random_bits() % 4) * 1.5707963267948966 : uniform(0, 6.3);
     for (int c = 0; c < 3; c++) {
         const double from_axis = (d->major + d->minor * cos(across)) * (cos(turn) * a[c] + sin(turn) * b[c]);
         const double round = d->radius * taper * within * (cos(turn) * a[c] + sin(turn) * b[c]);
