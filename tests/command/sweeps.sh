@@ -127,7 +127,7 @@ echo 'local = 3' >syntax.lua
 exits 2 "a script that fails at every value" syntax.lua --sweep n=1:100:100 -q
 check "says so once" test "$(wc -l <err)" -eq 1
 
-# ---- The witness: random sweeps over three axes, in lists, in shards, and resumed after a kill, equal those without reuse ----
+# ---- Random sweeps over three axes, in lists, in shards, and resumed after a kill, give the same as without reuse ----
 
 cat >random.lua <<'LUA'
 local glint, S = require "glint", require "S"

@@ -1,4 +1,4 @@
-/// A 113-bit float for reference results: long double where it has 113 bits (ARM, RISC-V), otherwise the compiler's type.
+/// A 113-bit float for reference results: long double if it has 113 bits (ARM, RISC-V), otherwise the compiler's own.
 #ifndef GLINT_TESTS_QUAD_H
 #define GLINT_TESTS_QUAD_H
 

@@ -51,7 +51,7 @@ static glint_program *constant(glint_program_kind kind, double number)
     return out;
 }
 
-// ---- A ball in front of the background -------------------------------------------------------------------------------
+// ---- A ball in front of the background ------------------------------------------------------------------------------
 
 typedef struct world {
     glint_scene *scene;
@@ -130,7 +130,7 @@ static double share_reused(const glint_frame_stats *stats, const char *stage)
     return -1;
 }
 
-// ---- Work of a frame -------------------------------------------------------------------------------------------------
+// ---- Work of a frame ------------------------------------------------------------------------------------------------
 
 /// The stage runs for every ray that hits nothing, and for no other; with a mirror also for reflected rays that leave
 /// the scene. Without a program the stage does not exist.
@@ -214,7 +214,7 @@ static void test_refused(void **state)
     release_world(&w);
 }
 
-// ---- Constant patterns -----------------------------------------------------------------------------------------------
+// ---- Constant patterns ----------------------------------------------------------------------------------------------
 
 /// In range they become a plain colour. Out of range they run as programs, give 0 and are reported.
 static void test_numbers(void **state)

@@ -136,7 +136,7 @@ static void test_floor(void **state)
     release_world(&w);
 }
 
-// ---- Properties: every configuration gives the same bits --------------------------------------------------------------
+// ---- Properties: every configuration gives the same bits ------------------------------------------------------------
 
 /// A program with one or three outputs that depend on the point, the normal, the view and the surface, some with
 /// special values.
@@ -375,7 +375,7 @@ static void test_same_bits(void **state)
     }
 }
 
-// ---- Bumps ------------------------------------------------------------------------------------------------------------
+// ---- Bumps ----------------------------------------------------------------------------------------------------------
 
 /// h = a sin(k . p) under a map that rotates, stretches and mirrors. The normal is compared with the formula, using
 /// the inverse of the map. Light from below the geometric surface does not count.
@@ -469,7 +469,7 @@ static void test_bump(void **state)
     release_world(&w);
 }
 
-// ---- Shaders ----------------------------------------------------------------------------------------------------------
+// ---- Shaders --------------------------------------------------------------------------------------------------------
 
 /// Lambert's and Phong's models as a program, against the built-in models.
 static void test_shader(void **state)
@@ -536,7 +536,7 @@ static void test_shader(void **state)
     glint_program_release(phong);
 }
 
-// ---- Reuse ------------------------------------------------------------------------------------------------------------
+// ---- Reuse ----------------------------------------------------------------------------------------------------------
 
 /// a sin(b p.x) + c p.y, or another operation instead of the sine. The tests change one number at a time.
 typedef struct wave {

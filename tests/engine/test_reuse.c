@@ -46,7 +46,7 @@ static void random_color(double c[3])
         c[i] = draw(4) ? uniform(0, 1) : 0;
 }
 
-// ---- Every field of every description --------------------------------------------------------------------------------
+// ---- Every field of every description -------------------------------------------------------------------------------
 
 typedef enum kind {
     COLOR, ///< three numbers, some of them 0
@@ -307,7 +307,7 @@ static void tables_name_every_field(void **unused)
     table_names_all("render", render_fields, COUNT(render_fields), sizeof(glint_render_desc));
 }
 
-// ---- Edits: a refused value leaves the object unchanged --------------------------------------------------------------
+// ---- Edits: a refused value leaves the object unchanged -------------------------------------------------------------
 
 static void edit_material(world *w)
 {

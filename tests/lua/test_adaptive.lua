@@ -133,7 +133,7 @@ do
   check(differ == 0, "next to nothing: %d channels differ by more than a step of 16 bits", differ)
 end
 
--- ---- Edges between tiles --------------------------------------------------------------------------------------------------
+-- ---- Edges between tiles --------------------------------------------------------------------------------------------
 
 -- Two objects that meet at a tile border: at x = 32 or 64, and at y = 24 or 48.
 for _, edge in ipairs { { 32, 0 }, { 64, 0 }, { 0, 24 }, { 0, 48 }, { 32, 24 } } do
@@ -156,7 +156,7 @@ for _, edge in ipairs { { 32, 0 }, { 64, 0 }, { 0, 24 }, { 0, 48 }, { 32, 24 } }
   check(wrong == 0, "an edge at %d, %d: %d pixels", left, top, wrong)
 end
 
--- ---- Off, wrong input ------------------------------------------------------------------------------------------------------
+-- ---- Off, wrong input -----------------------------------------------------------------------------------------------
 
 local plain = scene_of "plain"
 local off, one = render(plain, {}), render(plain, { samples = 1, adaptive = 0.1 })
@@ -167,7 +167,7 @@ for _, wrong in ipairs { -1, 3.01, 0 / 0, math.huge } do
 end
 check(not pcall(render, plain, { adaptive = "0.1" }), "a string is no number")
 
--- ---- Identical pictures in every configuration -------------------------------------------------------------------------------
+-- ---- Identical pictures in every configuration ----------------------------------------------------------------------
 
 local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
 local function read(path)

@@ -33,7 +33,7 @@ local function look(eye, direction, objects, more)
   return (image:pixel(0, 0)), image, scene
 end
 
--- ---- Paths: a light of radius 1e-6 is where the ray must end -------------------------------------------------------------
+-- ---- Paths: a light of radius 1e-6 is where the ray must end --------------------------------------------------------
 
 -- Polar angles are measured from +z towards +x in the plane y = 0. The ray leaves the ball of radius 2 at the angle
 -- `leaves` in the direction `goes`. objects: the scene.
@@ -73,7 +73,7 @@ do -- total reflection at a bubble: at b = 1.2 the bubble of radius 1 in glass o
   comes_out("total reflection", { b, 0, 9 }, { 0, 0, -1 }, { ball(2, glass(n)), ball(1, glass(1)) }, leaves, leaves + i1)
 end
 
--- ---- Amounts -------------------------------------------------------------------------------------------------------------
+-- ---- Amounts --------------------------------------------------------------------------------------------------------
 
 do -- a mirror shows the reflected light times its colour; with fresnel, times a dielectric's reflectance
   local down = { 0, -1, -1 }
@@ -350,7 +350,7 @@ do -- endless chains: beyond 16 surfaces one ray replaces two, so that work stay
   check(least >= 1 - LOSS - ROUNDING and most <= 1 + 2 * ROUNDING, "glass in glass, depth 1e6: %.9g .. %.9g", least, most)
 end
 
--- ---- Depth, passes, bad input --------------------------------------------------------------------------------------------
+-- ---- Depth, passes, bad input ---------------------------------------------------------------------------------------
 
 do
   local objects = { ball(1, glass(1.5, { fresnel = true, ambient = 0.1 })), floor(material { mirror = 0.5, ambient = 0.2 }, -1) }
@@ -396,7 +396,7 @@ check(m.mirror.x == 0.5, "until it is set")
 m.mirror, m.fresnel = nil, false
 check(m.mirror.x == 0, "and it follows again")
 
--- ---- Identical pictures in every configuration ---------------------------------------------------------------------------
+-- ---- Identical pictures in every configuration ----------------------------------------------------------------------
 
 local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
 local function picture(environment, options)
@@ -429,7 +429,7 @@ for _, precision in ipairs { "double", "float" } do
   end
 end
 
--- ---- Inside absorbing glass: the effect is used because of the eye; identical with and without reuse ---------------------------
+-- ---- Inside absorbing glass: the effect is used because of the eye; identical with and without reuse ----------------
 
 local POOL = [[
 local glint = require "glint"

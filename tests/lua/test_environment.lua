@@ -301,7 +301,7 @@ function tests.errors_name_the_field()
   os.remove(name)
 end
 
--- ---- Identical pictures in every configuration ---------------------------------------------------------------------------
+-- ---- Identical pictures in every configuration ----------------------------------------------------------------------
 
 local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
 local script = os.tmpname()

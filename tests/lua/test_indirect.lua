@@ -27,7 +27,7 @@ local function look(eye, direction, fields, more)
   return scene:render(options), scene
 end
 
--- ---- Uniform enclosures: exact geometric series -----------------------------------------------------------------------
+-- ---- Uniform enclosures: exact geometric series ---------------------------------------------------------------------
 
 local kd = { 0.5, 0.25, 0.75 }
 local function series(first, bounces)
@@ -80,7 +80,7 @@ do
   end
 end
 
--- ---- Under a uniform sky ------------------------------------------------------------------------------------------------
+-- ---- Under a uniform sky --------------------------------------------------------------------------------------------
 
 local sky = { 0.5, 1, 2 }
 local under_sky = { kd[1] * sky[1], kd[2] * sky[2], kd[3] * sky[3] }
@@ -105,7 +105,7 @@ for name, shape in pairs(shapes) do
   end
 end
 
--- ---- Parallel plates: every path from one leads to the other -----------------------------------------------------------
+-- ---- Parallel plates: every path from one leads to the other --------------------------------------------------------
 
 do -- matt below, matt above: L1 = e1 + k1 L2, L2 = e2 + k2 L1
   local low = glint.material { diffuse = 0.5, ambient = 0.75 }
@@ -152,7 +152,7 @@ do -- a surface that scatters, reflects and transmits: chosen at random, right o
   near3(sum[1], sum[2], sum[3], { 0.25, 0.25, 0.25 }, 2e-3, "a mixed surface, one bounce")
 end
 
--- ---- A glowing ball above a floor: the hemisphere integral kd L (R / d)^2 cos -------------------------------------------------
+-- ---- A glowing ball above a floor: the hemisphere integral kd L (R / d)^2 cos ---------------------------------------
 
 -- Returns the root mean square error of the whole picture.
 local function error_of_ball(samples, pixel_samples, seed)
@@ -223,7 +223,7 @@ do
   check(same == 63, "a light that is seen counts once: %d of 63 pixels", same)
 end
 
--- ---- Only when needed, depth, sums, wrong input --------------------------------------------------------------------------
+-- ---- Only when needed, depth, sums, wrong input ---------------------------------------------------------------------
 
 local function off(scene)
   return scene:render { width = 16, height = 12, output = "none", passes = "beauty,ambient,indirect" }
@@ -314,7 +314,7 @@ do -- a finalizer that changes the scene while a table is read
   check(busy.indirect.samples == 3 and busy.camera.eye.z == 2, "finalizers may change the scene")
 end
 
--- ---- Identical pictures in every configuration ---------------------------------------------------------------------------
+-- ---- Identical pictures in every configuration ----------------------------------------------------------------------
 
 local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
 local script = os.tmpname()

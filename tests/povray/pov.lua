@@ -13,24 +13,24 @@
 --   directional  light_source { far * -travel  rgb c  parallel  point_at 0 }
 --   mirror       finish { reflection m }: adds m times the reflected ray's light
 --   transmission pigment { rgb 0 transmit t } diffuse 0, interior { ior n }: t times the refracted ray's light; under
---                total reflection, all of the reflected ray's light, without `reflection`. Shadows: t at each surface, and no
---                refraction.
+--                total reflection, the reflected ray's whole light, without `reflection`. Shadows: t at each surface,
+--                no refraction.
 --   opacity      pigment { rgb C transmit 1 - o }: o times ambient and diffuse light plus (1 - o) times the light
 --                from straight behind; highlights and mirrors are not scaled there. Shadows: 1 - o at each surface
 --   absorption   interior { fade_power 1001 fade_distance 1 fade_color 1 - a }: exp(-a length). POV-Ray absorbs only
---                refracted light: a highlight on the inside of the far surface reaches the eye undimmed. glint absorbs it
---                like all light on that path, so absorbing materials have no highlight in the test
+--                refracted light: a highlight on the inside of the far surface reaches the eye undimmed. glint
+--                absorbs it like all light on that path, so absorbing materials have no highlight in the test
 --   fresnel      reflection { 0, 1 fresnel on } conserve_energy
 --   shapes       box { min, max }; cylinder { base, top, r } and cone { base, r, top, 0 }, with `open` for capped = false;
 --                an ellipsoid is sphere { 0, 1 scale s translate c }; torus { major, minor sturm } is around the y axis
 --   sets         difference, intersection, and merge for union, which has no inner surfaces
---   mesh         mesh { triangle { a, b, c } } is faceted; mesh2 with normal_vectors is shading = "phong". POV-Ray stores them in
---                float, and flips a normal that points away from the eye, glint one that points behind its face
+--   mesh         mesh { triangle { a, b, c } } is faceted; mesh2 with normal_vectors is shading = "phong". POV-Ray
+--                stores them in float, and flips a normal that points away from the eye, glint one that points behind its face
 --   checker      pigment { checker C, D }: D where floor(x) + floor(y) + floor(z) is odd, with coordinates 1e-10 larger
---   background   sky_sphere { pigment { image_map { map_type 1 } } }: there the left edge of a picture is +x, here it is +z,
+--   background   sky_sphere { pigment { image_map { map_type 1 } } }: the left edge is +x there and +z here,
 --                with the same orientation; texels are not interpolated
---   lens         aperture 4 r (as measured: its rays start within a quarter of it from the centre), focal_point a point of the
---                plane of focus, blur_samples n variance 0. There all rays of a pixel go through its centre: blocks are compared
+--   lens         aperture 4 r (as measured: its rays start within a quarter of it), focal_point a point of the plane of
+--                focus, blur_samples n variance 0. There all rays of a pixel go through its centre: compare blocks
 --   max_depth    max_trace_level - 1, with adc_bailout 0, or weak rays are dropped
 -- Shadow rays start at t > 1e-3 there, and at the surface here: pixels at shadow edges may differ.
 local model, light, projection, width, height, surfaces, sky = table.unpack(arg)
