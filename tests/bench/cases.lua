@@ -2,8 +2,8 @@
 -- runs a side's program once per round, if a row of a selected part uses it. The program prints lines "name unit
 -- value"; rows refer to them as "id:name".
 --
--- A row is { part, title, ours, theirs, bar = , more = true if the bar is a minimum, note = }. The ratio of the
--- references is ours / theirs, or theirs / ours with `more`. Without `ours`, `note` says why glint has no value.
+-- A row is { part, title, ours, theirs, bar = , more = true if the bar is a minimum, note = }. `ours` and
+-- `theirs` are references; the ratio is ours / theirs, or theirs / ours with `more`. Without `ours`, `note` says why glint has no value.
 -- POV-Ray's frames use processor time of tracing, as its clock includes waiting; the other time is shown after it.
 local measurements = {
   -- one frame of the workshop, 1920x1080

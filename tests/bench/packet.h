@@ -21,7 +21,7 @@ typedef struct packet_hit {
 typedef struct packet_scene {
     bench_scene plain;
     bench_options options;
-    vec eye, corner, right, down; ///< of the camera; `corner` is the top left corner of block (0, 0), per lane
+    vec eye, corner, right, down; ///< of the camera; `corner` has per lane the corner of its pixel in block (0, 0)
     float sample[64][2], sample_weight; ///< sample positions in a pixel, and one over their number
     float light[3];
     vf diffuse[3], ambient[3], specular, shininess; ///< tables by material
@@ -44,7 +44,7 @@ void packet_scene_set_materials(packet_scene *scene, float shininess);
 /// Renders the band that starts at row y. packet_frame calls it for every band of a frame, on the scene's threads.
 typedef void packet_render(const packet_scene *scene, int y, packet_band *band);
 typedef void packet_use(void *user, int y, const packet_band *band);
-/// `use` may be NULL. It receives each finished band, on any thread.
+/// Renders a frame in bands. `use` may be NULL; it receives each finished band, on any thread.
 void packet_frame(const packet_scene *scene, packet_render *render, packet_use *use, void *user);
 
 #endif

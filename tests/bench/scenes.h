@@ -13,7 +13,7 @@
 
 typedef struct bench_material {
     float diffuse[3], specular, shininess;
-    float mirror, transmission; ///< above 0: glass of index 1.5; POV-Ray's version of it has no matt term
+    float mirror, transmission; ///< above 0: glass of index 1.5, which has no matt term in POV-Ray
 } bench_material;
 
 typedef enum bench_solid_kind {

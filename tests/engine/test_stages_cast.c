@@ -271,7 +271,7 @@ static void test_tiles(void **state)
 
 // ---- From afar ---------------------------------------------------------------------------------------------------
 
-/// Exactly axis-parallel rays from up to 1e36 away, at small spheres: any angular error would miss them.
+/// Exactly axis-parallel rays from up to 1e36 away, at spheres that are tiny compared with the distance.
 static void afar_case(int precision, bool odd)
 {
     (void)odd;
