@@ -3,7 +3,7 @@
 -- value"; rows refer to them as "id:name".
 --
 -- A row is { part, title, ours, theirs, bar = , more = true if the bar is a minimum, note = }. `ours` and
--- `theirs` are references; the ratio is ours / theirs, or theirs / ours with `more`. Without `ours`, `note` says why glint has no value.
+-- `theirs` are references; the ratio is ours / theirs, or theirs / ours with `more`. Without `ours`, `note` explains.
 -- POV-Ray's frames use processor time of tracing, as its clock includes waiting; the other time is shown after it.
 local measurements = {
   -- one frame of the workshop, 1920x1080

@@ -25,7 +25,7 @@
 --                an ellipsoid is sphere { 0, 1 scale s translate c }; torus { major, minor sturm } is around the y axis
 --   sets         difference, intersection, and merge for union, which has no inner surfaces
 --   mesh         mesh { triangle { a, b, c } } is faceted; mesh2 with normal_vectors is shading = "phong". POV-Ray
---                stores them in float, and flips a normal that points away from the eye, glint one pointing behind its face
+--                stores them in float. It flips normals that point away from the eye; glint flips those behind the face
 --   checker      pigment { checker C, D }: D where floor(x) + floor(y) + floor(z) is odd, with coordinates 1e-10 larger
 --   background   sky_sphere { pigment { image_map { map_type 1 } } }: the left edge is +x there and +z here,
 --                with the same orientation; texels are not interpolated
