@@ -4,11 +4,10 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include "bindings/command/points.h"
 #include "bindings/run/order.h"
+#include "bindings/run/system.h"
 
 #define TOGETHER_MAX 64 // states that are open at a time
 
@@ -383,19 +382,11 @@ static bool choose(points *p)
     return group(p, p->most);
 }
 
-static size_t peak_bytes(void)
-{
-    struct rusage use;
-    return getrusage(RUSAGE_SELF, &use) == 0 ? (size_t)use.ru_maxrss << 10 : 0;
-}
-
 // How many states may be open: an eighth of what may be reused has room for twice what the script and its scene take, by what
 // opening the first has added to the process.
 static int most_together(const points *p, size_t first_bytes)
 {
-    const size_t memory = p->run->request.reuse_memory ? p->run->request.reuse_memory
-                                                       : (size_t)sysconf(_SC_PHYS_PAGES) / 4 * (size_t)sysconf(_SC_PAGESIZE);
-    const size_t count = memory / 8 / (2 * first_bytes + 1);
+    const size_t count = glintL_run_reuse_bytes(p->run) / 8 / (2 * first_bytes + 1);
     return p->options->untrusted_s > 0 || count < 1 ? 1 : count < TOGETHER_MAX ? (int)count : TOGETHER_MAX;
 }
 
@@ -484,9 +475,9 @@ static points *create(cli_options *options, cli_output *output, glintL_run *run,
         return NULL;
     }
     *p = (points) { .options = options, .output = output, .run = run, .failed = failed };
-    const size_t before = peak_bytes();
+    const long long before = glintL_peak_bytes();
     *first = open_first(p);
-    p->most = most_together(p, peak_bytes() - before);
+    p->most = most_together(p, (size_t)(glintL_peak_bytes() - before));
     return p;
 }
 

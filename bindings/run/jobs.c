@@ -7,7 +7,10 @@
 
 #include "bindings/run/order.h"
 #include "bindings/run/sheet.h"
+#include "bindings/run/system.h"
 #include "bindings/run/walk.h"
+
+#define WAITING_MAX 4096 // frames that are planned before they are rendered
 
 // ---- What a script returned ----
 
@@ -85,6 +88,15 @@ static part open_part(glintL_run *run, int64_t frames)
     return p;
 }
 
+// Takes the next frame number, in the order of rendering. Returns whether this run renders the frame.
+static bool takes(const glintL_run *run, part *p, int64_t number)
+{
+    if (!glintL_selection_has(&run->request.selection, number))
+        return false;
+    p->place++;
+    return p->place >= p->from && p->place <= p->to;
+}
+
 // Whether the run renders several frames of the job at hand, whose first frame has that number, and may do so in any order.
 static bool may_reorder(const glintL_walk *walk, int64_t first, const part *p)
 {
@@ -110,10 +122,7 @@ static bool run_job(glintL_walk *walk, lua_Integer i, part *p)
     }
     for (int64_t place = 0; place < walk->job->frames && good; place++) {
         const int64_t n = glintL_order_frame(&order, place), number = first + n - 1;
-        if (!glintL_selection_has(&run->request.selection, number))
-            continue;
-        p->place++;
-        if (p->place < p->from || p->place > p->to)
+        if (!takes(run, p, number))
             continue;
         good = !run->interrupted && glintL_walk_settle(walk, i, first) && glintL_walk_render(walk, n, number);
         if (n == walk->job->frames)
@@ -128,6 +137,131 @@ static bool run_job(glintL_walk *walk, lua_Integer i, part *p)
     return good;
 }
 
+// ---- Animations of one scene, such as one for each shininess ----
+
+// Frames that are planned and not yet rendered. A plan is a snapshot, so the script builds all frames in the order of their
+// numbers, and the frames are rendered in the order that costs least.
+typedef struct waiting {
+    glintL_work **works; // owned; NULL: rendered, or not selected
+    int64_t frames, count; // of each job, of all
+    bool has_rendered; // some frame
+    bool in_order; // frames no longer wait
+    long long most_bytes; // of the process, while frames wait
+} waiting;
+
+// Returns how many jobs from job i on are animations of the same scene with the same number of frames, and may wait together.
+static lua_Integer count_together(const glintL_walk *walk, lua_Integer i)
+{
+    lua_State *L = walk->L;
+    const int top = lua_gettop(L);
+    const glintL_job *first = glintL_walk_get_job(L, walk->list, i);
+    lua_Integer j = i;
+    lua_rawgeti(L, walk->list, i);
+    lua_getiuservalue(L, top + 1, GLINTL_JOB_SCENE);
+    for (bool same = true; same; lua_settop(L, top + 2)) {
+        const glintL_job *job = lua_rawgeti(L, walk->list, ++j) == LUA_TNIL ? NULL : lua_touserdata(L, -1);
+        same = job && job->kind == GLINTL_JOB_ANIMATION && first->kind == job->kind && job->frames == first->frames;
+        if (same)
+            lua_getiuservalue(L, top + 3, GLINTL_JOB_SCENE);
+        same = same && lua_rawequal(L, top + 2, -1);
+    }
+    lua_settop(L, top);
+    return (j - i) * first->frames <= WAITING_MAX ? j - i : 1;
+}
+
+// Returns whether frames of the current job may be rendered after frames of later jobs.
+static bool may_wait(const glintL_walk *walk)
+{
+    const glintL_run *run = walk->run;
+    const char *pattern = walk->naming.pattern;
+    return !run->measures && !run->keeps_images && run->request.repeat == 1 && walk->render.derivative_count == 0 &&
+           !walk->naming.film && !(pattern && glintL_name_is_special(pattern));
+}
+
+// Returns whether the step to the same frame of the next job costs less than the step to the next frame.
+static bool costs_less_between_jobs(const waiting *w)
+{
+    double cost[2] = { 0, 0 };
+    int64_t steps[2] = { 0, 0 };
+    uint32_t stages;
+    for (int64_t at = 1; at < w->count; at++)
+        for (int between_jobs = 0; between_jobs < 2; between_jobs++) {
+            const int64_t before = at - (between_jobs ? w->frames : 1);
+            if (before < 0 || (!between_jobs && at % w->frames == 0) || !w->works[at] || !w->works[before])
+                continue;
+            cost[between_jobs] += glint_plan_work_after(w->works[at]->plan, w->works[before]->plan, &stages);
+            steps[between_jobs]++;
+        }
+    return steps[0] > 0 && steps[1] > 0 && cost[1] / (double)steps[1] < cost[0] / (double)steps[0];
+}
+
+// Renders the waiting frames. False: the run has failed.
+static bool render_waiting(glintL_walk *walk, waiting *w, const glint_scene *scene)
+{
+    glintL_run *run = walk->run;
+    const int64_t jobs = w->count / w->frames;
+    const bool transposed = costs_less_between_jobs(w);
+    const int failed = run->exit_code; // a later frame could not be planned: the frames before it are rendered all the same
+    bool good = !run->interrupted;
+    run->exit_code = GLINTL_EXIT_DONE;
+    for (int64_t i = 0; i < w->count; i++) {
+        glintL_work **work = &w->works[transposed ? i % jobs * w->frames + i / jobs : i];
+        good = good && (!*work || (!run->interrupted && glintL_work_run(run, *work, run->request.force)));
+        if (good && *work && scene)
+            glintL_look_for_black(run, scene, *work);
+        glintL_work_destroy(*work);
+        *work = NULL;
+    }
+    run->exit_code = run->exit_code ? run->exit_code : failed;
+    return good && !failed;
+}
+
+// Plans frame n of the current job, and renders it unless it can wait. The first frame never waits. False: the run has failed.
+static bool plan_waiting(glintL_walk *walk, waiting *w, int64_t at, int64_t n, int64_t number)
+{
+    if (w->has_rendered && !w->in_order && (!may_wait(walk) || glintL_peak_bytes() > w->most_bytes)) {
+        w->in_order = true;
+        if (!render_waiting(walk, w, glintL_walk_scene(walk)))
+            return false;
+    }
+    if (w->has_rendered && !w->in_order)
+        return (w->works[at] = glintL_walk_prepare(walk, n, number)) != NULL;
+    w->has_rendered = true;
+    const bool good = glintL_walk_render(walk, n, number);
+    w->most_bytes = w->most_bytes ? w->most_bytes : glintL_peak_bytes() + (long long)(glintL_run_reuse_bytes(walk->run) / 8);
+    return good;
+}
+
+// Renders `jobs` animations of one scene, from job i on. False: the run has failed.
+static bool run_together(glintL_walk *walk, lua_Integer i, lua_Integer jobs, part *p)
+{
+    glintL_run *run = walk->run;
+    const glint_scene *scene = NULL;
+    waiting w = { .frames = glintL_walk_get_job(walk->L, walk->list, i)->frames };
+    w.count = (int64_t)jobs * w.frames;
+    w.works = calloc((size_t)w.count, sizeof(glintL_work *));
+    bool good = w.works || glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    for (lua_Integer j = 0; j < jobs && good; j++) {
+        const int64_t first = run->count + 1;
+        glintL_walk_begin(walk, i + j);
+        good = glintL_walk_open_film(walk);
+        for (int64_t n = 1; n <= w.frames && good; n++) {
+            if (!takes(run, p, first + n - 1))
+                continue;
+            good = !run->interrupted && glintL_walk_settle(walk, i + j, first) &&
+                   plan_waiting(walk, &w, j * w.frames + n - 1, n, first + n - 1);
+            if (n == w.frames)
+                walk->settled = i + j;
+        }
+        run->count += w.frames;
+        scene = glintL_walk_scene(walk);
+        lua_settop(walk->L, walk->job_index - 1);
+    }
+    good = w.works && render_waiting(walk, &w, scene) && good;
+    free(w.works);
+    return good;
+}
+
 bool glintL_jobs_run(lua_State *L, int index, glintL_run *run)
 {
     glint_error error;
@@ -138,8 +272,10 @@ bool glintL_jobs_run(lua_State *L, int index, glintL_run *run)
     bool good = !run->exit_code && glintL_run_open(run, &error);
     if (!good && !run->exit_code)
         glintL_run_fail(run, glintL_run_exit_code(error.status), 0, "%s", error.message);
-    for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, walk->list) && good; i++)
-        good = run_job(walk, i, &p);
+    for (lua_Integer i = 1, jobs = 1; i <= (lua_Integer)lua_rawlen(L, walk->list) && good; i += jobs) {
+        jobs = count_together(walk, i);
+        good = jobs > 1 ? run_together(walk, i, jobs, &p) : run_job(walk, i, &p);
+    }
     run->earlier += good ? 1 : 0;
     lua_settop(L, top);
     return good;

@@ -332,6 +332,7 @@ glintL_run **glintL_new_run_box(lua_State *L, lua_CFunction collect);
 /// Lets `L` use a run that the caller owns and keeps longer than `L`.
 void glintL_attach_run(lua_State *L, glintL_run *run);
 double glintL_now_ms(void);
+size_t glintL_run_reuse_bytes(const glintL_run *run); ///< memory for cached results: --reuse-memory, or a quarter of the machine's
 /// Returns the exit code of a script's error: lack of memory is not the script's fault, unless it has its own limit.
 static inline int glintL_script_exit(const glintL_run *run, int status)
 {

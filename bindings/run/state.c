@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "bindings/run/run.h"
 
@@ -16,6 +17,12 @@ double glintL_now_ms(void)
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+size_t glintL_run_reuse_bytes(const glintL_run *run)
+{
+    const size_t machine = (size_t)sysconf(_SC_PHYS_PAGES) / 4 * (size_t)sysconf(_SC_PAGESIZE);
+    return run->request.reuse_memory ? run->request.reuse_memory : machine;
 }
 
 glintL_run **glintL_new_run_box(lua_State *L, lua_CFunction collect)

@@ -317,16 +317,21 @@ glintL_work *glintL_walk_plan(glintL_walk *walk, int64_t n, int64_t number)
     return work;
 }
 
-bool glintL_walk_render(glintL_walk *walk, int64_t n, int64_t number)
+glintL_work *glintL_walk_prepare(glintL_walk *walk, int64_t n, int64_t number)
 {
     glint_error error;
     glintL_work *work = glintL_walk_plan(walk, n, number);
-    if (!work)
-        return false;
-    bool good = glintL_work_name(work, &walk->naming, &error) == GLINT_OK;
-    if (!good)
-        glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, number, "%s", error.message);
-    good = good && glintL_work_run(walk->run, work, walk->run->request.force);
+    if (!work || glintL_work_name(work, &walk->naming, &error) == GLINT_OK)
+        return work;
+    glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, number, "%s", error.message);
+    glintL_work_destroy(work);
+    return NULL;
+}
+
+bool glintL_walk_render(glintL_walk *walk, int64_t n, int64_t number)
+{
+    glintL_work *work = glintL_walk_prepare(walk, n, number);
+    const bool good = work && glintL_work_run(walk->run, work, walk->run->request.force);
     if (good)
         glintL_look_for_black(walk->run, glintL_walk_scene(walk), work);
     glintL_work_destroy(work);

@@ -40,6 +40,8 @@ glint_scene *glintL_walk_open_scene(glintL_walk *walk, int64_t number); ///< NUL
 bool glintL_walk_moves(glintL_walk *walk);
 /// Sets the scene to frame n and plans it. NULL: the run has failed.
 glintL_work *glintL_walk_plan(glintL_walk *walk, int64_t n, int64_t number);
+/// Plans frame n and names its files. NULL: the run has failed.
+glintL_work *glintL_walk_prepare(glintL_walk *walk, int64_t n, int64_t number);
 /// Plans and renders frame n. False: the run has failed.
 bool glintL_walk_render(glintL_walk *walk, int64_t n, int64_t number);
 

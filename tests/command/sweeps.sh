@@ -127,6 +127,38 @@ echo 'local = 3' >syntax.lua
 exits 2 "a script that fails at every value" syntax.lua --sweep n=1:100:100 -q
 check "says so once" test "$(wc -l <err)" -eq 1
 
+# ---- A list of animations of one scene: frame 1 of each, then frame 2, where that is cheaper ----
+
+cat >list.lua <<'LUA'
+local glint, S = require "glint", require "S"
+local P = glint.params { broken = 0, frames = 3 }
+local list = {}
+for i, shininess in ipairs { 5, 50, 500 } do
+  list[i] = glint.animation { scene = S.scene, frames = i < 3 and 3 or P.frames, width = 48, height = 32, frame = function(t, n)
+    if i == 1 then S.lamp.intensity = 1 - n / 9 end -- the last frame's value is that of all later animations
+    S.lamp.position, S.red.shininess = { 3 * t, 9, 1 }, shininess
+    if 3 * i - 3 + n == P.broken then error "broken" end
+  end }
+end
+return list
+LUA
+rm -rf plain
+for n in $(seq 9); do "$GLINT" list.lua -f "$n" --no-reuse -o 'plain/%02d.png' -q 2>err || fail "frame $n: $(cat err)"; done
+check "frame 1 of each animation, then frame 2" test "$(order list.lua -o 'list/%02d.png')" = "1 4 7 2 5 8 3 6 9 "
+same "the pictures of single frames" list
+for shard in 3 1 2; do check "shard $shard of 3" "$GLINT" list.lua --shard $shard/3 -o 'parts/%02d.png' -q; done
+same "shards have every frame once" parts
+check "a second run keeps them" test "$("$GLINT" list.lua --json -q -o 'plain/%02d.png' | grep -c '"status":"kept"')" -eq 9
+exec 3<>pipe
+check "a pipe gets frames as numbered" test "$(order list.lua -o pipe)" = "1 2 3 4 5 6 7 8 9 "
+exec 3>&-
+check "little memory" "$GLINT" list.lua -o 'list/%02d.png' --reuse-memory 1K -q
+same "has the same pictures" list
+check "animations of different lengths" test "$(order list.lua --set frames=2 -o none)" = "1 4 2 5 3 6 7 8 "
+exits 2 "a frame that fails" list.lua --set broken=6 -o 'some/%02d.png' -q
+says "is named" 'frame 6: .*broken'
+check "the frames before it are there" test "$(ls some | tr '\n' ' ')" = "01.png 02.png 03.png 04.png 05.png "
+
 # ---- Random sweeps over three axes, in lists, in shards, and resumed after a kill, give the same as without reuse ----
 
 cat >random.lua <<'LUA'
@@ -145,8 +177,14 @@ local function sweep(name)
   return glint.sweep { scene = S.scene, width = 48, height = 32, over = over }
 end
 S.lamp.intensity = P.strength
-return { sweep(), glint.animation { scene = S.scene, width = 48, height = 32, frames = 6, cyclic = true,
-  frame = function(t, n) S.red.shininess = n % 2 + 5; S.lamp.x = n % 3 end }, sweep() }
+local function film(shininess)
+  return glint.animation { scene = S.scene, width = 48, height = 32, frames = 6, cyclic = true, frame = function(t, n)
+    if shininess == 5 then S.camera.fov = 40 + n % 2 end
+    S.red.shininess = n % 2 + shininess
+    S.lamp.x = n % 3
+  end }
+end
+return { sweep(), film(5), film(50), film(500), sweep() }
 LUA
 for seed in 1 2 3; do
     random=(random.lua --set "seed=$seed" --sweep strength=1,0.5 -q)
