@@ -19,14 +19,14 @@ bool cli_add_set(glintL_request *request, const char *name, const char *text)
     return true;
 }
 
-// Names of options in other programs.
+// Names of options in other programs, with glint's name.
 static const char *const MEANINGS[][2] = {
     { "width", "size" }, { "height", "size" }, { "resolution", "size" }, { "param", "set" }, { "parameter", "set" },
     { "spp", "samples" }, { "antialias", "samples" }, { "aa", "samples" }, { "jobs", "threads" }, { "cores", "threads" },
     { "name", "output" }, { "overwrite", "force" }, { "silent", "quiet" }, { "crop", "region" }, { "gamma", "transfer" }, { "depth", "bits" },
 };
 
-// The option that a misspelt name means, or NULL.
+// Returns the option that a misspelt name means, or NULL.
 static const char *nearest_option(const char *name)
 {
     const char *near = NULL;
@@ -54,10 +54,10 @@ static bool complain_unknown(const char *text, char *message)
     return false;
 }
 
-// getopt_long returned '?' or ':'.
+// Writes the message when getopt_long returned '?' or ':'.
 static bool complain(int what, const char *given, int code, char *message)
 {
-    if (code > 0xff) { // one of ours: its text is missing, or it takes none
+    if (code > 0xff) { // a long option of ours: its value is missing, or it takes none
         const char *name = cli_option_list[code - 0x100].name;
         snprintf(message, MESSAGE, "--%s: %s", name, what == ':' ? "a value is missing" : "it takes no value");
         return false;
@@ -90,8 +90,7 @@ static int argument_of(const cli_option *option)
 
 static bool is_number(const char *word) { return *word && word[strspn(word, "0123456789")] == '\0'; }
 
-// Reads the options wherever they stand; `used` marks those given. getopt_long moves the other words to the end.
-// Options of which both values would be meant.
+// Returns whether a second use of the option is an error, because both values would be meant.
 static bool is_given_once(const cli_option *option)
 {
     static const char *const names[] = { "output", "frames", "shard", "passes", "region" };
@@ -200,7 +199,7 @@ static bool read_words(int count, char **words, cli_options *options, char *mess
     return false;
 }
 
-// -o is checked here for the commands that take a picture's or a film's name.
+// Checks -o for the commands whose output is a picture or a film.
 static bool check_output(cli_options *options, char *message)
 {
     char wrong[MESSAGE];
@@ -220,7 +219,7 @@ static bool check_output(cli_options *options, char *message)
     return false;
 }
 
-// An untrusted script writes pictures into one folder.
+// Checks that an untrusted script writes its pictures to one folder.
 static bool check_untrusted(const cli_options *options, char *message)
 {
     const char *output = options->output;
@@ -240,7 +239,7 @@ static bool check_untrusted(const cli_options *options, char *message)
     return false;
 }
 
-// Standard input is there once, and has no folder.
+// Rejects uses of standard input that need to read it twice or need its folder.
 static bool check_input(const cli_options *options, char *message)
 {
     if (!options->script || strcmp(options->script, "-") != 0 ||
@@ -302,7 +301,8 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
     return check_auto(options, message) && cli_check_dialect(options, message);
 }
 
-// Adds the swept parameters to those that are set, and -s -e -j as a range. --help shows the defaults of the swept parameters.
+// Adds the swept parameters to the set ones, and turns -s -e -j into a range. --help shows the defaults of the swept
+// parameters.
 static bool complete(cli_options *options, char *message)
 {
     bool good = true;
@@ -332,9 +332,9 @@ bool cli_read_options(int argc, char **argv, cli_options *options, char message[
     int words = argc;
     for (int i = 1; i < words; i++) {
         if (strcmp(argv[i], "--") == 0)
-            words = i; // what follows is the script's
+            words = i; // the words after this belong to the script
         else if (strcmp(argv[i], "--json") == 0)
-            options->json = true; // so that an error here is an event, too
+            options->json = true; // so that an error here is also an event
     }
     if (!read_argv(words, argv, options, used, message) ||
         !read_words(words - optind, argv + optind, options, message) || !check_together(options, used, message) ||

@@ -1,11 +1,11 @@
-// glint completion bash|zsh|fish: what the shell completes, made from the tables of commands and options.
+// glint completion bash|zsh|fish: completions for the shell, generated from the tables of commands and options.
 #include <string.h>
 
 #include "bindings/command/cli.h"
 
 typedef enum argument { WORD, FILES, CHOICES } argument;
 
-// The completions of an option's value, separated by blanks; "": anything, CLI_SUGGEST_FILES: file names.
+// Writes the completions of an option's value, separated by spaces. "": anything; CLI_SUGGEST_FILES: file names.
 static void find_offers(const cli_option *option, char out[256])
 {
     size_t used = 0;
@@ -38,7 +38,7 @@ static void print_choices(FILE *out, const cli_option *option)
     fputs(offers, out);
 }
 
-// The names of all commands that know the option; of all commands when it is NULL.
+// Prints the names of all commands that accept the option; of all commands when it is NULL.
 static void print_commands(FILE *out, const cli_option *option, const char *between)
 {
     bool first = true;
@@ -117,7 +117,7 @@ static void print_bash(FILE *out)
 
 // ---- zsh ----
 
-// Within single quotes; a ':' or a bracket would end a part of the line.
+// Prints help within single quotes, without ':' and brackets, which would end a part of the line.
 static void print_zsh_help(FILE *out, const char *help)
 {
     for (; *help; help++)

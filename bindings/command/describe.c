@@ -1,4 +1,4 @@
-// glint describe SCRIPT and glint SCRIPT --help: the script's parameters and the comment it begins with.
+// glint describe SCRIPT and glint SCRIPT --help: the script's parameters and its leading comment.
 #include "bindings/command/cli.h"
 #include "bindings/run/carried.h"
 
@@ -8,7 +8,7 @@ static const unsigned char DESCRIBE_LUA[] = {
 static const glintL_carried MODULE = { "@describe.lua", DESCRIBE_LUA, sizeof DESCRIBE_LUA };
 
 typedef struct description {
-    lua_State *script; // the list of parameters is on top of its stack
+    lua_State *script; // has the list of parameters on top of its stack
     const cli_options *options;
     const glintL_run *run;
     FILE *out;
@@ -32,7 +32,7 @@ static void push_description(lua_State *L, const void *context)
     lua_setfield(L, -2, "path");
 }
 
-// May raise, in the script's state.
+// Prints the description. May raise in the script's state.
 static void print(const description *what, const char *function, void (*push)(lua_State *L, const void *context))
 {
     char message[GLINTL_MESSAGE_SIZE];

@@ -1,10 +1,10 @@
--- Prints the comment at the beginning of a script and its parameters, for people or for programs (glint describe).
+-- Prints the leading comment of a script and its parameters, for people or as JSON (glint describe).
 local the = ...
 local json = the.json
 
--- The comment at the top of the file, without its dashes.
+-- Returns the leading comment of the file without its dashes.
 local function comment_of(path)
-  local file <close> = assert(io.open(path)) -- it has run
+  local file <close> = assert(io.open(path)) -- the script has run, so it exists
   local out, is_block = {}, false
   for line in file:lines() do
     line = line:gsub("\r+$", "")
@@ -17,7 +17,7 @@ local function comment_of(path)
       if last then break end
     elseif line:sub(1, 2) == "--" then
       out[#out + 1] = line:match "^%-%- ?(.*)"
-    elseif #out > 0 or line:sub(1, 1) ~= "#" then -- which is for the shell
+    elseif #out > 0 or line:sub(1, 1) ~= "#" then -- a line for the shell
       break
     end
   end
@@ -30,7 +30,7 @@ local function choices_of(spec, spell, between)
   return table.concat(out, between)
 end
 
--- The parameters as a JSON list.
+-- Returns the parameters as a JSON list.
 function the.params(params)
   local list = {}
   for i, spec in ipairs(params) do

@@ -1,4 +1,4 @@
-// glint --dialect gr: scenes of a course's dialect, run by the modules of scripts/lib that the command carries with it.
+// glint --dialect gr: runs scenes in the dialect of a course with the modules of scripts/lib that the command carries.
 #include <string.h>
 
 #include "bindings/command/cli.h"
@@ -69,7 +69,7 @@ static const struct carried {
 
 typedef struct code_buffer {
     luaL_Buffer buffer;
-    bool begun; // once the function that is dumped need not be on top of the stack
+    bool begun; // luaL_buffinit changes the stack; lua_dump needs the function on top until its first call
 } code_buffer;
 
 static int add_code(lua_State *L, const void *bytes, size_t size, void *context)
@@ -82,7 +82,7 @@ static int add_code(lua_State *L, const void *bytes, size_t size, void *context)
     return 0;
 }
 
-// Without the numbers of its lines: errors and warnings are then at the nearest line of the scene.
+// Removes line numbers from the module, so that errors and warnings name the nearest line of the scene.
 static void strip(lua_State *L)
 {
     code_buffer code = { .begun = false };
@@ -123,7 +123,7 @@ static int set_option(lua_State *L)
     return 0;
 }
 
-// Sets an option of the module whose options are on top of the stack; what it says against it is the option's error.
+// Sets an option of the module whose options are on top of the stack. The module's error becomes the option's error.
 static void pass_option(lua_State *L, const char *name, const char *text)
 {
     if (!text)

@@ -8,7 +8,7 @@
 
 #define CLIPPED_HINT 0.1 // share of clipped pixels above which a picture looks washed out
 
-// Ends a line of data. A reader that has gone, or a full disk, ends the run.
+// Ends a line of data. If the reader has gone or the disk is full, the run ends.
 void cli_end_line(cli_output *output)
 {
     fputc('\n', output->data);
@@ -102,7 +102,7 @@ static void print_frame_json(cli_output *output, const glintL_record *record)
         fputs(",\"shifted\":", out);
         glintL_json_number(out, (double)record->stats.shifted / record->pixel_count);
     }
-    if (record->kept) { // its pixels were not looked at
+    if (record->kept) { // its pixels were not read
         fputs(",\"clipped\":null,\"nonfinite\":null}", out);
     } else {
         fputs(",\"clipped\":", out);
@@ -114,7 +114,7 @@ static void print_frame_json(cli_output *output, const glintL_record *record)
 
 // ---- Frames for people ----
 
-// Kept frames get one line for each run of them, printed when it has ended.
+// Prints one line for each range of kept frames, after its last frame.
 static void print_kept(cli_output *output)
 {
     if (output->kept_first == 0)
@@ -265,7 +265,7 @@ void cli_warn_clipped(glintL_run *run)
                         100 * clipped);
 }
 
-// Tells the numbered names that a name without a number was changed to, because the job has several frames.
+// Prints the numbered names that replace a name without a number, because the job has several frames.
 static void print_numbering(const glintL_run *run)
 {
     const char *name = run->request.render_text[glintL_render_find("output")];

@@ -1,4 +1,4 @@
-// glint explain SCRIPT: the plan of one frame: its effects and who called for them, its stages, the rays to expect.
+// glint explain SCRIPT: the plan of one frame: its effects and what requires them, its stages, the expected rays.
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@ static void print_frame(FILE *out, const glintL_run *run, const glint_render_des
             desc->precision == GLINT_FLOAT ? "float" : "double");
 }
 
-// `"first":"...","second":"..."`
+// Prints `"first":"...","second":"..."`.
 static void print_pair(FILE *out, const char *first, const char *value, const char *second, const char *other)
 {
     fprintf(out, "\"%s\":", first);
@@ -22,7 +22,7 @@ static void print_pair(FILE *out, const char *first, const char *value, const ch
     glintL_json_string(out, other);
 }
 
-// The stages that each axis of the sweep runs again, and the order of the axes.
+// Prints the stages that each axis of the sweep runs again, and the order of the axes.
 static void print_order(FILE *out, const glintL_order *order)
 {
     fputs("\nsweep\n  axes: ", out);
@@ -33,7 +33,7 @@ static void print_order(FILE *out, const glintL_order *order)
     fputc('\n', out);
 }
 
-// `,"sweep":{"axes":[{"name":"lamp.position","stages":"light, occlude, shade"}],"order":["lamp.position"]}`
+// Prints `,"sweep":{"axes":[{"name":"lamp.position","stages":"light, occlude, shade"}],"order":["lamp.position"]}`.
 static void print_order_json(FILE *out, const glintL_order *order)
 {
     fputs(",\"sweep\":{\"axes\":[", out);
@@ -77,7 +77,7 @@ static void print_for_people(FILE *out, const glintL_run *run)
         print_order(out, run->explain_order);
 }
 
-// The instructions of each program, a line each.
+// Prints the instructions of each program, one per line.
 static void print_programs(FILE *out, const glint_plan *plan)
 {
     glint_program_use use;
@@ -95,8 +95,8 @@ static void print_programs(FILE *out, const glint_plan *plan)
     }
 }
 
-// `,"programs":[{"material":"floor","field":"diffuse","instructions":3,"rows":2,"listing":"..."}]`; the scene's own has no
-// material
+// Prints `,"programs":[{"material":"floor","field":"diffuse","instructions":3,"rows":2,"listing":"..."}]`. The scene's
+// own programs have no material.
 static void print_programs_json(FILE *out, const glint_plan *plan)
 {
     glint_program_use use;
@@ -156,8 +156,8 @@ static void print_json(FILE *out, const glintL_run *run, bool programs)
     fputs("}\n", out);
 }
 
-// Plans the frame of a script that is run for each value of --sweep, and finds its order. False: the script fails at some
-// value, which is reported, or the run has failed.
+// Runs the script for each value of --sweep, plans the frame, and finds the order. False: the script failed at some
+// value, which was reported, or the run has failed.
 static bool explain_points(cli_options *options, cli_output *output, glintL_run *run)
 {
     cli_script script;
@@ -169,7 +169,7 @@ static bool explain_points(cli_options *options, cli_output *output, glintL_run 
     if (run->exit_code || run->interrupted || !frames)
         return true;
     if (point > cli_sweep_points(options)) {
-        run->count = frames * cli_sweep_points(options); // for the message
+        run->count = frames * cli_sweep_points(options); // number of frames, for the message
         return true;
     }
     if (point > 1) {
@@ -185,7 +185,7 @@ int cli_explain(cli_options *options, cli_output *output, glintL_run *run)
 {
     run->mode = GLINTL_MODE_EXPLAIN;
     run->explain_frame = options->frame;
-    glintL_selection_clear(&run->request.selection); // --frame is not a selection here
+    glintL_selection_clear(&run->request.selection); // here --frame is not a selection
     bool good = true;
     if (options->sweep_count) {
         good = explain_points(options, output, run);

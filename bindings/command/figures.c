@@ -1,4 +1,4 @@
-// glint sheet FILES -o SHEET and glint assemble FILES -o FILM: figures of finished frames.
+// glint sheet FILES -o SHEET and glint assemble FILES -o FILM: figures made from finished frames.
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,10 +17,10 @@ static int refuse(cli_output *output, int code, const char *command, const char 
 static double dpi_of(const cli_options *options)
 {
     const char *text = options->request.render_text[glintL_render_find("dpi")];
-    return text ? strtod(text, NULL) : 0; // which was checked when it was read
+    return text ? strtod(text, NULL) : 0; // checked when the option was read
 }
 
-// A number and the comma or the end after it; NULL: it is none.
+// Reads a number and the comma or end after it; NULL: there is no number.
 static const char *read_end(const char *text, double *out)
 {
     char *end;
@@ -28,7 +28,7 @@ static const char *read_end(const char *text, double *out)
     return end > text && (*end == ',' || *end == '\0') ? end : NULL;
 }
 
-// False: no map has that name, and the message says so.
+// Finds the map with this name. False: there is none, and the message says so.
 static bool find_map(const char *name, glint_colormap *out, char message[GLINTL_MESSAGE_SIZE])
 {
     const char *near = NULL;
@@ -44,7 +44,7 @@ static bool find_map(const char *name, glint_colormap *out, char message[GLINTL_
     return false;
 }
 
-// MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE. False: it is neither, and the message says so.
+// Reads MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE. False: it is neither, and the message says so.
 static bool read_colorbar(const char *text, glint_overlay_desc *bar, char message[GLINTL_MESSAGE_SIZE])
 {
     char map[32];
@@ -104,7 +104,7 @@ int cli_sheet(const cli_options *options, cli_output *output)
     return code;
 }
 
-// Returns what is wrong with the film, before its frames are read; NULL when nothing is.
+// Returns what is wrong with the film, before its frames are read; NULL: nothing.
 static const char *check_film(const cli_options *options, const glintL_film *film)
 {
     if (!options->output || film->kind == GLINTL_FILM_NONE)

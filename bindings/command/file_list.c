@@ -1,4 +1,5 @@
-// The files that a command's words name: themselves, or all that fit a pattern such as "frame_%04d.png".
+// The files that a command's words name: the words themselves, or all files that match a pattern such as
+// "frame_%04d.png".
 #include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
@@ -8,7 +9,7 @@
 
 #include "bindings/command/cli.h"
 
-// The numbers of the files that fit the pattern, which has one place for a number, in the last part of the path.
+// Finds the numbers of the files that match the pattern, which has one number in the last part of the path.
 static bool find_numbers(const char *pattern, int64_t **numbers, size_t *count, char *message)
 {
     char folder[GLINTL_PATH_SIZE], made[GLINTL_PATH_SIZE];
@@ -65,7 +66,7 @@ static void add_range(char *message, int64_t first, int64_t last, bool *any)
     *any = true;
 }
 
-// Whether every wanted number from `first` to `last` is there; the message names those that are not.
+// Returns whether every wanted number from `first` to `last` exists. The message names the missing ones.
 static bool check_gaps(const char *pattern, const int64_t *numbers, size_t count, const glintL_selection *selection,
                        int64_t first, int64_t last, char *message)
 {
@@ -88,7 +89,7 @@ static bool check_gaps(const char *pattern, const int64_t *numbers, size_t count
     return !any;
 }
 
-// The last number that a selection names; 0: it is open, or there is none.
+// Returns the last number that a selection names; 0: the selection is open-ended or empty.
 static int64_t last_request(const glintL_selection *selection)
 {
     int64_t last = 0;
@@ -100,7 +101,7 @@ static int64_t last_request(const glintL_selection *selection)
     return last;
 }
 
-// The number that a file's name ends with, before its ending; -1: none.
+// Returns the number at the end of a file's name, before its extension; -1: none.
 static int64_t number_of(const char *path)
 {
     const char *name = cli_base_name(path), *ending = strrchr(name, '.');
@@ -129,7 +130,7 @@ static bool add_file(cli_file_list *out, const char *path, int64_t number, char 
     return true;
 }
 
-// A word with shell's wildcards in it that no shell has taken apart.
+// Returns whether a word contains shell wildcards that no shell has expanded.
 static bool is_quoted_wildcard(const char *word, char *message)
 {
     struct stat info;
@@ -140,7 +141,7 @@ static bool is_quoted_wildcard(const char *word, char *message)
     return true;
 }
 
-// Whether a figure would take the place of a file it is made of.
+// Returns whether a figure would overwrite a file that it is made of.
 static bool is_among(const cli_file_list *list, const char *output, char *message)
 {
     struct stat out, file;

@@ -1,4 +1,4 @@
-// glint join PARTS -o PICTURE: what --region has rendered becomes the whole frame, byte for byte.
+// glint join PARTS -o PICTURE: joins pictures rendered with --region into the whole frame, byte for byte.
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,8 +10,8 @@ typedef struct join {
     cli_file_list list;
     glint_picture **pictures; // owned
     glint_picture_part *parts;
-    glintL_render render; // of the whole, by the first part's options
-    char *options; // of its file; owned
+    glintL_render render; // of the whole frame, from the first part's options
+    char *options; // of the whole frame's file; owned
     char *message;
 } join;
 
@@ -63,7 +63,7 @@ static bool complain(join *j, const char *path, const char *what)
     return false;
 }
 
-// Reads part number i and finds its place.
+// Reads part number i and its position.
 static bool read_part(join *j, size_t i)
 {
     glint_error error;
@@ -92,7 +92,7 @@ static bool read_part(join *j, size_t i)
 
 // ---- The whole ----
 
-// Writes the text entries of the whole frame's file, in their order.
+// Lists the text entries of the whole frame's file, in their order.
 static size_t list_texts(const join *j, glint_text texts[GLINTL_TEXT_COUNT])
 {
     static const char *const keywords[] = { "Software",     "glint:key",    "glint:script", "glint:source",

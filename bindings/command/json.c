@@ -1,4 +1,4 @@
-// Spelling numbers and strings for JSON.
+// Writes numbers and strings as JSON.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +22,7 @@ void glintL_json_number(FILE *out, double value)
     fputs(text, out);
 }
 
-// Bytes of the UTF-8 character at `text`; 0: it is not well formed.
+// Returns the bytes of the UTF-8 character at `text`; 0: it is not well formed.
 static size_t character_length(const unsigned char *text)
 {
     static const unsigned least[5] = { 0, 0, 0x80, 0x800, 0x10000 };
@@ -54,7 +54,7 @@ void glintL_json_string(FILE *out, const char *text)
         else if (*at < 0x20 || *at == 0x7f)
             fprintf(out, "\\u%04x", *at);
         else if (length == 0)
-            fputs("\\ufffd", out); // a byte that is no UTF-8: paths may have them
+            fputs("\\ufffd", out); // not UTF-8: paths may contain such bytes
         else
             fwrite(at, 1, length, out);
         at += length ? length : 1;

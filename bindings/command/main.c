@@ -35,7 +35,7 @@ static int run_command(cli_options *options, cli_output *output, glintL_run *run
     }
 }
 
-// A script that calls os.exit ends the process from inside: finished pictures are still written.
+// For a script that calls os.exit, which ends the process inside the run: finished pictures are still written.
 static cli_output *open_output;
 
 static void finish_early(void)
@@ -69,7 +69,7 @@ static int run_scripted(cli_options *options, cli_output *output, int *signal_nu
     run->is_command = true;
     run->times_stages = options->json && options->command == CLI_RENDER;
     snprintf(run->script, sizeof run->script, "%s", options->script ? cli_base_name(options->script) : "");
-    run->request = options->request; // which now owns what it points to
+    run->request = options->request; // now owns the memory that it points to
     options->request.sets = NULL;
     options->request.folder = NULL;
     options->request.selection.ranges = NULL;
@@ -123,7 +123,7 @@ int main(int argc, char **argv)
     cli_output output;
     char message[GLINTL_MESSAGE_SIZE];
     int code = GLINTL_EXIT_USAGE, signal_number = 0;
-    glintL_keep_points(); // a script may call os.setlocale
+    glintL_keep_points(); // a script may have called os.setlocale
     bool good = cli_read_options(argc, argv, &options, message);
     if (!cli_output_open(&output, &options))
         return GLINTL_EXIT_FAILED;
@@ -133,7 +133,7 @@ int main(int argc, char **argv)
         cli_report_error(&output, 0, code, message);
     int close_code = cli_output_close(&output);
     cli_free_options(&options);
-    if (signal_number) { // so that a shell sees how it ended
+    if (signal_number) { // ends by the same signal, so that a shell sees it
         signal(signal_number, SIG_DFL);
         raise(signal_number);
     }

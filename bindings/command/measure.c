@@ -1,13 +1,14 @@
-// --exposure auto, --colormap MAP:auto: finds one exposure and one range for all pictures of a script, in a first run that writes no picture.
+// --exposure auto, --colormap MAP:auto: finds one exposure and one range for all pictures of a script, in a first run
+// that writes no picture.
 //
-// The first run renders every frame, whatever -f, --shard, --region and earlier runs leave to do, so that each part of a job finds
-// the same numbers.
+// The first run renders every frame, even those that -f, --shard, --region and earlier runs exclude, so that every part
+// of a job finds the same values.
 #include <inttypes.h>
 #include <math.h>
 
 #include "bindings/command/cli.h"
 
-// Silences print and io.write: the second run prints. os.exit ends the first run as the script's last line would.
+// Silences print and io.write, since the second run prints. os.exit ends the first run like the end of the script.
 void cli_hush_script(lua_State *L)
 {
     static const char text[] = "print = function() end\n"
@@ -68,7 +69,7 @@ static void take_exposure(cli_options *options, cli_output *output, glintL_run *
     report_exposure(output, stops, seen);
 }
 
-// Without a range there is nothing to show in colours, which a warning says.
+// Sets the range. Without one there is nothing to show in colours, and a warning says so.
 static void take_range(cli_options *options, cli_output *output, glintL_run *run, const double range[2])
 {
     const char **text = &run->request.render_text[glintL_render_find("colormap")];

@@ -1,4 +1,4 @@
-// glint new NAME: writes a folder with a first scene and the types for editors; NAME.lua: only the scene.
+// glint new NAME: writes a folder with a first scene and the type definitions for editors; NAME.lua: only the scene.
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,7 +65,7 @@ static int refuse(cli_output *output, int code, const char *path, const char *wh
     return code;
 }
 
-// Ends a file that was begun; one that is not whole goes. 0 or an errno.
+// Closes a new file, and removes it if it is incomplete. Returns 0 or an errno.
 static int finish(FILE *file, const char *path)
 {
     int code = ferror(file) ? EIO : 0;
@@ -76,7 +76,7 @@ static int finish(FILE *file, const char *path)
     return code;
 }
 
-// Writes the script where nothing is. 0 or an errno.
+// Writes the script unless the file exists. Returns 0 or an errno.
 static int write_script(const char *path)
 {
     const char *name = cli_base_name(path);
@@ -87,7 +87,7 @@ static int write_script(const char *path)
     return finish(file, path);
 }
 
-// Finds the folder of the editor's types: PREFIX/share/glint, or the folder next to a build. False: none.
+// Finds the folder of type definitions: PREFIX/share/glint, or the folder next to a build. False: not found.
 static bool find_types(const char *program, char out[GLINTL_PATH_SIZE])
 {
     static const char *const places[] = { "../share/glint", "meta" };

@@ -1,4 +1,4 @@
-// The options: what each takes, checked before the script runs.
+// The options: how each is read, and checked before the script runs.
 #include <errno.h>
 #include <float.h>
 #include <inttypes.h>
@@ -14,7 +14,7 @@
 #define ALL (SHOWN | FILES | CLI_PUBLISH | CLI_COMPLETION | CLI_HELP)
 #define MESSAGE GLINTL_MESSAGE_SIZE
 
-// Which fields of scene:render{} relight has options of: what becomes of light.
+// The fields of scene:render{} that relight accepts as options: those about the picture, after the light is known.
 enum {
     RELIGHTS_samples, RELIGHTS_seed = 0, RELIGHTS_precision = 0, RELIGHTS_alpha = 0, RELIGHTS_outline = 0,
     RELIGHTS_visibility = 0, RELIGHTS_bits = CLI_RELIGHT, RELIGHTS_transfer = CLI_RELIGHT, RELIGHTS_rounding = CLI_RELIGHT,
@@ -36,7 +36,7 @@ static bool read_whole(const char *text, int64_t min, int64_t max, int64_t *out,
     return false;
 }
 
-// Where the row says the value goes.
+// Returns the member for the value, at the offset in the option's row.
 static void *place_of(cli_options *options, const cli_option *option) { return (char *)options + option->at; }
 
 static bool read_flag(cli_options *options, const cli_option *option, char *text, char *message)
@@ -79,7 +79,7 @@ static bool read_real(cli_options *options, const cli_option *option, char *text
     return false;
 }
 
-// Which of the words "show|error|none" the text is, from 0; -1: none, and `message` is written.
+// Returns which of the words "show|error|none" the text is, from 0; -1: none, and writes the message.
 static int find_word(const cli_option *option, const char *text, char *message)
 {
     const size_t length = strlen(text);
@@ -129,7 +129,7 @@ static bool read_shard(cli_options *options, const cli_option *option, char *tex
     return glintL_selection_parse_shard(&options->request.selection, text, message);
 }
 
-// An option of the same name as a field of scene:render{}; without a text it is a switch.
+// Reads an option that has the name of a field of scene:render{}. Without a text it is a switch.
 static bool read_render(cli_options *options, const cli_option *option, char *text, char *message)
 {
     glintL_render scratch = glintL_render_default();
@@ -139,7 +139,7 @@ static bool read_render(cli_options *options, const cli_option *option, char *te
     return glintL_render_set_text(&scratch, field, value, message);
 }
 
-// --exposure takes "auto", too.
+// Reads --exposure, which also accepts "auto".
 static bool read_exposure(cli_options *options, const cli_option *option, char *text, char *message)
 {
     options->finds_exposure = strcmp(text, "auto") == 0;
@@ -149,13 +149,13 @@ static bool read_exposure(cli_options *options, const cli_option *option, char *
     return false;
 }
 
-// --colormap NAME:auto takes the range of all pictures.
+// Reads --colormap. NAME:auto takes the range of all pictures.
 static bool read_colormap(cli_options *options, const cli_option *option, char *text, char *message)
 {
     char *colon = strchr(text, ':');
     options->finds_range = colon && strcmp(colon, ":auto") == 0;
     if (options->finds_range)
-        *colon = '\0'; // the name ends there
+        *colon = '\0'; // ends the name
     return read_render(options, option, text, message);
 }
 
@@ -190,11 +190,11 @@ static bool read_set(cli_options *options, const cli_option *option, char *text,
         snprintf(message, MESSAGE, "out of memory");
         return false;
     }
-    *equals = '\0'; // the name ends there
+    *equals = '\0'; // ends the name
     return true;
 }
 
-// NAME=VALUE, whose parts bindings/relight looks at.
+// Reads NAME=VALUE. bindings/relight checks the parts.
 static bool read_light(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)option;
@@ -225,7 +225,7 @@ static bool read_sweep(cli_options *options, const cli_option *option, char *tex
     return cli_read_sweep(text, &grown[options->sweep_count++], message);
 }
 
-// A size such as 512M, in bytes. 0 keeps nothing.
+// Reads a size such as 512M, in bytes. 0 turns caching off.
 static bool read_memory(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)option;
@@ -246,7 +246,7 @@ static bool read_memory(cli_options *options, const cli_option *option, char *te
     return true;
 }
 
-// The page's port; without a number any free one.
+// Reads the page's port; without a number, any free port.
 static bool read_port(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)option;
@@ -257,7 +257,7 @@ static bool read_port(cli_options *options, const cli_option *option, char *text
     return true;
 }
 
-// The seconds that the script may take; without a number a minute.
+// Reads the time limit of the script, in seconds; without a number, one minute.
 static bool read_untrusted(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)option;
@@ -283,7 +283,7 @@ static bool read_live(cli_options *options, const cli_option *option, char *text
 #define WITHIN(least, most) .min = (least), .max = (most)
 #define LOOKED CLI_RENDER | CLI_EXPLAIN | CLI_WATCH | CLI_COST | CLI_PUBLISH
 
-// The options that are fields of scene:render{} and need no more than that list has.
+// The options that are fields of scene:render{} and are described completely by the list of fields.
 #define FIELD(...)
 #define OPTION(field, kind, sort, member, min, max, words, text, say) \
     { #field, 0, text, SHOWN | RELIGHTS_##field, read_render, .help = say },

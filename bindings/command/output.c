@@ -56,7 +56,7 @@ int cli_output_close(cli_output *output)
     char message[GLINTL_MESSAGE_SIZE];
     errno = 0;
     bool failed = output->data_failed || ferror(output->data);
-    if (failed && !output->data_failed) // its errno is gone; one more byte meets the same
+    if (failed && !output->data_failed) // the errno is lost; writing one more byte repeats the error
         fputc('\n', output->data);
     if ((fflush(output->data) != 0 || failed) && !output->data_failed) {
         output->data_failed = true;

@@ -1,6 +1,6 @@
-// The points of --sweep: the script is run once for each, in a Lua state of its own, and the frames of all of them are
-// rendered in the order that costs least. Where a step of the swept parameter costs less than one to the next frame, the
-// runs advance together. A point whose script fails is reported, and the others go on.
+// The points of --sweep. The script runs once for each point, in a separate Lua state. The frames of all points are
+// rendered in the order that costs least: if a step of a swept parameter costs less than a step to the next frame, the
+// runs advance together. A point whose script fails is reported, and the others continue.
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,14 +9,14 @@
 #include "bindings/run/order.h"
 #include "bindings/run/system.h"
 
-#define TOGETHER_MAX 64 // states that are open at a time
+#define TOGETHER_MAX 64 // Lua states open at a time, at most
 
 typedef struct point {
-    int64_t number; // 1 ..; 0: nothing is open
+    int64_t number; // 1 ..; 0: this slot is free
     cli_script script;
     glintL_jobs_state jobs;
-    char *params_text; // owned; the run's while another point is at hand
-    bool has_frames; // it has rendered some
+    char *params_text; // owned; exchanged with the run's text while the point is at hand
+    bool has_frames; // it has rendered frames
 } point;
 
 typedef struct points {
@@ -24,13 +24,13 @@ typedef struct points {
     cli_output *output;
     glintL_run *run;
     point open[TOGETHER_MAX];
-    int most; // of `open` are used
-    point *at_hand; // whose script runs; NULL: none
+    int most; // number of slots of `open` in use, at most
+    point *at_hand; // the point whose script runs; NULL: none
     int64_t frames; // of each point; 0: not known yet
     unsigned char *failed; // owned; by number
-    bool has_failed; // some point
-    bool together, in_order; // some job's runs advance together; its frames go to a pipe
-    int64_t job, frame; // at hand: of the list, 1 ..
+    bool has_failed; // any point has failed
+    bool together, in_order; // some job's runs advance together; some frames go to a pipe in order
+    int64_t job, frame; // at hand: position in the list, 1 ..
     glint_plan *plan; // of the frame at hand
     glintL_order order; // of the job at hand
     int64_t *list; // owned; numbers of the frames to render, in order
@@ -46,7 +46,7 @@ static void exchange_text(points *p)
     p->at_hand->params_text = text;
 }
 
-// Makes `next` the point whose script the run reports on; NULL: none.
+// Makes `next` the current point of the run; NULL: none.
 static void take(points *p, point *next)
 {
     if (p->at_hand == next)
@@ -63,7 +63,7 @@ static void take(points *p, point *next)
     cli_sweep_to(p->options, p->run, next->number);
 }
 
-// Returns whether a failure is a script's mistake, which ends only its own point, and not one of the command line.
+// Returns whether a failure is a mistake in the script, which ends only its own point, and not in the command line.
 static bool is_own(const glintL_run *run)
 {
     return !run->interrupted && (run->exit_code == GLINTL_EXIT_DONE ||
@@ -115,7 +115,7 @@ static int end_protected(lua_State *L)
     return 0;
 }
 
-// Calls a function of the state at hand. False: it raised, or the run has failed.
+// Calls a function in the state at hand. False: it raised, or the run has failed.
 static bool call(points *p, lua_CFunction function)
 {
     lua_State *L = p->at_hand->script.state;
@@ -149,7 +149,7 @@ static bool close_point(points *p, point *which)
 
 // ---- Opening ----
 
-// Whether a script that has just run returned jobs as the other points did. False: the run has failed.
+// Checks that a script returned jobs if and only if the other points did. False: the run has failed.
 static bool check_jobs(points *p, const point *which)
 {
     glintL_run *run = p->run;
@@ -172,7 +172,7 @@ static point *find_open(points *p, int64_t number)
     return NULL;
 }
 
-// Runs the script for a point, in a free place, with frames that are rendered later. NULL: the run has failed.
+// Runs the script for a point in a free slot; its frames are rendered later. NULL: the run has failed.
 static point *open_point(points *p, int64_t number)
 {
     glintL_run *run = p->run;
@@ -184,7 +184,7 @@ static point *open_point(points *p, int64_t number)
     run->mode = GLINTL_MODE_WATCH;
     bool good = cli_run_script(&which->script, p->options, run);
     run->mode = GLINTL_MODE_RENDER;
-    const bool renders = !which->script.has_jobs && number == 1; // by calls, which are no matter of order
+    const bool renders = !which->script.has_jobs && number == 1; // by calls, in the script's order
     if (good && (renders || check_jobs(p, which))) {
         p->frames = which->script.frames;
         run->point_first = (number - 1) * p->frames;
@@ -197,8 +197,8 @@ static point *open_point(points *p, int64_t number)
     return NULL;
 }
 
-// The state of a point, which is opened when it is not; others go where there is no place. NULL: it has failed; *good: the run
-// goes on.
+// Returns a point, after opening it if necessary and closing points of other groups if there is no free slot. NULL: the
+// point has failed; *good: the run can continue.
 static point *reach(points *p, int64_t number, bool *good)
 {
     *good = true;
@@ -216,8 +216,8 @@ static point *reach(points *p, int64_t number, bool *good)
     return which;
 }
 
-// Opens the first point that can be opened. A script that fails at two values with the same words, or while it renders, fails as a
-// whole. NULL: the run has failed, or all that failed is reported.
+// Opens the first point whose script runs. If the script fails with the same message at two values, or while it
+// renders, the whole run fails. NULL: the run has failed, or all failures are reported.
 static point *open_first(points *p)
 {
     glintL_run *run = p->run;
@@ -240,9 +240,9 @@ static point *open_first(points *p)
 
 // ---- The order ----
 
-typedef struct job { // of every point's list
+typedef struct job { // of every point's list of jobs
     points *p;
-    int64_t before, frames; // of the list before it, and its own
+    int64_t before, frames; // in the list before this job, and in this job
     bool good; // the run has not failed
 } job;
 
@@ -254,7 +254,7 @@ static int probe_protected(lua_State *L)
     return 0;
 }
 
-// Plans frame x of a job's order: of frame n at point k it is n + (k - 1) * frames.
+// Plans frame x of a job's order; x is n + (k - 1) * frames for frame n at point k.
 static glint_plan *plan_frame(void *context, int64_t x)
 {
     job *of = context;
@@ -266,7 +266,7 @@ static glint_plan *plan_frame(void *context, int64_t x)
     p->frame = of->before + (x - 1) % of->frames + 1;
     p->plan = NULL;
     call(p, probe_protected);
-    if (!p->run->interrupted) // it will be said of the frame when that is rendered
+    if (!p->run->interrupted) // rendering the frame will report the failure
         p->run->exit_code = GLINTL_EXIT_DONE;
     return p->plan;
 }
@@ -279,7 +279,7 @@ static int axes_protected(lua_State *L)
     return 0;
 }
 
-// Adds to the order of a job the axes of --sweep; returns how many axes the job has of its own.
+// Adds the axes of --sweep to the order of a job. Returns how many axes the job has itself.
 static int add_sweeps(points *p)
 {
     const int own = p->order.axis_count;
@@ -292,7 +292,7 @@ static int add_sweeps(points *p)
     return own;
 }
 
-// Whether a point's frame is followed by one of another point where the order has several of both.
+// Returns whether points change more often than some of the job's own axes.
 static bool changes_points_first(const glintL_order *order, int own)
 {
     bool has_point = false;
@@ -347,7 +347,7 @@ static bool list_jobs(points *p, point *first)
     return true;
 }
 
-// Puts the frames of `most` points next to each other, group by group; the order within a group stays. False: no memory.
+// Groups the frames of every `most` points. Within a group the order stays. False: out of memory.
 static bool group(points *p, int64_t most)
 {
     const int64_t groups = (p->run->point_count - 1) / most + 1;
@@ -369,7 +369,7 @@ static bool group(points *p, int64_t most)
     return good;
 }
 
-// Keeps the frames of this shard, in order. False: out of memory.
+// Selects the frames of this shard, in order. False: out of memory.
 static bool choose(points *p)
 {
     int64_t from, to;
@@ -382,8 +382,8 @@ static bool choose(points *p)
     return group(p, p->most);
 }
 
-// How many states may be open: an eighth of what may be reused has room for twice what the script and its scene take, by what
-// opening the first has added to the process.
+// Returns how many states may be open. An eighth of the reuse memory must hold twice the memory of each script with its
+// scene, measured as the growth of the process when the first was opened.
 static int most_together(const points *p, size_t first_bytes)
 {
     const size_t count = glintL_run_reuse_bytes(p->run) / 8 / (2 * first_bytes + 1);
@@ -418,7 +418,7 @@ static bool render_list(points *p)
     return good;
 }
 
-// Renders the frames of all points, of which the first is open. False: the run has failed.
+// Renders the frames of all points; the first is open. False: the run has failed.
 static bool render_points(points *p, point *first)
 {
     glintL_run *run = p->run;
@@ -433,7 +433,7 @@ static bool render_points(points *p, point *first)
         return false;
     if (!choose(p))
         return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    for (int i = 0; i < TOGETHER_MAX && p->job > 2; i++) // plans of later jobs have changed scenes that earlier ones share
+    for (int i = 0; i < TOGETHER_MAX && p->job > 2; i++) // plans of later jobs have changed shared scenes
         if (!close_point(p, &p->open[i]))
             return false;
     run->todo = p->count;
@@ -444,7 +444,7 @@ static bool render_points(points *p, point *first)
     return good;
 }
 
-// A script that renders by calls does so while it runs: point after point, of which the first is done.
+// Runs a script that renders by calls, point after point; the first has run already.
 static bool run_calls(points *p, point *first)
 {
     glintL_run *run = p->run;
@@ -462,7 +462,7 @@ static bool run_calls(points *p, point *first)
     return good;
 }
 
-// Prepares the points and opens the first. NULL: out of memory, and the run has failed.
+// Allocates the points and opens the first. NULL: out of memory, and the run has failed.
 static points *create(cli_options *options, cli_output *output, glintL_run *run, point **first)
 {
     points *p = calloc(1, sizeof *p);
@@ -484,7 +484,7 @@ static points *create(cli_options *options, cli_output *output, glintL_run *run,
 static void destroy(points *p)
 {
     take(p, NULL);
-    for (int i = 0; i < TOGETHER_MAX; i++) { // after a failure
+    for (int i = 0; i < TOGETHER_MAX; i++) { // still open after a failure
         p->open[i].has_frames = false;
         close_point(p, &p->open[i]);
     }

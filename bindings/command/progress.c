@@ -1,4 +1,4 @@
-// The progress bar: one line on a terminal, drawn by a thread of its own so that a long frame shows it is alive.
+// The progress bar: one line on a terminal, drawn by a separate thread so that it moves during a long frame.
 #include <inttypes.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -11,10 +11,10 @@
 #include "bindings/run/system.h"
 
 #define BAR_WIDTH 24
-#define BAR_LEAST 4 // a narrower one is left out
+#define BAR_LEAST 4 // a narrower bar is not drawn
 #define TEXT_SIZE 160
 #define INTERVAL_MS 100
-#define DELAY_MS 300 // a run shorter than this shows no bar
+#define DELAY_MS 300 // a shorter run shows no bar
 
 struct cli_progress {
     pthread_t thread;
@@ -22,11 +22,11 @@ struct cli_progress {
     pthread_cond_t wake;
     bool stops, is_drawn, color;
     double start_ms;
-    int64_t done, kept, todo; // todo 0: not known
-    char what[80]; // of a step of a study, or of a film; "": it is frames that are counted
+    int64_t done, kept, todo; // todo 0: unknown
+    char what[80]; // name of the step of a study, or of a film; "": the bar counts frames
     double done_ms, step_ms, left_ms;
-    double film_ms; // when the film was begun
-    glint_renderer *renderer; // while it renders, else NULL
+    double film_ms; // start time of the film
+    glint_renderer *renderer; // set while it renders, otherwise NULL
 };
 
 static void format_time(char out[32], double seconds)
@@ -38,13 +38,13 @@ static void format_time(char out[32], double seconds)
         snprintf(out, 32, "%d:%02d", (int)(whole / 60), (int)(whole % 60));
 }
 
-// One line: the bar, as wide as the terminal has room for, and the text. A longer text would wrap.
+// Draws one line: the bar, as wide as fits the terminal, and the text. A longer line would wrap.
 static void draw_line(cli_progress *progress, double share, const char *text)
 {
     char bar[BAR_WIDTH + 1];
     struct winsize size = { 0 };
     const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-    int room = columns - (int)strlen(text) - 4; // brackets, a space, and the last column, which stays free
+    int room = columns - (int)strlen(text) - 4; // for brackets, a space, and the last column, which stays empty
     room = room < BAR_WIDTH ? room : BAR_WIDTH;
     share = share < 1 ? share : 1;
     fputs("\r\033[K", stderr);
@@ -71,13 +71,13 @@ static void draw_step(cli_progress *progress)
     draw_line(progress, done_ms + left_ms > 0 ? done_ms / (done_ms + left_ms) : 0, text);
 }
 
-// The lock is held.
+// The caller holds the lock.
 static void draw(cli_progress *progress)
 {
     char left[32] = "", total[32] = "", text[TEXT_SIZE];
     double elapsed = (glintL_now_ms() - progress->start_ms) * 1e-3;
     double now = progress->renderer ? glint_renderer_progress(progress->renderer) : 0;
-    double fresh = (double)(progress->done - progress->kept) + now; // kept frames say nothing of the speed
+    double fresh = (double)(progress->done - progress->kept) + now; // kept frames say nothing about the speed
     double rate = elapsed > 0 ? fresh / elapsed : 0, share = now;
     if (progress->todo > 0) {
         share = ((double)progress->done + now) / (double)progress->todo;
@@ -125,7 +125,7 @@ cli_progress *cli_progress_create(bool color)
     progress->start_ms = glintL_now_ms();
     pthread_mutex_init(&progress->lock, NULL);
     glintL_cond_init(&progress->wake);
-    sigemptyset(&stops); // these are for the main thread
+    sigemptyset(&stops); // the main thread handles these
     sigaddset(&stops, SIGINT);
     sigaddset(&stops, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &stops, &before);
@@ -139,7 +139,7 @@ cli_progress *cli_progress_create(bool color)
     return NULL;
 }
 
-// The lock is held.
+// The caller holds the lock.
 static void clear(cli_progress *progress)
 {
     if (progress->is_drawn)

@@ -1,4 +1,4 @@
-// glint render SCRIPT: the script's frames into files.
+// glint render SCRIPT: renders the script's frames to files.
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +20,7 @@ static bool run_script(cli_options *options, cli_output *output, glintL_run *run
     return options->sweep_count ? cli_run_points(options, output, run, reported) : run_once(options, run);
 }
 
-// --exposure auto, --colormap MAP:auto: runs the script once to find what the request then has.
+// For --exposure auto and --colormap MAP:auto: runs the script once to find the values, and sets them in the request.
 static bool measure(cli_options *options, cli_output *output, glintL_run *run, bool *reported)
 {
     glintL_request request;
@@ -31,9 +31,9 @@ static bool measure(cli_options *options, cli_output *output, glintL_run *run, b
 
 bool cli_finish_frames(glintL_run *run, bool good)
 {
-    good = glintL_run_collect(run, true) && good; // what was handed over is finished in any case
+    good = glintL_run_collect(run, true) && good; // submitted frames are finished in any case
     good = good && !run->interrupted && glintL_films_finish(run);
-    // The calls of a loop are counted as they come: only now is it known what the selection leaves of them.
+    // Calls in a loop are counted as they occur, so only now is it known how many the selection leaves.
     good = good && (run->count == 0 || glintL_selection_settle(run, 1, run->count));
     if (good)
         cli_warn_clipped(run);

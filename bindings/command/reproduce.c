@@ -1,4 +1,5 @@
-// glint reproduce FILE SCRIPT: renders the frame of a finished file again, with the options stored in the file, and compares.
+// glint reproduce FILE SCRIPT: renders the frame of a finished file again, with the options stored in the file, and
+// compares the two.
 #include <dirent.h>
 #include <errno.h>
 #include <signal.h>
@@ -9,22 +10,22 @@
 
 #include "bindings/command/cli.h"
 
-typedef enum verdict { // exit codes, beside the usual ones
-    SAME = 0, // every byte
-    SAME_PIXELS = 3, // other bytes
-    DIFFERENT = 4, // another picture
+typedef enum verdict { // exit codes, in addition to the usual ones
+    SAME = 0, // every byte is equal
+    SAME_PIXELS = 3, // only the bytes differ
+    DIFFERENT = 4, // the pixels differ
     UNREADABLE = 5 // no whole picture with a key
 } verdict;
 
 typedef struct reproduction {
     const char *file;
     glint_picture *picture;
-    char *params, *options, *pass, *sweep; // cut up: the sets and render texts point into them
+    char *params, *options, *pass, *sweep; // split in place: the sets and render texts point into them
     char folder[256]; // of the new file
-    char output[300]; // its pattern
-    char *made[GLINTL_PASSES_MAX + 1]; // by pass, the last of a light; owned
-    const char *made_path; // the one to compare
-    bool lacks_memory; // a name in `made` is missing for it
+    char output[300]; // the new file's name pattern
+    char *made[GLINTL_PASSES_MAX + 1]; // by pass, for lights the last one; owned
+    const char *made_path; // the file to compare
+    bool lacks_memory; // a name in `made` could not be allocated
     char reason[GLINTL_MESSAGE_SIZE];
 } reproduction;
 
@@ -36,7 +37,7 @@ static const char *text_of(const reproduction *r, const char *keyword)
     return text ? text : "";
 }
 
-// Cuts "name=value" lines up and calls `take` for each. False: `take` failed.
+// Splits lines of "name=value" and calls `take` for each. False: `take` failed.
 static bool cut_lines(char *lines, bool (*take)(void *user, char *name, char *value), void *user)
 {
     for (char *line = lines; line && *line;) {
@@ -53,7 +54,8 @@ static bool cut_lines(char *lines, bool (*take)(void *user, char *name, char *va
     return true;
 }
 
-// A parameter's line breaks are written "\n".
+// Adds a parameter. Its line breaks are stored as "
+// ".
 static bool take_param(void *user, char *name, char *value)
 {
     char *out = value;
@@ -66,14 +68,14 @@ static bool take_param(void *user, char *name, char *value)
     return cli_add_set(user, name, value);
 }
 
-// A parameter that --sweep set is one of the run's sweep again: files say so. They come last, in their order.
+// Marks a parameter that --sweep had set as swept, because files store this. Swept sets come last, in their order.
 static bool take_swept(void *user, char *name, char *value)
 {
     glintL_request *request = user;
     size_t last = request->set_count - 1, at = 0;
     while (at < request->set_count && strcmp(request->sets[at].name, name) != 0)
         at++;
-    if (at == request->set_count) // an axis of the script's own
+    if (at == request->set_count) // an axis of the script itself
         return true;
     memmove(request->sets + at, request->sets + at + 1, (last - at) * sizeof *request->sets);
     request->sets[last] = (glintL_set) { .name = name, .text = value };
@@ -115,13 +117,13 @@ static void remove_folder(const char *path)
 {
     DIR *folder = opendir(path);
     for (struct dirent *entry; folder && (entry = readdir(folder));)
-        unlinkat(dirfd(folder), entry->d_name, 0); // folders, "." among them, stay
+        unlinkat(dirfd(folder), entry->d_name, 0); // does not remove folders, such as "."
     if (folder)
         closedir(folder);
     rmdir(path);
 }
 
-// Removes the folders of processes of this host that were killed.
+// Removes the folders that killed processes on this host left.
 static void collect_folders(const char *temporary)
 {
     char prefix[48], path[512];
@@ -143,7 +145,7 @@ static void collect_folders(const char *temporary)
         closedir(folder);
 }
 
-// Fills the request of the run. 0 or an exit code, with the message.
+// Fills the request of the run. Returns 0 or an exit code, with the message.
 static int make_request(reproduction *r, glintL_run *run, char *message)
 {
     const char *frame = text_of(r, "glint:frame"), *temporary = getenv("TMPDIR");
@@ -190,7 +192,7 @@ static void take_frame(void *context, const glintL_run *run, const glintL_record
     }
 }
 
-// Renders the frame. 0 or an exit code, with the message.
+// Renders the frame. Returns 0 or an exit code, with the message.
 static int render(reproduction *r, cli_options *options, glintL_run *run, char *message)
 {
     cli_script script;
@@ -214,9 +216,9 @@ static int render(reproduction *r, cli_options *options, glintL_run *run, char *
     }
     glint_pass pass = *r->pass ? glint_pass_from_name(r->pass) : GLINT_PASS_BEAUTY;
     if (strncmp(r->pass, "d:", 2) == 0)
-        pass = GLINT_PASS_DERIVATIVE; // the only one
+        pass = GLINT_PASS_DERIVATIVE; // the only derivative
     if (strncmp(r->pass, "light:", 6) == 0)
-        pass = GLINT_PASS_LIGHT; // likewise
+        pass = GLINT_PASS_LIGHT; // the only light pass
     r->made_path = pass <= GLINTL_PASSES_MAX ? r->made[pass] : NULL;
     if (r->made_path)
         return 0;
@@ -230,7 +232,7 @@ static int render(reproduction *r, cli_options *options, glintL_run *run, char *
 
 // ---- Comparing ----
 
-// False with a message: one cannot be read.
+// Compares the bytes of two files. False: one cannot be read, and the message says why.
 static bool compare_bytes(const char *a, const char *b, bool *equal, char *message)
 {
     FILE *one = fopen(a, "rb"), *other = one ? fopen(b, "rb") : NULL;
@@ -251,7 +253,7 @@ static bool compare_bytes(const char *a, const char *b, bool *equal, char *messa
     return same;
 }
 
-// Whether the texts differ; then the reason says so.
+// Returns whether the texts differ; then writes the reason.
 static bool is_reason(reproduction *r, const glint_picture *made, const char *keyword, const char *name)
 {
     const char *had = text_of(r, keyword), *has = glint_picture_text(made, keyword);
@@ -262,7 +264,7 @@ static bool is_reason(reproduction *r, const glint_picture *made, const char *ke
     return true;
 }
 
-// Why the files differ, as far as their texts tell.
+// Finds why the files differ, as far as their texts show.
 static void find_reason(reproduction *r, const glint_picture *made)
 {
     const char *source = glint_picture_text(made, "glint:source"), *key = glint_picture_text(made, "glint:key");
@@ -337,7 +339,7 @@ static void clean_up(reproduction *r)
 {
     for (int pass = 0; pass <= GLINTL_PASSES_MAX; pass++) {
         if (r->made[pass])
-            unlink(r->made[pass]); // as a rule all that is in the folder, which takes memory to list
+            unlink(r->made[pass]); // normally the only files in the folder; needs no memory to list it
         free(r->made[pass]);
     }
     if (*r->folder && rmdir(r->folder) != 0)

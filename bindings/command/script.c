@@ -1,4 +1,4 @@
-// Runs a script: makes its Lua state, finds its modules, takes what it returns.
+// Runs a script: makes its Lua state, sets its module path, takes its results.
 #include <errno.h>
 #include <lualib.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 
 #define UNTRUSTED_LUA_MEMORY ((size_t)64 << 20)
 
-typedef struct task { // what the protected function works on
+typedef struct task { // argument of the protected function
     cli_script *script;
     const cli_options *options;
     glintL_run *run;
@@ -34,8 +34,8 @@ static void set_arguments(lua_State *L, const cli_options *options)
     lua_setglobal(L, "arg");
 }
 
-// Adds templates to the front or the end of package.path; `package` is at index 1. Lua would misread a folder with ';' or '?',
-// so such a folder is left out.
+// Adds templates to the front or the end of package.path; `package` is at index 1. A folder with ';' or '?' is skipped,
+// since Lua would misread it.
 static void add_path(lua_State *L, const char *folder, const char *templates, bool first)
 {
     if (strpbrk(folder, ";?"))
@@ -61,11 +61,11 @@ static void add_own_modules(lua_State *L, const char *program)
         return;
     }
     snprintf(probe, sizeof probe, "%s../scripts/lib/glint/particles.lua", folder);
-    if (access(probe, R_OK) == 0) // build/glint in its checkout
+    if (access(probe, R_OK) == 0) // build/glint in its source tree
         add_path(L, folder, "@../scripts/lib/?.lua", first);
 }
 
-// The script's folder and its lib/ come first.
+// Puts the script's folder and its lib/ first in the module path.
 static void set_path(lua_State *L, const cli_options *options)
 {
     const char *script = options->script, *base = cli_base_name(script);
@@ -113,13 +113,13 @@ static int refuse_silence(lua_State *L, const cli_options *options)
     return lua_error(L);
 }
 
-// The script's results are on the stack, from 1 on.
+// Takes the script's results from the stack, 1 ..
 static void take_results(lua_State *L, const task *work)
 {
     glintL_run *run = work->run;
     cli_script *script = work->script;
     if (work->options->dialect)
-        lua_settop(L, 0); // its scenes render by themselves, and may return anything
+        lua_settop(L, 0); // scripts that render by calls may return anything
     int count = lua_gettop(L);
     luaL_checkstack(L, 8, "jobs");
     if (glintL_push_unknown_set(L))
@@ -139,7 +139,7 @@ static void take_results(lua_State *L, const task *work)
     script->frames = glintL_jobs_total(L, 1);
 }
 
-// The frames of --sweep are returned at every value or at none.
+// Checks that a script under --sweep returns frames either at every value or at none.
 static bool check_sweep(const task *work)
 {
     glintL_run *run = work->run;
@@ -148,7 +148,7 @@ static bool check_sweep(const task *work)
                            "--sweep: the script both calls scene:render and returns frames; one of them expected");
 }
 
-// Runs the jobs whose list is at 1.
+// Runs the jobs in the list at 1.
 static void run_results(lua_State *L, const task *work)
 {
     if (work->run->mode == GLINTL_MODE_WATCH) {
@@ -174,7 +174,7 @@ static bool is_picture(const char *path)
     return is;
 }
 
-// Loads a script, from standard input where its name is "-". Endless input is rejected.
+// Loads a script, from standard input if its name is "-". Rejects endless input.
 static int load_script(lua_State *L, const char *path)
 {
     const bool is_input = strcmp(path, "-") == 0;
@@ -211,13 +211,13 @@ static int run_protected(lua_State *L)
     return 0;
 }
 
-// A scene of the dialect, run without it, stops where it first names it.
+// Suggests --dialect for a scene of the dialect that failed at its first use of the dialect's global.
 static const char *dialect_hint(const cli_options *options, const char *message)
 {
     return !options->dialect && strstr(message, "(global 'gr')") ? "; is it a scene for --dialect gr?" : "";
 }
 
-// Suggests a command with a similar name, or the script with its ending, when the script is not there.
+// Suggests a command with a similar name, or the script with its extension, when the script does not exist.
 static const char *missing_hint(const cli_options *options, char out[GLINTL_PATH_SIZE + 32])
 {
     char path[GLINTL_PATH_SIZE];

@@ -1,5 +1,5 @@
-// SIGINT, SIGTERM and SIGHUP: the first stops the render within a tile and the script at its next instruction, so that
-// no file is left half written; the second ends the process at once.
+// SIGINT, SIGTERM and SIGHUP. The first signal stops the render within a tile and the script at its next instruction,
+// so that no file is left half written. The second ends the process at once.
 #include <signal.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@ static lua_State *volatile caught_state;
 
 static void raise_interrupted(lua_State *L, lua_Debug *where)
 {
-    (void)where; // the hook stays: a script that catches the error meets it again
+    (void)where; // the hook stays, so a script that catches the error gets it again
     luaL_error(L, "interrupted");
 }
 
@@ -33,7 +33,7 @@ static void stop(int number)
     run->interrupted = number;
     if (run->renderer)
         glint_renderer_cancel(run->renderer);
-    if (L) // lua_sethook is made for this
+    if (L) // lua_sethook may be called in a signal handler
         lua_sethook(L, raise_interrupted, LUA_MASKCALL | LUA_MASKRET | LUA_MASKLINE | LUA_MASKCOUNT, 1);
 }
 
@@ -49,7 +49,7 @@ static void handle(int number, void (*handler)(int))
     sigaction(number, &action, NULL);
 }
 
-// SIGHUP stays ignored when it was: nohup.
+// If SIGHUP was ignored, as under nohup, it stays ignored.
 static void handle_all(void (*handler)(int))
 {
     handle(SIGINT, handler);
@@ -58,7 +58,8 @@ static void handle_all(void (*handler)(int))
         signal(SIGHUP, SIG_IGN);
     else
         handle(SIGHUP, handler);
-    // A write that fails says so. Handlers, for programs that the script starts would inherit SIG_IGN.
+    // A failing write reports its error. The signals get handlers, because programs that the script starts would
+    // inherit SIG_IGN.
     handle(SIGPIPE, ignore);
     handle(SIGXFSZ, ignore);
 }

@@ -1,4 +1,4 @@
-// The values of a sweep: the script is run once for each, and its frames are numbered through.
+// The values of a sweep. The script runs once for each point, and the frames are numbered consecutively.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,14 +6,14 @@
 #include "bindings/command/cli.h"
 
 #define POINTS_MAX 1000000
-#define NUMBER_SIZE 32 // of a number's text
+#define NUMBER_SIZE 32 // bytes of a number's text
 
 // ---- name=from:to:count and name=from:to:*count ----
 
 typedef struct range {
     double from, to;
     int64_t count;
-    bool has_factor; // each value is the one before it times the same factor
+    bool has_factor; // a geometric sequence: each value is the previous one times a factor
 } range;
 
 static bool read_range(const char *text, range *out)
@@ -33,11 +33,11 @@ static bool read_range(const char *text, range *out)
     return end > text && *end == '\0' && out->count >= 1 && out->count <= POINTS_MAX;
 }
 
-// Rounds to 15 digits of `scale`, so that 0.1:0.9:9 has 0.3 and not 0.30000000000000004.
+// Rounds to 15 significant digits of `scale`, so that 0.1:0.9:9 has 0.3 and not 0.30000000000000004.
 static double shorten(double value, double scale)
 {
     char text[400];
-    if (value == floor(value)) // also where the scale is 0
+    if (value == floor(value)) // also if the scale is 0
         return value;
     const int decimals = 14 - (int)floor(log10(scale));
     if (decimals < 1 || decimals > 330)
@@ -46,7 +46,7 @@ static double shorten(double value, double scale)
     return strtod(text, NULL);
 }
 
-// The ends exactly, and between them whole numbers where steps are whole: 1:50:50 has 28.
+// Returns value number `step`. The ends are exact, and so are whole numbers if steps are whole: 1:50:50 contains 28.
 static double value_at(const range *r, int64_t step)
 {
     const double last = (double)(r->count - 1), at = (double)step;
@@ -129,7 +129,7 @@ bool cli_read_sweep(char *text, cli_sweep *sweep, char message[GLINTL_MESSAGE_SI
                  POINTS_MAX, text);
         return false;
     }
-    *equals = '\0'; // the name ends there
+    *equals = '\0'; // ends the name
     sweep->name = text;
     return is_list ? list_words(sweep, equals + 1, message) : list_range(sweep, &r, message);
 }
@@ -145,7 +145,7 @@ int64_t cli_sweep_points(const cli_options *options)
 void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point)
 {
     int64_t rest = point - 1;
-    size_t first_set = run->request.set_count - options->sweep_count; // the sweeps' sets are the last
+    size_t first_set = run->request.set_count - options->sweep_count; // the sets of --sweep come last
     for (size_t i = 0; i < options->sweep_count; i++) {
         const cli_sweep *sweep = &options->sweeps[i];
         run->request.sets[first_set + i] =

@@ -1,5 +1,6 @@
-// --untrusted: a script that is not trusted runs in a process of its own, which may compute, and write pictures into one
-// folder. The process is the wall (walls.c); the small Lua of untrusted_lua.c is comfort behind it; the parent holds the clock.
+// --untrusted: runs a script that is not trusted in a separate process, which may only compute and write pictures to
+// one folder. The process limits (walls.c) enforce this; the reduced Lua of untrusted_lua.c is a second line of
+// defence; the parent enforces the time limit.
 #include "bindings/command/untrusted.h"
 
 #include <errno.h>
@@ -16,15 +17,16 @@
 #include <unistd.h>
 
 #define FILES_LIMIT 4 // limit of all written bytes, in multiples of the limit of one file
-#define BLOCK 4096 // what a few bytes take on a disk
-#define TICK_MS 50.0 // between two looks at what was written, where much is left
+#define BLOCK 4096 // disk space that a few bytes take
+#define TICK_MS 50.0 // longest time between two checks of the written bytes
 #define SHORTEST_TICK_MS 1.0
-#define FASTEST 8e6 // bytes that are written in a millisecond: of memory to memory, by several threads
-#define GRACE_MS 500 // between the signal that ends the child and the one that kills it
+#define FASTEST 8e6 // bytes per millisecond: upper bound of writing, memory to memory, with several threads
+#define GRACE_MS 500 // from the signal that asks the child to end to SIGKILL
 
 // ---- The folder ----
 
-// The folder that pictures go into: that of -o, else the working directory. NULL: nothing is written, or out of memory.
+// Returns the folder for pictures: that of -o, otherwise the working directory. NULL: the command writes nothing, or
+// out of memory.
 static char *folder_of(const cli_options *options)
 {
     const char *output = options->output, *slash = output ? strrchr(output, '/') : NULL;
@@ -33,7 +35,7 @@ static char *folder_of(const cli_options *options)
     return slash ? strndup(output, slash == output ? 1 : (size_t)(slash - output)) : strdup(".");
 }
 
-// Makes it where it is missing. False: the message says why.
+// Makes the folder if it is missing. False: the message says why.
 static bool make_folder(char *folder, char *message)
 {
     for (char *at = folder; at && *at; at++) {
@@ -56,15 +58,15 @@ typedef enum end_cause { NONE_YET, LATE, TOO_MUCH, BY_SIGNAL } end_cause;
 
 typedef struct watched {
     pid_t process;
-    double until_ms; // SIGTERM at this time; SIGKILL at the next
+    double until_ms; // time of SIGTERM, later of SIGKILL
     end_cause ended_by;
-    int number; // BY_SIGNAL: the first one
-    uint64_t most; // bytes that it may write in all
-    double tick_ms; // to the next look at them
+    int number; // BY_SIGNAL: the first signal
+    uint64_t most; // limit of all bytes that it writes
+    double tick_ms; // until the next check of the written bytes
 } watched;
 
-// The bytes that the child has passed to write(), as a disk may have to take them: each call may end in a block of its own. 0 where
-// the kernel does not count.
+// Returns an upper bound for the disk space of the bytes that the child has written: each call to write() may end in a
+// new block. 0 if the kernel does not count them.
 static uint64_t bytes_written(pid_t child)
 {
     char path[40], line[80];
@@ -86,7 +88,7 @@ static uint64_t most_bytes(void)
     return FILES_LIMIT * (is_lower ? limit.rlim_max : CLI_UNTRUSTED_FILE);
 }
 
-// Whether the child has written too much. The less it may still write, the sooner is the next look.
+// Returns whether the child has written too much. The fewer bytes it has left, the sooner the next check.
 static bool has_written_too_much(watched *child)
 {
     const uint64_t written = bytes_written(child->process);
@@ -95,7 +97,7 @@ static bool has_written_too_much(watched *child)
     return written > child->most;
 }
 
-// Tells the child to end, and kills it when it has been told.
+// Sends the child a signal to end; at the second call, kills it.
 static void end_child(watched *child, end_cause cause, int number)
 {
     kill(child->process, child->ended_by ? SIGKILL : number);
@@ -106,7 +108,7 @@ static void end_child(watched *child, end_cause cause, int number)
     child->until_ms = glintL_now_ms() + GRACE_MS;
 }
 
-// Waits for the child's end and returns its status. Signals go on to the child, a second one kills it.
+// Waits for the child's end and returns its status. Signals are passed on to the child; a second one kills it.
 static int watch_child(watched *child, const sigset_t *signals)
 {
     int status;
@@ -122,11 +124,11 @@ static int watch_child(watched *child, const sigset_t *signals)
         else if (glintL_now_ms() >= child->until_ms)
             end_child(child, LATE, SIGTERM);
         else if (!child->ended_by && has_written_too_much(child))
-            end_child(child, TOO_MUCH, SIGKILL); // it would go on writing until it hears
+            end_child(child, TOO_MUCH, SIGKILL); // it would continue to write until it handled a signal
     }
 }
 
-// The exit code that the child's end means to the caller.
+// Returns the exit code for the child's status.
 static int judge(int status, const watched *child, const cli_options *options, cli_output *output, int *signal_number)
 {
     char message[GLINTL_MESSAGE_SIZE];
@@ -137,7 +139,7 @@ static int judge(int status, const watched *child, const cli_options *options, c
         snprintf(message, sizeof message, "--untrusted: the script wrote more than %llu bytes, where each write counts 4096 more",
                  (unsigned long long)child->most);
     else if (child->ended_by == BY_SIGNAL && number)
-        *signal_number = child->number; // whether it heard the signal or was killed for not hearing it
+        *signal_number = child->number; // whether the child handled the signal or was killed
     else if (number == SIGINT || number == SIGTERM || number == SIGHUP || number == SIGPIPE)
         *signal_number = number;
     else if (number)
@@ -151,7 +153,7 @@ static int judge(int status, const watched *child, const cli_options *options, c
     return GLINTL_EXIT_USAGE;
 }
 
-// The parent's part. It removes the incomplete files of a killed child.
+// The parent's part. Removes the incomplete files of a killed child.
 static int await_child(pid_t process, const sigset_t *signals, const cli_options *options, cli_output *output,
                        int *signal_number)
 {
@@ -195,7 +197,7 @@ bool cli_untrusted_begin(cli_options *options, cli_output *output, int *code, in
     if (child > 0)
         return false;
     if (child == 0) {
-        setpgid(0, 0); // Ctrl-C reaches it through its parent alone
+        setpgid(0, 0); // so that Ctrl-C reaches it only through its parent
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         snprintf(message, sizeof message, "--untrusted: its parent is gone");
         if (getppid() == parent && enter(options, output, message))

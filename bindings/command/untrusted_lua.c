@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define INSTRUCTIONS 1000 // between two looks whether the script is to end
+#define INSTRUCTIONS 1000 // between two checks for an interrupt
 
 // ---- Memory ----
 
@@ -20,7 +20,7 @@ static void *allocate(void *context, void *block, size_t old_size, size_t size)
 {
     cli_lua_memory *memory = context;
     if (!block)
-        old_size = 0; // it says what the block is for
+        old_size = 0; // for a new block it is the kind of object
     const size_t before = taken(old_size), after = taken(size);
     if (after > before && after - before > memory->most - memory->used)
         return NULL;
@@ -40,7 +40,8 @@ lua_State *cli_untrusted_state(cli_lua_memory *memory)
 
 // ---- Time ----
 
-// New coroutines inherit the hook. Once it has raised, each next instruction raises again, so that no pcall goes on.
+// The interrupt hook, which new coroutines inherit. Once it has raised, each further instruction raises again, so that
+// no pcall can continue.
 static void look(lua_State *L, lua_Debug *where)
 {
     (void)where;
@@ -52,7 +53,7 @@ static void look(lua_State *L, lua_Debug *where)
 
 // ---- The functions that are not Lua's own ----
 
-// load(chunk, name, mode, env): accepts only text, whatever the mode; `load` of Lua is the upvalue.
+// load(chunk, name, mode, env): accepts only text, whatever the mode. Lua's `load` is the upvalue.
 static int load_text(lua_State *L)
 {
     const bool has_env = lua_gettop(L) >= 4;
@@ -67,7 +68,7 @@ static int load_text(lua_State *L)
     return lua_gettop(L);
 }
 
-// A finalizer would run when no hook does.
+// Rejects __gc: a finalizer could run while no hook does.
 static int set_metatable(lua_State *L)
 {
     luaL_checktype(L, 1, LUA_TTABLE);
@@ -85,7 +86,7 @@ static int set_metatable(lua_State *L)
     return 1;
 }
 
-// The module is the upvalue.
+// `require "glint"` returns the upvalue.
 static int require_glint(lua_State *L)
 {
     const char *name = luaL_checkstring(L, 1);
@@ -114,7 +115,7 @@ static const char *const MATH_NAMES[] = { "abs", "acos",       "asin", "atan",  
 static const char *const UTF8_NAMES[] = { "char", "charpattern", "codepoint", "codes", "len", "offset", NULL };
 
 typedef struct library {
-    const char *name; // "": its functions are globals
+    const char *name; // "": the globals
     lua_CFunction open;
     const char *const *names;
 } library;
@@ -162,7 +163,7 @@ void cli_open_untrusted(lua_State *L, glintL_run *run)
 {
     lua_settop(L, 0);
     glintL_attach_run(L, run);
-    lua_newtable(L); // 1: the globals to be
+    lua_newtable(L); // 1: the new globals
     for (size_t i = 0; i < sizeof LIBRARIES / sizeof *LIBRARIES; i++)
         open_library(L, &LIBRARIES[i], 1);
     lua_pushcfunction(L, luaopen_glint);
@@ -173,7 +174,7 @@ void cli_open_untrusted(lua_State *L, glintL_run *run)
     lua_setfield(L, 1, "setmetatable");
     lua_pushvalue(L, 1);
     lua_setfield(L, 1, LUA_GNAME);
-    // Strings have the methods of the small library, and a metatable out of reach.
+    // The string methods are those of the reduced library, and their metatable cannot be reached.
     lua_pushliteral(L, "");
     lua_getmetatable(L, -1);
     lua_getfield(L, 1, LUA_STRLIBNAME);

@@ -1,10 +1,10 @@
-// glint --help, made from the tables of commands and options.
+// glint --help, generated from the tables of commands and options.
 #include <string.h>
 
 #include "bindings/command/cli.h"
 
-#define COLUMN 36 // the helps begin here
-#define LINE 100 // and end before this
+#define COLUMN 36 // column of the help texts
+#define LINE 100 // their last column
 
 static void print_words(FILE *out, int *at, const char *words)
 {
@@ -19,7 +19,7 @@ static void print_words(FILE *out, int *at, const char *words)
     }
 }
 
-// A line of --help: the option, then what it does: on the same line, or below a long option.
+// Prints a line of --help: the option, then its help, on the same line or below a long option.
 static void print_line(FILE *out, const char *head, const char *help, bool lists_passes)
 {
     int at = fprintf(out, "  %s", head);
@@ -46,7 +46,7 @@ static void print_option(FILE *out, const cli_option *option)
     print_line(out, head, option->help, option->suggest && strcmp(option->suggest, CLI_SUGGEST_PASSES) == 0);
 }
 
-// The options that one of the commands knows, below their headings.
+// Prints the options that one of the commands accepts, below their headings.
 static void print_options(FILE *out, unsigned commands)
 {
     const char *group = NULL;

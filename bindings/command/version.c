@@ -1,4 +1,4 @@
-// glint --version, and with --verbose what this build is made of and where its limits are.
+// glint --version; with --verbose also the parts of this build and its limits.
 #include <lua.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,8 @@
 
 static const char *const KERNELS[] = { "ref", "generic", "avx2", "avx512" };
 
-// The kernels that the build has and the machine runs. False: out of memory, which would pass for a kernel that is not there.
+// Prints the kernels that the build has and the machine can run. False: out of memory; a kernel would seem to be
+// missing.
 static bool print_kernels(FILE *out)
 {
     glint_renderer *renderer = NULL;

@@ -1,5 +1,5 @@
-// The walls around an untrusted script's process, built from the inside: limits of the process, Landlock for files, seccomp for
-// calls. A table in ../README.md says what each of them stops.
+// The sandbox of an untrusted script's process, set up from the inside: process limits, Landlock for files, seccomp for
+// system calls. A table in ../README.md says what each of them stops.
 #include "bindings/command/untrusted.h"
 
 #ifdef GLINT_HAVE_SECCOMP
@@ -18,13 +18,13 @@
 #include <termios.h>
 #include <unistd.h>
 
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers" // SCMP_A0 and the like leave fields out, says clang
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers" // SCMP_A0 and similar macros omit fields
 
 #define MEMORY_LIMIT ((rlim_t)4 << 30) // of the process
-#define ARENAS 4 // of malloc, which has 64 MiB of addresses for each
-#define WRITE_LIMIT ((uint64_t)64 << 20) // of one call, which the parent sees when it has ended
+#define ARENAS 4 // malloc reserves 64 MiB of addresses for each
+#define WRITE_LIMIT ((uint64_t)64 << 20) // of one call; the parent sees the bytes only when the call has ended
 #define OPEN_FILES_LIMIT 64
-#define CPU_SLACK_S 2 // beyond the clock of the parent, which comes first
+#define CPU_SLACK_S 2 // beyond the parent's time limit, which comes first
 
 static bool fail(char *message, const char *what)
 {
@@ -52,7 +52,7 @@ static bool set_limits(double seconds, char *message)
     good = good && set_limit(RLIMIT_AS, MEMORY_LIMIT);
 #endif
 #ifdef M_MMAP_THRESHOLD
-    mallopt(M_MMAP_THRESHOLD, 128 << 10); // a large block grows in its place, not beside itself
+    mallopt(M_MMAP_THRESHOLD, 128 << 10); // so that a large block grows by remapping instead of copying
     mallopt(M_ARENA_MAX, ARENAS);
 #endif
     return good || fail(message, "the limits of the process");
@@ -72,7 +72,7 @@ static bool close_range_of(unsigned from, unsigned to)
     return true;
 }
 
-// Closes everything that the caller had open except stdout and stderr. stdin is empty.
+// Closes all inherited descriptors except stdout, stderr and `data`. stdin becomes empty.
 static bool close_descriptors(int data, char *message)
 {
     const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
@@ -85,18 +85,18 @@ static bool close_descriptors(int data, char *message)
 
 // ---- Files ----
 
-// struct landlock_ruleset_attr as far as version 6, for headers that are older than the kernel.
+// struct landlock_ruleset_attr up to version 6, for headers older than the kernel.
 typedef struct rights {
     uint64_t files, network, scopes;
 } rights;
 
-// All that the kernel's Landlock can forbid, and the bytes of it that it knows.
+// Returns all rights that the kernel's Landlock can restrict. *size: the size of the structure that it knows.
 static rights all_rights(long version, size_t *size)
 {
-    static const int file_rights[] = { 13, 14, 15, 15 }; // versions 1 .. 4; then also ioctl of devices
+    static const int file_rights[] = { 13, 14, 15, 15 }; // versions 1 .. 4; from 5 on also ioctl of devices
     rights all = { .files = (UINT64_C(1) << (version < 5 ? file_rights[version - 1] : 16)) - 1 };
-    all.network = version >= 4 ? 3 : 0; // bind and connect of TCP
-    all.scopes = version >= 6 ? 3 : 0; // abstract sockets and signals of others
+    all.network = version >= 4 ? 3 : 0; // TCP bind and connect
+    all.scopes = version >= 6 ? 3 : 0; // abstract sockets, and signals to other processes
     *size = version >= 6 ? sizeof all : version >= 4 ? 2 * sizeof all.files : sizeof all.files;
     return all;
 }
@@ -114,7 +114,7 @@ static bool allow_beneath(int rules, const char *path, uint64_t access, char *me
     return !failed;
 }
 
-// No file may be opened but the script, for reading, and those in the folder of the pictures.
+// Allows opening only the script, for reading, and files in the folder of the pictures.
 static bool close_files(const char *script, const char *folder, char *message)
 {
     const uint64_t in_folder = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE |
@@ -135,7 +135,7 @@ static bool close_files(const char *script, const char *folder, char *message)
 
 // ---- Calls ----
 
-// The calls that rendering into files takes. Any other fails as if the caller were not allowed to.
+// The system calls needed to render into files. Any other fails with a permission error.
 static const int allowed[] = {
     SCMP_SYS(access),
     SCMP_SYS(arch_prctl),
@@ -204,12 +204,12 @@ static const int allowed[] = {
 
 #define THREAD (CLONE_VM | CLONE_FS | CLONE_FILES | CLONE_SIGHAND | CLONE_THREAD)
 
-// 0, or a negative errno.
+// Returns 0 or a negative errno.
 static int add_rules(scmp_filter_ctx filter, int data)
 {
     int code = 0;
     for (size_t i = 0; i < sizeof allowed / sizeof *allowed && !code; i++)
-        if (allowed[i] >= 0) // this machine has it
+        if (allowed[i] >= 0) // calls that this machine has
             code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, allowed[i], 0);
     const struct scmp_arg_cmp thread = SCMP_A0(SCMP_CMP_MASKED_EQ, THREAD, THREAD), own = SCMP_A0(SCMP_CMP_EQ, 0),
                               self = SCMP_A0(SCMP_CMP_EQ, (uint64_t)getpid()), no_new = SCMP_A2(SCMP_CMP_EQ, 0),
@@ -222,20 +222,20 @@ static int add_rules(scmp_filter_ctx filter, int data)
         unsigned count;
         struct scmp_arg_cmp arguments[2];
     } rules[] = {
-        { SCMP_SYS(clone), 1, { thread } }, // threads and no processes
-        { SCMP_SYS(tgkill), 1, { self } }, // signals to itself: it ends by the one that ended it
-        { SCMP_SYS(fcntl), 1, { flags } }, // how a descriptor was opened; not who gets signals of it
+        { SCMP_SYS(clone), 1, { thread } }, // threads, not processes
+        { SCMP_SYS(tgkill), 1, { self } }, // signals to itself: it ends by the signal that stopped it
+        { SCMP_SYS(fcntl), 1, { flags } }, // a descriptor's mode; not its owner for signals
         { SCMP_SYS(ioctl), 1, { terminal } },
         { SCMP_SYS(ioctl), 1, { width } },
-        { SCMP_SYS(prlimit64), 2, { own, no_new } }, // its own limits, to read
+        { SCMP_SYS(prlimit64), 2, { own, no_new } }, // only to read its own limits
         { SCMP_SYS(write), 1, { few } },
         { SCMP_SYS(pwrite64), 1, { few } },
-        { SCMP_SYS(writev), 1, { errors } }, // not into pictures: a filter does not see how much it is
+        { SCMP_SYS(writev), 1, { errors } }, // not to pictures: a filter cannot see the number of bytes
         { SCMP_SYS(writev), 1, { report } },
     };
     for (size_t i = 0; i < sizeof rules / sizeof *rules && !code; i++)
         code = seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, rules[i].call, rules[i].count, rules[i].arguments);
-    return code ? code // glibc falls back from clone3, whose flags a filter cannot see
+    return code ? code // with ENOSYS glibc falls back from clone3, whose flags a filter cannot see
                 : seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0);
 }
 

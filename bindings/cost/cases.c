@@ -1,4 +1,5 @@
-// The settings a study measures, each once, and the rows that show them: one knob at a time around the script's own.
+// The settings that a study measures, each once, and the table rows that show them: one knob at a time, varied around
+// the script's own setting.
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,7 @@ bool cost_leave_out(cost_study *study, const char *format, ...)
     return true;
 }
 
-// Index of the new case; -1: no memory.
+// Returns the index of the new case; -1: out of memory.
 static int add_case(cost_study *study, const int choice[COST_KNOBS_MAX])
 {
     cost_case *grown = realloc(study->cases, ((size_t)study->case_count + 1) * sizeof *grown);
@@ -68,7 +69,7 @@ static bool add_knob(cost_study *study, int knob)
     return true;
 }
 
-// Whether --knobs names the knob, or is not given.
+// Returns whether --knobs names the knob, or is not given.
 static bool is_request(const char *list, const char *name)
 {
     for (const char *at = list; at; at = *at ? at + 1 : NULL) {
@@ -80,7 +81,7 @@ static bool is_request(const char *list, const char *name)
     return list == NULL;
 }
 
-// None of --knobs changes anything in this scene: says which would.
+// Reports that no knob of --knobs changes anything in this scene, and names those that would.
 static bool refuse_knobs(cost_study *study, const cost_subject *subject)
 {
     char others[256] = "";

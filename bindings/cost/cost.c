@@ -6,16 +6,16 @@
 
 #include "bindings/cost/cost.h"
 
-#define RUNS 11 // of each setting, the first not counted
+#define RUNS 11 // of each setting, not counting the first
 #define RUNS_QUICK 5
-#define MORE_RUNS 3 // times as many for settings whose quartiles meet their neighbours'
-#define RUN_MS 30.0 // of short frames as many make a run
+#define MORE_RUNS 3 // factor of runs for settings whose quartile range overlaps a neighbour's
+#define RUN_MS 30.0 // short frames are repeated until a run takes this long
 #define RUN_QUICK_MS 5.0
-#define ALLOWANCE_MS 45e3 // for the reference, where it may be better than it must be
+#define ALLOWANCE_MS 45e3 // time for the reference beyond the samples that it needs at least
 #define ALLOWANCE_QUICK_MS 5e3
-#define BUDGET_SHARE 0.3 // of a budget, for the reference
-#define BASE_FRAMES 3 // a run that is dropped, one that counts the work, one that is timed
-#define LONG_MS 120e3 // a study that takes longer says so
+#define BUDGET_SHARE 0.3 // share of a budget for the reference
+#define BASE_FRAMES 3 // one run that is dropped, one that counts the work, one that is timed
+#define LONG_MS 120e3 // a longer study is announced
 
 // ---- The scene ----
 
@@ -28,7 +28,7 @@ static bool read_scene(cli_options *options, glintL_run *run, cost_moments **mom
     run->mode = GLINTL_MODE_EXPLAIN;
     run->explain_frame = options->frame;
     run->keeps_scene = true;
-    glintL_selection_clear(&run->request.selection); // --frame is not a selection here
+    glintL_selection_clear(&run->request.selection); // here --frame is not a selection
     cli_run_script(&script, options, run);
     cli_close_script(&script);
     if (!run->exit_code && !run->interrupted && !run->kept_scene)
@@ -95,7 +95,7 @@ static double price(const cost_study *study, const cost_case *c)
     return study->overhead_ms + c->estimate_ms * (1 + COST_RUNS_LEAST);
 }
 
-// Leaves out the slowest cases from `from` on until the budget has room for the others.
+// Leaves out the slowest cases, from index `from` on, until the others fit the budget.
 static void fit_cases(cost_study *study, int from)
 {
     for (;;) {
@@ -115,7 +115,7 @@ static void fit_cases(cost_study *study, int from)
     }
 }
 
-// The first run of the cases from `from` on, with its error; those the budget has no room for stay without.
+// Runs the cases from index `from` on once and measures their errors. Cases that do not fit the budget are left out.
 static bool measure_cases(cost_study *study, int from)
 {
     fit_cases(study, from);
@@ -133,7 +133,7 @@ static bool measure_cases(cost_study *study, int from)
     return true;
 }
 
-// The script's own setting is always measured, and tells what it takes to find an error.
+// Measures the script's own setting, which is never left out, and the time that it takes to find an error.
 static bool measure_base(cost_study *study)
 {
     double start = glintL_now_ms();
@@ -156,7 +156,8 @@ static bool name_unmeasured(cost_study *study)
     return true;
 }
 
-// Whether the budget has room for the script's own setting to be measured, which takes so many frames, after the first.
+// Returns whether the budget has time to measure the script's own setting, which takes BASE_FRAMES frames after the
+// first.
 static bool has_room(const cost_study *study)
 {
     return cost_left_ms(study) >= BASE_FRAMES * study->cases[0].estimate_ms;
@@ -224,7 +225,7 @@ static bool tell_of_instant(cost_study *study)
     return !lack || cost_leave_out(study, "the open shutter: %s; the frame is measured as seen in an instant", lack);
 }
 
-// Takes the moments over, also when it fails.
+// Opens a study, which takes over the moments, on failure too.
 static cost_study *open_study(cli_options *options, cli_output *output, glintL_run *run, cost_moments *moments)
 {
     cost_study *study = calloc(1, sizeof *study);
@@ -258,7 +259,7 @@ static cost_study *open_study(cli_options *options, cli_output *output, glintL_r
     return study;
 }
 
-// The rows that have something to show; false: none has.
+// Returns whether there are rows to show.
 static bool has_rows(const cost_study *study)
 {
     for (int i = 0; i < study->row_count; i++)
@@ -278,7 +279,7 @@ static void present(cost_study *study)
         glintL_run_fail(study->run, code, 0, "--report: %s", message);
 }
 
-// The names of the knobs are checked here, whether the scene responds later.
+// Checks the names of the knobs. Whether the scene responds to them is checked later.
 static bool check_options(const cli_options *options, glintL_run *run)
 {
     char message[GLINTL_MESSAGE_SIZE];

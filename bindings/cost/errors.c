@@ -1,15 +1,15 @@
-// How far a setting is from the truth: the reference and its own error, and decisions pixel by pixel.
+// The distance of a setting from the truth: the reference and its own error, and decisions pixel by pixel.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bindings/cost/cost.h"
 
-#define LIGHTS_MAX 8 // looked at one by one
-#define LIT 0x1p-10 // less than a quarter of a code: a surface that a light grazes counts as dark
+#define LIGHTS_MAX 8 // number of lights checked one by one
+#define LIT 0x1p-10 // less than a quarter of an 8-bit step: a surface lit at grazing angles counts as dark
 #define BATCH_MAX 1000 // frames in a run
-#define TIMES 32 // samples of a part of the reference for each of the script's
-#define LEAST_TIMES 2 // where a budget forces fewer; below it no error would be worth showing
+#define TIMES 32 // samples of each reference part, relative to the script's
+#define LEAST_TIMES 2 // the same if a budget forces fewer; with less the errors mean nothing
 
 // ---- Decisions ----
 
@@ -91,8 +91,8 @@ static glint_status count_decisions(cost_study *study, cost_case *c, glint_error
 
 // ---- The reference ----
 
-// Samples of each part: 32 times the script's, and as near to 32 times the most that is shown as the allowance goes. A
-// budget may force fewer; 0: none at all.
+// Returns the samples of each part: 32 times the script's, or more, up to 32 times the most in any row if the allowance
+// permits. A budget may force fewer; 0: no reference.
 static double choose_samples(const cost_study *study, double allowance_ms)
 {
     const int knob = cost_knob_find("samples", strlen("samples"));
@@ -131,8 +131,8 @@ void cost_truth_name(const cost_study *study, char out[COST_LABEL_SIZE])
     }
 }
 
-// Chooses independent seeds. Neighbouring seeds share a sequence, and their errors might
-// cancel. Below 2^20, where a seed's shift keeps all of its digits.
+// Chooses independent seeds. Neighbouring seeds share a sequence, so their errors might cancel. Seeds are below 2^20,
+// so that a seed's shift keeps all of its digits.
 static void choose_seeds(cost_study *study)
 {
     uint64_t state = (uint64_t)study->own->desc.seed;
@@ -167,8 +167,8 @@ static glint_status render_parts(cost_study *study, glint_image *parts[COST_REFE
     return status;
 }
 
-// How far n independent parts are from their mean says how far that mean is from the truth: the squares' sum over n (n - 1),
-// which is the variance of a mean.
+// Estimates the error of the mean from the differences between n independent parts and their mean: the sum of their
+// squares over n (n - 1) is the variance of the mean.
 static glint_status measure_parts(cost_study *study, glint_image *const parts[COST_REFERENCE_PARTS], glint_error *error)
 {
     const double n = COST_REFERENCE_PARTS;
@@ -232,7 +232,7 @@ static glint_status keep_pictures(cost_study *study, cost_case *c, const glint_i
     return status;
 }
 
-// Against the reference.
+// Measures errors against the reference.
 static glint_status find_errors(cost_study *study, cost_case *c, const glint_image *image, glint_error *error)
 {
     glint_status status = glint_reference_measure(study->reference, image, 0, &c->film, error);
@@ -265,7 +265,7 @@ bool cost_measure(cost_study *study, cost_case *c)
     if (!status) {
         c->work = stats.work;
         c->guess_ms = fmin(c->ms[COST_TOTAL][0], stats.render_ms + stats.tone_ms + c->ms[COST_ENCODE][0]);
-        // A frame has costs that are not timed; they may make the run longer, not much longer.
+        // The untimed costs of the frames may make a run longer, but at most 3 run_ms.
         double frames = fmin(study->run_ms / fmax(c->guess_ms, 1e-3), 3 * study->run_ms / c->estimate_ms);
         c->batch = (int)fmin(fmax(ceil(frames), 1), BATCH_MAX);
         c->estimate_ms *= c->batch;

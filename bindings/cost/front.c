@@ -1,15 +1,16 @@
-// Evaluates the measurements: the Pareto front of time and error, combinations worth measuring, one sentence to act on.
+// Evaluates the measurements: the Pareto front of time and error, combinations worth measuring, and one sentence of
+// advice.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bindings/cost/cost.h"
 
-#define RESOLVED 10 // times the reference's own error
+#define RESOLVED 10 // times the reference's own error: larger errors are resolved
 #define CANDIDATES_MAX 4096
-#define CLEARLY 0.95 // of the time guessed, or of the error, for a knob to be combined with others
-#define CHEAPER 0.8 // of the time, for a step that loses accuracy
-#define STEEP 0.8 // of the best gain an hour: the smaller step is advised
+#define CLEARLY 0.95 // share of the time or error at which a knob is combined with others
+#define CHEAPER 0.8 // share of the time at which a step that loses accuracy is advised
+#define STEEP 0.8 // share of the best gain per time from which the smallest step is advised
 
 static double range_of(const cost_case *a, const cost_case *b)
 {
@@ -20,10 +21,10 @@ static double range_of(const cost_case *a, const cost_case *b)
 
 typedef struct candidate {
     int choice[COST_KNOBS_MAX];
-    double ms, error; // foreseen
+    double ms, error; // predicted
 } candidate;
 
-// Whether the value is clearly faster than the script's own, or clearly nearer to the truth.
+// Returns whether the value is clearly faster than the script's own, or clearly more accurate.
 static bool is_useful(const cost_study *study, const cost_row *row)
 {
     const cost_case *c = &study->cases[row->measured], *own = &study->cases[0];
@@ -31,7 +32,8 @@ static bool is_useful(const cost_study *study, const cost_row *row)
            (c->guess_cpu_ms < CLEARLY * own->guess_cpu_ms || c->film.rmse < CLEARLY * own->film.rmse);
 }
 
-// Every known candidate with one more knob turned. Times multiply; errors, being independent, add as squares.
+// Combines every candidate so far with each useful value of one more knob. Times multiply; errors are independent, so
+// their squares add.
 static int extend(const cost_study *study, int knob, candidate *list, int count)
 {
     const cost_case *base = &study->cases[0];
@@ -75,7 +77,8 @@ static int by_time(const void *a, const void *b)
     return (left->ms > right->ms) - (left->ms < right->ms);
 }
 
-// Moves those worth a look to the head of the list, fastest first; returns how many.
+// Moves the promising combinations to the front of the list, fastest first. Returns how many there are; -1: out of
+// memory.
 static int choose_candidates(candidate *list, int count)
 {
     candidate *all = malloc((size_t)count * sizeof *all);
@@ -106,7 +109,7 @@ bool cost_add_combinations(cost_study *study)
     count = choose_candidates(list, count);
     bool good = count >= 0 || glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "out of memory");
     const int wanted = count < COST_COMBINATIONS_MAX ? count : COST_COMBINATIONS_MAX;
-    for (int i = 0; i < wanted && good; i++) // spread over the front
+    for (int i = 0; i < wanted && good; i++) // evenly spread over the front
         good = cost_add_combination(study, list[wanted > 1 ? i * (count - 1) / (wanted - 1) : 0].choice);
     free(list);
     return good;
@@ -120,9 +123,9 @@ static bool is_point(const cost_study *study, const cost_row *row)
     return !(knob && knob->is_other_time) && cost_row_error(study, row) && study->cases[row->measured].run_count > 0;
 }
 
-// A row beats another when it is nearer to the truth and not slower, or as near and faster. Not slower, faster: by more
-// than both quartile ranges, since a row that was disturbed must not pass for fast; by anything where the errors are
-// equal. As near: within what the reference itself is off.
+// Returns whether row a beats row b: a is more accurate and not slower, or as accurate and faster. Times differ only if
+// by more than the smaller of the two quartile ranges, so that a disturbed row does not pass for fast; with equal
+// errors any difference counts. As accurate: within the reference's own error.
 static bool beats(const cost_study *study, const cost_row *a, const cost_row *b)
 {
     const cost_case *ca = &study->cases[a->measured], *cb = &study->cases[b->measured];
@@ -181,7 +184,7 @@ static void spell_share(double share, char out[48])
     snprintf(out, 48, share < 0.1 ? "%.1g of the" : "%.2g times the", share);
 }
 
-// "samples 4 -> 16", "samples=16 precision=float instead of the script's setting"
+// Writes "samples 4 -> 16" or "samples=16 precision=float instead of the script's setting".
 static void spell_step(const cost_study *study, const cost_row *row, char out[2 * COST_LABEL_SIZE])
 {
     char own[32];
@@ -194,7 +197,7 @@ static void spell_step(const cost_study *study, const cost_row *row, char out[2 
     snprintf(out, 2 * COST_LABEL_SIZE, "%s %s -> %s", knob->name, own, row->label);
 }
 
-// Only rows that decide no more pixels wrongly than the script's own setting are advised.
+// Returns whether a row may be advised: only if it decides no more pixels wrongly than the script's own setting.
 static bool is_eligible(const cost_study *study, const cost_row *row)
 {
     const cost_case *c = &study->cases[row->measured], *own = &study->cases[0];
@@ -202,7 +205,7 @@ static bool is_eligible(const cost_study *study, const cost_row *row)
            c->wrong_object + c->wrong_shadow <= own->wrong_object + own->wrong_shadow;
 }
 
-// How much a step is worth: nearer to the truth for the time, or faster for the same picture; 0: not to be advised.
+// Returns the value of a step: accuracy gained for its time, or time saved for the same picture; 0: not advised.
 static double worth(const cost_study *study, const cost_row *row)
 {
     const cost_case *c = &study->cases[row->measured], *own = &study->cases[0];
@@ -210,14 +213,14 @@ static double worth(const cost_study *study, const cost_row *row)
         return 0;
     const double e = own->film.rmse / cost_row_error(study, row)->rmse;
     const double t = cost_time_ms(c) / cost_time_ms(own);
-    if (e >= 0.98 && row->difference < 0) // the same or better, and faster
+    if (e >= 0.98 && row->difference < 0) // as accurate or better, and faster
         return 1e3 / t;
     if (!(e >= 1.5))
         return 0;
-    return row->difference == 0 ? 1e3 * e : log(e) / log(fmax(t, 1.01)); // 1e3: better, for nothing
+    return row->difference == 0 ? 1e3 * e : log(e) / log(fmax(t, 1.01)); // 1e3: more accurate at no cost
 }
 
-// The smallest step among those that pay nearly best.
+// Returns the smallest step among those with nearly the best value.
 static const cost_row *find_step(const cost_study *study)
 {
     const cost_row *step = NULL;
@@ -245,7 +248,8 @@ static void advise_step(cost_study *study, const cost_row *row)
              row->is_resolved ? "" : " or less (the reference does not resolve it)");
 }
 
-// Where no setting is more accurate: what the cheapest step with the smallest loss saves.
+// For scripts whose setting is already the most accurate: returns the least loss of accuracy among rows that save much
+// time.
 static const cost_row *find_cheaper(const cost_study *study)
 {
     const cost_row *best = NULL;

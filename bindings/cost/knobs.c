@@ -1,5 +1,6 @@
-// The knobs of glint cost. A setting that trades accuracy for time is a row of the table at the end: its name, what it
-// reads of the plan, its values, how a value is applied, and where its error comes from. A new stage adds its row.
+// The knobs of glint cost. A setting that trades accuracy for time is a row of the table at the end: its name, the part
+// of the plan that it depends on, its values, how a value is applied, and where its error arises. Add a row for a new
+// stage.
 #include <string.h>
 
 #include "bindings/cost/cost.h"
@@ -60,7 +61,7 @@ static glint_status apply_adaptive(cost_draft *draft, cost_value value, glint_er
 
 // ---- shutter_times: how often an open shutter looks ----
 
-// The truth is the most: what the others lack is light of the times between.
+// The truth is the largest number of times. Fewer times lack the light in between.
 static void list_shutter_times(const cost_subject *subject, cost_values *out)
 {
     double counts[COST_VALUES_MAX];
@@ -101,8 +102,8 @@ static bool takes_caps(const cost_scene *scene)
 
 static const char *const SHADOWS[] = { "off", "hard", "soft", "caps" };
 
-// Lights with a surface have soft ones; balls, where the scene is one for them, also by caps. The script's own are of the
-// sort of its first light with a surface.
+// Lists the shadows: soft ones for lights with a surface; also caps for sphere lights, if the scene allows caps. The
+// script's own value is that of its first light with a surface.
 static void list_shadows(const cost_subject *subject, cost_values *out)
 {
     const cost_scene *scene = subject->scene;
@@ -141,7 +142,7 @@ static glint_status apply_shadows(cost_draft *draft, cost_value value, glint_err
 
 // ---- light_samples: rays to each light with a surface ----
 
-// The script's own is the largest of its lights'; its row leaves each light its own.
+// Returns the largest of the lights' own samples. In that row each light keeps its own.
 static double most_light_samples(const cost_scene *scene)
 {
     double most = 0;
@@ -194,8 +195,8 @@ static glint_status apply_precision(cost_draft *draft, cost_value value, glint_e
 
 static const char *const MODELS[] = { "phong", "blinn_phong", "matched_blinn_phong" };
 
-// Matched: every Phong highlight as a Blinn-Phong one of four times the exponent, which is as wide. A scene with
-// highlights of both sorts is neither "phong" nor "blinn_phong": its own setting is called "mixed".
+// Matched: replaces every Phong highlight by a Blinn-Phong one with four times the exponent, which is as wide. A scene
+// with highlights of both models has its own setting "mixed".
 static void list_model(const cost_subject *subject, cost_values *out)
 {
     const bool phong = has_effect(subject->plan, "Phong highlight");
@@ -229,9 +230,9 @@ static glint_status apply_model(cost_draft *draft, cost_value value, glint_error
 
 // ---- segments: spheres of triangles against the sphere ----
 
-#define TRIANGLES_MAX 0x1p21 // of all spheres together; finer ones are not tried
+#define TRIANGLES_MAX 0x1p21 // of all spheres together; no setting exceeds it
 
-// The truth is what the triangles stand for: the exact sphere.
+// The truth is the exact sphere, which the triangles approximate.
 static void list_segments(const cost_subject *subject, cost_values *out)
 {
     static const double counts[] = { 16, 64, 256, 1024 };
@@ -292,7 +293,7 @@ static glint_status apply_shading(cost_draft *draft, cost_value value, glint_err
 
 // ---- max_depth: chains of mirrors and refractions ----
 
-// Looks only at materials: a script with depth 0 has no stage for mirrors and glass.
+// Looks only at the materials, because a script with depth 0 has no stage for mirrors and glass.
 static bool has_bounce(const cost_scene *scene)
 {
     bool has = false;
@@ -304,7 +305,7 @@ static bool has_bounce(const cost_scene *scene)
     return has;
 }
 
-// The truth is the deepest: what the others lack is light.
+// The truth is the largest depth. Smaller depths lack light.
 static void list_max_depth(const cost_subject *subject, cost_values *out)
 {
     static const double depths[] = { 0, 1, 2, 5, 10 };
@@ -340,7 +341,7 @@ static glint_status apply_indirect_samples(cost_draft *draft, cost_value value, 
     return cost_scene_set(draft->scene, &desc, error);
 }
 
-// With 0 the ambient light stands for all of it. The truth is the deepest: what the others lack is light.
+// 0 replaces indirect light by the ambient light. The truth is the largest number of bounces; fewer bounces lack light.
 static void list_indirect_bounces(const cost_subject *subject, cost_values *out)
 {
     static const double counts[] = { 0, 1, 2, 4, 8 };
@@ -414,7 +415,7 @@ static void list_reuse(const cost_subject *subject, cost_values *out)
     if (!subject->has_neighbour)
         return;
     cost_list_words(SWITCH, COUNT(SWITCH), 1, out);
-    out->base = 0; // every other row is a whole frame
+    out->base = 0; // every other row renders a whole frame
 }
 
 static glint_status apply_reuse(cost_draft *draft, cost_value value, glint_error *error)

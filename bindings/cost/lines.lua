@@ -1,8 +1,8 @@
--- Prints the study: a table for people, or one object per line for programs, with the advice last.
+-- Prints the study: a table for people, or JSON lines for programs, with the advice last.
 local the = ...
 local format, json = string.format, the.json
 
--- The seeds of the pictures that a reference is the mean of: "3, 14 and 15".
+-- Returns the seeds of the pictures whose mean is the reference: "3, 14 and 15".
 function the.seeds_of(reference)
   local out = {}
   for i, seed in ipairs(reference.seeds) do out[i] = format("%.0f", seed) end
@@ -43,7 +43,7 @@ local function row_for_people(row)
       case.runs == 1 and "" or "s") or "") .. "\n"
 end
 
--- Which rows more runs might tell from the row next to them.
+-- Returns a line about the rows whose times overlap the next row's.
 local function rows_together(study)
   local together, runs = 0, 0
   for _, row in ipairs(study.rows) do
@@ -77,7 +77,7 @@ end
 
 -- ---- For programs ----
 
--- "name":value of each name, in order.
+-- Returns "name":value for each name, in order.
 local function members(values, ...)
   local out = {}
   for i, name in ipairs { ... } do out[i] = json(name) .. ":" .. json(values[name]) end

@@ -1,4 +1,4 @@
-// One setting in the engine: its plan, and its picture in time.
+// One setting in the engine: its plan, its picture and its time.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +17,7 @@ bool cost_is_stopped(const cost_study *study) { return study->run->interrupted |
 
 // ---- Renderers ----
 
-// The run's renderer is the one a signal cancels.
+// Makes this the run's renderer, which a signal cancels.
 static void use_renderer(cost_study *study, glint_renderer *renderer)
 {
     study->run->renderer = renderer;
@@ -97,7 +97,7 @@ static glint_status plan_time(cost_study *study, const cost_case *c, const cost_
     return status;
 }
 
-// The same of all times; the scene is at the frame's own instant afterwards. On success the caller owns the list.
+// Plans all times. Afterwards the scene is at the frame's own instant. On success the caller owns the list.
 static glint_status plan_times(cost_study *study, const cost_case *c, const cost_shot *how, int count, glint_plan ***out,
                                glint_error *error)
 {
@@ -117,7 +117,7 @@ static glint_status plan_times(cost_study *study, const cost_case *c, const cost
     return status;
 }
 
-// The scene is as the script left it afterwards. `draft` says how the case is rendered and written.
+// Plans a case. Afterwards the scene is restored. `draft` receives how to render and write the case.
 static glint_status plan_case(cost_study *study, const cost_case *c, const cost_shot *how, cost_draft *draft,
                               glint_plan **out, glint_error *error)
 {
@@ -125,7 +125,7 @@ static glint_status plan_case(cost_study *study, const cost_case *c, const cost_
     glint_plan **times = NULL;
     *draft = own;
     glint_status status = apply_case(study, c, how, draft, error);
-    const int count = how->is_painted ? 0 : draft->shutter_times; // what is seen and lit is decided in the frame's own instant
+    const int count = how->is_painted ? 0 : draft->shutter_times; // decisions are of the frame's own instant
     if (!status && count > 0) {
         cost_scene_restore(&study->scene);
         status = plan_times(study, c, how, count, &times, error);
@@ -180,7 +180,7 @@ static glint_status encode_values(const glint_image *image, glint_error *error)
     return status;
 }
 
-// Encodes with the writer of a job, including its threads and its memory of the previous picture, without writing a file.
+// Encodes like the writer of a job, with its threads and its cache of the previous picture, but writes no file.
 static glint_status encode(cost_study *study, const glintL_render *render, glint_image *image, double *ms,
                            glint_error *error)
 {
@@ -204,7 +204,7 @@ static glint_status encode(cost_study *study, const glintL_render *render, glint
     return result.status;
 }
 
-// Renders the neighbouring frame first, when the case is measured after its neighbour.
+// If the case is measured after its neighbour, renders the neighbouring frame first.
 static glint_status prepare(cost_study *study, const cost_draft *draft, bool counts, glint_error *error)
 {
     glint_image *before = NULL;
@@ -258,7 +258,7 @@ static glint_status time_run(cost_study *study, cost_case *c, const glint_plan *
     return GLINT_OK;
 }
 
-// How a case is rendered when it is timed.
+// Returns how a case is rendered for timing.
 cost_shot cost_own_shot(const cost_study *study)
 {
     const bool codes = !glintL_name_is_linear(study->own->output);
@@ -274,7 +274,7 @@ bool cost_run(cost_study *study, cost_case *c)
     cost_draft *draft = malloc(sizeof *draft);
     if (!draft)
         return glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    if (c->is_first_alone) { // which had everything to warm up
+    if (c->is_first_alone) { // the first run warms everything up
         c->run_count = 0;
         c->is_first_alone = false;
     }
@@ -296,7 +296,7 @@ glint_status cost_take(cost_study *study, const cost_case *c, const cost_shot *h
     if (!draft)
         return out_of_memory(error);
     glint_status status = plan_case(study, c, how, draft, &plan, error);
-    // A renderer caches from the second frame on, so the work of a third frame is counted.
+    // A renderer caches from the second frame on, so the work of the third frame is counted.
     for (int frames = stats && draft->reuses ? 2 : 1; frames > 0 && !status; frames--) {
         glint_image_release(*out);
         *out = NULL;

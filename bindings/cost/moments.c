@@ -1,15 +1,16 @@
-// A frame's scene at the times of an open shutter, as often as the rows of shutter_times have it looked at: what its frame function
-// left in each object then, noted while the script runs, and put back when a row is planned.
+// A frame's scene at the times of an open shutter, for every number of times in the rows of shutter_times. The state of
+// each object is recorded while the script runs its frame function, and restored when a row is planned.
 #include <stdlib.h>
 #include <string.h>
 
 #include "bindings/cost/cost.h"
 
-#define NOTES_MAX (1 << 20) // descriptions of shapes in all moments
+#define NOTES_MAX (1 << 20) // limit of shape descriptions in all moments
 
 static const int COUNTS[] = { 1, 2, 4, 8, 16, 32 };
 
-// One time. Descriptions hold what they refer to: of all but shapes by objects of their own.
+// The recorded state of each object at one time: a description for shapes, a copy for the others. Both retain the
+// objects that they refer to.
 typedef struct moment {
     int times, k;
     glint_shape **shapes; // borrowed
@@ -22,9 +23,9 @@ typedef struct moment {
 } moment;
 
 struct cost_moments {
-    moment *list; // the last is the frame's own instant, where `closed`
+    moment *list; // the last is the frame's own instant, if `closed`
     size_t count, notes;
-    bool is_odd; // the objects are not the same at all times
+    bool is_odd; // the objects differ between the times
     bool is_large;
 };
 
@@ -105,7 +106,7 @@ static bool has_same_objects(const moment *a, const moment *b)
            !memcmp(a->materials, b->materials, a->material_count * sizeof *a->materials);
 }
 
-// See glintL_moments. times 0: the frame's own instant.
+// Records the scene at one time, see glintL_moments. times 0: the frame's own instant.
 static bool see(void *data, glint_scene *scene, int times, int k)
 {
     cost_moments *moments = data;

@@ -1,4 +1,5 @@
--- The page of glint cost: page.html with its @NAMES@ filled in, the plot and the pictures in it. It needs no network.
+-- The page of glint cost: page.html with its @NAMES@ replaced, including the plot and the pictures. It needs no
+-- network.
 local the = ...
 local format = string.format
 
@@ -20,7 +21,7 @@ local function remarks_of(row)
     .. ((row.partial or row.case.left_out) and ", partial" or "")
 end
 
--- The tooltip of the row's point.
+-- Returns the tooltip of the row's point.
 local function text_of(row)
   local time, error = row.case.time, row.error
   local text = format("%s: %.4g ms by the clock, %.4g ms (%.4g to %.4g) of processor time, %.3g times the fastest",
@@ -55,7 +56,7 @@ local function row_of(row)
     .. format("<td class='remark' data-v='%s'>%s</td></tr>\n", the.html(remarks), the.html(remarks:sub(3)))
 end
 
--- The pictures are in the page itself, or, where they would make it too heavy, in files beside it.
+-- Returns the picture's URL: embedded in the page, or a separate file if the page would become too large.
 local function picture(study, name, what, bytes)
   local source = study.is_light and "data:image/png;base64," .. the.base64(bytes) or name .. ".png"
   return format("<img loading='lazy' width='%.0f' height='%.0f' alt='%s' src='", study.width, study.height, what)

@@ -1,14 +1,14 @@
--- The plot of glint cost: time against error, both logarithmic, as SVG that follows the reader's light or dark.
+-- The plot of glint cost: time against error, both logarithmic, as SVG in the reader's light or dark colours.
 local the = ...
 local format, log = string.format, math.log
 
 local WIDTH <const>, HEIGHT <const>, LEFT <const>, RIGHT <const>, TOP <const>, BOTTOM <const> = 540, 420, 62, 16, 16, 50
-local CHARACTER <const> = 6.6 -- width of one, on average
+local CHARACTER <const> = 6.6 -- average width of a character
 
 local ENTITIES <const> = { ["<"] = "&lt;", [">"] = "&gt;", ["&"] = "&amp;", ['"'] = "&quot;", ["'"] = "&#39;" }
 function the.html(text) return (text:gsub("[<>&\"']", ENTITIES)) end
 
--- The rows that are points of their own: the script's setting is drawn once.
+-- Returns the rows with a point of their own: the script's setting is drawn once.
 local function drawn_rows(study)
   local drawn, has_own = {}, false
   for _, row in ipairs(study.rows) do
@@ -27,13 +27,13 @@ local function range_of(rows, value)
     local at = log(value(row), 10)
     low, high = math.min(low, at), math.max(high, at)
   end
-  local more = 0.08 * (high - low) + 0.05 -- room around the points
+  local more = 0.08 * (high - low) + 0.05 -- space around the points
   return { low = low - more, high = high + more }
 end
 
 local function axis(range, tick)
   for decade = math.floor(range.low), math.ceil(range.high) do
-    for _, step in ipairs(range.high - range.low < 3 and { 1, 2, 5 } or { 1 }) do -- 1, 2, 5 or decades alone
+    for _, step in ipairs(range.high - range.low < 3 and { 1, 2, 5 } or { 1 }) do -- ticks at 1, 2, 5, or only decades
       local value = step * 10.0 ^ decade
       local at = log(value, 10)
       if at >= range.low and at <= range.high then tick(value) end
@@ -41,7 +41,7 @@ local function axis(range, tick)
   end
 end
 
--- The SVG element, which is a file of its own, too; nil when no error is known.
+-- Returns the SVG element, which is also a complete file; nil if no error is known.
 function the.plot(study)
   local rows = drawn_rows(study)
   if #rows == 0 then return nil end
@@ -87,7 +87,7 @@ function the.plot(study)
     end
   end
 
-  -- Steps: the error that can be had for the time.
+  -- Draws the front as steps: the least error for each time.
   local function draw_front()
     local front, before = {}, nil
     for _, row in ipairs(rows) do
@@ -128,13 +128,13 @@ function the.plot(study)
     take(x - 7, y - 7, 14, 14)
   end
 
-  -- Beside, above or below its point, where there is room; nowhere else.
+  -- Puts the label next to, above or below its point where it fits, or omits it.
   local function draw_label(row)
     local text = row.own and "the script's own" or row.name
     local width, x, y = CHARACTER * #text, x_of(row.case.time.median), y_of(row.error.rmse)
     local places = { { x + 9, y - 14 }, { x + 9, y + 1 }, { x - 9 - width, y + 1, true },
       { x - 9 - width, y - 14, true }, { x - width / 2, y + 8 },
-      { x - width / 2, y - 22 } } -- true: the text ends where its place does
+      { x - width / 2, y - 22 } } -- true: right-aligned
     for _, place in ipairs(places) do
       local left, top, ends = table.unpack(place, 1, 3)
       if is_free(left, top, width, 13) then
@@ -150,12 +150,12 @@ function the.plot(study)
   put("<style>\n%s</style>\n<rect class='paper' width='%d' height='%d' rx='6'/>\n", study.style, WIDTH, HEIGHT)
   draw_frame()
   draw_front()
-  for _, own in ipairs { false, true } do -- the script's own on top of the others
+  for _, own in ipairs { false, true } do -- the script's own point on top
     for _, row in ipairs(rows) do
       if row.own == own then draw_point(row) end
     end
   end
-  for rank = 0, 2 do -- the more telling labels first
+  for rank = 0, 2 do -- the most important labels first
     for _, row in ipairs(rows) do
       if rank == (row.own and 0 or row.front and 1 or 2) then draw_label(row) end
     end

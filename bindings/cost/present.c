@@ -1,4 +1,4 @@
-// The results of a study as Lua tables, for the modules that make its table, its JSON lines and its report.
+// Converts the results of a study to Lua tables, for the modules that make its table, its JSON lines and its report.
 #include <stddef.h>
 #include <string.h>
 
@@ -67,7 +67,7 @@ static void set_value(lua_State *L, const char *name, cost_value value)
 typedef struct member {
     const char *name;
     size_t at;
-    char kind; // 'd': a double, 'b': a bool, 'u': a uint64_t, 'f': a uint64_t that lines for programs have as a double
+    char kind; // 'd': a double, 'b': a bool, 'u': a uint64_t, 'f': a uint64_t that JSON lines print as a double
 } member;
 
 #define MEMBER(kind, type, name) \
@@ -128,7 +128,7 @@ static void set_settings(lua_State *L, const cost_study *study, const cost_case 
 static void set_case(lua_State *L, const cost_study *study, const cost_case *c)
 {
     lua_newtable(L);
-    push_members(L, &c->time[COST_CPU], TIME, COUNT(TIME)); // by which rows are compared
+    push_members(L, &c->time[COST_CPU], TIME, COUNT(TIME)); // rows are compared by this time
     lua_setfield(L, -2, "time");
     push_members(L, &c->time[COST_TOTAL], TIME, COUNT(TIME));
     lua_setfield(L, -2, "wall");

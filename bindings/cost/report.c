@@ -1,4 +1,4 @@
-// The report of glint cost: a page that needs no network, with its plot as a file beside it, and the pictures.
+// The report of glint cost: a page that needs no network, its plot as a separate file, and the pictures.
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -6,7 +6,7 @@
 
 #include "bindings/cost/cost.h"
 
-#define PAGE_MAX 12000000 // bytes of pictures in the page
+#define PAGE_MAX 12000000 // bytes of pictures embedded in the page, at most
 
 static const char PAGE[] = {
 #include "bindings/cost/page.html.h"
@@ -17,7 +17,7 @@ static const char STYLE[] = {
 
 // ---- Pictures ----
 
-// "samples_16" of the first row that shows the case; the base is "own".
+// Names the pictures "samples_16" after the first row that shows the case; the base is "own".
 static void name_pictures(const cost_study *study, int index, char title[COST_LABEL_SIZE], char file[COST_LABEL_SIZE])
 {
     for (int i = study->row_count - 1; i >= 0; i--)
@@ -31,7 +31,7 @@ static void name_pictures(const cost_study *study, int index, char title[COST_LA
             *at = '_';
 }
 
-// A picture that is worth showing: not the script's own once more (another encoder, say).
+// Returns whether a picture is worth showing: not if it equals the script's own (with another encoder, for example).
 static bool has_picture(const cost_study *study, int index)
 {
     const cost_case *c = &study->cases[index], *own = &study->cases[0];
@@ -40,7 +40,7 @@ static bool has_picture(const cost_study *study, int index)
             memcmp(c->picture, own->picture, c->picture_size) != 0);
 }
 
-// Whether the pictures are in the page itself; beside it where they would make it too heavy.
+// Returns whether the pictures are embedded in the page. Otherwise they are separate files, to keep the page small.
 static bool is_light(const cost_study *study)
 {
     size_t sum = 0;
@@ -93,7 +93,7 @@ static bool make_folders(const char *folder)
         if (*at != '/')
             continue;
         *at = '\0';
-        mkdir(path, 0777); // whether it is there now shows at the end
+        mkdir(path, 0777); // a failure shows in the check below
         *at = '/';
     }
     const int why = mkdir(path, 0777) == 0 ? 0 : errno;
@@ -145,7 +145,7 @@ static glint_status write_pictures(const cost_study *study, const char *folder, 
     return status;
 }
 
-// Without an error there is nothing to draw; the plot of an earlier study in the folder would pass for this one's.
+// Removes the plot of an earlier study from the folder, if this study has no errors to draw.
 static glint_status remove_plot(const char *folder, glint_error *error)
 {
     char path[GLINTL_PATH_SIZE];

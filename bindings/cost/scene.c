@@ -1,4 +1,4 @@
-// The scene of a study: its materials and lights, edited for one plan and put back.
+// The scene of a study: its materials and lights, edited for one plan and restored.
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@ static int by_address(const void *a, const void *b)
     return (left > right) - (left < right);
 }
 
-// The materials of a shape and, of a group, of all within it; how many. NULL: they are only counted.
+// Lists the materials of a shape, or of all shapes in a group; returns how many there are. NULL: only counts.
 static size_t gather_materials(const glint_shape *shape, glint_material **out)
 {
     glint_material *const *list;
@@ -22,7 +22,7 @@ static size_t gather_materials(const glint_shape *shape, glint_material **out)
     return count;
 }
 
-// Each material once: shapes share them.
+// Lists each material once, because shapes share them.
 static void list_materials(cost_scene *scene, const glint_scene *engine_scene)
 {
     size_t count = 0;
@@ -37,7 +37,7 @@ static void list_materials(cost_scene *scene, const glint_scene *engine_scene)
     }
 }
 
-// A light's own corners go when it is set: the descriptions get copies.
+// Lists the lights. Their descriptions get copies of the corners, because setting a light frees its own.
 static void list_lights(cost_scene *scene, const glint_scene *engine_scene)
 {
     double(*corners)[3] = scene->corners;
@@ -89,7 +89,7 @@ void cost_scene_close(cost_scene *scene)
 void cost_scene_restore(cost_scene *scene)
 {
     glint_scene_set(scene->scene, &scene->desc, NULL);
-    for (size_t i = 0; i < scene->material_count; i++) // they were good before
+    for (size_t i = 0; i < scene->material_count; i++) // cannot fail: they were valid before
         glint_material_set(scene->materials[i], &scene->material_descs[i], NULL);
     for (size_t i = 0; i < scene->light_count; i++)
         glint_light_set(scene->lights[i], &scene->light_descs[i], NULL);

@@ -1,5 +1,5 @@
-// The meshes of a study's scene: their shading, edited and put back, and spheres of triangles with other segments, in a
-// scene beside it.
+// The meshes of a study's scene: their shading, edited and restored; and spheres of triangles with other numbers of
+// segments, in a copy of the scene.
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,7 +7,8 @@
 
 typedef void visitor(glint_shape *shape, void *data);
 
-// Every shape that is not a group, once for each time it shows. Parts of combined solids keep what they are: not every shading is theirs.
+// Visits every shape that is not a group, once per instance. Skips parts of combined solids, which do not allow every
+// shading.
 static void visit(glint_shape *shape, visitor *see, void *data)
 {
     const bool group = glint_shape_get(shape)->kind == GLINT_SHAPE_GROUP;
@@ -93,7 +94,7 @@ void cost_scene_restore_meshes(cost_scene *scene)
         const cost_shaded *was = &scene->shaded[--scene->shaded_count];
         glint_shape_desc desc = *glint_shape_get(was->shape);
         desc.shading = was->shading;
-        glint_shape_set(was->shape, &desc, NULL); // it was good before
+        glint_shape_set(was->shape, &desc, NULL); // cannot fail: it was valid before
     }
 }
 
@@ -106,7 +107,7 @@ static void note_globe(glint_shape *shape, void *data)
     *any = *any || is_globe(shape, &segments);
 }
 
-// A sphere of triangles as one of other segments, or, of 0, as the sphere that it stands for.
+// Makes a sphere of triangles with other segments; 0: the exact sphere that it approximates.
 static glint_status make_globe(const glint_shape *from, double segments, glint_shape **out, glint_error *error)
 {
     const glint_shape_desc *desc = glint_shape_get(from);
@@ -173,7 +174,7 @@ static glint_status copy_scene(glint_scene *from, double segments, glint_scene *
     return status;
 }
 
-// Copies live until the study ends, so their indices are built once.
+// Copies live until the study ends, so that their indices are built only once.
 glint_status cost_scene_set_segments(cost_scene *scene, double segments, glint_error *error)
 {
     for (int i = 0; i < scene->copy_count; i++)

@@ -1,11 +1,12 @@
-// When things run: one case at a time in random order, so that a slow minute of the machine meets all of them alike.
+// Schedules the runs: one case at a time in random order, so that a slow phase of the machine affects all cases
+// equally.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bindings/cost/cost.h"
 
-// SplitMix64: the order of the runs needs no better, and no library's.
+// SplitMix64: good enough for the order of runs, and the same with every C library.
 static uint64_t next_random(cost_study *study)
 {
     uint64_t z = study->random += 0x9e3779b97f4a7c15u;
@@ -42,7 +43,7 @@ static void name_case(const cost_study *study, int index, char out[COST_LABEL_SI
             cost_row_name(&study->rows[i], out);
 }
 
-// Drops the slowest case but the script's own. False: no other is left.
+// Drops the slowest case except the script's own. False: there is no other.
 static bool drop_slowest(cost_study *study)
 {
     char name[COST_LABEL_SIZE];
@@ -116,7 +117,8 @@ static int list_cases(cost_study *study, bool more, int *order, double *ms)
     return count;
 }
 
-// More runs of the cases whose quartiles meet a neighbour's. One that never parts from it costs the same.
+// Runs the cases again whose quartile range overlaps a neighbour's. If the ranges always overlap, the two cost the
+// same.
 static bool tell_apart(cost_study *study, int *order)
 {
     double ms;

@@ -1,4 +1,4 @@
-// The values of a knob of glint cost: numbers or words, one of them the script's own.
+// The values of a knob of glint cost: numbers or words, including the script's own value.
 #include <string.h>
 
 #include "bindings/cost/cost.h"

@@ -1,10 +1,10 @@
-// glint.animation: a scene and a function of time. Also the object that animations and sweeps are: its fields and run.
+// glint.animation: a scene and a function of time. Also the job object of animations and sweeps: its fields and run.
 //
 //     glint.animation { scene = s, frames = 120, fps = 24, cyclic = true, frame = function(t, n) ... end }
 //
 // t = (n-1)/frames when cyclic, else (n-1)/(frames-1), and 0 for a single frame. `frame` must depend only on t and n:
-// it is called for the selected frames only, so that one frame must not build on another. While the camera's shutter is open it
-// is called for several t around the frame's own, and for that one last.
+// it is called only for the selected frames, so a frame must not depend on an earlier one. While the camera's shutter
+// is open it is called for several t around the frame's own t, which comes last.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -91,7 +91,7 @@ static void read_animation_field(lua_State *L, int index, int job_index, glintL_
     }
 }
 
-// Reads the value at `index` into a field of the job at `job_index`; both absolute.
+// Reads the value at `index` into a field of the job at `job_index`. Both are absolute.
 static void read_field(lua_State *L, int index, int job_index, const char *name)
 {
     glintL_job *job = lua_touserdata(L, job_index);
@@ -232,7 +232,7 @@ void glintL_job_build(lua_State *L, int index, int64_t n, double t)
     luaL_checkstack(L, 4, "frame");
     if (job->kind == GLINTL_JOB_SWEEP) {
         glintL_sweep_build(L, index, n);
-    } else if (lua_getiuservalue(L, index, GLINTL_JOB_FRAME) == LUA_TFUNCTION) { // a still has none
+    } else if (lua_getiuservalue(L, index, GLINTL_JOB_FRAME) == LUA_TFUNCTION) { // a still has no frame function
         lua_pushnumber(L, t);
         lua_pushinteger(L, n);
         lua_call(L, 2, 0);
@@ -253,7 +253,7 @@ static void list_fields(lua_State *L, const char *name, const glintL_field *own)
     size_t count = 0;
     for (; own->name; own++)
         fields[count++] = *own;
-    memcpy(fields + count, glintL_render_fields, sizeof glintL_render_fields); // with its end
+    memcpy(fields + count, glintL_render_fields, sizeof glintL_render_fields); // including the terminator
     glintL_variant variant = { .name = name, .fields = fields };
     glintL_list_variant(L, &variant, methods);
 }

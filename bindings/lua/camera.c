@@ -5,13 +5,13 @@
 
 #include "bindings/value/glintL.h"
 
-#define SQUARE 1e-3 // how far a matrix may be from a rotation: enough for numbers of four digits
+#define SQUARE 1e-3 // largest deviation of a matrix from a rotation: enough for numbers with four digits
 
-// A camera looks at a point or along a direction: the one it does not use reads nil.
+// A camera looks at a point or along a direction; the unused one reads nil.
 typedef struct desc_type {
     glint_camera_desc camera;
     bool has_eye, has_at;
-    bool has_matrix; // of the table that is read
+    bool has_matrix; // of the table being read
     glintL_distance focus;
 } desc_type;
 _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
@@ -30,7 +30,7 @@ static void cross(const double a[3], const double b[3], double out[3])
         out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
-// Reads the row on top, of four numbers, and pops it.
+// Reads the row of four numbers on top, and pops it.
 static void take_row(lua_State *L, const char *path, double rotation[3], double *shift)
 {
     char element[96];
@@ -92,7 +92,7 @@ static void normalize(double v[3])
         v[c] /= length;
 }
 
-// nil where the view is along `up`, and its sides are the engine's choice.
+// Pushes nil if the view is along `up`, since the engine then chooses its sides.
 static void push_matrix(lua_State *L, const void *desc)
 {
     const glint_camera_desc *camera = &((const desc_type *)desc)->camera;
@@ -166,7 +166,7 @@ static void get(const void *object, void *desc)
     memcpy(d->focus.point, d->camera.focus_point, sizeof d->focus.point);
 }
 
-// Returns the engine's description of the camera.
+// Returns the camera's description for the engine.
 static glint_camera_desc described(const desc_type *d)
 {
     glint_camera_desc camera = d->camera;
@@ -186,7 +186,7 @@ static void *retain(void *object) { return glint_camera_retain(object); }
 
 static void release(void *object) { glint_camera_release(object); }
 
-// The last one set of at and direction is used, and the last one of fov and fx.
+// The last assignment decides between at and direction, and between fov and fx.
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
     desc_type *d = desc;

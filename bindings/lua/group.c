@@ -1,4 +1,4 @@
-// glint.group: a list of shapes under one transform, and the combined solids: their parts and methods.
+// glint.group: a list of shapes under one transform; and the combined solids: their parts and methods.
 #include <stdio.h>
 
 #include "bindings/value/glintL.h"
@@ -11,7 +11,7 @@ static glint_shape *check_group(lua_State *L, int index)
     return shape;
 }
 
-// Keeps the userdata of a child as long as the group's, so that it reads as the same object.
+// Stores the userdata of a child in the group's, so that it reads as the same object.
 static void add_child(lua_State *L, int index, int value, const char *path)
 {
     char key[32];
@@ -21,12 +21,12 @@ static void add_child(lua_State *L, int index, int value, const char *path)
     snprintf(key, sizeof key, "%p", glintL_test_object(L, value, GLINTL_SHAPE));
     glintL_keep(L, index, key, value);
     glint_shape *group = check_group(L, index), *child = glintL_test_object(L, value, GLINTL_SHAPE);
-    if (!child) // closed meanwhile, by a finalizer
+    if (!child) // a finalizer has closed it
         glintL_refuse(L, value, path, "shape");
     glintL_check_status(L, "", &error, glint_group_add(group, child, &error));
 }
 
-// "group.add", "union.add" ...
+// Returns "group.add", "union.add" and so on.
 static const char *method_of(lua_State *L, const char *name)
 {
     static const char *const kinds[] = { "group", "union", "intersection", "difference" };

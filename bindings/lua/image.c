@@ -1,4 +1,4 @@
-// Images: what scene:render returns.
+// Images, which scene:render returns.
 #include <string.h>
 
 #include "bindings/run/run.h"
@@ -65,7 +65,7 @@ static void *retain(void *object) { return glint_image_retain(object); }
 
 static void release(void *object) { glint_image_release(object); }
 
-// A whole number from 0 up to `count` - 1.
+// Returns a whole number from 0 up to `count` - 1.
 static int check_coordinate(lua_State *L, int index, const char *path, int count)
 {
     double x = glintL_read_number(L, index, path);
@@ -76,7 +76,7 @@ static int check_coordinate(lua_State *L, int index, const char *path, int count
     return (int)x;
 }
 
-// GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX: the image has no derivative by that name.
+// Returns the derivative by that name; GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX: there is none.
 static glint_pass find_derivative(const glint_image *image, const char *name)
 {
     size_t i = 0;
@@ -86,7 +86,7 @@ static glint_pass find_derivative(const glint_image *image, const char *name)
     return (glint_pass)(GLINT_PASS_DERIVATIVE + i);
 }
 
-// GLINT_PASS_COUNT: the image has no light pass by that name.
+// Returns the light pass by that name; GLINT_PASS_COUNT: there is none.
 static glint_pass find_light_pass(const glint_image *image, const char *name)
 {
     const char *own;
@@ -96,7 +96,7 @@ static glint_pass find_light_pass(const glint_image *image, const char *name)
     return GLINT_PASS_COUNT;
 }
 
-// The pass named at `index`, of the image at 1; nil: beauty.
+// Returns the pass named at `index`, of the image at 1; nil: beauty.
 static glint_pass check_pass(lua_State *L, int index, const char *path)
 {
     if (lua_isnoneornil(L, index))
@@ -138,7 +138,7 @@ static int pixel(lua_State *L)
     return channels;
 }
 
-// The name of a map, "viridis:1:9" with its range, or nil, at the top; pops it.
+// Reads the name of a map, "viridis:1:9" with its range, or nil, on top of the stack; pops it.
 static void take_colormap(lua_State *L, glint_write_desc *desc)
 {
     static const glintL_field name = { .name = "colormap", .type = GLINT_TYPE_CHOICE, .names = glintL_pass_colormaps };
@@ -231,7 +231,7 @@ static int save(lua_State *L)
     if (!lua_isnoneornil(L, 3))
         read_options(L, &desc);
     glint_status status = glint_image_write(glintL_check_object(L, 1, GLINTL_IMAGE), &desc, &error);
-    if (status == GLINT_ERR_IO || status == GLINT_ERR_NO_SPACE) { // the outside world, as io.open does
+    if (status == GLINT_ERR_IO || status == GLINT_ERR_NO_SPACE) { // nil and a message, as from io.open
         luaL_pushfail(L);
         lua_pushstring(L, error.message);
         return 2;
@@ -245,7 +245,7 @@ static int save(lua_State *L)
     return 1;
 }
 
-// The pass as float32, little endian, row by row from the top, as string.unpack and NumPy read it.
+// Returns the pass as float32, little endian, row by row from the top, as string.unpack and NumPy read it.
 static int bytes(lua_State *L)
 {
     luaL_Buffer out;

@@ -1,13 +1,13 @@
-// The image that scene:render returns for a file that is already there. It is rendered when the script first reads it.
+// The image that scene:render returns for an existing file. It is rendered only when the script first reads it.
 //
-// Most scripts never do, and a resumed loop then costs nothing. At the first look the userdata becomes an image like
-// any other: it is a glintL_box with a plan behind it.
+// Most scripts never do, so that resuming a loop costs nothing. On the first access the userdata becomes an ordinary
+// image: it is a glintL_box followed by a plan.
 #include "bindings/run/run.h"
 
 #define KEPT_IMAGE "glint.kept_image"
 
 typedef struct kept_image {
-    glintL_box box; // of the image it becomes
+    glintL_box box; // of the image that it becomes
     glint_plan *plan; // owned; a snapshot of the scene
 } kept_image;
 
@@ -35,7 +35,7 @@ static int close_kept(lua_State *L)
     return 0;
 }
 
-// Renders, and turns the userdata at 1, which must be on top of the stack, into an image.
+// Renders the image, and turns the userdata at 1, which must be on top of the stack, into it.
 static void become_image(lua_State *L)
 {
     kept_image *kept = luaL_checkudata(L, 1, KEPT_IMAGE);
@@ -49,7 +49,7 @@ static void become_image(lua_State *L)
     glint_plan_destroy(kept->plan);
     kept->plan = NULL;
     kept->box.object = image;
-    luaL_setmetatable(L, GLINTL_IMAGE); // which releases it from now on
+    luaL_setmetatable(L, GLINTL_IMAGE); // whose metamethods release it from now on
 }
 
 static int read_member(lua_State *L)
@@ -85,7 +85,7 @@ void glintL_open_kept_image(lua_State *L)
     luaL_setfuncs(L, meta, 0);
     lua_pushboolean(L, false);
     lua_setfield(L, -2, "__metatable");
-    lua_pushliteral(L, GLINTL_IMAGE); // what messages call it
+    lua_pushliteral(L, GLINTL_IMAGE); // the type's name in messages
     lua_setfield(L, -2, "__name");
     lua_pop(L, 1);
 }

@@ -12,7 +12,7 @@ static void fetch(lua_State *L, const char *name, int place)
     lua_replace(L, place);
 }
 
-// One number of the index, counted from 1, at any Lua integer.
+// Checks one number of the index, counted from 1.
 static uint32_t checked(lua_State *L, const glintL_many *many, size_t i, lua_Integer number, size_t material_count)
 {
     if (number < 1 || (size_t)number > material_count)

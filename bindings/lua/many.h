@@ -1,24 +1,26 @@
-/// Which material each of many has: the fields material, materials and index of glint.spheres and glint.mesh. Internal.
+/// The material of each of many spheres or faces: the fields material, materials and index of glint.spheres and
+/// glint.mesh. Internal.
 #ifndef GLINT_L_MANY_H
 #define GLINT_L_MANY_H
 
 #include "bindings/value/glintL.h"
 
-/// The names of a constructor, whose table is the first argument, and free positions on its stack.
+/// The names in a constructor, whose table is the first argument, and free positions on its stack.
 typedef struct glintL_many {
     const char *object, *each; ///< "spheres", "sphere"
-    int material, materials, index; ///< the fields
-    int index_buffer, pointers; ///< memory
-    int kept; ///< the list that keeps the materials; nil without any
+    int material, materials, index; ///< positions of the fields
+    int index_buffer, pointers; ///< positions of memory
+    int kept; ///< position of the list that retains the materials; nil without any
 } glintL_many;
 
-/// Counts the materials and makes room for their pointers, and the list that keeps them alive. NULL: there are none.
+/// Counts the materials, allocates their pointers, and makes the list that retains them. NULL: there are none.
 glint_material **glintL_many_prepare(lua_State *L, const glintL_many *many, size_t *material_count);
-/// The numbers of materials, from 0, of `count` things. NULL: all have the first.
+/// Returns the materials' numbers, from 0, of `count` things. NULL: all have the first material.
 const uint32_t *glintL_many_index(lua_State *L, const glintL_many *many, size_t count, size_t material_count);
-/// Fills the pointers. Last before the engine is called, and without allocating: until then a finalizer could close a material.
+/// Fills in the pointers. Call it right before the engine, with no allocation in between: a finalizer could close a
+/// material.
 void glintL_many_read(lua_State *L, const glintL_many *many, size_t material_count, glint_material **pointers);
-/// Keeps the materials as long as the userdata at `box`.
+/// Retains the materials as long as the userdata at `box` lives.
 void glintL_many_keep(lua_State *L, const glintL_many *many, int box);
 
 #endif

@@ -22,13 +22,13 @@ static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
     desc_type *d = desc;
     (void)L;
-    if (field->offset == AT(specular) && !d->has_specular) // it was set to nil
+    if (field->offset == AT(specular) && !d->has_specular) // a specular that was set to nil
         memset(d->specular, 0, sizeof d->specular);
 }
 
 static void follow(void *desc) { glint_material_desc_resolve(desc); }
 
-static const char WARNED; // its address is the registry's key: true once the script was warned
+static const char WARNED; // its address is a registry key; true there: the script was warned
 
 static bool is_first(lua_State *L)
 {
@@ -40,7 +40,7 @@ static bool is_first(lua_State *L)
     return first;
 }
 
-// kd ranges over 0 .. 1; more is allowed, and warned about once.
+// kd should be within 0 .. 1. Larger values are allowed, with one warning.
 static void accepted(lua_State *L, const glintL_field *field, const void *desc)
 {
     if (field->offset == AT(specular))
@@ -53,7 +53,7 @@ static void accepted(lua_State *L, const glintL_field *field, const void *desc)
                                 : "material.diffuse above 1: the surface gives off more light than it gets");
 }
 
-// The name that the table at 2 gives a direction: the long one, or the short one of shaders.
+// Returns the name by which the table at 2 gives a direction: the long one, or the short one of shaders.
 static const char *name_in(lua_State *L, const char *long_name, const char *short_name)
 {
     if (!lua_istable(L, 2))
@@ -95,7 +95,7 @@ static int evaluate(lua_State *L)
 
 static const luaL_Reg METHODS[] = { { "evaluate", evaluate }, { NULL, NULL } };
 
-// Whether the constructor's table, at 1, has the field.
+// Returns whether the constructor's table, at 1, has the field.
 static bool is_given(lua_State *L, const char *name)
 {
     lua_pushstring(L, name);

@@ -1,4 +1,4 @@
-// glint.sin and its kin: the same bits on every machine, which the C library does not promise.
+// glint.sin and similar functions: their results have the same bits on every machine, unlike the C library's.
 #include "bindings/value/glintL.h"
 
 static int apply(lua_State *L, const char *path, double (*function)(double))

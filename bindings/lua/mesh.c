@@ -7,7 +7,7 @@
 
 typedef struct arguments {
     glint_mesh_desc desc;
-    unsigned format; // of packed numbers: 0 none, 1 f32, 2 f64
+    unsigned format; // of packed numbers: 0 not packed, 1 f32, 2 f64
     double center[3], radius, segments;
 } arguments;
 
@@ -47,7 +47,7 @@ static const glintL_field SPHERE_FIELDS[] = {
     { .name = NULL },
 };
 
-// The stack of the constructors: the argument, the box, then what the argument's fields hold and room for each.
+// Stack positions of the constructors: the argument, the box, then the argument's fields and a buffer for each.
 enum {
     ARGUMENT = 1,
     BOX,
@@ -89,7 +89,7 @@ static void fetch(lua_State *L, const char *name, int place)
 
 // ---- Vertices, normals and coordinates ----
 
-// Numbers that each entry of a list has: x, y, z, or u, v.
+// The form of a list's entries: x, y, z, or u, v.
 typedef struct entry_kind {
     const char *name, *form;
     int size;
@@ -115,7 +115,7 @@ static double *new_numbers(lua_State *L, size_t count, int buffer)
     return out;
 }
 
-// The entry on top of the stack.
+// Reads the entry on top of the stack.
 static void read_entry(lua_State *L, const char *path, const entry_kind *kind, double *out)
 {
     const int entry = lua_gettop(L);
@@ -208,7 +208,7 @@ static void read_format(lua_State *L, arguments *a)
 
 // ---- Faces ----
 
-// One number of a face, counted from 1.
+// Checks one vertex number of a face, counted from 1.
 static uint32_t checked_vertex(lua_State *L, const arguments *a, size_t face, lua_Integer number)
 {
     if (number < 1 || (size_t)number > a->desc.vertex_count)
@@ -217,7 +217,7 @@ static uint32_t checked_vertex(lua_State *L, const arguments *a, size_t face, lu
     return (uint32_t)number - 1;
 }
 
-// The i-th entry of the list on top of the stack.
+// Reads the i-th entry of the list on top of the stack.
 static uint32_t read_vertex_number(lua_State *L, const arguments *a, size_t face, size_t i)
 {
     lua_rawgeti(L, -1, (lua_Integer)i);
@@ -239,7 +239,7 @@ static uint32_t *new_indices(lua_State *L, size_t count, int buffer)
     return out;
 }
 
-// All faces are triangles: their numbers one after the other.
+// Makes all faces triangles: their numbers are consecutive.
 static void set_triangles(lua_State *L, arguments *a, size_t numbers, const char *what)
 {
     if (numbers % 3 != 0)
@@ -327,7 +327,7 @@ static void read_faces(lua_State *L, arguments *a)
 
 // ---- Normals and coordinates: one a vertex, or one a corner in the order of the faces ----
 
-// Where entries belong to corners, their numbers: 0, 1, 2 ...; NULL: they belong to vertices.
+// Returns the numbers 0, 1, 2 ... if entries belong to corners; NULL: they belong to vertices.
 static const uint32_t *number_corners(lua_State *L, const arguments *a, const char *name, size_t count, int buffer)
 {
     size_t corners = 0;
@@ -365,7 +365,8 @@ static void read_arrays(lua_State *L, arguments *a)
 
 // ---- Objects ----
 
-// Last before the engine is called, and without allocating: until then a finalizer could close the material.
+// Reads the material. Call it right before the engine, with no allocation in between: a finalizer could close the
+// material.
 static void read_material(lua_State *L, const char *path, arguments *a)
 {
     a->desc.material = glintL_test_object(L, MATERIAL, GLINTL_MATERIAL);
@@ -381,7 +382,7 @@ static glintL_box *begin(lua_State *L)
     return box;
 }
 
-// The materials of a file live as long as the mesh, and keep the script's changes of their fields.
+// Retains the materials of a file with the mesh, so that the script's changes to their fields persist.
 static void keep_materials(lua_State *L, const glint_shape *shape)
 {
     glint_material *const *list;
@@ -433,7 +434,7 @@ static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_
         glintL_error(L, "mesh.file: string without a zero byte expected");
     read_material(L, "mesh.material", a);
     glintL_run *run = glintL_get_run(L);
-    if (run->request.is_untrusted) // which would learn from the answers what files there are
+    if (run->request.is_untrusted) // the answers would tell an untrusted script which files exist
         glintL_error(L, "mesh.file: an untrusted script reads no files");
     a->desc.reads = note_read;
     a->desc.warns = note_warning;
@@ -443,7 +444,7 @@ static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_
     return glint_mesh_load(path, &a->desc, shape, error);
 }
 
-// Raises what is wrong with the file at OTHER: "FILE:LINE: what", as readers in Lua do. The lines of the script follow.
+// Raises the error in the file at OTHER: "FILE:LINE: what", as readers in Lua do. The traceback of the script follows.
 static void check_loaded(lua_State *L, const glint_error *error, glint_status status)
 {
     const char *path = lua_tostring(L, OTHER);

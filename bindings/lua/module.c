@@ -5,7 +5,7 @@
 #include "bindings/run/run.h"
 #include "bindings/run/system.h"
 
-typedef struct members { // of the module's table, which is at `index`
+typedef struct members { // of the module's table, at `index`
     lua_State *L;
     int index;
 } members;
@@ -19,14 +19,14 @@ static bool has_member(const void *context, const char *name)
     return found;
 }
 
-// A table has no order: of two that are as near, the first in the alphabet.
+// Returns the nearest name. Tables have no order, so that among equals the first in the alphabet is chosen.
 static const char *nearest_member(lua_State *L, const char *name)
 {
     const char *near = NULL;
     lua_pushnil(L);
     while (lua_next(L, 1)) {
         lua_pop(L, 1);
-        const char *known = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "_"; // the table keeps it
+        const char *known = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "_"; // the table retains the string
         const bool is_near = *known != '_' && glintL_nearer(name, near, known) == known;
         if (is_near || (near && glintL_nearer(name, known, near) == known && strcmp(known, near) < 0))
             near = known;
@@ -34,7 +34,7 @@ static const char *nearest_member(lua_State *L, const char *name)
     return near ? near : glintL_meaning(name, has_member, &(members) { L, 1 });
 }
 
-// Whether `require "glint.<name>"` would find a module.
+// Returns whether `require "glint.<name>"` would find a module.
 static bool is_module(lua_State *L, const char *name)
 {
     bool found = false;
@@ -48,7 +48,7 @@ static bool is_module(lua_State *L, const char *name)
     return found;
 }
 
-// 1: the module's table, 2: what it lacks.
+// Raises an error for an unknown member. 1: the module's table, 2: the name.
 static int refuse_member(lua_State *L)
 {
     lua_settop(L, 2);
@@ -66,21 +66,21 @@ static int list_fields(lua_State *L)
     return 1;
 }
 
-// _other_kind(path): "device", "pipe", "socket" or "folder" if it is one. Only for scripts/lib.
+// _other_kind(path): returns "device", "pipe", "socket" or "folder" if the path is one. Only for scripts/lib.
 static int other_kind(lua_State *L)
 {
     lua_pushstring(L, glintL_other_kind(luaL_checkstring(L, 1)));
     return 1;
 }
 
-// _warn(message): the run's warning, without a position. Only for scripts/lib.
+// _warn(message): gives a warning of the run, without a position. Only for scripts/lib.
 static int warn(lua_State *L)
 {
     glintL_run_warn(glintL_get_run(L), "%s", luaL_checkstring(L, 1));
     return 0;
 }
 
-// _output(): what -o says, or nil. For scripts/ only.
+// _output(): returns the value of -o, or nil. Only for scripts/.
 static int output(lua_State *L)
 {
     lua_pushstring(L, glintL_get_run(L)->request.render_text[glintL_render_find("output")]);
@@ -100,9 +100,9 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     lua_newtable(L);
     lua_pushliteral(L, GLINT_VERSION);
     lua_setfield(L, -2, "version");
-    lua_pushcfunction(L, list_fields); // for the test of meta/glint.lua alone
+    lua_pushcfunction(L, list_fields); // only for the test of meta/glint.lua
     lua_setfield(L, -2, "_fields");
-    lua_pushcfunction(L, glintL_list_rows); // likewise, and for what is made of it: bindings/meta/fill.lua
+    lua_pushcfunction(L, glintL_list_rows); // the same, and for bindings/meta/fill.lua
     lua_setfield(L, -2, "_rows");
     lua_pushcfunction(L, other_kind);
     lua_setfield(L, -2, "_other_kind");

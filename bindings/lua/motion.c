@@ -1,21 +1,22 @@
-// glint.ease and glint.keys: numbers that move with a frame's time. Only sums and products, so that all machines agree.
+// glint.ease and glint.keys: numbers that change with a frame's time. They use only sums and products, so that the
+// results are the same on every machine.
 #include "bindings/value/glintL.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#define VALUE_MAX 16 // numbers of a key's value
+#define VALUE_MAX 16 // numbers in a key's value, at most
 
 typedef enum easing { EASE_LINEAR, EASE_SMOOTH, EASE_SMOOTHER, EASE_IN, EASE_OUT, EASE_SPLINE } easing;
 
 static const char *const easings[] = { "linear", "smooth", "smoother", "in", "out", "spline" };
 
 typedef struct track {
-    uint32_t count, size; ///< keys; numbers of a value
+    uint32_t count, size; ///< number of keys; numbers in a value
     bool is_list, cyclic;
     easing ease;
-    double numbers[]; ///< the times, then the values one after the other
+    double numbers[]; ///< the times, then the values, key by key
 } track;
 
 // ---- The curves ----
@@ -41,8 +42,9 @@ static double key_time(const track *k, uint32_t i) { return k->numbers[i]; }
 
 static double key_value(const track *k, uint32_t i, uint32_t c) { return k->numbers[k->count + i * k->size + c]; }
 
-/// How fast the value changes at a key: as between its neighbours (E. Catmull, R. Rom, "A Class of Local Interpolating Splines",
-/// 1974, for times that are not evenly spaced). At the ends, as between the two there, or round the cycle.
+/// Returns the slope at a key: that between its neighbours (E. Catmull, R. Rom, "A Class of Local Interpolating
+/// Splines", 1974, for times that are not evenly spaced). At the ends, that of the first or last segment, or around the
+/// cycle.
 static double slope(const track *k, uint32_t i, uint32_t c)
 {
     const uint32_t last = k->count - 1;
@@ -56,7 +58,7 @@ static double slope(const track *k, uint32_t i, uint32_t c)
     return i == 0 ? first_rise / first_way : last_rise / last_way;
 }
 
-/// Component c between keys i and i + 1, at share t of the way.
+/// Returns component c between keys i and i + 1, at the share t of the interval.
 static double between(const track *k, uint32_t i, double t, uint32_t c)
 {
     const double a = key_value(k, i, c), b = key_value(k, i + 1, c);
@@ -92,7 +94,7 @@ static int motion_ease(lua_State *L)
     return 1;
 }
 
-/// At upvalue 1 the track, at 1 the time.
+/// Pushes the value at a time. Upvalue 1: the track; 1: the time.
 static int value_at(lua_State *L)
 {
     const track *k = lua_touserdata(L, lua_upvalueindex(1));
@@ -130,7 +132,7 @@ static double read_finite(lua_State *L, const char *path)
     return x;
 }
 
-/// How many numbers the value on top has: a number, a vector, or a list of numbers.
+/// Returns how many numbers the value on top has: a number, a vector, or a list of numbers.
 static uint32_t value_size(lua_State *L, const char *path, bool *is_list)
 {
     *is_list = lua_type(L, -1) != LUA_TNUMBER;
@@ -144,7 +146,7 @@ static uint32_t value_size(lua_State *L, const char *path, bool *is_list)
     return (uint32_t)size;
 }
 
-/// Checks that the value on top has the kind of the first key's value.
+/// Reads the value on top, and checks that it has the form of the first key's value.
 static void read_value(lua_State *L, const char *path, const track *k, double *out)
 {
     bool is_list;
@@ -162,7 +164,7 @@ static void read_value(lua_State *L, const char *path, const track *k, double *o
     }
 }
 
-/// Leaves time and value of key i on the stack, above the list at 1.
+/// Pushes time and value of key i, from the list at 1.
 static void push_key(lua_State *L, uint32_t i, char *path, size_t path_size)
 {
     snprintf(path, path_size, "keys[%u]", i + 1);

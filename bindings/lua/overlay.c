@@ -153,7 +153,7 @@ static void push_names(lua_State *L, const void *desc)
     glintL_freeze(L, "labels");
 }
 
-// {{x, y, z}, {x, y, z}}: the values at the lowest and at the highest corner of a box.
+// Reads {{x, y, z}, {x, y, z}}: the values at the lowest and the highest corner of a box.
 static void read_corners(lua_State *L, int index, const char *path, double (*out)[3])
 {
     if (!lua_istable(L, index) || lua_rawlen(L, index) != 2)
@@ -178,7 +178,7 @@ static void push_corners(lua_State *L, const double (*corners)[3], const char *n
     glintL_freeze(L, name);
 }
 
-// Three numbers of a field of the table at `index`, {0, 0, 0} where it has none.
+// Reads three numbers from a field of the table at `index`; {0, 0, 0} if it has none.
 static void read_side(lua_State *L, int index, const char *path, const char *name, double out[3])
 {
     memset(out, 0, 3 * sizeof *out);
@@ -211,7 +211,8 @@ static bool has_key(lua_State *L, int index, const char *name)
     return has;
 }
 
-// A box as glint.box and the readers of atoms have it: { low, size, xy, xz, yz }. An upright one has two corners.
+// Reads a box in the form of glint.box and the atom readers: { low, size, xy, xz, yz }. An upright box gets two
+// corners.
 static void read_sized(lua_State *L, int index, const char *path, desc_type *d)
 {
     double size[3];
@@ -225,7 +226,8 @@ static void read_sized(lua_State *L, int index, const char *path, desc_type *d)
         d->box[1][i] = d->box[0][i] + size[i];
 }
 
-// Two corners, a box { low, size, ... } or a cell { origin, a, b, c }. Axes of a cell are called a, b and c unless labels say otherwise.
+// Reads two corners, a box { low, size, ... } or a cell { origin, a, b, c }. The axes of a cell are called a, b and c
+// unless labels say otherwise.
 static void read_box(lua_State *L, int index, const char *path, void *desc)
 {
     static const char *const usual[] = { "x", "y", "z" }, *const of_cell[] = { "a", "b", "c" };
@@ -277,7 +279,8 @@ static const char *const ORIENTATIONS[] = { "vertical", "horizontal", NULL };
 
 #define HEX(color, shift) ("0123456789abcdef"[(color) >> (shift) & 15])
 
-// The name of a map, a list of colours, or a function where a bar is made: that of a bar that is there might close it.
+// Reads the name of a map, a list of colours or, only in the constructor, a function: calling it for an existing bar
+// might close the bar.
 static void read_map(lua_State *L, int index, const char *path, void *desc)
 {
     static const glintL_field name = { .name = "map", .type = GLINT_TYPE_CHOICE, .names = glintL_colormaps };
@@ -359,7 +362,7 @@ static const glintL_field COLORBAR_FIELDS[] = {
 };
 
 static const glintL_field AXES_FIELDS[] = {
-    { .name = "box", GLINTL_CUSTOM(read_box, push_box), .set_offset = AT(has_box) }, // names axes
+    { .name = "box", GLINTL_CUSTOM(read_box, push_box), .set_offset = AT(has_box) }, // sets default names of the axes
     { .name = "labels", GLINTL_CUSTOM(read_names, push_names) },
     { .name = "values", GLINTL_CUSTOM(read_values, push_values), .set_offset = AT(has_values) },
     LENGTH,
@@ -377,7 +380,7 @@ static const glintL_variant *variant(const void *object) { return &VARIANTS[glin
 
 GLINTL_FUNCTIONS(overlay);
 
-// The one of at and position set last is the one used.
+// The last assignment decides between at and position.
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
     desc_type *d = desc;

@@ -5,7 +5,7 @@
 
 #include "bindings/run/run.h"
 
-// Pushes the allowed values of a parameter, for messages. `spec` is absolute.
+// Pushes the allowed values of a parameter, for messages. `spec` is an absolute index.
 static const char *push_allowed(lua_State *L, int spec)
 {
     luaL_Buffer out;
@@ -51,7 +51,8 @@ static bool is_choice(lua_State *L, int choices, int value)
     return found;
 }
 
-// Whether the value at `value` is within the limits of the spec at `spec`; it has the type already. Both absolute.
+// Returns whether the value at `value`, which has the right type, is within the limits of the spec at `spec`. Both are
+// absolute.
 static bool is_allowed(lua_State *L, int spec, int value)
 {
     bool good = true;
@@ -66,7 +67,7 @@ static bool is_allowed(lua_State *L, int spec, int value)
     return good;
 }
 
-// Pushes the value that `text` spells for a parameter with the default at `index`; false: it spells none.
+// Pushes the value that `text` spells for a parameter with the default at `index`. False: it is not a valid literal.
 static bool push_literal(lua_State *L, const char *text, int index)
 {
     lua_Integer whole;
@@ -81,7 +82,7 @@ static bool push_literal(lua_State *L, const char *text, int index)
     default:
         if (lua_stringtonumber(L, text) == 0 || !isfinite(lua_tonumber(L, -1)))
             return false;
-        // 20 and 20.0 are the same to the user; to the script it is what the default is, where that is exact.
+        // The user may write 20 or 20.0. The script gets the number type of the default, if the conversion is exact.
         whole = lua_tointegerx(L, -1, &is_whole);
         if (!lua_isinteger(L, index))
             lua_pushnumber(L, lua_tonumber(L, -1));
@@ -98,7 +99,7 @@ static glintL_set *find_set(glintL_run *run, const char *name)
     glintL_set *found = NULL;
     for (size_t i = 0; i < run->request.set_count; i++)
         if (strcmp(run->request.sets[i].name, name) == 0)
-            (found = &run->request.sets[i])->is_known = true; // the last one given wins
+            (found = &run->request.sets[i])->is_known = true; // the last one wins
     return found;
 }
 
@@ -161,7 +162,7 @@ static void check_keys(lua_State *L, int index, const char *path)
     }
 }
 
-// Pushes the value that the command line's text gives the parameter; raises where it may not have it.
+// Pushes the value that the command line's text gives the parameter; raises if the parameter does not allow it.
 static void push_given(lua_State *L, const glintL_set *set, const char *text, int spec)
 {
     lua_getfield(L, spec, "default");
@@ -172,13 +173,13 @@ static void push_given(lua_State *L, const glintL_set *set, const char *text, in
     }
 }
 
-// Takes the value of --set or --sweep, when there is one for this parameter, into spec.value.
+// Stores the value of --set or --sweep for this parameter, if there is one, in spec.value.
 static void apply_set(lua_State *L, glintL_run *run, const char *name, int spec)
 {
     glintL_set *set = find_set(run, name);
     if (!set)
         return;
-    if (set->values && run->point <= 1) // all of them before the first picture
+    if (set->values && run->point <= 1) // checks all values before the first picture
         for (int64_t i = 0; i < set->value_count; i++) {
             push_given(L, set, set->values[i], spec);
             lua_settop(L, spec);

@@ -1,14 +1,14 @@
-// glint.params: the numbers, switches and words of a script that the command line can set.
+// glint.params: numbers, switches and words of a script that the command line can set.
 //
 //     local P = glint.params { radius = { 15, min = 1, max = 40, doc = "orbit radius" }, shiny = true }
 //
-// The type is the default's. What --set gives is read as a literal of that type and never evaluated.
+// The default determines the type. The text of --set is read as a literal of that type and never evaluated.
 #include <stdlib.h>
 #include <string.h>
 
 #include "bindings/run/run.h"
 
-static const char LIST; // its address is the registry's key of the list of every parameter
+static const char LIST; // its address is the registry's key of the list of all parameters
 
 typedef struct params_box {
     void *self; // see glintL_job
@@ -27,7 +27,7 @@ void glintL_push_params(lua_State *L)
     lua_rawsetp(L, LUA_REGISTRYINDEX, &LIST);
 }
 
-// Pushes the value of the spec at `spec` as it stands in a picture's text: a line without line breaks.
+// Pushes the value of the spec at `spec` as written in a picture's text: one line without line breaks.
 static void push_value_text(lua_State *L, int spec)
 {
     char number[32];
@@ -41,7 +41,7 @@ static void push_value_text(lua_State *L, int spec)
     lua_remove(L, -2);
 }
 
-// Writes every parameter as "name=value", a line each, into the run.
+// Writes every parameter as "name=value", one per line, into the run.
 static void write_text(lua_State *L, glintL_run *run)
 {
     glintL_push_params(L);
@@ -78,7 +78,7 @@ bool glintL_push_unknown_set(lua_State *L)
         for (lua_Integer p = 1; p <= count; p++) {
             lua_rawgeti(L, -1, p);
             lua_getfield(L, -1, "name");
-            near = glintL_nearer(set->name, near, lua_tostring(L, -1)); // the list keeps the string
+            near = glintL_nearer(set->name, near, lua_tostring(L, -1)); // the list retains the string
             lua_pop(L, 2);
         }
         const char *option = set->values ? "sweep" : "set";
@@ -94,7 +94,7 @@ bool glintL_push_unknown_set(lua_State *L)
 
 // ---- The object ----
 
-// Pushes the names of the table at 1, sorted: a table keeps no order of its own.
+// Pushes the names of the table at 1, sorted, because tables have no order.
 static lua_Integer push_names(lua_State *L)
 {
     lua_Integer count = 0;
@@ -124,7 +124,7 @@ static lua_Integer push_names(lua_State *L)
     return count;
 }
 
-// Puts the spec on top into the list, replacing one of the same name; pops it.
+// Adds the spec on top to the list, replacing one with the same name; pops it.
 static void list_spec(lua_State *L, const char *name, int list)
 {
     lua_Integer count = luaL_len(L, list), at = 1;
@@ -176,7 +176,7 @@ static int new_params(lua_State *L)
     return 1;
 }
 
-// Marks the parameter of the name at `name` as read.
+// Marks the parameter whose name is at `name` as read.
 static void mark_read(lua_State *L, int params, int name)
 {
     lua_getiuservalue(L, params, 2);
@@ -188,7 +188,7 @@ static void mark_read(lua_State *L, int params, int name)
     lua_pop(L, 2);
 }
 
-// The parameter on top becomes a variable where the command line wants a derivative by it.
+// Turns the parameter on top into a variable if the command line requests a derivative by it.
 static void vary(lua_State *L, const char *name)
 {
     if (!glintL_wants_variable(glintL_get_run(L), name))
@@ -242,7 +242,7 @@ static int pairs_of_params(lua_State *L)
 {
     luaL_checkudata(L, 1, GLINTL_PARAMS);
     lua_pushcfunction(L, next_param);
-    lua_newtable(L); // a copy: the values cannot be changed through it
+    lua_newtable(L); // a copy, so that the script cannot change the values
     lua_getiuservalue(L, 1, 1);
     lua_pushnil(L);
     while (lua_next(L, -2)) {

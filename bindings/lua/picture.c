@@ -1,4 +1,4 @@
-// glint.read_image: a finished picture, or a photo, as numbers of linear light.
+// glint.read_image: a finished picture or a photo, as linear light.
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 
 typedef struct picture {
     int width, height;
-    float *values; // three a pixel, from the top; a block of Lua's: the user value 1
+    float *values; // three per pixel, top row first; a block owned by Lua: user value 1
 } picture;
 
 static const glintL_field FIELDS[] = { { .name = "width" }, { .name = "height" }, { .name = NULL } };
@@ -92,7 +92,7 @@ static int write_member(lua_State *L)
     return glintL_error(L, "picture.%s: a picture is read-only", luaL_tolstring(L, 2, NULL));
 }
 
-typedef struct held { // by Lua, so that an error frees it
+typedef struct held { // owned by Lua, so that an error frees it
     glint_picture *file;
 } held;
 

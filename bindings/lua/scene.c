@@ -26,7 +26,7 @@ static void release(void *object) { glint_scene_release(object); }
 
 // ---- Objects in and out ----
 
-// Keeps the userdata at `value` as long as the scene at `index`, or lets go of it; by the address of its object.
+// Retains the userdata at `value` as long as the scene at `index`, or releases it, under the address of its object.
 // Returns whether it was stored before.
 static bool keep_object(lua_State *L, int index, const void *object, int value)
 {
@@ -54,14 +54,14 @@ static void drop_object(lua_State *L, int index, const void *object)
     lua_pop(L, 1);
 }
 
-// An element of a scene; two of the three are NULL.
+// An element of a scene; only one of the pointers is set.
 typedef struct member {
     glint_shape *shape;
     glint_light *light;
     glint_overlay *overlay;
 } member;
 
-// Whether the value is an object of a scene, or a list that begins with one.
+// Returns whether the value is an object of a scene, or a list that begins with one.
 static bool has_object(lua_State *L, int value)
 {
     value = lua_absindex(L, value);
@@ -101,7 +101,7 @@ static const void *object_of(const member *m)
     return m->shape ? (const void *)m->shape : m->light ? (const void *)m->light : m->overlay;
 }
 
-// Whether glint.ambient_occlusion made the value.
+// Returns whether glint.ambient_occlusion made the value.
 static bool is_ambient_occlusion(lua_State *L, int value)
 {
     luaL_checkstack(L, 2, "scene");
@@ -133,7 +133,7 @@ static void add_member(lua_State *L, int index, int value, const char *path)
     member m = check_member(L, value, path);
     const void *object = object_of(&m);
     bool was_kept = keep_object(L, index, object, value);
-    m = check_member(L, value, path); // again: keeping allocates, and may run finalizers
+    m = check_member(L, value, path); // again: storing allocates, and may run finalizers
     glint_scene *scene = glintL_check_object(L, index, GLINTL_SCENE);
     if (m.shape)
         status = glint_scene_add_shape(scene, m.shape, &error);
@@ -150,7 +150,7 @@ static int add(lua_State *L)
 {
     glintL_check_object(L, 1, GLINTL_SCENE);
     glintL_refuse_within_trace(L, "scene.add");
-    if (lua_gettop(L) > 2) // an object that is ignored would be missing from the picture
+    if (lua_gettop(L) > 2) // an ignored object would be missing from the picture
         return glintL_error(L, "scene.add: one object expected, got %d", lua_gettop(L) - 1);
     lua_settop(L, 2);
     add_member(L, 1, 2, "scene.add");
@@ -179,7 +179,7 @@ static int drop(lua_State *L)
     return 0;
 }
 
-// The objects in their order of definition: shapes, lights, then labels and the like.
+// Returns the objects in their order of definition: shapes, lights, then labels and other overlays.
 static int objects(lua_State *L)
 {
     const glint_scene *scene = glintL_check_object(L, 1, GLINTL_SCENE);
@@ -214,8 +214,8 @@ typedef struct ray {
     double origin[3], direction[3];
 } ray;
 
-// Casts the ray and pushes the shape it hits, or nil. If no userdata exists any more for a shape, its box is made
-// first and the ray cast again: making it may run a finalizer, which may change the scene.
+// Casts the ray and pushes the shape that it hits, or nil. If the shape has no userdata any more, makes one and casts
+// the ray again, because a finalizer may have changed the scene.
 static bool cast_ray(lua_State *L, const ray *r, glint_hit *out)
 {
     glintL_box *box = NULL;
@@ -266,7 +266,7 @@ static int cast(lua_State *L)
     return 1;
 }
 
-// A box of its own keeps the engine's scene while the call runs, whatever finalizers do.
+// Renders the scene. A separate box retains the engine's scene during the call, whatever finalizers do.
 static int render(lua_State *L)
 {
     glintL_check_object(L, 1, GLINTL_SCENE);
@@ -302,7 +302,7 @@ static void add_list(lua_State *L)
     }
 }
 
-// lights = { lamp }, ball = glint.sphere { ... }
+// Refuses named objects: lights = { lamp }, ball = glint.sphere { ... }.
 static void refuse_named(lua_State *L)
 {
     if (!lua_istable(L, 1))
@@ -339,7 +339,8 @@ static int new_scene(lua_State *L)
     return 1;
 }
 
-// The scene's field of this name as a value, checked: a table that is only read, which a scene takes among its objects too.
+// Makes the scene's field of this name as a value, and checks it: a read-only table, which a scene also accepts among
+// its objects.
 static int new_ambient_occlusion(lua_State *L)
 {
     desc_type desc = { .has_ambient_occlusion = true };
@@ -349,7 +350,7 @@ static int new_ambient_occlusion(lua_State *L)
     const glintL_field *field = glintL_find_field(glintL_fields_of(&SCENE), "ambient_occlusion");
     glintL_begin_table(field->parts, &desc);
     glintL_read_table(L, 1, field->name, field->parts, &desc, false);
-    glintL_box *box = glintL_new_box(L, GLINTL_SCENE); // that checks it
+    glintL_box *box = glintL_new_box(L, GLINTL_SCENE); // a scene that checks the value
     glintL_check_status(L, "", &error, glint_scene_create(&scene, &error));
     box->object = scene;
     glintL_check_status(L, "", &error, glint_scene_set(scene, &desc, &error));

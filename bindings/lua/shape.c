@@ -1,5 +1,5 @@
-// glint.sphere, plane, box, disk, cylinder, cone, torus, group, union, intersection and difference; the fields of glint.spheres and
-// glint.mesh, whose constructors are in spheres.c and mesh.c
+// glint.sphere, plane, box, disk, cylinder, cone, torus, group, union, intersection and difference; also the fields of
+// glint.spheres and glint.mesh, whose constructors are in spheres.c and mesh.c
 #include <string.h>
 
 #include "bindings/value/glintL.h"
@@ -89,7 +89,7 @@ static const glintL_field MESH_FIELDS[] = {
     { .name = NULL },
 };
 
-// Pushes the list of materials given to glint.spheres{materials = ...}, or of a mesh's file; nil for other shapes.
+// Pushes the list of materials of glint.spheres { materials = ... } or of a mesh's file; nil for other shapes.
 static void push_kept_list(lua_State *L)
 {
     if (lua_getiuservalue(L, 1, 1) == LUA_TTABLE) {

@@ -27,7 +27,7 @@ static const glintL_field FIELDS[] = {
     { .name = NULL },
 };
 
-// The stack of the constructor: its argument, the box, then what the argument's fields hold and room for each.
+// Stack positions of the constructor: the argument, the box, then the argument's fields and a buffer for each.
 enum { ARGUMENT = 1, BOX, DATA, DATA_BUFFER, FORMAT, INDEX, INDEX_BUFFER, MATERIAL, MATERIALS, POINTERS, KEPT };
 
 static const glintL_many MANY = { .object = "spheres",
@@ -39,7 +39,7 @@ static const glintL_many MANY = { .object = "spheres",
                                   .pointers = POINTERS,
                                   .kept = KEPT };
 
-// Moves a field of the argument to its place on the stack.
+// Copies a field of the argument to its position on the stack.
 static void fetch(lua_State *L, const char *name, int place)
 {
     lua_pushstring(L, name);

@@ -1,8 +1,8 @@
-// glint.sweep: every combination of values on some axes, a frame each.
+// glint.sweep: one frame for each combination of values on some axes.
 //
 //     glint.sweep { scene = s, size = { 640, 480 }, over = { { red, "shininess", { 1, 4, 16 } }, ... } }
 //
-// The first axis goes across: it is the one that changes from each frame to the next.
+// The first axis changes fastest; on a sheet it goes across.
 #include <stdio.h>
 #include <string.h>
 
@@ -27,7 +27,7 @@ static size_t check_axis(lua_State *L, int axis, const char *path)
     if (lua_type(L, field) != LUA_TSTRING)
         glintL_refuse(L, field, full, "name of a field");
     lua_pushvalue(L, field);
-    lua_gettable(L, object); // raises when there is no such field
+    lua_gettable(L, object); // raises if there is no such field
     lua_pop(L, 1);
     snprintf(full, sizeof full, "%s[3]", path);
     if (!lua_istable(L, values))
@@ -39,7 +39,7 @@ static size_t check_axis(lua_State *L, int axis, const char *path)
     return count;
 }
 
-// Pushes a copy of the axes at `axes`: lists that a script cannot change behind our back.
+// Pushes a copy of the axes at `axes`, which the script cannot change later.
 void glintL_sweep_push_axes(lua_State *L, int axes)
 {
     lua_newtable(L);
@@ -130,7 +130,7 @@ int glintL_new_sweep(lua_State *L)
 
 // ---- One frame ----
 
-// Keeps what the fields were before the first frame, in a table under the axes' list: { object, name, value }.
+// Saves the values of the fields before the first frame, in a table under the axes' list: { object, name, value }.
 static void save(lua_State *L, int index, int axes)
 {
     lua_Integer count = (lua_Integer)lua_rawlen(L, axes);

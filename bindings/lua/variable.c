@@ -1,10 +1,10 @@
-// glint.variable, glint.value, and the functions of the table `math` that take dual numbers.
+// glint.variable, glint.value, and the functions of `math` for dual numbers.
 #include <math.h>
 #include <string.h>
 
 #include "bindings/run/run.h"
 
-static const char MATH; // its address is the registry's key: true once math takes them
+static const char MATH; // its address is a registry key; true there: math is extended
 
 static int push_result(lua_State *L, glintL_dual d)
 {
@@ -16,7 +16,7 @@ static int push_result(lua_State *L, glintL_dual d)
 
 typedef struct function {
     const char *name;
-    double (*value)(double x), (*slope)(double x, double y); // y: the value
+    double (*value)(double x), (*slope)(double x, double y); // y: the value at x
 } function;
 
 static double slope_sin(double x, double y) { return (void)y, glint_cos(x); }
@@ -43,7 +43,7 @@ static const function of_lua[] = {
     { "floor", floor, slope_level }, { "ceil", ceil, slope_level },   { NULL, NULL, NULL },
 };
 
-// Pushes the number at 1 or 2 that is the greater or the less.
+// Pushes the greater or the smaller of the numbers at 1 and 2.
 static bool push_extreme(lua_State *L, bool most)
 {
     glintL_dual a, b;
@@ -96,7 +96,7 @@ static int apply_one(lua_State *L)
     if (lua_gettop(L) > 1)
         return glintL_error(L, "math.%s: one number expected of a variable's", f->name);
     const double y = f->value(x->value);
-    if (f->slope == slope_level) { // whole, as Lua has it
+    if (f->slope == slope_level) { // rounding functions return integers, as in Lua
         lua_pushnumber(L, y);
         lua_Number floating = lua_tonumber(L, -1);
         lua_Integer whole;
@@ -109,7 +109,7 @@ static int apply_one(lua_State *L)
 
 // ---- Of several ----
 
-// min and max: the first upvalue is Lua's own, the second whether it is max.
+// min and max. Upvalues: Lua's own function; whether it is max.
 static int apply_extreme(lua_State *L)
 {
     const bool most = lua_toboolean(L, lua_upvalueindex(2));
@@ -141,7 +141,7 @@ static int apply_atan(lua_State *L)
     return push_result(L, glintL_dual_apply(&y, x.value / r2, &x, -y.value / r2, atan2(y.value, x.value)));
 }
 
-// The functions of `math` take dual numbers from the first variable on; scripts without one have Lua's own.
+// Extends the functions of `math` to dual numbers when the first variable is made. Other scripts keep Lua's functions.
 static void extend_math(lua_State *L)
 {
     luaL_checkstack(L, 6, "math");

@@ -1,4 +1,4 @@
-/// Differences of two pictures, with the statistics of OpenImageIO's idiff.
+/// Differences between two pictures, with the statistics of OpenImageIO's idiff.
 #include "engine/base/status.h"
 #include "engine/file/file.h"
 #include "engine/file/pfm.h"
@@ -7,10 +7,10 @@
 
 #include <math.h>
 
-/// A picture of either format, one of the two pointers not NULL.
+/// A picture of either format; one of the two pointers is NULL.
 typedef struct picture {
     int width, height, channels;
-    int bits; ///< of codes
+    int bits; ///< of the integer pixel values
     void *codes;
     float *values;
 } picture;
@@ -46,7 +46,7 @@ static glint_status load(const char *path, picture *out, glint_error *error)
     glint_status status = glint_file_kind_read(path, &kind, error);
     if (!status)
         status = glint_file_read_picture(path, &bytes, error);
-    if (status == GLINT_ERR_INVALID) { // here that means: the sizes differ
+    if (status == GLINT_ERR_INVALID) { // here the only cause is that the sizes differ
         status = GLINT_ERR_FORMAT;
         if (error)
             error->status = status;
@@ -65,7 +65,7 @@ static double value_at(const picture *p, size_t i)
     return p->bits == 16 ? ((const uint16_t *)p->codes)[i] / 65535.0 : ((const uint8_t *)p->codes)[i] / 255.0;
 }
 
-/// NaN matches NaN and an infinity itself; else something that is not finite is infinitely far off.
+/// Equal NaNs and equal infinities differ by 0; any other value that is not finite differs by infinity.
 static double difference(double a, double b)
 {
     if (a == b || (isnan(a) && isnan(b)))

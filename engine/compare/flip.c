@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define PI 3.14159265358979323846
-#define COLOR_RADIUS 10 ///< pixels: ceil(3 sqrt(0.04 / (2 pi^2)) ppd), three deviations of the widest filter
+#define COLOR_RADIUS 10 ///< pixels: ceil(3 sqrt(0.04 / (2 pi^2)) ppd), three standard deviations of the widest filter
 #define FEATURE_SD (0.5 * GLINT_FLIP_W * GLINT_FLIP_PPD)
 #define FEATURE_RADIUS 9 ///< ceil(3 FEATURE_SD)
 #define RADIUS_MAX COLOR_RADIUS
@@ -26,7 +26,7 @@ typedef struct kernel {
 
 // ---- Colour spaces ------------------------------------------------------------------------------------------------
 
-/// Linear sRGB to XYZ, D65, as fractions of the primaries' chromaticities; and back.
+/// Linear sRGB to XYZ (D65), as exact fractions from the chromaticities of the primaries; and the inverse.
 static const double TO_XYZ[3][3] = {
     { 10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794 },
     { 2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897 },
@@ -44,7 +44,7 @@ static void multiply(const double m[3][3], const double v[3], double out[3])
         out[i] = (m[i][0] * v[0] + m[i][1] * v[1]) + m[i][2] * v[2];
 }
 
-/// XYZ over that of white.
+/// Returns XYZ relative to white.
 static void relative_xyz(const double rgb[3], double out[3])
 {
     multiply(TO_XYZ, rgb, out);
@@ -73,7 +73,7 @@ static void ycxcz_to_rgb(const double ycxcz[3], double out[3])
         out[i] = out[i] > 0 ? out[i] < 1 ? out[i] : 1 : 0;
 }
 
-/// Cube root of x > 0, with the same bits everywhere: a third of the exponent, then Newton's steps.
+/// Cube root of x > 0, with the same bits on every machine: a third of the exponent, then Newton's method.
 static double cube_root(double x)
 {
     uint64_t bits;
@@ -86,7 +86,7 @@ static double cube_root(double x)
     return y;
 }
 
-/// CIELAB of linear light; a* and b* times 0.01 L* (Hunt: colours look stronger in brighter light).
+/// CIELAB of linear light, with a* and b* times 0.01 L* (Hunt: brighter light makes colours look stronger).
 static void hunt_lab(const double rgb[3], double out[3])
 {
     static const double knee = 6.0 / 29;
@@ -101,7 +101,7 @@ static void hunt_lab(const double rgb[3], double out[3])
 
 // ---- Filters ------------------------------------------------------------------------------------------------------
 
-/// exp(-x^2 / (2 sd^2)), not normalised; returns the sum.
+/// Computes exp(-x^2 / (2 sd^2)), not normalised. Returns the sum.
 static double gaussian(int radius, double sd, double out[2 * RADIUS_MAX + 1])
 {
     double sum = 0;
@@ -119,7 +119,7 @@ static kernel blur(int radius, double sd)
     return k;
 }
 
-/// First or second derivative of the feature detectors' Gaussian: positive taps sum to 1, negative to -1.
+/// Returns the first or second derivative of the feature detectors' Gaussian: positive taps sum to 1, negative to -1.
 static kernel derivative(int order)
 {
     kernel k = { .radius = FEATURE_RADIUS };
@@ -143,7 +143,7 @@ static void add_scaled(float *restrict out, const float *restrict in, float scal
 
 static int clamp(int i, int end) { return i < 0 ? 0 : i < end ? i : end - 1; }
 
-/// Filters the rows of a plane; what lies outside repeats the border.
+/// Filters the rows of a plane; the border pixels are repeated outside.
 static void filter_rows(const glint_flip *size, const float *in, const kernel *k, float *padded, float *out)
 {
     const int width = size->width, r = k->radius;
@@ -169,7 +169,7 @@ static void filter_columns(const glint_flip *size, const float *in, const kernel
 
 // ---- A picture ----------------------------------------------------------------------------------------------------
 
-/// Planes while a picture is prepared.
+/// Temporary planes for preparing a picture.
 typedef struct workshop {
     float *opponent[3]; ///< YCxCz
     float *blurred[3];
@@ -200,7 +200,8 @@ static void blur_channel(const glint_flip *size, workshop *w, int channel, doubl
     filter_columns(size, w->rows[0], &k, (float)weight, w->blurred[channel]);
 }
 
-/// Contrast sensitivity: a sum of a sqrt(pi / b) exp(-pi^2 x^2 / b) over x in degrees, for each channel, summing to 1.
+/// Blurs by contrast sensitivity: for each channel a sum of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees, that sums
+/// to 1.
 static void blur_colors(const glint_flip *size, workshop *w)
 {
     static const double blue_yellow[2][2] = { { 34.1, 0.04 }, { 13.5, 0.025 } }; // a, b
@@ -300,7 +301,7 @@ static double color_distance(const double a[3], const double b[3])
     return hyab > 0 ? glint_pow(hyab, GLINT_FLIP_QC) : 0;
 }
 
-/// The distance of the two colours of a screen that are furthest apart.
+/// Returns the largest distance between two displayable colours.
 static double largest_distance(void)
 {
     static const double green[3] = { 0, 1, 0 }, blue[3] = { 0, 0, 1 };
@@ -310,7 +311,7 @@ static double largest_distance(void)
     return color_distance(a, b);
 }
 
-/// Small differences get most of 0 .. 1.
+/// Maps a distance to 0 .. 1, most of which is used for small differences.
 static double spread(double distance, double largest)
 {
     const double knee = GLINT_FLIP_PC * largest;

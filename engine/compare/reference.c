@@ -1,4 +1,4 @@
-/// How far pictures are from a reference: statistics of linear light and of codes, and FLIP.
+/// Differences from a reference: statistics of linear light and of pixel values, and FLIP.
 #include "engine/base/status.h"
 #include "engine/compare/flip.h"
 #include "engine/film/image.h"
@@ -13,7 +13,7 @@ struct glint_reference {
     glint_flip *flip;
 };
 
-/// Codes of a picture, at 8 or 16 bits.
+/// Pixel values of a picture, of 8 or 16 bits.
 typedef struct codes {
     int bits;
     void *rgb; ///< owned
@@ -21,7 +21,7 @@ typedef struct codes {
 
 static size_t pixel_count(const glint_image *image) { return (size_t)image->width * (size_t)image->height; }
 
-/// The tables of an open reference.
+/// Converts an image to pixel values. Uses the tone tables of an open reference.
 static glint_status fill_codes(const glint_image *image, glint_tone_desc tone, int bits, codes *out, glint_error *error)
 {
     const glint_tone_table *table = NULL;
@@ -49,13 +49,13 @@ static glint_status make_codes(const glint_image *image, glint_tone_desc tone, i
     return status;
 }
 
-/// Value number i in steps of 8 bits.
+/// Returns pixel value number i in steps of 8 bits.
 static double code_at(const codes *c, size_t i)
 {
     return c->bits == 16 ? ((const uint16_t *)c->rgb)[i] / 257.0 : ((const uint8_t *)c->rgb)[i];
 }
 
-/// Returns the linear light of every pixel value, sRGB or linear. NULL: out of memory.
+/// Returns the linear light for each pixel value, sRGB or linear. NULL: out of memory.
 static float *decoding(bool srgb, int bits)
 {
     const int last = bits == 16 ? 65535 : 255;
@@ -65,7 +65,8 @@ static float *decoding(bool srgb, int bits)
     return table;
 }
 
-/// Returns the scene's light for every pixel value: tone curve and exposure are undone, too; +inf for none. NULL: out of memory.
+/// Returns the scene's light for each pixel value: also undoes tone curve and exposure; +inf if no light gives the
+/// value. NULL: out of memory.
 static float *scene_light(const glint_tone_desc *tone, int bits)
 {
     const int last = bits == 16 ? 65535 : 255;
@@ -77,7 +78,7 @@ static float *scene_light(const glint_tone_desc *tone, int bits)
 
 // ---- What the eye is shown ----------------------------------------------------------------------------------------
 
-/// Linear light of the codes of a picture. The caller frees planes[0]. NULL there: no memory.
+/// Converts the pixel values of a picture to linear light. The caller frees planes[0]; NULL: out of memory.
 static void decode(const codes *c, const float *table, size_t pixels, float *planes[3])
 {
     planes[0] = malloc(3 * pixels * sizeof *planes[0]);
@@ -91,7 +92,8 @@ static void decode(const codes *c, const float *table, size_t pixels, float *pla
     }
 }
 
-/// By codes of the tone on an sRGB screen, so that every curve is in it; 16 bits where the film itself is meant.
+/// Compares pixel values after the tone on an sRGB screen, so that every tone curve is included; with 16 bits to
+/// compare the film itself.
 static glint_status prepare_flip(const glint_image *image, const glint_tone_desc *tone, int bits, glint_flip **out,
                                  glint_error *error)
 {
@@ -180,7 +182,7 @@ const glint_image *glint_reference_image(const glint_reference *reference)
 
 // ---- Measuring ----------------------------------------------------------------------------------------------------
 
-/// `kept`: what each code stands for, when the light in a file is meant; NULL: the light itself.
+/// kept: the light for each pixel value, to compare the light stored in a file; NULL: compares the image's light.
 static void compare_light(const glint_reference *reference, const glint_image *image, const codes *c, const float *kept,
                           glint_picture_error *out)
 {

@@ -25,12 +25,12 @@ struct glint_apng {
     glint_draft *draft;
     png_structp png;
     png_infop info;
-    glint_error error; ///< of the draft, while libpng jumps
-    uint32_t sequence, frames; ///< numbers of the next fcTL or fdAT, of frames added
-    uint16_t delay[2]; ///< a frame's time: numerator and denominator, seconds
+    glint_error error; ///< the draft's error, set before libpng jumps
+    uint32_t sequence, frames; ///< the number of the next fcTL or fdAT; the frames added
+    uint16_t delay[2]; ///< a frame's duration in seconds: numerator and denominator
     size_t pixel_bytes;
-    uint8_t *before; ///< codes of the frame before
-    uint8_t *chunk; ///< room for an fdAT
+    uint8_t *before; ///< pixel values of the previous frame
+    uint8_t *chunk; ///< buffer for an fdAT
     glint_bands *bands; ///< deflates frames
 };
 
@@ -43,7 +43,7 @@ static void take_bytes(png_structp png, png_bytep data, size_t size)
         png_error(png, "no room");
 }
 
-/// Returns libpng's error: the draft's error, otherwise out of memory.
+/// Returns the draft's error if libpng failed because of the draft, otherwise out of memory.
 static glint_status give_error(const glint_apng *apng, glint_error *error)
 {
     if (!apng->error.status)
@@ -94,7 +94,7 @@ static void write_control(glint_apng *apng, const box *b)
     put32(control + 16, (uint32_t)b->y);
     put16(control + 20, apng->delay[0]);
     put16(control + 22, apng->delay[1]);
-    control[24] = control[25] = 0; // what was drawn stays; the codes replace what was there
+    control[24] = control[25] = 0; // the frame stays for the next one, and replaces the pixels below it
     png_write_chunk(apng->png, (png_const_bytep) "fcTL", control, sizeof control);
 }
 
@@ -126,7 +126,7 @@ static bool write_end(glint_apng *apng)
 
 // ---- Beginning and end --------------------------------------------------------------------------------------------
 
-/// The ratio of two 16-bit numbers nearest to 1/fps; of equals the one with the smallest numerator.
+/// Sets the ratio of two 16-bit numbers nearest to 1/fps; among equals the one with the smallest numerator.
 static void set_delay(glint_apng *apng)
 {
     double least = HUGE_VAL;
@@ -219,7 +219,8 @@ void glint_apng_destroy(glint_apng *apng)
 
 // ---- Frames -------------------------------------------------------------------------------------------------------
 
-/// The smallest rectangle with all pixels in which two frames differ; one pixel when they are the same.
+/// Returns the smallest rectangle that contains all pixels in which two frames differ; one pixel if the frames are
+/// identical.
 static box find_changed(const glint_apng *apng, const uint8_t *codes)
 {
     size_t pixel = apng->pixel_bytes, width = (size_t)apng->desc.width, row_bytes = width * pixel;
@@ -246,7 +247,7 @@ static box find_changed(const glint_apng *apng, const uint8_t *codes)
 
 typedef struct part { ///< of a frame
     const uint8_t *codes;
-    size_t row_bytes, first; ///< first: the byte the rectangle begins at
+    size_t row_bytes, first; ///< first: the rectangle's first byte in a row
 } part;
 
 static const void *row_of_part(const void *user, int y, void *scratch)

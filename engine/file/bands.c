@@ -8,8 +8,8 @@
 
 #include <stdatomic.h>
 
-#define BAND_BYTES ((size_t)1 << 17) // of filtered rows, at least; fixed, so that no setting changes the file
-#define KEPT_WORK_BYTES ((size_t)1 << 24) // a worker with more memory than that gives it back
+#define BAND_BYTES ((size_t)1 << 17) // least size of a band, filtered; fixed, so that no setting changes the file
+#define KEPT_WORK_BYTES ((size_t)1 << 24) // a worker with a larger buffer frees it after use
 #define FILTER_SUB 1
 #define VECTOR 16
 
@@ -23,7 +23,7 @@ typedef struct layout {
     glint_tone_desc tone;
     glint_encode encode;
     size_t row_bytes; ///< without the filter's byte
-    size_t band_rows; ///< of every band but the last
+    size_t band_rows; ///< of every band except the last
     size_t band_count, stamp_count;
 } layout;
 
@@ -37,19 +37,19 @@ typedef struct band {
 typedef struct picture {
     layout layout;
     band *band;
-    uint64_t *stamp; ///< of the rows of tiles in `band`; 0: not there, or not known
-    size_t *todo; ///< the bands to be made
+    uint64_t *stamp; ///< of the rows of tiles in `band`; 0: missing or unknown
+    size_t *todo; ///< the bands that have to be made
 } picture;
 
-/// One thread's memory for one band.
+/// Buffers of one thread for one band.
 typedef struct worker {
-    glint_bytes rows, swapped, raw, deflated; ///< used up to their capacity
+    glint_bytes rows, swapped, raw, deflated; ///< reused at their capacity
     struct glint_deflate_memory *encoder; ///< owned; NULL until the first band
 } worker;
 
 struct glint_bands {
     int threads;
-    glint_pool *pool; ///< NULL: one thread, the caller's
+    glint_pool *pool; ///< NULL: only the caller's thread
     picture last;
     glint_bytes stream; ///< of the last picture
     worker worker[];
@@ -57,7 +57,7 @@ struct glint_bands {
 
 // ---- Rows ---------------------------------------------------------------------------------------------------------
 
-/// Filter SUB: each byte less the one `step` bytes before it.
+/// Filter SUB: subtracts from each byte the one `step` bytes before it.
 static void filter_sub(const uint8_t *row, size_t bytes, size_t step, uint8_t *out)
 {
     *out++ = FILTER_SUB;
@@ -74,7 +74,7 @@ static void filter_sub(const uint8_t *row, size_t bytes, size_t step, uint8_t *o
         out[i] = (uint8_t)(row[i] - row[i - step]);
 }
 
-/// Native 16-bit codes to the file's order, high byte first.
+/// Converts native 16-bit pixel values to the file's byte order, high byte first.
 static void swap_to_file(const uint16_t *codes, size_t count, uint8_t *out)
 {
     size_t i = 0;
@@ -122,7 +122,7 @@ static bool make_room(worker *memory, const layout *l, size_t rows)
            (memory->encoder || (memory->encoder = glint_deflate_memory_create()));
 }
 
-/// Puts a copy of the bytes in the band, in memory of just their size.
+/// Stores a copy of the bytes in the band, in a block of exactly their size.
 static bool keep(band *b, const glint_bytes *deflated)
 {
     if (b->size != deflated->size) {
@@ -208,7 +208,7 @@ static void free_picture(picture *p)
     *p = (picture) { 0 };
 }
 
-/// Makes `p` a picture of this layout, with the bands it has if it is one already.
+/// Sets the layout of `p`. Bands made for the same layout stay.
 static bool lay_out(picture *p, const layout *l)
 {
     if (p->band && same_layout(&p->layout, l))

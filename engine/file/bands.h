@@ -1,5 +1,5 @@
-/// The zlib stream of a picture, as bands of rows that are filtered and deflated on their own: several at a time, and
-/// none whose codes the last picture had already. Internal.
+/// The zlib stream of a picture, in bands of rows that are filtered and deflated separately: several at a time, and
+/// only bands whose pixel values differ from the last picture. Internal.
 #ifndef GLINT_IMAGE_BANDS_H
 #define GLINT_IMAGE_BANDS_H
 
@@ -7,14 +7,14 @@
 #include "engine/file/bytes.h"
 #include "engine/file/png.h"
 
-/// glint_bands: threads, their memory, and the deflated bands of the last picture that had stamps.
+/// glint_bands: threads, their buffers, and the deflated bands of the last picture that had stamps.
 ///
-/// threads  1 .. 1024 that filter and deflate; 1: the thread that calls glint_bands_deflate does.
+/// threads  1 .. 1024 threads that filter and deflate; 1: the thread that calls glint_bands_deflate.
 glint_status glint_bands_create(int threads, glint_bands **out, glint_error *error);
 void glint_bands_destroy(glint_bands *bands);
 
-/// The stream of the filtered rows, by `bands` (one caller at a time). The bytes are the same whatever it remembers. Where a band
-/// begins depends on width, bits and `encode` alone.
+/// Returns the stream of the filtered rows. One caller at a time. The bytes do not depend on what `bands` has cached.
+/// The limits of the bands depend only on width, bits and `encode`.
 ///
 /// stream  out: owned by `bands`, until the next call.
 /// reused  out, may be NULL: the share of bands that were not deflated again, 0 .. 1.

@@ -14,7 +14,7 @@ typedef struct glint_bytes {
     size_t size, capacity;
 } glint_bytes;
 
-/// Makes room for `extra` more bytes; false, with the bytes as they were, when memory is short.
+/// Reserves space for `extra` more bytes. False: out of memory; the bytes are unchanged.
 static inline bool glint_bytes_reserve(glint_bytes *bytes, size_t extra)
 {
     if (extra <= bytes->capacity - bytes->size)

@@ -63,24 +63,26 @@ static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool las
 
 #define STREAM_BYTES sizeof(struct isal_zstream)
 
-// Level 1 files the third position of its input in the bucket of its hash table that its own stream's address gives, instead of
-// the bucket of the bytes there (ISA-L 2.30 on x86, icf body without history): the bytes written would depend on where the
-// stream lies. So it lies where the address gives the right bucket. Streams stay mapped for bands to come: a mapping takes longer
-// than a band, and few buckets come in a picture, whose bands begin at its left edge.
+// ISA-L's level 1 enters the third position of its input in the wrong hash bucket: one that depends on the address of
+// its stream object, not on the bytes (ISA-L 2.30 on x86, icf body without history). The output would depend on that
+// address. So the stream is placed at an address that gives the right bucket. Streams stay mapped for later bands:
+// mapping takes longer than deflating a band, and a picture needs few buckets, because its bands begin at its left
+// edge.
 #ifdef __x86_64__
 #ifdef MAP_FIXED_NOREPLACE
 #define MAP_THERE (MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE)
 #else
-#define MAP_THERE (MAP_PRIVATE | MAP_ANONYMOUS) // an address is a wish, which systems grant where nothing is
+#define MAP_THERE (MAP_PRIVATE | MAP_ANONYMOUS) // the address is only a hint; systems use it where nothing is mapped
 #endif
 #define BUCKET_BITS 13
-#define PLACE_SHIFT 16 // from a place to its address
-#define FIRST_PLACE UINT32_C(0x20000000) // shifted; from here on, 2^29 places lie where programs have nothing
+#define PLACE_SHIFT 16 // from a place number to its address
+#define FIRST_PLACE UINT32_C(0x20000000) // shifted; the 2^29 places from here on are unused by programs
 #define PLACE_BITS 29
-#define PLACES_TRIED 64 // each thread of each writer has one for each of its buckets
-#define STREAMS 256 // of one memory
+#define PLACES_TRIED 64 // each thread of each writer needs one place for each of its buckets
+#define STREAMS 256 // cached for each thread
 
-/// CRC-32C of four bytes from 0, as the crc32 instruction has it: linear over the bits. Its last bits are the bucket.
+/// CRC-32C of four bytes from 0, as the crc32 instruction computes it: linear over the bits. The bucket is its low
+/// bits.
 static uint32_t bucket_of(uint32_t bytes)
 {
     for (int i = 0; i < 32; i++)
@@ -88,15 +90,15 @@ static uint32_t bucket_of(uint32_t bytes)
     return bytes & ((1u << BUCKET_BITS) - 1);
 }
 
-/// Places relative to the first: for each bit of a bucket one that gives a bucket in which that bit is the highest, and some that
-/// give bucket 0.
+/// Places relative to the first: for each bit of a bucket one place whose bucket has that bit as its highest, and some
+/// places with bucket 0.
 typedef struct places {
     uint32_t place[BUCKET_BITS], bucket[BUCKET_BITS];
     uint32_t zero[PLACE_BITS];
     int zero_count;
 } places;
 
-/// Takes out of a bucket the bits that a place can give. Returns that place; *bucket keeps the others.
+/// Removes from a bucket the bits that a place can provide. Returns that place; *bucket keeps the other bits.
 static uint32_t place_for(const places *p, uint32_t *bucket)
 {
     uint32_t place = 0;
@@ -108,7 +110,7 @@ static uint32_t place_for(const places *p, uint32_t *bucket)
     return place;
 }
 
-/// Gaussian elimination over the bits of a place.
+/// Finds the places by Gaussian elimination over the bits of a place.
 static places find_places(void)
 {
     places p = { .zero_count = 0 };
@@ -126,7 +128,7 @@ static places find_places(void)
     return p;
 }
 
-/// Memory for a stream whose address gives this bucket; NULL where the system has no such place.
+/// Maps memory for a stream at an address with this bucket. NULL: the system has no such address free.
 static void *map_stream(uint32_t bucket)
 {
     const places p = find_places();
@@ -139,12 +141,12 @@ static void *map_stream(uint32_t bucket)
             return got;
         if (got != MAP_FAILED)
             munmap(got, STREAM_BYTES);
-        place ^= p.zero[__builtin_ctz((unsigned)i)]; // each combination once
+        place ^= p.zero[__builtin_ctz((unsigned)i)]; // Gray code: every combination once
     }
     return NULL;
 }
 
-/// Streams that lie where their bucket wants them.
+/// Cached streams, each at an address that gives its bucket.
 typedef struct streams {
     void *stream[STREAMS];
     uint16_t bucket[STREAMS];
@@ -157,7 +159,7 @@ static void free_streams(streams *kept)
         munmap(kept->stream[i], STREAM_BYTES);
 }
 
-/// Keeps a stream, in the place of the oldest where there are too many.
+/// Caches a stream. If the cache is full, it replaces the oldest one.
 static void keep_stream(streams *kept, void *stream, uint32_t bucket)
 {
     uint32_t at = kept->count;
@@ -172,7 +174,7 @@ static void keep_stream(streams *kept, void *stream, uint32_t bucket)
     kept->bucket[at] = (uint16_t)bucket;
 }
 
-/// The stream for a band that begins with these bytes; NULL: there is no place for it.
+/// Returns the stream for a band that begins with these bytes. NULL: no address gives their bucket.
 static void *find_stream(streams *kept, const uint8_t *data, size_t size)
 {
     uint32_t third = 0;
@@ -189,7 +191,7 @@ static void *find_stream(streams *kept, const uint8_t *data, size_t size)
 }
 #else
 typedef struct streams {
-    char none; ///< where a stream lies does not matter
+    char none; ///< the address of the stream does not matter
 } streams;
 
 static void free_streams(streams *kept) { (void)kept; }
@@ -202,8 +204,8 @@ static void *find_stream(streams *kept, const uint8_t *data, size_t size)
 #endif
 
 struct glint_deflate_memory {
-    uint8_t *level; ///< ISA-L's for the level; owned
-    void *anywhere; ///< a stream from malloc, for bands that have no place; owned
+    uint8_t *level; ///< ISA-L's buffer for the level; owned
+    void *anywhere; ///< a stream from malloc, for bands without a placed stream; owned
     streams placed;
 };
 
@@ -214,7 +216,7 @@ static void free_memory(struct glint_deflate_memory *memory)
     free(memory->level);
 }
 
-/// NULL: out of memory.
+/// Returns the stream for a band. NULL: out of memory.
 static void *stream_for(struct glint_deflate_memory *memory, const uint8_t *data, size_t size)
 {
     void *stream = find_stream(&memory->placed, data, size);
@@ -227,7 +229,7 @@ static size_t fast_band_at(struct isal_zstream *stream, uint8_t *level, const ui
                            uint8_t *out, size_t room)
 {
     isal_deflate_stateless_init(stream);
-    stream->hist_bits = 0; // the whole window: init leaves what was in memory
+    stream->hist_bits = 0; // the whole window; init leaves the field uninitialised
     stream->level = 1;
     stream->level_buf = level;
     stream->level_buf_size = ISAL_DEF_LVL1_DEFAULT;
@@ -332,7 +334,7 @@ glint_status glint_deflate_band(struct glint_deflate_memory *memory, glint_encod
     uint8_t *end = out->data + out->size;
     size_t written = encode == GLINT_ENCODE_SMALL ? small_band(data, size, last, end, room)
                                                   : fast_band(memory, data, size, last, end, room);
-    if (!written) // the room is enough, so that memory is all an encoder can lack
+    if (!written) // the buffer is large enough, so only memory can be short
         return glint_fail_nomem(error);
     out->size += written;
     *adler = checksum(data, size);

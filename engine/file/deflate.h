@@ -1,20 +1,20 @@
-/// One interface over the deflate libraries of this build: ISA-L and libdeflate where present, zlib for either.
+/// One interface to the deflate libraries of this build: ISA-L and libdeflate if present, otherwise zlib.
 ///
-/// A zlib stream is glint_deflate_begin, then bands in order, then glint_deflate_end. Bands are compressed on their
-/// own (any thread, any order) and joined by appending; what a band compresses to depends on its bytes and `last`
-/// alone. libdeflate cannot flush, so there a stream has one band: see glint_deflate_has_bands. Internal.
+/// A zlib stream is glint_deflate_begin, then bands in order, then glint_deflate_end. Bands are compressed
+/// independently (on any thread, in any order) and appended. The compressed bytes depend only on the band's bytes and
+/// on `last`. libdeflate cannot flush, so its streams have one band: see glint_deflate_has_bands. Internal.
 #ifndef GLINT_IMAGE_DEFLATE_H
 #define GLINT_IMAGE_DEFLATE_H
 
 #include "engine/glint.h"
 #include "engine/file/bytes.h"
 
-/// Whether a stream may be cut into bands in this build.
+/// Returns whether a stream may have several bands in this build.
 bool glint_deflate_has_bands(glint_encode encode);
 
 /// Creates the state of one thread's encoder, which does not affect its output. NULL: out of memory.
 struct glint_deflate_memory *glint_deflate_memory_create(void);
-void glint_deflate_memory_destroy(struct glint_deflate_memory *memory); ///< NULL: nothing
+void glint_deflate_memory_destroy(struct glint_deflate_memory *memory); ///< NULL: no effect
 
 /// Appends one band as raw deflate, ending on a byte (a full flush, or the final block when `last`).
 ///

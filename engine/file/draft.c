@@ -14,18 +14,18 @@
 #include <unistd.h>
 
 #define TEMPORARY_TRIES 100
-#define TEMPORARY_ROOM 160 // what the temporary name adds to the file's: host, process, number
-#define LINKS 40 // that lead from one to the next, as many as the system follows
-#define PIECE ((size_t)1 << 20) // bytes of one call: who watches how much is written sees it go
+#define TEMPORARY_ROOM 160 // bytes that the temporary name adds to the file's name: host, process, number
+#define LINKS 40 // links followed in a chain, at most; the same limit as the system's
+#define PIECE ((size_t)1 << 20) // bytes of one write, so that the growing size of the file shows progress
 
 struct glint_draft {
-    char *path; ///< as it was given
-    char *target; ///< where it goes: the end of a symbolic link
+    char *path; ///< as the caller gave it
+    char *target; ///< final path: the end of a symbolic link
     char *temporary; ///< NULL: the target is a pipe or a device, written in place
     int file; ///< -1: closed
 };
 
-/// 0 or an errno.
+/// Returns 0 or an errno.
 static int write_all(int file, const uint8_t *data, size_t size)
 {
     while (size) {
@@ -44,7 +44,7 @@ static int write_all(int file, const uint8_t *data, size_t size)
 
 static int close_after(int file, int code)
 {
-    // After EINTR the descriptor is closed all the same on Linux.
+    // On Linux the descriptor is closed even after EINTR.
     if (close(file) != 0 && !code && errno != EINTR)
         return errno;
     return code;
@@ -59,7 +59,7 @@ static int open_again(const char *path, int flags, mode_t mode)
     return file;
 }
 
-/// Makes every folder `path` (which is changed and put back) lies in.
+/// Makes all parent folders of `path`, which is changed and restored.
 static int make_folders(char *path)
 {
     for (char *at = path + 1; *path && *at; at++) {
@@ -68,7 +68,7 @@ static int make_folders(char *path)
         *at = '\0';
         int code = mkdir(path, 0777) == 0 || errno == EEXIST ? 0 : errno;
         struct stat info;
-        if (code && stat(path, &info) == 0) // it is there, say on a read-only file system
+        if (code && stat(path, &info) == 0) // the folder exists already, for example on a read-only file system
             code = 0;
         *at = '/';
         if (code)
@@ -77,7 +77,7 @@ static int make_folders(char *path)
     return 0;
 }
 
-/// Writes the name of a hidden file beside `path`, no other process or thread's.
+/// Writes the name of a hidden file next to `path`, unique to this process and thread.
 static void make_temporary_name(const char *path, char *out, size_t room)
 {
     static atomic_uint count;
@@ -89,7 +89,7 @@ static void make_temporary_name(const char *path, char *out, size_t room)
     snprintf(out, room, "%.*s.%.120s.%s.%ld.%u.tmp", (int)(name - path), path, name, host, (long)getpid(), number);
 }
 
-/// The name is enlisted before the file is there: no signal comes between.
+/// Registers the name before the file exists, so that a signal in between cannot leave the file behind.
 static int create_temporary(const char *path, char *temporary, size_t room, int *file)
 {
     for (int i = 0; i < TEMPORARY_TRIES; i++) {
@@ -97,7 +97,7 @@ static int create_temporary(const char *path, char *temporary, size_t room, int 
         glint_draft_enlist(temporary);
         *file = open_again(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (*file >= 0) {
-            flock(*file, LOCK_EX | LOCK_NB); // where there are no locks, the process's number alone tells of it
+            flock(*file, LOCK_EX | LOCK_NB); // without file locks only the process number marks the owner
             return 0;
         }
         const int code = errno;
@@ -117,7 +117,8 @@ static int sync_again(int file)
     return result == 0 || errno == EINVAL || errno == ENOTSUP ? 0 : errno;
 }
 
-/// Where a write to `path` ends up: the target of a symbolic link, else a copy of `path`. NULL: out of memory.
+/// Returns where a write to `path` ends up: the target of a symbolic link, otherwise a copy of `path`. NULL: out of
+/// memory.
 static char *target_of(const char *path)
 {
     struct stat info;
@@ -129,7 +130,7 @@ static char *target_of(const char *path)
     return strdup(path);
 }
 
-/// What `name`, as a link at `path` has it, is called from here. NULL: out of memory.
+/// Returns `name`, the target of a link at `path`, as a path from the current folder. NULL: out of memory.
 static char *beside(const char *path, const char *name)
 {
     const char *slash = *name == '/' ? NULL : strrchr(path, '/');
@@ -142,7 +143,7 @@ static char *beside(const char *path, const char *name)
     return out;
 }
 
-/// The same as target_of, and of a link to a file that is not there yet, too.
+/// As target_of, but also follows a link to a file that does not exist yet.
 static char *end_of_links(const char *path)
 {
     char link[PATH_MAX];
@@ -159,8 +160,8 @@ static char *end_of_links(const char *path)
     return end;
 }
 
-/// The innermost folder of `path` that is there, by its one name; *rest: where in `path` what lies in it begins. NULL: out
-/// of memory.
+/// Returns the canonical name of the innermost existing folder of `path`. *rest: the remaining part of `path`. NULL:
+/// out of memory.
 static char *folder_of(const char *path, const char **rest)
 {
     char *folder = NULL;
@@ -180,10 +181,11 @@ static char *folder_of(const char *path, const char **rest)
         while (length > 0 && path[length - 1] == '/')
             length--;
     } while (!folder && length > 0);
-    return folder ? folder : strdup(""); // the current folder is gone
+    return folder ? folder : strdup(""); // the current folder was deleted
 }
 
-/// Takes the next name of `rest` into `out`, of *length bytes: folders that are still to be made have no links.
+/// Appends the next name of `rest` to `out` (*length bytes) and returns the remaining names. It can resolve `..` by
+/// removing a name, because folders that do not exist yet are not links.
 static const char *add_name(const char *rest, char *out, size_t *length)
 {
     const size_t size = strcspn(rest, "/");
@@ -207,7 +209,7 @@ char *glint_draft_place(const char *path)
     if (out) {
         size_t length = strlen(folder);
         memcpy(out, folder, length);
-        length -= length == 1; // of "/"
+        length -= length == 1; // for "/"
         while (*rest)
             rest = add_name(rest, out, &length);
         out[length] = '\0';
@@ -229,7 +231,7 @@ static int open_hidden(glint_draft *draft)
         if (!code)
             code = create_temporary(draft->target, draft->temporary, room, &draft->file);
     }
-    if (code) { // there is none to remove
+    if (code) { // there is no file to remove
         free(draft->temporary);
         draft->temporary = NULL;
         return code;
@@ -238,7 +240,7 @@ static int open_hidden(glint_draft *draft)
     return 0;
 }
 
-/// 0 or an errno.
+/// Returns 0 or an errno.
 static int open_draft(glint_draft *draft)
 {
     struct stat info;
@@ -255,7 +257,7 @@ static int open_draft(glint_draft *draft)
         draft->file = open_again(path, O_WRONLY | O_CLOEXEC | O_NOCTTY, 0);
         return draft->file < 0 ? errno : 0;
     }
-    if (exists && access(path, W_OK) != 0) // a rename does not look at this
+    if (exists && access(path, W_OK) != 0) // a rename does not check write permission
         return errno;
     draft->target = target_of(path);
     return draft->target ? open_hidden(draft) : ENOMEM;

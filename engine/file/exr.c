@@ -33,7 +33,7 @@ const char *glint_exr_library(void)
 typedef struct channel {
     char name[CHANNEL_NAME];
     const float *plane;
-    int of; ///< channels of its pass
+    int of; ///< number of channels in its pass
     bool half;
 } channel;
 
@@ -92,7 +92,7 @@ static const channel *find_channel(const exr_file *file, const char *name)
     return found;
 }
 
-/// Whether a name is longer than files without a flag for it may have.
+/// Returns whether a name is too long for a file without the long-names flag.
 static bool has_long_name(const exr_file *file)
 {
     for (int i = 0; i < file->count; i++)
@@ -120,7 +120,7 @@ static int64_t put_bytes(exr_const_context_t context, void *user, const void *by
     return (int64_t)size;
 }
 
-/// The library would print; its code says enough.
+/// Drops the library's message, which it would print; the result code is enough.
 static void drop_message(exr_const_context_t context, exr_result_t code, const char *message)
 {
     (void)context, (void)code, (void)message;
@@ -145,7 +145,7 @@ static exr_result_t write_head(exr_file *file, const glint_text *text, size_t te
     return result ? result : exr_write_header(file->context);
 }
 
-/// The rows from y on that a chunk has, as floats, channel after channel of the encoder's order.
+/// Writes the rows of a chunk, from row y on, as floats: channel after channel in the encoder's order.
 static void fill_chunk(const exr_file *file, exr_encode_pipeline_t *pipe, int y, float *room)
 {
     const size_t width = (size_t)file->width;
@@ -226,7 +226,7 @@ glint_status glint_exr_encode(const glint_image *image, bool half, const glint_t
     }
     const bool appended = !result && glint_bytes_append(out, file->bytes.data, file->bytes.size);
     const bool no_memory = file->no_memory || result == EXR_ERR_OUT_OF_MEMORY ||
-                           result == EXR_ERR_CORRUPT_CHUNK || // zlib's, when it gets no memory to compress in
+                           result == EXR_ERR_CORRUPT_CHUNK || // returned when zlib runs out of memory while compressing
                            (!result && !appended);
     free(file->bytes.data);
     free(file->list);

@@ -1,4 +1,4 @@
-/// Reads back what relighting needs of an .exr: its picture, and the light passes.
+/// Reads the passes that relighting needs from an .exr: the picture and the light passes.
 #include "engine/base/status.h"
 #include "engine/film/relight.h"
 
@@ -12,7 +12,7 @@
 typedef struct exr_input {
     exr_context_t context;
     glint_image *image;
-    bool half; ///< some light is of 16 bits
+    bool half; ///< some light pass is stored as half
 } exr_input;
 
 static void drop_message(exr_const_context_t context, exr_result_t code, const char *message)
@@ -22,7 +22,7 @@ static void drop_message(exr_const_context_t context, exr_result_t code, const c
 
 // ---- Channels -----------------------------------------------------------------------------------------------------
 
-/// Whether a channel is one of a light pass: "light.key.R". Writes the pass's name, and which channel of it.
+/// Returns whether a channel belongs to a light pass: "light.key.R". Writes the pass's name, and the channel number *c.
 static bool is_light(const char *channel, char name[GLINT_NAME_SIZE], int *c)
 {
     const size_t length = strlen(channel);
@@ -42,7 +42,7 @@ static size_t find_light(const glint_image *image, const char *name)
     return i;
 }
 
-/// Where a channel's values go; NULL: nobody reads them.
+/// Returns the plane for a channel's values; NULL: the channel is not needed.
 static float *plane_of(const glint_image *image, const char *channel)
 {
     char name[GLINT_NAME_SIZE];
@@ -57,7 +57,7 @@ static float *plane_of(const glint_image *image, const char *channel)
                                                            : NULL;
 }
 
-/// Makes the image that the file's channels fill.
+/// Makes the image for the file's channels.
 static glint_status make_image(exr_input *file, const exr_attr_chlist_t *channels, int width, int height,
                                glint_error *error)
 {
@@ -99,7 +99,7 @@ static glint_status make_image(exr_input *file, const exr_attr_chlist_t *channel
 
 // ---- Pixels -------------------------------------------------------------------------------------------------------
 
-/// Points the decoder at the rows of a chunk.
+/// Sets the decoder's output to the rows of a chunk.
 static void aim(const exr_input *file, exr_decode_pipeline_t *pipe, int y)
 {
     const size_t width = (size_t)file->image->width;
@@ -137,7 +137,7 @@ static exr_result_t read_rows(exr_input *file, int top)
     return result;
 }
 
-/// Whether the picture was made with a transparent background: glint says so beside it.
+/// Returns whether the picture has a transparent background: glint:options contains alpha=true.
 static bool has_cover(exr_const_context_t context)
 {
     const char *options = NULL;

@@ -10,11 +10,11 @@
 
 #define JPEG_LIMIT ((size_t)1 << 28) ///< bytes
 #define PICTURE_LIMIT ((size_t)1 << (sizeof(size_t) > 4 ? 34 : 31))
-#define HEAD_BYTES ((size_t)65536) // what says how large the picture is fits into it
-#define SLACK_BYTES ((size_t)64 << 20) // of a picture, for everything except pixels
-#define STORED_TIMES 16 // a byte of pixels takes 13 where each has a chunk of its own
+#define HEAD_BYTES ((size_t)65536) // enough to hold the size of the picture
+#define SLACK_BYTES ((size_t)64 << 20) // allowance for everything in a picture file except pixels
+#define STORED_TIMES 16 // a byte of pixels takes 13 if each has a chunk of its own
 
-/// Reads until there are `most` bytes, or the end. 0 or an errno.
+/// Reads until there are `most` bytes, or the end of the file. Returns 0 or an errno.
 static int read_up_to(int file, size_t most, glint_bytes *out)
 {
     if (most > out->size && !glint_bytes_reserve(out, most - out->size))
@@ -31,7 +31,7 @@ static int read_up_to(int file, size_t most, glint_bytes *out)
     return 0;
 }
 
-/// The most bytes that a whole picture with this beginning has. 0: it begins as none.
+/// Returns the most bytes that a whole picture with this beginning can have. 0: no known picture format.
 static size_t picture_bound(const glint_bytes *head)
 {
     const uint64_t pfm = glint_pfm_bytes(head->data, head->size);
@@ -83,7 +83,7 @@ glint_status glint_file_read_picture(const char *path, glint_bytes *out, glint_e
     if (code) {
         free(bytes.data);
         status = glint_file_fail(error, path, code);
-    } else if (limit) { // the beginning alone is enough for a decoder to say that it is none
+    } else if (limit) { // the beginning is enough for a decoder to report that the file is no picture
         status = read_whole(path, file, size, limit, &bytes, error);
     }
     close(file);

@@ -1,4 +1,4 @@
-/// glint_picture_join: parts of a picture become the whole.
+/// glint_picture_join: joins the parts of a picture.
 #include "engine/base/status.h"
 #include "engine/file/file.h"
 #include "engine/file/picture.h"
@@ -9,8 +9,8 @@
 
 typedef struct canvas {
     int width, height;
-    size_t pixel; ///< bytes of one
-    uint8_t *codes, *filled; ///< filled: a byte a pixel
+    size_t pixel; ///< bytes of one pixel
+    uint8_t *codes, *filled; ///< filled: one byte per pixel
 } canvas;
 
 static glint_status check_part(const glint_picture_part *part, const glint_picture *first, size_t number,
@@ -31,7 +31,7 @@ static glint_status check_part(const glint_picture_part *part, const glint_pictu
     return GLINT_OK;
 }
 
-/// Puts a part in its place, where nothing else is yet.
+/// Copies a part to its position, which must be empty.
 static glint_status put_part(const glint_picture_part *part, size_t number, canvas *to, glint_error *error)
 {
     const int width = glint_picture_width(part->picture), height = glint_picture_height(part->picture);

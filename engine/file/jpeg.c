@@ -1,4 +1,4 @@
-/// JPEG pictures through libjpeg. Its slow integer transform gives the same codes on every machine.
+/// JPEG pictures through libjpeg. Its slow integer transform gives the same pixel values on every machine.
 #include "engine/file/jpeg.h"
 
 #include "engine/base/status.h"
@@ -33,7 +33,7 @@ static void fail(j_common_ptr info)
     longjmp(f->back, 1);
 }
 
-/// Warnings are ignored, except that the file ends early.
+/// Ignores warnings, except the one that the file ends early.
 static void take_message(j_common_ptr info, int level)
 {
     if (level < 0 && info->err->msg_code == JWRN_JPEG_EOF)
@@ -42,7 +42,7 @@ static void take_message(j_common_ptr info, int level)
 
 // ---- Turned pictures ----
 
-/// A number of `bytes` bytes of an Exif block, whose byte order is "II" or "MM".
+/// Reads a number of `bytes` bytes of an Exif block, whose byte order is "II" or "MM".
 static unsigned exif_number(const uint8_t *at, int bytes, bool is_little)
 {
     unsigned number = 0;
@@ -51,7 +51,7 @@ static unsigned exif_number(const uint8_t *at, int bytes, bool is_little)
     return number;
 }
 
-/// How a camera was held: the Exif tag Orientation, 1 .. 8; 1 where there is none.
+/// Returns the Exif tag Orientation, 1 .. 8; 1 if there is none.
 static unsigned find_orientation(const struct jpeg_decompress_struct *info)
 {
     static const unsigned tag = 0x112;
@@ -72,7 +72,8 @@ static unsigned find_orientation(const struct jpeg_decompress_struct *info)
     return 1;
 }
 
-/// Turns a picture as its orientation says: 2 .. 4 mirror it across, both ways and up and down; 5 .. 8 swap its sides, too.
+/// Turns a picture according to its orientation: 2 mirrors it left to right, 3 in both directions, 4 top to bottom; 5
+/// .. 8 also swap its axes.
 static bool turn(glint_png *picture, unsigned orientation)
 {
     const size_t width = (size_t)picture->width, height = (size_t)picture->height, bytes = (size_t)picture->channels;
@@ -137,7 +138,7 @@ glint_status glint_jpeg_decode(const uint8_t *data, size_t size, size_t most, gl
     info.err = jpeg_std_error(&f.manager);
     f.manager.error_exit = fail;
     f.manager.emit_message = take_message;
-    if (setjmp(f.back)) { // before the first byte is read
+    if (setjmp(f.back)) { // set before the first byte is read
         jpeg_destroy_decompress(&info);
         return glint_fail(error, GLINT_ERR_FORMAT, "not a whole JPEG: %.160s", f.message);
     }

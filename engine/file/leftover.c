@@ -1,8 +1,9 @@
-/// Hidden files that killed processes left beside their places; and the drafts of this process, for its last signal.
+/// Hidden files that killed processes left behind; and the drafts of this process, which its last signal removes.
 ///
-/// A draft is called .NAME.HOST.PID.NUMBER.tmp, and its process holds a lock on it. One of this host whose process is gone
-/// and whose lock is free is removed by the next process that opens a draft in the folder or looks there for a finished picture;
-/// a draft of another host, of which nothing can be known, a day after the last write.
+/// A draft is called .NAME.HOST.PID.NUMBER.tmp, and its process holds a lock on it. The next process that opens a draft
+/// in the folder, or looks there for a finished picture, removes leftover drafts: a draft of this host when its process
+/// is gone and its lock is free; a draft of another host, whose process cannot be checked, one day after its last
+/// write.
 #include "engine/file/file.h"
 
 #include <ctype.h>
@@ -21,8 +22,8 @@
 #include <unistd.h>
 
 #define FOREIGN_AGE_S (24 * 3600)
-#define FOLDERS_KEPT 16 // that were looked through last
-#define LIVE_MAX 64 // drafts at a time that a signal removes
+#define FOLDERS_KEPT 16 // the folders searched most recently
+#define LIVE_MAX 64 // drafts that a signal removes, at most
 
 void glint_host_name(char out[GLINT_HOST_SIZE])
 {
@@ -36,7 +37,7 @@ void glint_host_name(char out[GLINT_HOST_SIZE])
 
 // ---- Whose a file is ----
 
-/// Takes ".DIGITS" off the end of name[0 .. *length). -1: it is not there.
+/// Removes ".DIGITS" from the end of name[0 .. *length) and returns the number. -1: there is none.
 static long take_number(const char *name, size_t *length)
 {
     size_t at = *length;
@@ -51,7 +52,7 @@ static long take_number(const char *name, size_t *length)
     return number;
 }
 
-/// Whether a draft has this name; its process, and whether that is one of this host.
+/// Returns whether a draft has this name; writes its process, and whether the process is on this host.
 static bool is_draft(const char *name, const char *host, long *process, bool *is_ours)
 {
     size_t length = strlen(name);
@@ -66,7 +67,7 @@ static bool is_draft(const char *name, const char *host, long *process, bool *is
     return length > 1;
 }
 
-/// Whether the file's process is gone, as far as this one can know.
+/// Returns whether the file's process is gone, as far as this process can tell.
 static bool is_left(int folder, const char *name, long process, bool is_ours, const struct stat *info)
 {
     if (!S_ISREG(info->st_mode) || info->st_uid != geteuid())
@@ -75,7 +76,8 @@ static bool is_left(int folder, const char *name, long process, bool is_ours, co
         return time(NULL) - info->st_mtime > FOREIGN_AGE_S;
     if (process == (long)getpid() || kill((pid_t)process, 0) == 0 || errno != ESRCH)
         return false;
-    // The process may live where its number means nothing here, in another container of this host: it holds the lock.
+    // The process may live in another container of this host, where its number means nothing here. Then it holds the
+    // lock.
     const int file = openat(folder, name, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     const bool is_free = file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0;
     if (file >= 0)
@@ -103,7 +105,7 @@ void glint_drafts_collect(const char *path)
         closedir(folder);
 }
 
-/// glint_drafts_collect, unless this process has looked through the folder lately.
+/// glint_drafts_collect, unless this process searched the folder recently.
 static void collect_once(const char *path)
 {
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;

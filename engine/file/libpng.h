@@ -1,4 +1,4 @@
-/// Callbacks of libpng for writing a PNG. It jumps to png_jmpbuf when something fails. Internal.
+/// libpng callbacks for writing a PNG. libpng jumps to png_jmpbuf when something fails. Internal.
 #ifndef GLINT_FILE_LIBPNG_H
 #define GLINT_FILE_LIBPNG_H
 
@@ -14,7 +14,8 @@ static inline void glint_png_fail(png_structp png, png_const_charp message)
     png_longjmp(png, 1);
 }
 
-/// Arguments are checked, so that a warning too can only mean that memory is short: no file without its text.
+/// Treats every warning as an error. The arguments are checked, so a warning can only mean that memory is short, and
+/// the file would lack a text.
 static inline void glint_png_warn(png_structp png, png_const_charp message)
 {
     if (strstr(message, "emory"))

@@ -1,4 +1,4 @@
-/// The libraries in use, by name and version.
+/// The names and versions of the libraries in use.
 #include "engine/text/letters.h"
 
 #include <png.h>

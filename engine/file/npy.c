@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#define HEAD_ALIGN 64 // bytes, of all that stands before the values
+#define HEAD_ALIGN 64 // bytes, of everything before the values
 
 bool glint_npy_encode(int width, int height, int channels, float *const plane[], glint_bytes *out)
 {
@@ -24,7 +24,7 @@ bool glint_npy_encode(int width, int height, int channels, float *const plane[],
     for (size_t i = 0; i < pixels; i++)
         for (int c = 0; c < channels; c++, out->size += sizeof(float)) {
             const float value = glint_pfm_value(channels, plane[c][i]);
-            memcpy(out->data + out->size, &value, sizeof value); // machines are little-endian
+            memcpy(out->data + out->size, &value, sizeof value); // only little-endian machines are supported
         }
     return true;
 }

@@ -16,7 +16,7 @@ static void put_little_endian(float value, uint8_t *out)
         out[i] = (uint8_t)(bits >> (8 * i));
 }
 
-/// Programs that read pictures trip over infinity in a colour, and over NaN.
+/// Many programs that read pictures fail on infinite or NaN colours.
 float glint_pfm_value(int channels, float value)
 {
     if (channels == 1)
@@ -47,7 +47,7 @@ bool glint_pfm_encode(int width, int height, int channels, float *const plane[],
 
 static bool is_space(uint8_t c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/// Cuts the header into words; *at is then the first byte of the values: one space after the last word is taken.
+/// Splits the header into words. *at: the first byte of the values, after the one space that follows the last word.
 static bool split_header(const uint8_t *data, size_t size, char word[HEADER_FIELDS][32], size_t *at)
 {
     size_t i = 0;

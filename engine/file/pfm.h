@@ -5,8 +5,8 @@
 #include "engine/glint.h"
 #include "engine/file/bytes.h"
 
-/// Returns a value as stored in float files: with three channels, infinity becomes the largest float of its sign and NaN becomes 0;
-/// one channel is a distance and may be infinite.
+/// Returns a value as stored in float files. With three channels, infinity becomes the largest float of its sign and
+/// NaN becomes 0. A single channel is a distance and may be infinite.
 float glint_pfm_value(int channels, float value);
 
 /// Appends a whole little-endian PFM to `out`.
@@ -20,9 +20,10 @@ typedef struct glint_pfm {
     float *values; ///< interleaved, top row first; the owner calls free
 } glint_pfm;
 
-/// The bytes of a whole PFM that begins as these do; 0: they begin as none.
+/// Returns the size of a whole PFM with this beginning; 0: not a PFM.
 uint64_t glint_pfm_bytes(const uint8_t *head, size_t size);
-/// Decodes either byte order; the scale's size is left aside. GLINT_ERR_FORMAT when the bytes are not a whole PFM.
+/// Decodes either byte order and ignores the magnitude of the scale. GLINT_ERR_FORMAT when the bytes are not a whole
+/// PFM.
 glint_status glint_pfm_decode(const uint8_t *data, size_t size, glint_pfm *out, glint_error *error);
 
 #endif

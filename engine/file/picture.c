@@ -1,4 +1,4 @@
-/// glint_picture: a finished file, its texts, and its rows as they are looked at.
+/// glint_picture: a finished file, its texts, and its rows for display.
 #include "engine/base/status.h"
 #include "engine/file/file.h"
 #include "engine/file/pfm.h"
@@ -19,8 +19,8 @@ typedef struct entry { ///< a text
 struct glint_picture {
     glint_png_head head; ///< bits 32: a .pfm
     void *codes; ///< of a .png; NULL: not read
-    float *values; ///< of a .pfm
-    uint8_t *viewed; ///< the 8-bit sRGB code of each code
+    float *values; ///< of a .pfm; otherwise NULL
+    uint8_t *viewed; ///< the 8-bit sRGB value for each pixel value
     entry *texts;
 };
 

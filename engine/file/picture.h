@@ -4,8 +4,8 @@
 
 #include "engine/glint.h"
 
-/// The decoded codes of a .png, uint8_t or uint16_t (native order), interleaved, top row first; NULL: a .pfm, or the
-/// pixels were not read.
+/// Returns the decoded pixel values of a .png, uint8_t or uint16_t (native order), interleaved, top row first. NULL: a
+/// .pfm, or the pixels were not read.
 const void *glint_picture_codes(const glint_picture *picture);
 
 #endif

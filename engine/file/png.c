@@ -25,7 +25,7 @@ static bool is_keyword(const char *keyword)
     return true;
 }
 
-/// UTF-8 to Latin-1; what Latin-1 does not have, and control bytes but the line's end, become '?'.
+/// Converts UTF-8 to Latin-1. Characters that Latin-1 lacks, and control bytes except the newline, become '?'.
 static void copy_as_latin1(const char *value, char *out)
 {
     const uint8_t *from = (const uint8_t *)value;
@@ -68,7 +68,7 @@ typedef struct container {
     double dpi;
     const glint_bytes *stream;
     glint_bytes *out;
-    char *latin1; ///< room for the longest value
+    char *latin1; ///< buffer for the longest value
 } container;
 
 static void take_bytes(png_structp png, png_bytep data, size_t size)
@@ -88,7 +88,8 @@ static void set_text(container *c)
     }
 }
 
-/// All that may jump. False: libpng ran out of memory (nothing else can fail once the arguments are checked).
+/// Contains all calls that may jump. False: libpng ran out of memory (nothing else can fail once the arguments are
+/// checked).
 static bool write_container(container *c)
 {
     if (setjmp(png_jmpbuf(c->png)))
@@ -102,7 +103,7 @@ static bool write_container(container *c)
         png_set_sRGB(c->png, c->info, PNG_sRGB_INTENT_PERCEPTUAL);
     else if (source->tone.transfer == GLINT_TRANSFER_LINEAR)
         png_set_gAMA_fixed(c->png, c->info, 100000);
-    const png_uint_32 meter = (png_uint_32)(c->dpi / 0.0254 + 0.5); // pixels
+    const png_uint_32 meter = (png_uint_32)(c->dpi / 0.0254 + 0.5); // pixels per metre
     if (meter > 0)
         png_set_pHYs(c->png, c->info, meter, meter, PNG_RESOLUTION_METER);
     set_text(c);

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <zlib.h>
 
-#define DEFLATE_RATIO_MAX 1032 // a stream cannot unpack to more than this many times its size
+#define DEFLATE_RATIO_MAX 1032 // the highest possible compression ratio of a deflate stream
 
 typedef struct reader {
     png_structp png;
@@ -34,7 +34,7 @@ static void keep_message(png_structp png, png_const_charp message)
     png_longjmp(png, 1);
 }
 
-/// Warnings are none of ours, but that libpng goes on, out of step, where memory was short.
+/// Ignores warnings except those about memory, after which libpng would continue with wrong data.
 static void heed_warning(png_structp png, png_const_charp message)
 {
     if (strstr(message, "emory"))
@@ -46,7 +46,7 @@ static void read_header(reader *r)
     png_set_read_fn(r->png, r, give_bytes);
     png_set_user_limits(r->png, GLINT_SIDE_MAX, GLINT_SIDE_MAX);
     png_set_crc_action(r->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-    png_set_keep_unknown_chunks(r->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1); // texts and profiles: nothing is unpacked
+    png_set_keep_unknown_chunks(r->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1); // texts and profiles are not decompressed
     png_read_info(r->png, r->info);
     const uint64_t height = png_get_image_height(r->png, r->info);
     if (png_get_rowbytes(r->png, r->info) * height / DEFLATE_RATIO_MAX > r->size)
@@ -58,7 +58,7 @@ static void read_header(reader *r)
 #endif
 }
 
-/// All that may jump.
+/// Contains all calls that may jump.
 static bool read_container(reader *r)
 {
     if (setjmp(png_jmpbuf(r->png)))
@@ -125,12 +125,12 @@ static bool is_text(const uint8_t *body, size_t size, const char *keyword, const
 /// One chunk of a PNG in memory.
 typedef struct chunk {
     const uint8_t *type, *body;
-    uint32_t size; ///< of the body
+    uint32_t size; ///< of the body, bytes
 } chunk;
 
 static bool is_type(const chunk *c, const char *type) { return memcmp(c->type, type, 4) == 0; }
 
-/// Takes the chunk at *at, which moves past it. False: there is no whole chunk with a right CRC.
+/// Reads the chunk at *at and moves *at past it. False: there is no whole chunk with a right CRC.
 static bool next_chunk(const uint8_t *data, size_t size, size_t *at, chunk *out)
 {
     if (size - *at < 12)
@@ -171,13 +171,13 @@ bool glint_png_has_text(const uint8_t *data, size_t size, const char *keyword, c
     return false;
 }
 
-/// The width (0) or height (1) that IHDR says; 0: there is no IHDR.
+/// Returns the width (0) or height (1) in IHDR; 0: not an IHDR.
 static uint32_t side_of(const chunk *c, int which)
 {
     return is_type(c, "IHDR") && c->size == 13 ? big_endian(c->body + 4 * which) : 0;
 }
 
-/// IHDR into the head. False: no such picture.
+/// Reads IHDR into the head. False: no valid picture has this IHDR.
 static bool read_ihdr(const chunk *c, glint_png_head *head)
 {
     static const int channels[7] = { 1, 0, 3, 3, 2, 0, 4 };
@@ -207,7 +207,8 @@ typedef struct seen_chunks {
     bool pixels;
 } seen_chunks;
 
-/// Whether the decoder takes a tRNS chunk: one of the length that its kind of picture has; it then becomes a channel of its own.
+/// Returns whether the decoder accepts a tRNS chunk, which must have the right length for the picture's colour type. It
+/// then becomes an alpha channel.
 static bool is_transparency(const chunk *c, const seen_chunks *seen)
 {
     if (seen->pixels)
@@ -215,7 +216,7 @@ static bool is_transparency(const chunk *c, const seen_chunks *seen)
     return seen->color == 0 ? c->size == 2 : seen->color == 2 ? c->size == 6 : 0 < c->size && c->size <= seen->palette;
 }
 
-/// Reads one chunk other than the pixels into the head.
+/// Reads one chunk other than pixels into the head.
 static void read_ancillary(const chunk *c, seen_chunks *seen, glint_png_head *head)
 {
     if (is_type(c, "IHDR") && c->size == 13)

@@ -22,24 +22,24 @@ typedef struct picture {
     float *const *plane;
     glint_tone_desc tone; ///< of the file
     const glint_tone_table *table; ///< colour passes
-    float gain; ///< likewise
-    double nearest; ///< of all depths
-    double steepest; ///< of all slopes, either way
-    double range[2]; ///< of both: what the ends of the grey or the map stand for; equal: by `nearest` and `steepest`
-    const uint32_t *map; ///< depth and slopes: colours, 0xrrggbb, from 0 to 1; NULL: greys
-    const void *(*under)(const void *user, int y, void *scratch); ///< outlined: the rows below the lines
+    float gain; ///< likewise: the factor of light, see glint_tone_gain
+    double nearest; ///< the smallest depth of the image
+    double steepest; ///< the largest absolute slope of the image
+    double range[2]; ///< depth and slopes: values at the ends of the colours; equal: by `nearest` and `steepest`
+    const uint32_t *map; ///< of depth and slopes: colours 0xrrggbb from 0 to 1; NULL: greys
+    const void *(*under)(const void *user, int y, void *scratch); ///< with outlines: the rows below the lines
     const void *(*plain)(const void *user, int y, void *scratch); ///< with overlays: the rows below them
     glint_stamps stamps; ///< the overlays
 } picture;
 
-/// A pipe or a device: what has no ending to go by is written as PNG there.
+/// Returns whether `path` is a pipe or a device. PNG is written there if the name has no known ending.
 static bool is_special_file(const char *path)
 {
     struct stat info;
     return path && stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
 
-/// False: an ending of none.
+/// Finds the format of an ending. False: unknown ending.
 static bool kind_by_ending(const char *path, glint_file_kind *kind)
 {
     static const char *const endings[] = {
@@ -92,7 +92,7 @@ static const void *row_of_color(const void *user, int y, void *scratch)
     return scratch;
 }
 
-/// Beauty with alpha.
+/// A row of beauty with alpha.
 static const void *row_of_covered(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -102,7 +102,7 @@ static const void *row_of_covered(const void *user, int y, void *scratch)
     return scratch;
 }
 
-/// Stores `value` (of 0 .. 1) as the linear code number `at` of a row.
+/// Stores `value` (0 .. 1) as linear pixel value number `at` of a row.
 static void put_linear(const picture *p, void *codes, size_t at, double value)
 {
     double x = value > 0 ? value < 1 ? value : 1 : 0;
@@ -112,7 +112,7 @@ static void put_linear(const picture *p, void *codes, size_t at, double value)
         ((uint8_t *)codes)[at] = (uint8_t)(x * 255 + 0.5);
 }
 
-/// Beauty with its lines, which cover.
+/// A row of beauty with its outlines, which are opaque.
 static const void *row_of_outlined(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -133,7 +133,7 @@ static const void *row_of_outlined(const void *user, int y, void *scratch)
     return scratch;
 }
 
-/// Beauty under its overlays.
+/// A row of beauty with its overlays.
 static const void *row_of_covered_up(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -146,7 +146,7 @@ static const void *row_of_covered_up(const void *user, int y, void *scratch)
     return scratch;
 }
 
-/// A share, 0 .. 1.
+/// A row of shares, 0 .. 1.
 static const void *row_of_shares(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -158,7 +158,7 @@ static const void *row_of_shares(const void *user, int y, void *scratch)
     return scratch;
 }
 
-/// Stores a pixel of a number (of 0 .. 1): a linear grey, or the sRGB code of its colour.
+/// Stores a number (0 .. 1) as a pixel: a linear grey, or its sRGB colour in the map.
 static void put_number(const picture *p, void *codes, size_t x, double value)
 {
     const uint32_t color = p->map ? p->map[(int)(fmin(fmax(value, 0), 1) * 255 + 0.5)] : 0;
@@ -170,8 +170,9 @@ static bool has_range(const picture *p) { return p->range[0] != p->range[1]; }
 
 static double share_of(const picture *p, double value) { return (value - p->range[0]) / (p->range[1] - p->range[0]); }
 
-/// Nearest over distance, where there is no range: white at the nearest point, half as bright at twice its distance, and a horizon far away
-/// leaves the objects in front their contrast. The background, at infinity, is black.
+/// Without a range, brightness is the nearest distance over the distance: white at the nearest point, half as bright at
+/// twice its distance. A far horizon then leaves contrast to the objects in front. The background, at infinity, is
+/// black.
 static const void *row_of_depth(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -200,7 +201,7 @@ static const void *row_of_normals(const void *user, int y, void *scratch)
     return scratch;
 }
 
-/// One to one on 24 bits, 0 to 0: odd multipliers and shifts that can be undone.
+/// Maps 24 bits one to one, 0 to 0, by invertible steps: odd multipliers and shifts.
 static uint32_t color_of_id(uint32_t id)
 {
     uint32_t h = id & 0xffffff;
@@ -223,7 +224,7 @@ static const void *row_of_ids(const void *user, int y, void *scratch)
     return scratch;
 }
 
-/// Signed: grey at 0, black and white at the largest slope either way, where there is no range.
+/// Signed values. Without a range: grey at 0, black and white at the largest slope of either sign.
 static const void *row_of_slopes(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -250,13 +251,13 @@ static void find_nearest(picture *p)
     for (size_t i = 0; i < count; i++)
         p->nearest = p->plane[0][i] < p->nearest ? p->plane[0][i] : p->nearest;
     if (isinf(p->nearest))
-        p->nearest = 0; // nothing but background
+        p->nearest = 0; // only background
 }
 
 static void find_steepest(picture *p)
 {
     const size_t count = (size_t)p->image->width * (size_t)p->image->height;
-    p->steepest = DBL_MIN; // where nothing changes all is grey
+    p->steepest = DBL_MIN; // if nothing changes, all is grey
     for (int c = 0; c < 3; c++)
         for (size_t i = 0; i < count; i++)
             p->steepest = fabs(p->plane[c][i]) > p->steepest ? fabs(p->plane[c][i]) : p->steepest;
@@ -281,8 +282,8 @@ static glint_status fail_not_kept(const glint_image *image, glint_pass pass, gli
     return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' is not stored in this image", glint_pass_name(pass));
 }
 
-/// Draws the overlays into the rows. Where they are the stamps of rows of tiles promise nothing.
-/// stamps  written: the source's stamps from now on, to be freed.
+/// Draws the overlays into the rows. The stamps of the rows of tiles under an overlay become 0.
+/// stamps  written: the new stamps of the source; the caller frees them.
 static glint_status lay_over(picture *p, glint_png_source *source, double dpi, uint64_t **stamps, glint_error *error)
 {
     const glint_image *image = p->image;
@@ -304,14 +305,14 @@ static glint_status lay_over(picture *p, glint_png_source *source, double dpi, u
     return GLINT_OK;
 }
 
-/// The rows of a pass as codes, while the store of tables is open.
+/// The rows of a pass as pixel values. Valid while the store of tone tables is open.
 typedef struct code_rows {
     picture picture;
     glint_png_source source; ///< its user is the picture
     uint64_t *stamps; ///< owned
 } code_rows;
 
-/// To be closed also on failure.
+/// Opens the rows of a pass. The caller closes them, on failure too.
 static glint_status open_rows(const glint_image *image, const glint_write_desc *desc, code_rows *rows,
                               glint_error *error)
 {
@@ -353,7 +354,7 @@ static glint_status open_rows(const glint_image *image, const glint_write_desc *
     if (desc->pass == GLINT_PASS_BEAUTY && image->outline) {
         p->under = source->row;
         source->row = row_of_outlined;
-        source->stamp = NULL; // of the codes without lines
+        source->stamp = NULL; // the stamps describe the codes without lines
     }
     if (!status && desc->pass == GLINT_PASS_BEAUTY && image->overlays)
         status = lay_over(p, source, desc->dpi, &rows->stamps, error);
@@ -482,8 +483,8 @@ bool glint_file_has_key(const char *path, const char *key)
     if (!path || !key)
         return false;
     struct glint_bytes bytes = { 0 };
-    glint_drafts_collect_beside(path); // a run that finds all of its pictures opens no draft
-    if (glint_file_read_picture(path, &bytes, NULL)) // as of a pipe, which keeps nothing
+    glint_drafts_collect_beside(path); // a run that finds all its pictures finished opens no draft
+    if (glint_file_read_picture(path, &bytes, NULL)) // for example a pipe, which stores nothing
         return false;
     bool has = glint_png_has_text(bytes.data, bytes.size, GLINT_PNG_KEY, key);
     free(bytes.data);

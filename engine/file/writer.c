@@ -1,5 +1,6 @@
-/// glint_writer: one list of jobs in the order they were submitted. A thread encodes them (with a pool of its own, if it may
-/// use several), others bring them to disk, several files at a time: a sync waits for the disk, not for a processor.
+/// glint_writer: one list of jobs in the order of submission. One thread encodes them (with a pool of its own if
+/// several threads are allowed). Other threads write the files, several at a time, because a sync waits for the disk
+/// and not for a processor.
 #include "engine/base/pool.h"
 #include "engine/base/status.h"
 #include "engine/file/file.h"
@@ -12,19 +13,19 @@
 #include <string.h>
 #include <time.h>
 
-#define FILERS 4 ///< threads that bring files to disk, at most
-#define SPARES 4 ///< buffers that are kept for files to come
-#define SPARE_BYTES ((size_t)1 << 24) ///< larger ones are not
+#define FILERS 4 ///< threads that write files, at most
+#define SPARES 4 ///< buffers cached for later files, at most
+#define SPARE_BYTES ((size_t)1 << 24) ///< larger buffers are not cached
 
 typedef enum job_state { JOB_QUEUED, JOB_ENCODING, JOB_ENCODED, JOB_FILING, JOB_DONE } job_state;
 
 typedef struct job {
     struct job *next;
     job_state state;
-    glint_image *image; ///< owned until it is encoded
-    glint_write_desc desc; ///< its strings follow the job in memory
-    char *place; ///< of the file, see glint_draft_place; owned
-    glint_bytes bytes; ///< of the file, from then until they are in it; owned
+    glint_image *image; ///< owned until the job is encoded
+    glint_write_desc desc; ///< its strings are stored after the job
+    char *place; ///< canonical path of the file, see glint_draft_place; owned
+    glint_bytes bytes; ///< the encoded file, until it is written; owned
     glint_write_result result;
 } job;
 
@@ -34,15 +35,15 @@ struct glint_writer {
     glint_bands *bands; ///< the encoder's
     pthread_mutex_t
         lock; ///< protects all fields below; an entry being encoded or written belongs to its thread, except for `next`, `state`
-    pthread_cond_t to_encode, to_file; ///< there may be something for the encoder; for one of the filers
-    pthread_cond_t moved; ///< a job has left the queue, or is done
-    job *first, **end; ///< submitted and not collected
-    int waiting[JOB_DONE]; ///< jobs that are queued, and that are encoded
-    int queue_depth; ///< the most of either
-    glint_bytes spare[SPARES]; ///< of files that are written: fresh memory costs more than filling it
+    pthread_cond_t to_encode, to_file; ///< there may be work for the encoder; for a filer
+    pthread_cond_t moved; ///< a job has left a queue, or is done
+    job *first, **end; ///< submitted and not yet collected
+    int waiting[JOB_DONE]; ///< number of jobs in each state: queued, encoded
+    int queue_depth; ///< limit for each of the two
+    glint_bytes spare[SPARES]; ///< cached buffers of written files: fresh memory costs more than filling it
     int spare_count;
-    bool closing; ///< no more are submitted
-    bool encoded_all; ///< and none of them is left to the encoder
+    bool closing; ///< no more jobs are submitted
+    bool encoded_all; ///< closing, and the encoder has no job left
 };
 
 static double now_ms(void)
@@ -67,7 +68,7 @@ static void finish(job *j, glint_status status, const glint_error *error)
     memcpy(j->result.message, error->message, sizeof j->result.message);
 }
 
-/// Returns whether there is something to be filed.
+/// Encodes a job. Returns whether there is a file to write.
 static bool encode(job *j, glint_bands *bands)
 {
     glint_error error = { 0 };
@@ -97,7 +98,7 @@ static bool is_behind(const glint_writer *writer, const job *j)
     return false;
 }
 
-/// Keeps a job's buffer for another, or frees it.
+/// Caches a job's buffer for another job, or frees it.
 static void give_back(glint_writer *writer, job *j)
 {
     if (j->bytes.data && j->bytes.capacity <= SPARE_BYTES && writer->spare_count < SPARES) {
@@ -109,7 +110,7 @@ static void give_back(glint_writer *writer, job *j)
     j->bytes = (glint_bytes) { 0 };
 }
 
-/// The first job that waits for its next step, which begins; NULL: none does.
+/// Starts the next step of the first job that waits in this state, and returns the job. NULL: no job waits.
 static job *take(glint_writer *writer, job_state waiting)
 {
     job *j = writer->first;
@@ -118,7 +119,7 @@ static job *take(glint_writer *writer, job_state waiting)
     if (j) {
         j->state = waiting + 1;
         writer->waiting[waiting]--;
-        pthread_cond_broadcast(waiting == JOB_QUEUED ? &writer->moved : &writer->to_encode); // there is room for one more
+        pthread_cond_broadcast(waiting == JOB_QUEUED ? &writer->moved : &writer->to_encode); // one more fits
     }
     return j;
 }
@@ -132,7 +133,7 @@ static void move_on(glint_writer *writer, job *j, job_state state)
         give_back(writer, j);
         pthread_cond_broadcast(&writer->moved);
     }
-    if (writer->waiting[JOB_ENCODED] > 0) // this one, or one that was behind it
+    if (writer->waiting[JOB_ENCODED] > 0) // this job, or one that was behind it
         pthread_cond_signal(&writer->to_file);
 }
 
@@ -178,7 +179,7 @@ static void *run_filer(void *user)
         pthread_mutex_lock(&writer->lock);
         move_on(writer, j, JOB_DONE);
     }
-    pthread_cond_signal(&writer->to_file); // another that waits ends, too
+    pthread_cond_signal(&writer->to_file); // wakes another filer, which then ends too
     pthread_mutex_unlock(&writer->lock);
     return NULL;
 }
@@ -275,7 +276,7 @@ void glint_writer_destroy(glint_writer *writer)
 
 // ---- Jobs ---------------------------------------------------------------------------------------------------------
 
-/// Copies a string to *at, which moves past it.
+/// Copies a string to *at and moves *at past the copy.
 static const char *keep_string(char **at, const char *string)
 {
     if (!string)

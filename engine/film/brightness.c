@@ -1,11 +1,12 @@
-/// Measures pictures: their brightest value, the exposure that keeps it at or below white, the range of depth and derivatives.
+/// Measures pictures: the brightest value, the exposure at which it is at most white, the range of depth and
+/// derivatives.
 #include "engine/base/status.h"
 #include "engine/film/image.h"
 #include "engine/film/tone.h"
 
 #include <math.h>
 
-#define STEPS 100 ///< of a stop
+#define STEPS 100 ///< steps of exposure in one stop
 
 double glint_image_exposure(const glint_image *image) { return image ? image->exposure : 0; }
 
@@ -14,7 +15,7 @@ static void add_plane(const float *light, size_t count, float gain, glint_bright
     float most = 0;
     uint64_t clipped = 0;
     for (size_t i = 0; i < count; i++) {
-        const float x = light[i] < INFINITY ? light[i] : 0; // NaN is no light, either
+        const float x = light[i] < INFINITY ? light[i] : 0; // NaN counts as no light, too
         most = x > most ? x : most;
         clipped += gain * x > 1;
     }

@@ -96,7 +96,7 @@ static glint_status create(int width, int height, uint32_t passes, bool alpha, c
         status = glint_tone_check(codes_tone, error);
     if (status)
         return status;
-    // The largest size is below 2^36 bytes.
+    // The largest image has fewer than 2^36 bytes.
     if (sizeof(size_t) < 8 && (double)width * height * 12 > (double)SIZE_MAX)
         return glint_fail_nomem(error);
     glint_image *image = calloc(1, sizeof *image);
@@ -130,14 +130,14 @@ glint_status glint_image_add_lights(glint_image *image, size_t count, const char
         memcpy(image->light_name[image->light_count], names[image->light_count], GLINT_NAME_SIZE);
         for (int c = 0; c < 3; c++)
             if (!allocate_plane(pixels, &image->light[image->light_count][c])) {
-                image->light_count++; // those it has are freed
+                image->light_count++; // counts the planes to free on failure
                 return glint_fail_nomem(error);
             }
     }
     return GLINT_OK;
 }
 
-/// The light passes of a plan's description: names divided by commas.
+/// Adds the light passes of a plan's description: names separated by commas.
 static glint_status add_lights_of(glint_image *image, const char *list, glint_error *error)
 {
     size_t count = 1, i = 0;

@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Shares of a pixel below which what its light passes leave of it is rounding: of passes in float, and in 16 bits.
+/// If the light passes leave less than this share of a pixel, the rest is rounding: for passes in float, and in half.
 #define ROUNDING 0x1p-20
 #define ROUNDING_OF_HALF 0x1p-8
 
-/// Takes the light passes off the beauty. Returns whether anything is left.
+/// Subtracts the light passes from the beauty. Returns whether anything is left.
 static bool take_off(const glint_image *image, double rounding)
 {
     const size_t pixels = (size_t)image->width * (size_t)image->height;
@@ -19,7 +19,7 @@ static bool take_off(const glint_image *image, double rounding)
             double left = *all;
             for (size_t k = 0; k < image->light_count; k++)
                 left -= image->light[k][c][i];
-            *all = left > rounding * *all ? (float)left : 0; // what is not a number leaves nothing
+            *all = left > rounding * *all ? (float)left : 0; // NaN leaves nothing
             any = any || *all > 0;
         }
     return any;
@@ -68,7 +68,7 @@ glint_status glint_image_relight(const glint_image *lights, const double (*facto
         memcpy(image->plane[GLINT_PASS_ALPHA][0], lights->plane[GLINT_PASS_ALPHA][0], pixels * sizeof(float));
     for (int c = 0; c < 3; c++)
         for (size_t i = 0; i < pixels; i++) {
-            double light = 0; // the mixer's page adds in the same order
+            double light = 0; // the page of the mixer adds in the same order
             for (size_t k = 0; k < lights->light_count; k++)
                 light += factors[k][c] * (double)lights->light[k][c][i];
             image->plane[GLINT_PASS_BEAUTY][c][i] = (float)light;

@@ -1,11 +1,11 @@
-/// Pictures with other strengths and colours of their lights. Internal; see glint.h for the public part.
+/// Pictures with other strengths and colours of their lights. Internal; the public part is in glint.h.
 #ifndef GLINT_FILM_RELIGHT_H
 #define GLINT_FILM_RELIGHT_H
 
 #include "engine/film/image.h"
 
-/// Makes what the light passes of an image leave of its beauty one more pass, "...", where that is more than rounding. The image has
-/// no beauty then. half: passes are of 16 bits, as they were read.
+/// Turns the part of the beauty that is in no light pass into one more pass, "...", unless it is only rounding. The
+/// image then has no beauty. half: the passes were read as half.
 glint_status glint_image_split_rest(glint_image *image, bool half, glint_error *error);
 
 #endif

@@ -94,7 +94,7 @@ static float float_of(uint32_t bits)
     return x;
 }
 
-/// The first float whose code is at least k, anywhere.
+/// Returns the first float whose code is at least k, by binary search over all floats.
 static float first_by_search(const glint_tone_desc *desc, int k)
 {
     uint32_t low = 0, high = bits_of(INFINITY); // code(low) < k <= code(high)
@@ -108,9 +108,9 @@ static float first_by_search(const glint_tone_desc *desc, int k)
     return float_of(high);
 }
 
-/// The first float whose code is at least k, 1 <= k <= M: the float above the inverse, where that is far enough from
-/// any float to be beyond doubt, else by single steps. The inverse and the definition agree to 2^-48; a curve's to
-/// 2^-34, since 1 - y of the last codes has 16 bits less.
+/// Returns the first float whose code is at least k, 1 <= k <= M: the float above the inverse if the inverse is far
+/// enough from any float to be certain, otherwise found by single steps. The inverse and the definition agree to 2^-48;
+/// for a curve only to 2^-34, since 1 - y of the last codes has 16 bits less.
 static float first_of_code(const glint_tone_desc *desc, int k)
 {
     double code = desc->rounding == GLINT_ROUND_NEAREST ? k - 0.5 : k;
@@ -161,9 +161,9 @@ static bool fill_lut(glint_tone_table *table)
     return true;
 }
 
-/// The transfer function as the tone stage estimates it: m^(1 / 2.4) by Remez's exchange, relative error 1.2e-6, which
-/// is 3.2e-4 codes at 1. Roundings of float arithmetic, at most 2^-24 of 512 at the end and of the terms before, add
-/// less than 0.7e-4, so that 16 / 2^15 codes (4.9e-4) on either side of a step are enough.
+/// The tone stage's estimate of the transfer function: m^(1 / 2.4) by Remez's exchange, relative error 1.2e-6, which is
+/// 3.2e-4 codes at 1. Float rounding, at most 2^-24 of 512 at the end and of the terms before, adds less than 0.7e-4.
+/// So 16 / 2^15 codes (4.9e-4) on either side of a step are enough.
 static void make_fit(glint_tone_table *table)
 {
     static const float power[6] = { 0x1.815cbcp-2f, 0x1.e7d75cp-1f,  -0x1.f7881ep-2f,
@@ -193,7 +193,7 @@ static uint32_t code_by_search(const float *threshold, float x)
     return low;
 }
 
-/// Where x lies between the codes around it, so that a line through two such numbers is a good guess in between.
+/// Returns the position of x between the codes around it. A line through two such positions is a good guess in between.
 static float fractional_code(const float *threshold, float x)
 {
     uint32_t code = code_by_search(threshold, x);
@@ -329,14 +329,15 @@ static inline uint16_t code16(const glint_tone_table *table, float exposed)
     return (uint16_t)code;
 }
 
-/// Whether a channel of light, before exposure, is not finite; after it, brighter than white.
+/// Returns whether a channel of light, before exposure, is not finite; and whether one, after it, is brighter than
+/// white.
 static inline bool is_odd(float r, float g, float b) { return !isfinite(r) || !isfinite(g) || !isfinite(b); }
 static inline bool is_clipped(const glint_tone_table *table, const float x[3])
 {
     return x[0] > table->white || x[1] > table->white || x[2] > table->white;
 }
 
-/// Codes of either width: the other pointer is NULL.
+/// Writes codes of one width; the other pointer is NULL.
 static inline void make_row(const glint_tone_table *table, float gain, const float *const light[3], size_t count,
                             uint8_t *rgb8, uint16_t *rgb16, uint64_t *clipped, uint64_t *nonfinite)
 {

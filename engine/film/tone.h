@@ -7,15 +7,15 @@
 
 #define GLINT_TONE16_FIRST 0x3500u ///< upper 16 bits of 2^-21; the floats below have code 0 at 16 bits
 
-/// One curve's codes, for light after exposure.
+/// The codes of one curve, for light after exposure.
 typedef struct glint_tone_table {
     glint_tone_desc desc; ///< with exposure 0
     float white, top; ///< as in glint_tone_args
     uint32_t *lut; ///< 8 bits: the table of the tone stage, see stages.h
-    bool has_fit; ///< 8 bits: of the curve `clamp`
+    bool has_fit; ///< 8 bits: only for the curve `clamp`
     glint_tone_fit fit; ///< likewise
     float *threshold; ///< 16 bits: [k] is the first float of code k, k = 0 .. 65535, then +inf
-    float (*guess)[2]; ///< 16 bits: buckets of 2^15 floats: code at the first float, codes a step
+    float (*guess)[2]; ///< 16 bits, for each bucket of 2^15 floats: the code at its first float, and codes per step
 } glint_tone_table;
 
 /// GLINT_ERR_INVALID when a field is out of its range.
@@ -26,37 +26,37 @@ bool glint_tone_same(const glint_tone_desc *a, const glint_tone_desc *b);
 /// Returns the factor of light: 2^exposure, rounded to float.
 float glint_tone_gain(const glint_tone_desc *desc);
 
-/// The curve, 0 .. 1, and the light at which it reaches y (+inf: nowhere). tone_curve.c.
+/// Return the value of the curve, 0 .. 1, and the light at which it reaches y (+inf: nowhere). tone_curve.c.
 double glint_tone_curve_value(glint_tone_curve curve, double linear);
 double glint_tone_curve_inverse(glint_tone_curve curve, double y);
-double glint_tone_curve_white(glint_tone_curve curve); ///< from where on it is 1
+double glint_tone_curve_white(glint_tone_curve curve); ///< light from which the curve is 1
 
-/// The code of one value by definition: with x the float product of gain and value (the value itself at exposure 0),
-/// floor(f(curve(x)) M + 0.5) or floor(f(curve(x)) M) in double.
+/// Returns the code of one value by definition: with x the float product of gain and value (the value itself at
+/// exposure 0), floor(f(curve(x)) M + 0.5) or floor(f(curve(x)) M) in double.
 double glint_tone_value(const glint_tone_desc *desc, double linear);
 
-/// Makes a table that gives exactly glint_tone_value for every float; the exposure is left to who uses it.
+/// Makes a table that gives exactly glint_tone_value for every float. The caller applies the exposure.
 glint_status glint_tone_table_create(const glint_tone_desc *desc, glint_tone_table **out, glint_error *error);
 void glint_tone_table_destroy(glint_tone_table *table);
 
-/// Every user of the process's store of tables opens it first and closes it at the end; the last one to close it frees
-/// the tables, so that a module can be unloaded without leaving them behind. Any thread.
+/// Every user of the process's store of tables opens it first and closes it at the end. The last one to close it frees
+/// the tables, so that an unloaded module leaves none behind. Any thread.
 void glint_tone_store_open(void);
 void glint_tone_store_close(void);
 
-/// A table of the open store, made at the first call and valid until the caller closes the store. Any thread.
+/// Returns a table of the open store. The first call makes it. Valid until the caller closes the store. Any thread.
 glint_status glint_tone_table_shared(const glint_tone_desc *desc, const glint_tone_table **out, glint_error *error);
 
-/// Converts `count` pixels of three planes to interleaved codes. The table's bits must be 8 or 16 as the name says.
-/// *clipped and *nonfinite (each may be NULL) grow by the pixels with a channel brighter than white, with one that is
-/// not finite.
+/// Converts `count` pixels of three planes to interleaved codes. The table's bits must match the function's name.
+/// *clipped and *nonfinite (each may be NULL) grow by the number of pixels with a channel brighter than white, and with
+/// a channel that is not finite.
 void glint_tone_row8(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
                      size_t count, uint8_t *rgb, uint64_t *clipped, uint64_t *nonfinite);
 void glint_tone_row16(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
                       size_t count, uint16_t *rgb, uint64_t *clipped, uint64_t *nonfinite);
 
-/// The same with alpha: `rgb` is light times coverage, of which the codes are without; where `alpha`, 0 .. 1, is 0 all four
-/// codes are. Alpha's is linear and rounded to nearest. Either number of bits.
+/// The same with alpha. `rgb` is light times coverage; its codes are those of the light without coverage. Where
+/// `alpha`, 0 .. 1, is 0, all four codes are 0. Alpha is linear and rounded to nearest. For 8 and 16 bits.
 void glint_tone_row_alpha(const glint_tone_table *table, float gain, const float *const rgb[3], const float *alpha,
                           size_t count, void *rgba, uint64_t *clipped, uint64_t *nonfinite);
 

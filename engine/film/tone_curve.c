@@ -1,11 +1,12 @@
-/// The curves that bring light of any brightness to 0 .. 1.
+/// Tone curves, which map light of any brightness to 0 .. 1.
 #include "engine/film/tone.h"
 
 #include <math.h>
 
-// Hable's curve, h(x) = (x (A x + C B) + D E) / (x (A x + B) + D F) - E / F, with his numbers: shoulder strength A,
-// linear strength B, linear angle C, toe strength D, toe numerator E, toe denominator F (J. Hable, "Uncharted 2: HDR
-// Lighting", GDC 2010, and filmicworlds.com). On one denominator its constant terms cancel, so that h(0) is 0.
+// Hable's curve, h(x) = (x (A x + C B) + D E) / (x (A x + B) + D F) - E / F, with the published numbers: shoulder
+// strength A, linear strength B, linear angle C, toe strength D, toe numerator E, toe denominator F (J. Hable,
+// "Uncharted 2: HDR Lighting", GDC 2010, and filmicworlds.com). With a common denominator the constant terms cancel, so
+// that h(0) is 0.
 #define HABLE_A 0.15
 #define HABLE_B 0.50
 #define HABLE_C 0.10
@@ -13,7 +14,7 @@
 #define HABLE_E 0.02
 #define HABLE_F 0.30
 #define HABLE_WHITE 11.2
-#define HABLE_BIAS 2.0 // what he multiplies light by
+#define HABLE_BIAS 2.0 // his factor for the light
 
 static double hable(double x)
 {
@@ -22,7 +23,7 @@ static double hable(double x)
            (x * (HABLE_A * x + HABLE_B) + HABLE_D * HABLE_F);
 }
 
-/// The root of h(x) = h > 0, without a difference of like numbers.
+/// Returns the root of h(x) = h > 0 without cancellation.
 static double hable_inverse(double h)
 {
     const double f = h + HABLE_E / HABLE_F;

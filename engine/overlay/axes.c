@@ -1,4 +1,4 @@
-/// The axes of the world as the camera has them: three lines from one point, seen from afar, the nearest drawn last.
+/// The world's axes in the camera's view: three lines from one point, seen from far away, the nearest drawn last.
 #include "engine/overlay/layout.h"
 
 #include "engine/base/vec.h"
@@ -6,16 +6,16 @@
 #include <math.h>
 #include <string.h>
 
-#define THICK 0.18 ///< of a line, in sizes of letters
-#define NAME_ROOM 0.75 ///< from an axis's end to the middle of its name, likewise
+#define THICK 0.18 ///< thickness of a line, in font sizes
+#define NAME_ROOM 0.75 ///< from an axis's end to the middle of its name, in font sizes
 
 /// x, y and z: red, green and blue, linear.
 static const double colors[3][3] = { { 0.80, 0.07, 0.05 }, { 0.10, 0.52, 0.06 }, { 0.07, 0.19, 0.90 } };
 
 typedef struct axis {
-    double end[2]; ///< from the point where they meet, pixels to the right and down
-    double away; ///< from the eye, 1: straight
-    double name[2]; ///< the middle of its name
+    double end[2]; ///< from the origin of the axes, pixels to the right and down
+    double away; ///< along the view, away from the eye, -1 .. 1
+    double name[2]; ///< position of the middle of its name
 } axis;
 
 static axis find_axis(const glint_layout *layout, int i)
@@ -31,7 +31,8 @@ static axis find_axis(const glint_layout *layout, int i)
     return a;
 }
 
-/// Half of the square that all of them take, whatever the view is: turning it moves nothing else.
+/// Half the side of the square that contains all axes in every view. The other overlays do not move when the view
+/// turns.
 static int reach(const glint_layout *layout)
 {
     int widest = 0;
@@ -53,7 +54,7 @@ void glint_axes_draw(const glint_layout *layout, int x, int y)
     int order[3] = { 0, 1, 2 };
     for (int i = 0; i < 3; i++)
         axes[i] = find_axis(layout, i);
-    for (int i = 0; i < 2; i++) // the farthest first
+    for (int i = 0; i < 2; i++) // the farthest axis first
         for (int k = 0; k < 2 - i; k++)
             if (axes[order[k]].away < axes[order[k + 1]].away) {
                 const int swapped = order[k];

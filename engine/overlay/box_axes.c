@@ -1,7 +1,8 @@
-/// Axes at a box or a cell: of each direction one edge, with a mark, a number and so on where the camera has them, and its name.
+/// Axes at a box or a cell: for each direction one edge, with marks, numbers and a name.
 ///
-/// An overlay has no depth, so an edge is chosen on the outline of the box: one between a face turned to the eye and
-/// one turned away. Nothing within the box is seen beyond it, so the axis hides nothing, and its numbers stand outside.
+/// An overlay has no depth, so the edge is one on the box's outline in the picture: between a face turned to the eye
+/// and one turned away. Nothing inside the box appears beyond this edge, so the axis hides nothing and its numbers are
+/// outside.
 #include "engine/overlay/layout.h"
 #include "engine/overlay/marks.h"
 
@@ -10,12 +11,12 @@
 #include <math.h>
 #include <string.h>
 
-#define LINE 0.08 ///< thickness, in sizes of letters
-#define TICK 0.35 ///< how long a mark is, likewise
-#define ROOM 0.35 ///< between a mark and its number, and between numbers and the name, likewise
-#define SHORTEST 1.5 ///< axis with numbers, likewise
-#define WANTED 5 ///< steps between round numbers, at least where there is room
-#define NEAREST 1e-6 ///< least depth that is drawn, relative to the box's farther corners
+#define LINE 0.08 ///< thickness, in font sizes
+#define TICK 0.35 ///< length of a mark, in font sizes
+#define ROOM 0.35 ///< gap between a mark and its number, and between numbers and the name, in font sizes
+#define SHORTEST 1.5 ///< length of an axis with numbers, in font sizes
+#define WANTED 5 ///< steps between round numbers, at least, if they fit
+#define NEAREST 1e-6 ///< smallest depth drawn, relative to the depth of the box's farthest corner
 #define TEXTS_MAX (3 * (GLINT_OVERLAY_TICKS_MAX + 1))
 
 typedef struct rect {
@@ -23,16 +24,16 @@ typedef struct rect {
 } rect;
 
 typedef struct edge {
-    double ends[2][3]; ///< in the world, of the box
-    double shares[2]; ///< of the edge between them: the part in front of the eye
-    double at[2][2]; ///< that part's ends in the picture, pixels
-    double out[2]; ///< unit: across it in the picture, away from the box
+    double ends[2][3]; ///< in the world
+    double shares[2]; ///< range of the edge in front of the eye, 0 .. 1 between `ends`
+    double at[2][2]; ///< ends of that range in the picture, pixels
+    double out[2]; ///< unit vector in the picture across the edge, away from the box
 } edge;
 
 typedef struct box_axes {
     const glint_layout *layout;
-    double nearest; ///< depth of the drawing
-    rect texts[TEXTS_MAX]; ///< where there are some
+    double nearest; ///< smallest depth drawn
+    rect texts[TEXTS_MAX]; ///< rectangles of the texts drawn so far
     int count;
 } box_axes;
 
@@ -43,7 +44,7 @@ static double depth_of(const box_axes *axes, const double p[3])
     return vec_dot(d, axes->layout->overlays->camera.view[2]);
 }
 
-/// Where the camera has a point; false: nowhere.
+/// Projects a point to the picture; false: the camera cannot see the point.
 static bool project(const box_axes *axes, const double p[3], double out[2])
 {
     const double depth = glint_overlays_project(&axes->layout->overlays->camera, p, out);
@@ -52,7 +53,7 @@ static bool project(const box_axes *axes, const double p[3], double out[2])
 
 // ---- The box, or the cell ----
 
-/// A corner, at the low (0) or the high (1) end of each side.
+/// Returns a corner: `at` chooses the low (0) or high (1) end of each side.
 static void corner_of(const glint_overlay_desc *d, const int at[3], double out[3])
 {
     for (int c = 0; c < 3; c++) {
@@ -67,7 +68,7 @@ static double length_of(const glint_overlay_desc *d, int direction)
     return d->has_sides ? sqrt(vec_dot(d->sides[direction], d->sides[direction])) : d->box[1][direction] - d->box[0][direction];
 }
 
-/// A side of a cell; of one that has no length the direction across the others.
+/// Returns a side of a cell; for a side of length 0, the direction perpendicular to the other two.
 static void side_of(const glint_overlay_desc *d, int i, double out[3])
 {
     vec_copy(out, d->sides[i]);
@@ -75,7 +76,7 @@ static void side_of(const glint_overlay_desc *d, int i, double out[3])
         vec_cross(out, d->sides[(i + 1) % 3], d->sides[(i + 2) % 3]);
 }
 
-/// The direction out of a cell at the high end of a side.
+/// Returns the outward direction of a cell at the high end of a side.
 static void find_outward(const glint_overlay_desc *d, int direction, double out[3])
 {
     double along[3], u[3], v[3];
@@ -100,7 +101,7 @@ static bool is_face_seen(const box_axes *axes, int direction, int end)
     return c->orthographic ? sign * vec_dot(out, c->view[2]) < -1e-9 : sign * vec_dot(out, eye) > 0;
 }
 
-/// Whether no other direction is as upright in the picture.
+/// Returns whether no other direction is more upright in the picture.
 static bool is_upright(const box_axes *axes, int direction)
 {
     const glint_overlay_desc *d = axes->layout->desc;
@@ -122,7 +123,7 @@ static void point_at(const edge *e, double share, double out[3])
         out[c] = e->ends[0][c] + share * (e->ends[1][c] - e->ends[0][c]);
 }
 
-/// Whether the face of the box at its low (0) or high (1) end of a direction is turned to the eye.
+/// Returns whether the face of the box at the low (0) or high (1) end of a direction is turned to the eye.
 static bool is_seen(const box_axes *axes, int direction, int end)
 {
     const glint_overlays_camera *c = &axes->layout->overlays->camera;
@@ -132,7 +133,7 @@ static bool is_seen(const box_axes *axes, int direction, int end)
     return c->orthographic ? out * c->view[2][direction] < -1e-9 : out * (c->eye[direction] - place) > 0;
 }
 
-/// Keeps what lies before the eye of an edge; false: nothing does.
+/// Clips an edge to the part in front of the eye; false: no part is.
 static bool cut(const box_axes *axes, edge *e)
 {
     const double a = depth_of(axes, e->ends[0]), b = depth_of(axes, e->ends[1]), least = axes->nearest * (1 + 1e-9);
@@ -147,8 +148,8 @@ static bool cut(const box_axes *axes, edge *e)
     return there;
 }
 
-/// How far an edge lies where axes of its direction do: of the upright one to the left, of the others down; of two alike the other way
-/// decides.
+/// Returns how far an edge lies to the side where its axis belongs: to the left for the upright direction, down for the
+/// others. A small share of the other coordinate decides between equals.
 static double reach_of(const box_axes *axes, const edge *e, int direction)
 {
     const double left = -(e->at[0][0] + e->at[1][0]), down = e->at[0][1] + e->at[1][1];
@@ -168,7 +169,7 @@ static edge edge_of(const box_axes *axes, int direction, int at_u, int at_v)
     return e;
 }
 
-/// The edge of a direction that is its axis; false: none is on the outline of the box.
+/// Chooses the edge of a direction for its axis; false: no edge is on the outline of the box.
 static bool find_edge(const box_axes *axes, int direction, edge *out)
 {
     bool found = false;
@@ -184,7 +185,7 @@ static bool find_edge(const box_axes *axes, int direction, edge *out)
     return found;
 }
 
-/// Which side of the edge in the picture is away from the box. False: it is too short to have one.
+/// Finds the side of the edge in the picture that is away from the box. False: the edge is too short to have one.
 static bool find_side(const box_axes *axes, edge *e)
 {
     const glint_overlays *o = axes->layout->overlays;
@@ -208,7 +209,7 @@ static bool find_side(const box_axes *axes, edge *e)
     return isfinite(length) && length >= SHORTEST * axes->layout->em;
 }
 
-/// Where a text stands that begins `away` pixels outside of a point of the edge.
+/// Returns the rectangle of a text that begins `away` pixels outside a point of the edge.
 static rect place_text(const box_axes *axes, const edge *e, const double at[2], double away, int width)
 {
     const double size[2] = { width, axes->layout->typeface.height };
@@ -240,7 +241,8 @@ static void draw_text(box_axes *axes, const char *text, rect r)
     glint_layout_text(layout, text, (int)floor(r.low[0] + 0.5), (int)floor(r.low[1] + 0.5), 0, 0, layout->desc->color);
 }
 
-/// The places of an edge's numbers in the picture; false: some lie over their neighbours. A mark behind the eye has a NaN.
+/// Computes the positions of an edge's numbers in the picture; false: some numbers overlap. A mark behind the eye is
+/// NaN.
 static bool place_marks(const box_axes *axes, const edge *e, const glint_marks *marks, double at[][2])
 {
     const double room = ROOM * axes->layout->em;
@@ -280,7 +282,7 @@ static void draw_axis(box_axes *axes, int direction, const edge *e)
         steps *= 0.8;
     } while (!place_marks(axes, e, &marks, at) && steps > 0.5);
     glint_layout_line(layout, e->at[0], way, half, desc->color);
-    double reach = tick + room; // from the edge to beyond its numbers
+    double reach = tick + room; // from the edge to beyond the numbers
     for (int i = 0; i < marks.count; i++) {
         const double mark[2] = { e->out[0] * tick, e->out[1] * tick };
         if (isnan(at[i][0]))

@@ -1,12 +1,12 @@
-/// A colour bar: its title above, the bar, and beside or below it the numbers with a mark each.
+/// A colour bar: the title above, the bar, and next to it or below it the numbers with their marks.
 #include "engine/overlay/layout.h"
 #include "engine/overlay/marks.h"
 
 #include <math.h>
 
-#define BAR 0.9 ///< how thick the bar is, in sizes of letters
-#define TICK 0.3 ///< how long a mark is, likewise
-#define ROOM 0.3 ///< between a mark and its number, likewise
+#define BAR 0.9 ///< thickness of the bar, in font sizes
+#define TICK 0.3 ///< length of a mark, in font sizes
+#define ROOM 0.3 ///< gap between a mark and its number, in font sizes
 #define WANTED 4 ///< steps between round numbers, at least
 #define COLORS 256
 
@@ -18,13 +18,13 @@ typedef struct bar {
 
 static bool is_horizontal(const glint_layout *layout) { return layout->desc->orientation == GLINT_HORIZONTAL; }
 
-/// Pixels that the numbers need, from the middle of one to the next.
+/// Returns the pixels that numbers need, from the middle of one to the middle of the next.
 static double pitch(const glint_layout *layout, const bar *b)
 {
     return is_horizontal(layout) ? b->marks.widest + layout->em : layout->typeface.height * 1.25;
 }
 
-/// Adds a number where it lies on the bar.
+/// Adds a number if it lies on the bar.
 static void add_mark(const glint_layout *layout, bar *b, double value)
 {
     const glint_overlay_desc *desc = layout->desc;
@@ -34,7 +34,8 @@ static void add_mark(const glint_layout *layout, bar *b, double value)
         b->marks.of[before].share = glint_log(value / desc->low) / glint_log(desc->high / desc->low);
 }
 
-/// Returns powers of ten; if there are few, also twice and five times each; if many, every second, third and so on; if none, the ends.
+/// Marks powers of ten. If there are few, also marks two and five times each; if many, only every second, third and so
+/// on; if none, the ends.
 static void find_powers(const glint_layout *layout, bar *b)
 {
     static const double factors[] = { 1, 2, 5 };
@@ -92,7 +93,7 @@ static bar make_bar(const glint_layout *layout)
     return b;
 }
 
-/// How far numbers reach beyond each end of the bar.
+/// Returns how far numbers extend beyond each end of the bar.
 static int overhang(const glint_layout *layout, const bar *b)
 {
     return (is_horizontal(layout) ? b->marks.widest : layout->typeface.height) / 2;
@@ -113,7 +114,7 @@ void glint_colorbar_measure(glint_layout *layout)
     layout->width = b.title_width > layout->width ? b.title_width : layout->width;
 }
 
-/// The colours, from x, y on: the first at the left or at the bottom.
+/// Draws the colours from x, y on: the first at the left or at the bottom.
 static void draw_colors(const glint_layout *layout, const bar *b, int x, int y)
 {
     const uint32_t *table = layout->desc->has_colors ? layout->desc->colors : glint_colormap_table(layout->desc->map);

@@ -1,4 +1,4 @@
-/// Warnings about overlays that a picture cannot show as they are.
+/// Warnings about overlays that a picture cannot show as described.
 #include "engine/overlay/layout.h"
 
 #include "engine/text/font.h"
@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define SHOWN 40 ///< letters of a text that a message has, at most
+#define SHOWN 40 ///< characters of a text shown in a message, at most
 
 typedef struct check {
     const glint_layout *layout;
@@ -22,7 +22,7 @@ static void warn(const check *c, const char *message)
     c->warns(c->context, text);
 }
 
-/// The kind of an overlay and its name, or the beginning of its text.
+/// Writes the kind of an overlay and its name, or the beginning of its text.
 static void describe(check *c)
 {
     static const char *const kinds[] = { "label", "colorbar", "axes" };
@@ -33,7 +33,7 @@ static void describe(check *c)
     snprintf(c->what, sizeof c->what, *name ? "%s '%.*s%s'" : "%s", kinds[desc->kind], (int)(end - name), name, *end ? "..." : "");
 }
 
-/// Warns of the first letter of a text that the font does not have.
+/// Warns about the first character of a text that the font lacks.
 static void check_letters(const check *c, const char *text)
 {
     char message[200];
@@ -49,7 +49,7 @@ static void check_letters(const check *c, const char *text)
     }
 }
 
-/// The widest line of a label, after its lines are broken.
+/// Returns the widest line of a label after wrapping.
 static const char *find_widest(const glint_layout *layout, int *length)
 {
     const char *found = layout->text;
@@ -82,7 +82,7 @@ static void check_place(const check *c)
         beyond = before > beyond ? before : beyond;
         beyond = behind > beyond ? behind : beyond;
     }
-    if (l->desc->kind != GLINT_OVERLAY_LABEL || beyond <= l->em / 4) // the room around letters
+    if (l->desc->kind != GLINT_OVERLAY_LABEL || beyond <= l->em / 4) // the space around letters
         return;
     const char *line = find_widest(l, &length);
     if (!l->desc->has_position && l->size[0] > sides[0])

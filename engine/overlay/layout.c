@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_SIZE 10.0 ///< pixels of letters whose size is not said
-#define SIZE_SHARE 36.0 ///< of the picture's height that they otherwise are
-#define PIECE 64 ///< pixels of a line that are drawn at once
+#define LEAST_SIZE 10.0 ///< default font size, at least; pixels
+#define SIZE_SHARE 36.0 ///< the default font size is the picture's height divided by this
+#define PIECE 64 ///< pixels of a line drawn at once
 #define PADDING 0.35 ///< between the text and the border of its background, in font sizes
 
 int glint_layout_measure(const glint_layout *layout, const char *text, int *lines)
@@ -65,7 +65,7 @@ void glint_layout_fill(const glint_layout *layout, int x, int y, int width, int 
         glint_stamps_add(layout->stamps, stamp, color);
 }
 
-/// How far a point is from the line from 0 to `end`.
+/// Returns the distance of a point from the line from 0 to `end`.
 static double distance_to(const double end[2], double x, double y)
 {
     const double square = end[0] * end[0] + end[1] * end[1];
@@ -74,7 +74,7 @@ static double distance_to(const double end[2], double x, double y)
     return sqrt(dx * dx + dy * dy);
 }
 
-/// The part of a line within a rectangle.
+/// Draws the part of a line inside a rectangle.
 static void draw_piece(const glint_layout *layout, const double from[2], const double way[2], double half, const double color[3],
                        const int corner[2], const int size[2])
 {
@@ -94,11 +94,11 @@ void glint_layout_line(const glint_layout *layout, const double from[2], const d
 {
     const int sides[2] = { layout->overlays->width, layout->overlays->height };
     const int along = fabs(way[0]) < fabs(way[1]), across = !along;
-    const double slope = way[along] != 0 ? way[across] / way[along] : 0, wide = 1.5 * half + 2; // of a line at 45 degrees
+    const double slope = way[along] != 0 ? way[across] / way[along] : 0, wide = 1.5 * half + 2; // up to 45 degrees
     const double first = fmin(from[along], from[along] + way[along]) - half - 1;
     const double last = fmax(from[along], from[along] + way[along]) + half + 1;
     const int begin = (int)fmin(fmax(first, 0), sides[along]), end = (int)ceil(fmax(fmin(last, sides[along]), 0));
-    for (int k = begin; k < end; k += PIECE) { // pieces, since a slanting line fills little of its rectangle
+    for (int k = begin; k < end; k += PIECE) { // in pieces, since a slanted line fills little of its bounding rectangle
         const int length = end - k < PIECE ? end - k : PIECE;
         const double a = from[across] + (k - from[along]) * slope, b = a + length * slope;
         const double low = fmin(fmax(fmin(a, b) - wide, 0), sides[across]), high = fmin(fmax(fmax(a, b) + wide, 0), sides[across]);
@@ -111,8 +111,8 @@ void glint_layout_line(const glint_layout *layout, const double from[2], const d
     }
 }
 
-/// Breaks the lines of a label at blanks where they are wider than the picture, to fit within its margins. A word that is
-/// wider than that stays whole.
+/// Wraps the lines of a label at spaces if they are wider than the picture less its margins. A word wider than that
+/// stays whole.
 static void wrap(glint_layout *layout, double margin)
 {
     const int most = layout->overlays->width - 2 * layout->padding, room = most - 2 * (int)ceil(margin);
@@ -145,7 +145,7 @@ static void draw_label(const glint_layout *layout, int x, int y)
     glint_layout_text(layout, layout->text, x, y, layout->width, desc->has_position ? 0 : desc->at[0], desc->color);
 }
 
-/// Pixels of a length in points, no more than a side of a picture.
+/// Converts a length in points to pixels, at most the largest side of a picture.
 static double pixels_of(double points, double dpi) { return fmin(points * (dpi > 0 ? dpi / 72 : 1), GLINT_SIDE_MAX); }
 
 glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_overlay_desc *desc, double dpi, glint_letters *letters,

@@ -4,10 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#define NARROWEST 1e-290 ///< steps of narrower ranges have no powers of ten
+#define NARROWEST 1e-290 ///< narrower ranges have steps below the smallest power of ten
 
-/// The largest of 1, 2, 2.5 and 5 times a power of ten that is no larger than `most`, > 0 and finite; *decimals are those that
-/// its multiples need.
+/// Returns the largest step of 1, 2, 2.5 or 5 times a power of ten that is at most `most`, > 0 and finite. *decimals:
+/// the decimals that its multiples need.
 static double round_step(double most, int *decimals)
 {
     static const double steps[] = { 5, 2.5, 2, 1 };
@@ -26,7 +26,7 @@ void glint_marks_add(glint_marks *marks, const glint_typeface *typeface, double 
     if (marks->count == GLINT_OVERLAY_TICKS_MAX)
         return;
     m->share = (value - first) / (last - first);
-    value = value == 0 ? 0 : value; // no -0
+    value = value == 0 ? 0 : value; // turns -0 into 0
     if (decimals < 0 || decimals > 6 || fabs(value) >= 1e7)
         snprintf(m->text, sizeof m->text, "%.6g", value);
     else

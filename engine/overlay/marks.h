@@ -1,4 +1,4 @@
-/// Numbers beside a colour bar or along an axis. Internal.
+/// Numbers along a colour bar or an axis. Internal.
 #ifndef GLINT_OVERLAY_MARKS_H
 #define GLINT_OVERLAY_MARKS_H
 
@@ -6,7 +6,7 @@
 #include "engine/text/typeface.h"
 
 typedef struct glint_mark {
-    double share; ///< of the way from the first number to the last
+    double share; ///< position, 0 at the first number .. 1 at the last
     char text[32];
     int width; ///< of the text, pixels
 } glint_mark;
@@ -14,14 +14,15 @@ typedef struct glint_mark {
 typedef struct glint_marks {
     glint_mark of[GLINT_OVERLAY_TICKS_MAX];
     int count;
-    int widest; ///< of their texts
+    int widest; ///< widest text, pixels
 } glint_marks;
 
-/// Adds a number between first and last, which are not the same, with so many decimals; -1: as many as it needs. None beyond the
-/// greatest count.
+/// Adds a number between first and last, which must differ. decimals: -1: as many as needed. Adds nothing when the list
+/// is full.
 void glint_marks_add(glint_marks *marks, const glint_typeface *typeface, double first, double last, double value, int decimals);
-/// Puts round numbers between first and last in their place: multiples of 1, 2, 2.5 or 5 times a power of ten, with at least `steps`
-/// steps between them where there is room for that many marks. Returns a step's share of the way; 1: there are only first and last.
+/// Replaces the marks by round numbers between first and last: multiples of 1, 2, 2.5 or 5 times a power of ten, in at
+/// least `steps` steps if that many marks fit. Returns the length of a step as a share of the range; 1: only first and
+/// last.
 double glint_marks_round(glint_marks *marks, const glint_typeface *typeface, double first, double last, double steps);
 
 #endif

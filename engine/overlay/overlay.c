@@ -28,7 +28,7 @@ glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind)
     return desc;
 }
 
-/// Whether a letter runs from right to left: Hebrew, Arabic, Syriac, Thaana, N'Ko and their kin.
+/// Returns whether a letter is written from right to left: Hebrew, Arabic, Syriac, Thaana, N'Ko and related scripts.
 static bool runs_left(uint32_t code)
 {
     return (code >= 0x590 && code <= 0x8ff) || (code >= 0xfb1d && code <= 0xfdff) || (code >= 0xfe70 && code <= 0xfefc) ||
@@ -42,7 +42,7 @@ static glint_status check_text(const char *name, const char *text, size_t size, 
     return glint_fail(error, GLINT_ERR_INVALID, "%s: at most %zu bytes expected", name, size - 1);
 }
 
-/// Checks a text that is drawn, letter by letter from left to right.
+/// Checks a text to draw, letter by letter from left to right.
 static glint_status check_drawn(const char *name, const char *text, size_t size, glint_error *error)
 {
     glint_status status = check_text(name, text, size, error);
@@ -101,7 +101,7 @@ static glint_status check_bar(const glint_overlay_desc *desc, glint_error *error
     return status;
 }
 
-/// Refuses fields that axes at a box do not have, because their place is the box.
+/// Refuses fields that axes at a box do not have, because the box determines their position.
 static glint_status check_unplaced(const glint_overlay_desc *desc, glint_error *error)
 {
     const struct {

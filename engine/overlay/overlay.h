@@ -20,70 +20,70 @@
 typedef struct glint_overlays_camera {
     bool orthographic;
     double eye[3];
-    double view[3][3]; ///< to the right and up, half a pixel; away from the eye, unit
+    double view[3][3]; ///< to the right and up: half a pixel each; away from the eye: unit
     double span[2]; ///< see glint_plan_camera
-    double pixel_offset; ///< where in a pixel its sample lies, 0 .. 1
+    double pixel_offset; ///< position of the sample in its pixel, 0 .. 1
 } glint_overlays_camera;
 
 /// The overlays of one frame. Immutable, reference counted; any thread.
 typedef struct glint_overlays {
     atomic_int references;
     int width, height; ///< of the whole picture, pixels
-    double view[3][3]; ///< unit: to the right, up and away from the eye
+    double view[3][3]; ///< unit vectors to the right, up and away from the eye
     glint_overlays_camera camera;
     glint_key letters; ///< see glint_letters_key
     size_t count;
-    glint_overlay_desc of[]; ///< in the order in which they are drawn
+    glint_overlay_desc of[]; ///< in drawing order
 } glint_overlays;
 
-/// Where the camera shows a point, pixels from the upper left corner. Returns its distance along the view.
+/// Projects a point to the picture, pixels from the upper left corner. Returns its distance along the view.
 double glint_overlays_project(const glint_overlays_camera *camera, const double p[3], double out[2]);
 
-/// A copy of the scene's overlays; NULL where there are none, or nothing to be seen of them.
+/// Copies the scene's overlays. *out is NULL if there are none, or none is visible.
 glint_status glint_overlays_take(const glint_scene *scene, int width, int height, const glint_overlays_camera *camera,
                                  glint_overlays **out, glint_error *error);
-glint_overlays *glint_overlays_retain(glint_overlays *overlays); ///< NULL: nothing
-void glint_overlays_release(glint_overlays *overlays); ///< NULL: nothing
-/// Continues a key with everything that the overlays' pixels depend on, except the pixel values under them and the file's dpi.
+glint_overlays *glint_overlays_retain(glint_overlays *overlays); ///< NULL: no effect
+void glint_overlays_release(glint_overlays *overlays); ///< NULL: no effect
+/// Extends a key by everything that the overlays' pixels depend on, except the codes below them and the file's dpi.
 glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key);
 
-/// A rectangle of one colour, as codes of one picture.
+/// A rectangle of one colour, with the codes of one picture.
 typedef struct glint_stamp {
-    int x, y, width, height; ///< pixels of the whole picture; may lie outside
+    int x, y, width, height; ///< pixels of the whole picture; may be outside it
     uint8_t *coverage; ///< width x height; NULL: 255 everywhere. Owned
-    uint8_t opacity; ///< that the coverage is multiplied by, 255: all
+    uint8_t opacity; ///< factor of the coverage, 255: opaque
     uint16_t ink[3]; ///< codes
 } glint_stamp;
 
-/// Stamps in the order in which they are drawn, for one picture.
+/// Stamps in drawing order, for one picture.
 typedef struct glint_stamps {
     glint_stamp *of;
     size_t count, capacity;
-    bool lost; ///< out of memory: some are missing
+    bool lost; ///< out of memory: some stamps are missing
     glint_transfer transfer; ///< of the codes
-    int bits; ///< likewise: 8 or 16
+    int bits; ///< of the codes: 8 or 16
 } glint_stamps;
 
-/// dpi  pixels an inch; 0: not said.
+/// dpi  pixels per inch; 0: not given.
 glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, glint_transfer transfer, int bits,
                                  glint_stamps *out, glint_error *error);
-/// Calls `warns` for overlays outside of the picture, lines wider than the picture and letters that the font lacks.
+/// Calls `warns` for overlays outside the picture, lines wider than the picture, and letters that the font lacks.
 glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, void (*warns)(void *context, const char *message),
                                   void *context, glint_error *error);
-/// A colour bar by itself, on a sheet of `sides` pixels; its lengths are pixels.
+/// Draws a separate colour bar on a sheet of `sides` pixels; its lengths are in pixels.
 /// x, y    its upper left corner.
 /// stamps  out: the stamps are added here; NULL: only measures.
-/// size    out: across and down.
+/// size    out: width and height.
 void glint_colorbar_alone(const glint_overlay_desc *desc, glint_letters *letters, const int sides[2], int x, int y,
                           glint_stamps *stamps, int size[2]);
 void glint_stamps_free(glint_stamps *stamps);
-/// Adds a stamp of a linear colour; its coverage is freed with the others, or at once where there is no memory.
+/// Adds a stamp of a linear colour. Takes over its coverage, which is freed at once if memory is short.
 void glint_stamps_add(glint_stamps *stamps, glint_stamp stamp, const double color[3]);
-/// Whether some stamp has a pixel in the rows from `first`, `count` of them, of the whole picture.
+/// Returns whether any stamp has a pixel in `count` rows of the whole picture, from row `first` on.
 bool glint_stamps_touch(const glint_stamps *stamps, int first, int count);
-/// Draws on a row of codes.
-/// codes     `width` pixels of 3 or 4 channels, of the stamps' bits; alpha is not multiplied in.
-/// x, y      of the first of them, in the whole picture.
+/// Draws the stamps on a row of codes.
+/// codes     `width` pixels of 3 or 4 channels, of the stamps' bits; alpha is not premultiplied.
+/// x, y      of the first pixel, in the whole picture.
 void glint_stamps_row(const glint_stamps *stamps, int x, int y, int width, int channels, void *codes);
 
 #endif

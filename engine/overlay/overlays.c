@@ -82,7 +82,7 @@ static glint_key place_key(const glint_overlay_desc *d, glint_key key)
     return glint_key_add_string(key, d->text);
 }
 
-/// Axes at a box: its corners in the camera's view, and the numbers.
+/// Extends the key by the box's corners in the camera's view and the numbers of its axes.
 static glint_key box_key(const glint_overlays *overlays, const glint_overlay_desc *d, glint_key key)
 {
     const glint_overlays_camera *c = &overlays->camera;

@@ -54,7 +54,7 @@ static bool same_node(const glint_ssa_node *a, const glint_ssa_node *b)
            memcmp(&a->number, &b->number, sizeof a->number) == 0;
 }
 
-/// Where the node is, or could be put.
+/// Returns the hash slot of the node: the one that holds an equal node, or the free one for a new node.
 static uint32_t *find_slot(const glint_builder *builder, const glint_ssa_node *node)
 {
     uint32_t at = (uint32_t)hash_node(node) & (builder->slot_count - 1);
@@ -63,7 +63,7 @@ static uint32_t *find_slot(const glint_builder *builder, const glint_ssa_node *n
     return &builder->slots[at];
 }
 
-/// Room for GLINT_RESULTS_MAX more nodes and a slot.
+/// Reserves space for GLINT_RESULTS_MAX more nodes and a hash slot.
 static glint_status make_room(glint_builder *builder, glint_error *error)
 {
     if (builder->count + GLINT_RESULTS_MAX <= builder->capacity)
@@ -89,7 +89,7 @@ static glint_status make_room(glint_builder *builder, glint_error *error)
     return GLINT_OK;
 }
 
-/// The value of a node, new unless there is an equal one. A first result is followed by the others.
+/// Returns the value of an equal node if there is one, otherwise adds the node. The other results follow the first one.
 static glint_status share(glint_builder *builder, const glint_ssa_node *node, uint32_t results, glint_value *out,
                           glint_error *error)
 {
@@ -184,7 +184,7 @@ void glint_fold(glint_op op, const glint_texture *texture, const double *operand
         at.out[k] = code.outputs[k] = (uint16_t)k;
         args.result[k] = lanes[k];
     }
-    glint_stages_built[0]->program(&args); // any has these bits
+    glint_stages_built[0]->program(&args); // every build of this stage returns the same bits
     for (uint32_t k = 0; k < info->results; k++)
         results[k] = lanes[k][0];
 }
@@ -219,7 +219,7 @@ static bool is_the_number(const glint_builder *builder, glint_value value, doubl
            memcmp(&builder->nodes[value].number, &number, sizeof number) == 0;
 }
 
-/// Whether the operation gives one of its operands back, in every bit: *out.
+/// Returns whether the operation returns one of its operands unchanged, bit for bit: *out.
 static bool gives_operand(const glint_builder *builder, glint_op op, const glint_value *operand, glint_value *out)
 {
     double number;

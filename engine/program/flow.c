@@ -1,4 +1,4 @@
-/// Flow along one shortest way after the other (J. Edmonds and R. M. Karp, 1972).
+/// Maximum flow by shortest augmenting paths (J. Edmonds and R. M. Karp, 1972).
 #include "engine/program/flow.h"
 
 #include <stdlib.h>
@@ -34,7 +34,8 @@ void glint_flow_add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t room)
     add(flow, to, from, 0);
 }
 
-/// Meets every node from which there is a way to the sink that is not full; of each, its first step.
+/// Searches backwards from the sink along edges with capacity left. Stores the first edge of each node's path to the
+/// sink. Returns whether the source has one.
 static bool find_way(glint_flow *flow)
 {
     uint32_t count = 0;
@@ -51,7 +52,7 @@ static bool find_way(glint_flow *flow)
     return flow->way[GLINT_FLOW_SOURCE];
 }
 
-/// Fills the way from the source that was found. Returns how much.
+/// Fills the augmenting path from the source. Returns the added flow.
 static uint32_t fill_way(glint_flow *flow)
 {
     uint32_t room = UINT32_MAX, node = GLINT_FLOW_SOURCE;

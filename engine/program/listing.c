@@ -27,7 +27,7 @@ static __attribute__((format(printf, 2, 3))) void put(text *t, const char *forma
     va_end(args);
 }
 
-/// The shortest text that reads back as the same number.
+/// Writes the shortest text that reads back as the same number.
 static void put_number(text *t, double number)
 {
     char shortest[40];

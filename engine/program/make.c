@@ -1,5 +1,4 @@
-/// From a builder's values to a program: what no output needs is dropped, operations that feed one another become one,
-/// rows are allocated.
+/// Turns a builder's values into a program: drops values that no output needs, fuses operations, allocates rows.
 #include "engine/program/builder.h"
 
 #include "engine/base/alloc.h"
@@ -8,16 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROWS_THAT_FIT 32u ///< of 2 KB, almost into the first level of the caches; beyond it another order is tried
+#define ROWS_THAT_FIT 32u ///< rows of 2 KB: about the first-level cache; with more rows another order is tried
 #define UNUSED UINT32_MAX
 
 typedef struct maker {
     uint32_t count;
-    glint_ssa_node *nodes; ///< the builder's, of which some are fused
-    uint32_t *uses; ///< row of each needed value; 0 for results that are not read
-    bool *needed; ///< first results
-    uint32_t *order, length; ///< first results of operations, as they are run
-    uint32_t *last; ///< position in the order where a value is read last; UNUSED: nowhere; length: it is an output
+    glint_ssa_node *nodes; ///< a copy of the builder's nodes, some of them fused
+    uint32_t *uses; ///< number of readers of each value; 0: the result is not read
+    bool *needed; ///< by first result: an output depends on the operation
+    uint32_t *order, length; ///< first results of operations, in the order of execution
+    uint32_t *last; ///< position in `order` of each value's last reader; UNUSED: none; length: it is an output
     uint16_t *row;
     uint32_t rows;
 } maker;
@@ -157,11 +156,12 @@ static void order_as_written(maker *m)
             m->order[m->length++] = i;
 }
 
-/// Each operand right before what needs it first, from the first output on. False: out of memory.
+/// Orders the operations depth first from the first output, each operand right before its first reader. False: out of
+/// memory.
 static bool order_by_need(maker *m, const glint_value *outputs, size_t count)
 {
     uint32_t *stack = malloc((m->count + 1) * sizeof *stack), depth = 0;
-    uint8_t *seen = calloc(m->count + 1, 1); // 255: in the order; otherwise how many operands were looked at
+    uint8_t *seen = calloc(m->count + 1, 1); // 255: already in the order; otherwise the number of operands visited
     m->length = 0;
     for (size_t k = 0; k < count && stack && seen; k++) {
         stack[depth++] = first_of(m, outputs[k]);
@@ -200,7 +200,7 @@ static void find_last_uses(maker *m, const glint_value *outputs, size_t count)
 
 typedef struct free_rows {
     uint64_t taken[GLINT_PROGRAM_ROWS_MAX / 64];
-    uint32_t most; ///< rows that were ever taken; more than there are: they did not suffice
+    uint32_t most; ///< the most rows in use at once; GLINT_PROGRAM_ROWS_MAX + 1: too few rows
 } free_rows;
 
 static uint16_t take_row(free_rows *rows)
@@ -219,7 +219,8 @@ static uint16_t take_row(free_rows *rows)
 
 static void give_row(free_rows *rows, uint16_t row) { rows->taken[row / 64] &= ~((uint64_t)1 << row % 64); }
 
-/// A result may take the row of an operand that is read there for the last time: kernels read before they write.
+/// Assigns a row to each result. A result may reuse the row of an operand that has no later reader: kernels read before
+/// they write.
 static void give_out_rows(maker *m, const glint_value *outputs, size_t count)
 {
     free_rows rows = { { 0 }, 0 };
@@ -277,7 +278,7 @@ static bool allocate(glint_program *program, const glint_builder *builder, uint3
     return program->code.instructions && program->code.numbers && program->textures && program->code.textures;
 }
 
-/// Where a value is; a number or an input that is met for the first time is entered.
+/// Returns the row of a value. Enters numbers and inputs into the program at their first use.
 static uint16_t place_of(maker *m, glint_program *program, glint_value value)
 {
     const glint_ssa_node *node = &m->nodes[value];
@@ -299,7 +300,7 @@ static uint16_t place_of(maker *m, glint_program *program, glint_value value)
     return m->row[value];
 }
 
-/// The index of a builder's texture among the program's.
+/// Returns the index of a builder's texture in the program's list.
 static uint16_t place_of_texture(glint_program *program, glint_texture *texture)
 {
     uint32_t i = 0;

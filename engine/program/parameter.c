@@ -1,4 +1,5 @@
-/// Numbers that change with parameters: in a program they are numbers, and beside it are programs of how fast its outputs change.
+/// Numbers that change with parameters. A program stores them as numbers, and its tangents compute the derivatives of
+/// its outputs by each parameter.
 #include "engine/program/builder.h"
 
 #include "engine/base/status.h"
@@ -30,7 +31,7 @@ glint_status glint_builder_parameter(glint_builder *builder, double number, cons
     return glint_builder_keep(builder, GLINT_SSA_PARAMETER, i, number, out, error);
 }
 
-/// The value of one node of another builder, in this one. open: parameters stay parameters.
+/// Copies one node of another builder into `to`. open: parameters stay parameters.
 static glint_status copy_node(const glint_builder *from, uint32_t i, bool open, glint_builder *to, glint_value *map,
                               glint_error *error)
 {
@@ -43,7 +44,7 @@ static glint_status copy_node(const glint_builder *from, uint32_t i, bool open, 
         return glint_builder_keep(to, GLINT_SSA_PARAMETER, node->operand[0], node->number, &map[i], error);
     if (!glint_ssa_is_op(node))
         return glint_builder_number(to, node->number, &map[i], error);
-    if (node->part > 0) // came with the first
+    if (node->part > 0) // added together with the first result
         return GLINT_OK;
     const glint_op_info *info = glint_op_info_of((glint_op)node->op);
     const bool picture = node->op == GLINT_OP_TEXEL || node->op == GLINT_OP_TEXEL_SLOPE;

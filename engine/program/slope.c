@@ -1,6 +1,6 @@
-/// The derivatives of a program, in reverse: from the output back to the inputs, each value passes on what it was given
-/// to the operands that it was made of, times its derivative by them (A. Griewank and A. Walther, "Evaluating
-/// Derivatives", SIAM 2008); of shaders forward, too.
+/// The derivatives of a program in reverse mode: from the output back to the inputs, each value passes its adjoint on
+/// to its operands, times its partial derivatives (A. Griewank and A. Walther, "Evaluating Derivatives", SIAM 2008).
+/// Shaders also have forward mode.
 #include "engine/program/slope.h"
 
 #include "engine/base/status.h"
@@ -43,7 +43,7 @@ static void finish(glint_slope_maker *s, const glint_input *inputs, size_t count
         s->status = glint_program_make(s->builder, outputs, count, out, s->error);
 }
 
-/// Begins with a program's values; `inputs`, a bit each, count.
+/// Begins with a program's values. `inputs`: the inputs to derive by, a bit each.
 static void begin(glint_slope_maker *s, const glint_program *program, uint32_t inputs, glint_value outputs[GLINT_PROGRAM_OUTPUTS_MAX])
 {
     s->status = glint_builder_create(program->kind, &s->builder, s->error);
@@ -89,7 +89,8 @@ glint_status glint_program_slope(const glint_program *program, const glint_input
 
 // ---- Of shaders ---------------------------------------------------------------------------------------------------
 
-/// 1 where an output is taken as it is, 0 where it is bounded: at most the largest number, and at least the smallest.
+/// Returns 1 where an output is used as it is, and 0 where it is clamped to the range from the smallest to the largest
+/// number.
 static glint_value is_within(glint_slope_maker *s, glint_value output)
 {
     const glint_value least = glint_slope_number(s, 0x1p-1074), most = glint_slope_number(s, GLINT_REFLECTANCE_MAX);
@@ -114,7 +115,7 @@ static void list_channel(glint_slope_maker *s, const glint_value *outputs, uint3
     }
 }
 
-/// One program finds what its slopes share once.
+/// Uses one program for all slopes if it can hold them, because it computes their common values once.
 static glint_status make_gradient(const glint_builder *builder, const glint_value *values, glint_gradient *out, glint_error *error)
 {
     glint_status status = glint_program_make(builder, values, out->count, &out->programs[0], error);
@@ -153,7 +154,7 @@ void glint_gradient_release(glint_gradient *gradient)
 
 // ---- Of shaders, forward ------------------------------------------------------------------------------------------
 
-/// Adds a share of a slope to a sum, of which GLINT_SLOPE_NOTHING is none.
+/// Adds a share of a slope to a sum. GLINT_SLOPE_NOTHING stands for an empty sum.
 static glint_value add_share(glint_slope_maker *s, glint_value sum, glint_value share, glint_value slope)
 {
     double number = 0;
@@ -163,8 +164,8 @@ static glint_value add_share(glint_slope_maker *s, glint_value sum, glint_value 
     return sum == GLINT_SLOPE_NOTHING ? term : two(s, off ? GLINT_OP_SUB : GLINT_OP_ADD, sum, term);
 }
 
-/// Returns the slope of an operation's result from the slopes of its operands: a choice has the slope of the chosen operand, another operation the sum
-/// of its partial derivatives times the slopes.
+/// Returns the slope of an operation's result from the slopes of its operands. A choice has the slope of the chosen
+/// operand; any other operation has the sum of its partial derivatives times the slopes.
 static glint_value find_slope(glint_slope_maker *s, glint_value i, const glint_value *slope)
 {
     const glint_ssa_node node = s->builder->nodes[i];
@@ -187,7 +188,7 @@ static glint_value find_slope(glint_slope_maker *s, glint_value i, const glint_v
     return sum;
 }
 
-/// The slopes of the program's own values.
+/// Computes the slopes of the program's own values.
 static void find_slopes(glint_slope_maker *s, glint_value *slope)
 {
     for (uint32_t i = 0; i < s->count && !s->status; i++) {
@@ -200,7 +201,7 @@ static void find_slopes(glint_slope_maker *s, glint_value *slope)
     }
 }
 
-/// The slope of channel c of a shader's light.
+/// Returns the slope of channel c of a shader's light.
 static glint_value sum_channel(glint_slope_maker *s, const glint_value *outputs, uint32_t output_count, uint32_t c,
                                const glint_value *slope)
 {
@@ -237,7 +238,8 @@ glint_status glint_shader_forward(const glint_program *shader, uint32_t inputs, 
 
 // ---- By parameters ------------------------------------------------------------------------------------------------
 
-/// Finds the values that depend on parameter number `parameter`. The copy's parameters have the builder's numbers.
+/// Marks the values that depend on parameter number `parameter`. Parameters have the same numbers in the copy as in the
+/// builder.
 static void find_what_changes(glint_slope_maker *s, const glint_builder *builder, size_t parameter)
 {
     find_what_varies(s, 0);
@@ -250,7 +252,7 @@ static void find_what_changes(glint_slope_maker *s, const glint_builder *builder
     }
 }
 
-/// Returns the slope of an output by all changing numbers.
+/// Returns the slope of an output by the parameter: the sum over all changing numbers.
 static glint_value gather(glint_slope_maker *s, const glint_builder *builder, size_t parameter)
 {
     glint_value sum = glint_slope_number(s, 0);

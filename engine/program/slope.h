@@ -1,4 +1,4 @@
-/// How values' derivatives are made of values, an operation at a time. Internal to program/slope*.c.
+/// Derivatives of values, built one operation at a time. Internal to program/slope*.c.
 #ifndef GLINT_PROGRAM_SLOPE_H
 #define GLINT_PROGRAM_SLOPE_H
 
@@ -8,20 +8,20 @@
 
 typedef struct glint_slope_maker {
     glint_builder *builder;
-    uint32_t count; ///< values of the program itself; values of its derivatives follow
-    glint_value *given; ///< what each value was given so far; GLINT_SLOPE_NOTHING
-    bool *varies; ///< depends on an input that counts
+    uint32_t count; ///< values of the program; the values of its derivatives follow
+    glint_value *given; ///< the adjoint of each value so far; GLINT_SLOPE_NOTHING: none yet
+    bool *varies; ///< whether the value depends on an input to derive by
     glint_status status; ///< of the first failure; values made after it are meaningless
     glint_error *error;
 } glint_slope_maker;
 
 glint_value glint_slope_number(glint_slope_maker *s, double x);
-/// The result of an operation of three operands, or of fewer; the others are 0.
+/// Returns the result of an operation of up to three operands. Pass 0 for unused operands.
 glint_value glint_slope_op(glint_slope_maker *s, glint_op op, glint_value a, glint_value b, glint_value c);
 
-/// Adds to the adjoint of a value, if it varies.
+/// Adds `what` to the adjoint of a value, if the value varies.
 void glint_slope_give(glint_slope_maker *s, glint_value to, glint_value what);
-/// Value i, of an operation, passes what it was given on to its operands, times its derivatives by them.
+/// Passes the adjoint of value i, an operation, on to its operands, times the partial derivatives.
 void glint_slope_pass(glint_slope_maker *s, glint_value i);
 
 #endif

@@ -1,4 +1,4 @@
-/// The rules of derivatives: what a value that an operation made passes on to the operands that it was made of.
+/// The derivative rules: how each operation passes its adjoint on to its operands.
 #include "engine/program/slope.h"
 
 #include "engine/base/status.h"
@@ -97,7 +97,7 @@ static void pass_exact(glint_slope_maker *s, const rule_case *x)
         if (s->varies[b])
             glint_slope_give(s, b, one(s, GLINT_OP_NEG, times(s, g, one(s, GLINT_OP_FLOOR, two(s, GLINT_OP_DIV, a, b)))));
         break;
-    default: break; // floor, ceil, round, sign: level wherever they have a slope
+    default: break; // floor, ceil, round, sign: their slope is 0 wherever it exists
     }
 }
 
@@ -132,7 +132,7 @@ static void pass_pairs(glint_slope_maker *s, const rule_case *x)
     }
 }
 
-/// t t (3 - 2 t): 6 t (1 - t), and 0 where t is at an end; t = (x - a) / (b - a).
+/// Derivative of t t (3 - 2 t) with t = (x - a) / (b - a): 6 t (1 - t), and 0 where t is clamped.
 static void pass_smoothstep(glint_slope_maker *s, const rule_case *x)
 {
     const glint_value way = two(s, GLINT_OP_SUB, x->b, x->a);
@@ -161,7 +161,7 @@ static void pass_choice(glint_slope_maker *s, const rule_case *x)
         glint_slope_give(s, x->c, unless(s, below, g));
     } else if (x->op == GLINT_OP_SMOOTHSTEP) {
         pass_smoothstep(s, x);
-    } // what is 0 or 1 is level
+    } // results of 0 or 1 have slope 0
 }
 
 static void pass_powers(glint_slope_maker *s, const rule_case *x)
@@ -171,7 +171,7 @@ static void pass_powers(glint_slope_maker *s, const rule_case *x)
     const glint_value there = two(s, GLINT_OP_LESS, glint_slope_number(s, 0), a);
     if (s->varies[a] && power)
         glint_slope_give(s, a, times(s, times(s, g, b), two(s, GLINT_OP_POW, a, two(s, GLINT_OP_SUB, b, glint_slope_number(s, 1)))));
-    else if (s->varies[a]) // highlight: x beyond 1 is 1
+    else if (s->varies[a]) // highlight: x is clamped to 1
         glint_slope_give(s, a, where(s, two(s, GLINT_OP_LESS, a, glint_slope_number(s, 1)),
                          where(s, there, two(s, GLINT_OP_DIV, times(s, times(s, g, b), x->r), a))));
     if (s->varies[b]) {
@@ -219,7 +219,8 @@ static void pass_on(glint_slope_maker *s, const rule_case *x)
 
 // ---- Operations whose slopes have kernels of their own ------------------------------------------------------------
 
-/// One result of such an operation: `slope` begins its derivatives by `count` operands, `apart` from one to the next.
+/// Passes on the adjoint of one result of such an operation. The derivatives by `count` operands start at `slope`,
+/// `apart` values from one to the next.
 static void pass_slopes(glint_slope_maker *s, const glint_ssa_node *node, glint_value g, const glint_value *slope, int count,
                         int apart)
 {
@@ -247,7 +248,7 @@ static void pass_pattern(glint_slope_maker *s, const glint_ssa_node *node, uint3
         make(s, GLINT_OP_TEXEL_SLOPE, node->texture, operands, slope);
         pass_slopes(s, node, g, slope + part, 2, 4);
         break;
-    default: break; // hash and parity: level wherever they have a slope
+    default: break; // hash and parity: their slope is 0 wherever it exists
     }
 }
 

@@ -1,4 +1,4 @@
-/// Where a program is split: the graph of its values, a cut through it, and the code of both sides.
+/// Splits a program: builds the graph of its values, finds a cut through it, and writes the code of both sides.
 #include "engine/program/split.h"
 #include "engine/program/flow.h"
 
@@ -7,24 +7,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Tenths of a nanosecond a point.
-#define COST_OF_NUMBER 8u ///< a double that is kept
-#define COST_OF_TRUTH 1u ///< a bit
-#define COST_MAX 160u ///< beyond it nothing is kept
+// In tenths of a nanosecond per point.
+#define COST_OF_NUMBER 8u ///< of a cached double
+#define COST_OF_TRUTH 1u ///< of a cached bit
+#define COST_MAX 160u ///< above it nothing is cached
 
-#define NO_VALUE UINT32_MAX ///< a number
+#define NO_VALUE UINT32_MAX ///< the operand is a number
 
 /// A program's values: its inputs, then the results of its instructions.
 typedef struct values {
     const glint_program_code *code;
     uint32_t count;
-    uint32_t *operand; ///< of each instruction GLINT_OPERANDS_MAX
-    uint32_t *first; ///< the first result of each
+    uint32_t *operand; ///< GLINT_OPERANDS_MAX for each instruction
+    uint32_t *first; ///< the first result of each instruction
     bool *dynamic; ///< instructions that depend on the changed numbers
-    bool *second; ///< that are run there
-    uint32_t *maker; ///< of each value: its instruction; of an input none
-    uint32_t *last; ///< the last instruction that reads it in the part that is written
-    uint16_t *place; ///< of each value in the part that is written: row or input
+    bool *second; ///< instructions that the second part runs
+    uint32_t *maker; ///< the instruction that computes each value; NO_VALUE for an input
+    uint32_t *last; ///< the last reader of each value in the part being written
+    uint16_t *place; ///< row or input of each value in the part being written
     glint_flow flow;
     uint32_t kept[GLINT_PROGRAM_OUTPUTS_MAX], kept_count;
 } values;
@@ -62,7 +62,7 @@ static bool begin(values *v, const glint_program_code *code)
 
 // ---- The graph ----------------------------------------------------------------------------------------------------
 
-/// The value that is read; NO_VALUE: a number. holder: the value in each row.
+/// Returns the value that is read; NO_VALUE: a number. holder: the value in each row.
 static uint32_t value_at(const uint32_t *holder, uint32_t place)
 {
     if (place >= GLINT_ROW_NUMBER)
@@ -70,7 +70,8 @@ static uint32_t value_at(const uint32_t *holder, uint32_t place)
     return place < GLINT_ROW_INPUT ? holder[place] : place - GLINT_ROW_INPUT;
 }
 
-/// Names the values, and finds what depends on the changed numbers. outputs: the values of the program's.
+/// Numbers the values, and marks those that depend on the changed numbers. outputs: the values of the program's
+/// outputs.
 static void name_values(values *v, const bool *changed, uint32_t *outputs)
 {
     uint32_t holder[GLINT_PROGRAM_ROWS_MAX] = { 0 }, next = GLINT_INPUT_COUNT;
@@ -149,14 +150,15 @@ static bool is_dynamic(const values *v, uint32_t value)
     return v->maker[value] != NO_VALUE && v->dynamic[v->maker[value]];
 }
 
-/// A reader of a value gets it from the cache, or from the second part, which then needs the operands.
+/// A reader gets a value from the cache, or from the second part, which then needs the value's operands as well.
 static void add_reader(values *v, uint32_t value, uint32_t reader)
 {
     if (value != NO_VALUE && !is_dynamic(v, value))
         glint_flow_add(&v->flow, node_of_value(v, value), reader, GLINT_FLOW_ENDLESS);
 }
 
-/// On the side of the sink is what the second part runs, and the values that it reads. Returns the cost of the rest.
+/// Builds the graph. The sink's side is the instructions that the second part runs and the values that it reads.
+/// Returns the cost of all instructions that do not depend on the changed numbers.
 static uint32_t make_graph(values *v, const uint32_t *outputs)
 {
     uint32_t rest = 0;
@@ -179,7 +181,7 @@ static uint32_t make_graph(values *v, const uint32_t *outputs)
     return rest;
 }
 
-/// Lists the cached values, and the instructions of the second part. Returns false if there are too many, or none.
+/// Lists the cached values and the instructions of the second part. Returns false if there are none, or too many.
 static bool find_sides(values *v)
 {
     for (uint32_t i = 0; i < v->code->length; i++)
@@ -198,7 +200,8 @@ static bool find_sides(values *v)
 
 // ---- The code of a part -------------------------------------------------------------------------------------------
 
-/// Notes where each value is read last, from the end on, in a part that runs the `wanted` instructions. outputs: they are read after all.
+/// Finds the last reader of each value, from the end backwards, in a part that runs the `wanted` instructions. The
+/// outputs count as read at the end.
 static void find_last(values *v, bool *wanted, const uint32_t *outputs, uint32_t count)
 {
     for (uint32_t i = 0; i < v->count; i++)
@@ -246,7 +249,8 @@ static void place_results(values *v, uint32_t i, glint_instruction *to, bool *ta
             taken[to->out[k]] = false;
 }
 
-/// The part that runs the `wanted` instructions, whose inputs are placed. It may need too many rows. Returns false without memory.
+/// Writes the part that runs the `wanted` instructions; its inputs are placed already. The part may need too many rows.
+/// False: out of memory.
 static bool write_part(values *v, bool *wanted, const uint32_t *outputs, uint32_t count, glint_program_code *part)
 {
     bool taken[GLINT_PROGRAM_ROWS_MAX] = { false };
@@ -275,7 +279,7 @@ static bool write_part(values *v, bool *wanted, const uint32_t *outputs, uint32_
 
 static bool write_parts(values *v, const uint32_t *outputs, glint_split *split)
 {
-    bool *first = v->dynamic; // which no one reads any more
+    bool *first = v->dynamic; // `dynamic` is not read any more
     for (uint32_t i = 0; i < v->code->length; i++)
         first[i] = !first[i];
     for (uint32_t i = 0; i < GLINT_INPUT_COUNT; i++)
@@ -286,7 +290,7 @@ static bool write_parts(values *v, const uint32_t *outputs, glint_split *split)
         v->place[v->kept[k]] = (uint16_t)(GLINT_ROW_INPUT + k);
         split->truths |= cost_of_value(v, v->kept[k]) == COST_OF_TRUTH ? 1u << k : 0;
     }
-    memcpy(split->second.outputs, v->code->outputs, sizeof split->second.outputs); // of those that are numbers
+    memcpy(split->second.outputs, v->code->outputs, sizeof split->second.outputs); // for the numbers
     return write_part(v, v->second, outputs, v->code->output_count, &split->second);
 }
 

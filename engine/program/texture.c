@@ -1,4 +1,4 @@
-/// glint_texture: a picture as linear floats, and the same at half the size, a quarter ...
+/// glint_texture: a picture as linear floats, with its mipmap levels.
 #include "engine/program/program.h"
 
 #include "engine/base/alloc.h"
@@ -12,13 +12,13 @@
 
 #define TEXELS_MAX ((size_t)1 << 25)
 #define SIDE_MAX 65535
-#define LEVELS_MAX 17 // of SIDE_MAX texels
+#define LEVELS_MAX 17 // levels of a texture of SIDE_MAX texels
 
 struct glint_texture {
     glint_texture_table table;
     glint_texture_level levels[LEVELS_MAX];
     glint_key key;
-    glint_texture *owner; ///< retained: whose texels these are; NULL: its own
+    glint_texture *owner; ///< retained: the texture that owns the texels; NULL: this one
     _Atomic uint32_t references;
 };
 
@@ -51,7 +51,7 @@ glint_key glint_texture_key(const glint_texture *texture) { return texture->key;
 
 // ---- Levels -------------------------------------------------------------------------------------------------------
 
-/// Room for the texels of the next level. NULL: out of memory.
+/// Allocates the texels of the next level. NULL: out of memory.
 static float *add_level(glint_texture *texture, uint32_t width, uint32_t height)
 {
     float *texels = glint_alloc_large((size_t)width * height, 4 * sizeof *texels);
@@ -90,7 +90,8 @@ static bool fill_first(glint_texture *texture, const glint_png *png, bool linear
     return to != NULL;
 }
 
-/// A texel is the mean of the four that it covers; at the end of an odd side the last one counts twice.
+/// Adds the next mipmap level. Each texel is the mean of the four that it covers; at the end of an odd side the last
+/// one counts twice.
 static bool add_half(glint_texture *texture)
 {
     const glint_texture_level from = texture->levels[texture->table.level_count - 1];
@@ -122,7 +123,7 @@ static bool fill(glint_texture *texture, const glint_png *png, bool linear)
 
 // ---- Reading ------------------------------------------------------------------------------------------------------
 
-/// The first bytes of other formats of pictures.
+/// The first bytes of other picture formats.
 static const struct {
     size_t at;
     const char *begin, *kind;
@@ -131,7 +132,7 @@ static const struct {
                { 0, "#?", "Radiance HDR" }, { 4, "jP  ", "JPEG 2000" },  { 4, "ftypavif", "AVIF" },  { 4, "ftyphei", "HEIF" },
                { 0, "PF", "PFM" },         { 0, "<", "SVG or another XML" }, { 0, "qoif", "QOI" } };
 
-/// Refuses a picture of another format by its name.
+/// Refuses a picture of another format, and names the format.
 static glint_status refuse_other(const glint_bytes *bytes, glint_error *error)
 {
     for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {

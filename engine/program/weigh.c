@@ -3,7 +3,7 @@
 #include "engine/base/maker.h"
 #include "engine/program/builder.h"
 
-#define LEAST_SHARE 0x1p-100 ///< a surface shows nothing below it; divisions by the share use at least this
+#define LEAST_SHARE 0x1p-100 ///< a surface with a smaller share is invisible; divisions by the share use at least this
 
 static glint_maker begin(glint_program_kind kind, glint_error *error)
 {
@@ -20,7 +20,7 @@ static glint_status finish(glint_maker *m, const glint_value *outputs, size_t co
     return m->status;
 }
 
-/// Returns the value of the share, within 0 .. 1.
+/// Returns the value of the share, clamped to 0 .. 1.
 static glint_value share_of(glint_maker *m, const glint_share *share)
 {
     glint_value given[GLINT_PROGRAM_OUTPUTS_MAX] = { 0 };

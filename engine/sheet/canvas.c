@@ -42,7 +42,7 @@ void glint_canvas_frame(glint_canvas *canvas, int x, int y, int width, int heigh
     glint_canvas_fill(canvas, x + width, y, t, height, color);
 }
 
-/// Draws a mask, and frees it.
+/// Draws a mask and frees it.
 static void draw_mask(glint_canvas *canvas, int x, int y, glint_mask *mask, uint32_t color)
 {
     glint_stamp stamp = { .x = x, .y = y, .width = mask->width, .height = mask->height, .coverage = mask->coverage, .opacity = 255 };
@@ -55,7 +55,7 @@ static void draw_mask(glint_canvas *canvas, int x, int y, glint_mask *mask, uint
     free(mask->coverage);
 }
 
-/// A text by itself, no longer than `most` pixels. False: no memory.
+/// Makes the mask of a text, at most `most` pixels long. False: out of memory.
 static bool make_mask(const glint_typeface *typeface, const char *text, size_t size, int most, glint_mask *mask)
 {
     const int width = glint_typeface_width(typeface, text, size);

@@ -1,4 +1,5 @@
-/// A picture of 8-bit RGB, or RGBA, to draw figures on. Colours are 0xRRGGBB; what falls outside is cut off. Internal.
+/// A picture of 8-bit RGB or RGBA to draw figures on. Colours are 0xRRGGBB; drawing is clipped to the picture.
+/// Internal.
 #ifndef GLINT_IMAGE_CANVAS_H
 #define GLINT_IMAGE_CANVAS_H
 
@@ -14,15 +15,15 @@ typedef struct glint_canvas {
     uint8_t *pixels; ///< channels * width * height, top row first; to be freed
 } glint_canvas;
 
-/// White; with alpha, nothing. False: no memory.
+/// Fills the canvas with white; with alpha, with transparency. False: out of memory.
 bool glint_canvas_init(glint_canvas *canvas, int width, int height, bool alpha);
 void glint_canvas_fill(glint_canvas *canvas, int x, int y, int width, int height, uint32_t color);
-/// A frame around a rectangle, outside of it.
+/// Draws a frame around a rectangle, outside it.
 void glint_canvas_frame(glint_canvas *canvas, int x, int y, int width, int height, int thickness, uint32_t color);
-/// The first `size` bytes of UTF-8 text, to its end at most, with its top left at x, y. False: no memory.
+/// Draws the first `size` bytes of UTF-8 text, at most to its end, with its top left at x, y. False: out of memory.
 bool glint_canvas_text(glint_canvas *canvas, const glint_typeface *typeface, int x, int y, const char *text, size_t size,
                        uint32_t color);
-/// Text that runs down, turned a quarter clockwise, its top right at x, y. False: no memory.
+/// Draws text downwards, turned a quarter clockwise, with its top right at x, y. False: out of memory.
 bool glint_canvas_text_down(glint_canvas *canvas, const glint_typeface *typeface, int x, int y, const char *text,
                             uint32_t color);
 

@@ -7,7 +7,7 @@
 ///     w    [difference][difference]    on request
 ///     n      label       label
 ///
-/// A colour bar of all is at their right, or below them.
+/// A colour bar for all pictures is at the right, or below.
 #include "engine/base/status.h"
 #include "engine/overlay/overlay.h"
 #include "engine/sheet/canvas.h"
@@ -23,29 +23,29 @@
 #define INK 0x222222
 #define FAINT_INK 0x6a6a6a
 #define MARK 0xd9594c // around the chosen cell
-#define LARGE_PICTURE 900 // pixels across from which labels are twice as large
+#define LARGE_PICTURE 900 // labels of wider pictures are twice as large
 #define AREA_MAX ((int64_t)400000000) // pixels of a sheet: 1.2 GB while it is drawn
-#define PART_GAP 2 // letters between parts of a label on one line
-#define LETTER 8 // its width in 13ths of its size
-#define SIZE 13 // of labels, pixels, unless the sheet has its own
-#define BAR_MOST 20 // length of a colour bar that has none of its own, in sizes of labels, at most
+#define PART_GAP 2 // letters between parts of a label on the same line
+#define LETTER 8 // width of a letter in 13ths of its size
+#define SIZE 13 // of labels, pixels, unless the sheet sets it
+#define BAR_MOST 20 // length of a colour bar without a length of its own, in label sizes, at most
 
 /// The sheet's measures, in pixels.
 typedef struct layout {
     const glint_sheet_desc *desc;
-    int width, height; ///< of a picture
+    int width, height; ///< of each picture
     glint_letters *letters; ///< owned; NULL: the bitmap font
-    glint_typeface typeface, title; ///< of labels, of the title, which is twice as large
-    double unit; ///< pixels of the picture in a 13th of the labels' size
-    bool lost; ///< no memory: some text is missing
+    glint_typeface typeface, title; ///< of labels; of the title, which is twice as large
+    double unit; ///< pixels of the picture in a 13th of the label size
+    bool lost; ///< out of memory: some text is missing
     int rows;
     int column, label; ///< width of a column; height of the label below a picture
     int left, top; ///< of the first picture
-    int band; ///< height of a row with its differences
+    int band; ///< height of a row together with its differences
     int gap;
     int note_lines; ///< at the bottom
-    char note[160]; ///< what a row of differences shows, in parts
-    glint_overlay_desc bar; ///< the colour bar as the sheet has it, its lengths in pixels
+    char note[160]; ///< explains the rows of differences, in parts
+    glint_overlay_desc bar; ///< the sheet's colour bar, with lengths in pixels
     int bar_size[2];
     int64_t sheet_width, sheet_height;
 } layout;
@@ -61,7 +61,7 @@ static int text_width(const layout *l, const char *text, size_t size)
     return glint_typeface_width(&l->typeface, text, size);
 }
 
-/// The longest part of a label.
+/// Returns the width of the longest part of a label.
 static int widest_part(const layout *l, const char *label)
 {
     int widest = 0;
@@ -80,15 +80,15 @@ static void write_text(layout *l, glint_canvas *canvas, const glint_typeface *ty
     l->lost = !glint_canvas_text(canvas, typeface, x, y, text, size, color) || l->lost;
 }
 
-/// Sets `label` on lines at most `room` wide, parts sharing a line where they fit; draws them from `y` down, centred on
-/// the room, which begins at `x`, unless `canvas` is NULL. Returns how many lines there are.
+/// Breaks `label` into lines at most `room` wide; parts share a line if they fit. Unless `canvas` is NULL, draws the
+/// lines from `y` down, centred in the space `room` that begins at `x`. Returns the number of lines.
 static int set_label(layout *l, const char *label, int room, glint_canvas *canvas, int x, int y)
 {
     int lines = 0;
     while (label && *label) {
         const char *part = label;
         int width = 0, gap = pixels(l, PART_GAP * LETTER);
-        while (*part) { // how many parts this line takes
+        while (*part) { // counts the parts of this line
             size_t size = strcspn(part, "\n");
             int wider = (part > label ? width + gap : 0) + text_width(l, part, size);
             if (part > label && wider > room)
@@ -110,13 +110,13 @@ static int set_label(layout *l, const char *label, int room, glint_canvas *canva
 
 // ---- Measuring ----------------------------------------------------------------------------------------------------
 
-/// Width or height of the grid of pictures.
+/// Returns the width or height of the grid of pictures.
 static int64_t grid_size(const layout *l, bool across)
 {
     return across ? (int64_t)l->desc->columns * (l->column + l->gap) - l->gap : (int64_t)l->rows * l->band - l->gap;
 }
 
-/// The colour bar, and the room that it takes beside the grid, which has been measured.
+/// Lays out the colour bar, and reserves its space next to the grid, which is measured already.
 static void measure_bar(layout *l)
 {
     static const int sides[2] = { GLINT_SIDE_MAX, GLINT_SIDE_MAX };
@@ -136,7 +136,7 @@ static void measure_bar(layout *l)
     l->sheet_height = least[1] > l->sheet_height ? least[1] : l->sheet_height;
 }
 
-/// The whole sheet: the grid, or what stands above and below it.
+/// Computes the size of the whole sheet: the grid and everything around it.
 static void measure_sheet(layout *l)
 {
     const glint_sheet_desc *desc = l->desc;
@@ -197,7 +197,7 @@ static uint8_t *row_at(glint_canvas *canvas, int x, int y)
     return canvas->pixels + ((size_t)y * (size_t)canvas->width + (size_t)x) * (size_t)canvas->channels;
 }
 
-/// Where the picture of cell `i`, from 0, has its top left.
+/// Returns the top left of the picture of cell `i`, from 0.
 static void place_cell(const layout *l, size_t i, int *x, int *y)
 {
     int column = (int)(i % (size_t)l->desc->columns), row = (int)(i / (size_t)l->desc->columns);
@@ -205,7 +205,7 @@ static void place_cell(const layout *l, size_t i, int *x, int *y)
     *y = l->top + row * l->band;
 }
 
-/// |a - b| times the gain, of two pictures on the canvas, at the place below `a`; and the text about it.
+/// Draws |a - b| times the gain, for two pictures on the canvas, below `a`, with a text.
 static void draw_difference(layout *l, glint_canvas *canvas, size_t a, size_t b)
 {
     int ax, ay, bx, by, most = 0;
@@ -251,7 +251,7 @@ static void draw_differences(layout *l, glint_canvas *canvas)
     set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, canvas, l->left, y);
 }
 
-/// At the middle of the grid's right side, or below it.
+/// Draws the colour bar in the middle of the grid's right side, or below the grid.
 static void draw_bar(layout *l, glint_canvas *canvas)
 {
     const int sides[2] = { canvas->width, canvas->height };
@@ -267,7 +267,7 @@ static void draw_bar(layout *l, glint_canvas *canvas)
     glint_stamps_free(&stamps);
 }
 
-/// "name ->" above the columns or beside the rows, in their middle.
+/// Draws "name ->" above the columns and next to the rows, centred.
 static void draw_titles(layout *l, glint_canvas *canvas)
 {
     const glint_sheet_desc *desc = l->desc;
@@ -301,7 +301,7 @@ static glint_status check_size(const layout *l, const glint_picture *picture, co
 static void put_row(const glint_picture *picture, int row, const glint_canvas *canvas, uint8_t *out)
 {
     glint_picture_row(picture, row, 255, out);
-    for (int x = glint_picture_width(picture) - 1; x >= 0 && canvas->channels == 4; x--) { // RGB to RGBA, from the end
+    for (int x = glint_picture_width(picture) - 1; x >= 0 && canvas->channels == 4; x--) { // backwards, in place
         memmove(out + 4 * x, out + 3 * x, 3);
         out[4 * x + 3] = 255;
     }

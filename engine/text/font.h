@@ -6,20 +6,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define GLINT_FONT_WIDTH 8 ///< of every character, in pixels
+#define GLINT_FONT_WIDTH 8 ///< of every character, pixels
 #define GLINT_FONT_HEIGHT 13
 
-/// The 13 rows, from the top, of the UTF-8 character at *text, which moves past it; the leftmost pixel is the highest bit.
-/// Latin-1, Greek and a few signs are there; another character, or a byte that is none, looks like U+FFFD.
+/// Returns the 13 rows, from the top, of the UTF-8 character at *text, and moves *text past it. The leftmost pixel is
+/// the highest bit. The font has Latin-1, Greek and a few signs; other characters and invalid bytes look like U+FFFD.
 const uint8_t *glint_font_next(const char **text);
 
-/// The code of the UTF-8 character at *text, which moves past it; U+FFFD for a byte that is none.
+/// Returns the code of the UTF-8 character at *text, and moves *text past it; U+FFFD for an invalid byte.
 uint32_t glint_font_code(const char **text);
 
-/// Whether there is a character.
+/// Returns whether the font has a character.
 bool glint_font_has(uint32_t code);
 
-/// How many characters the first `size` bytes of `text` (to its end at most) are.
+/// Returns the number of characters in the first `size` bytes of `text`, at most to its end.
 size_t glint_font_count(const char *text, size_t size);
 
 #endif

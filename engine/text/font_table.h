@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-/// A run of characters without a gap; its first glyph stands at `glyph` in the table.
+/// A run of consecutive characters; its first glyph is number `glyph` in the table.
 static const struct {
     uint16_t first, last, glyph;
 } font_ranges[] = {

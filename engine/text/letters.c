@@ -18,15 +18,15 @@
 #include <pthread.h>
 #include <stdio.h>
 
-/// Outlines as the font has them: no hints, which depend on settings of the library.
+/// Unhinted outlines, since hinting depends on settings of the library.
 #define LOAD (FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP)
 
 struct glint_letters {
     FT_Library library;
     FT_Face face;
-    struct FT_MemoryRec_ memory; ///< FreeType goes on without what it had no memory for: this notes it
+    struct FT_MemoryRec_ memory; ///< FreeType continues after a failed allocation; this allocator records the failure
     bool lost;
-    double em; ///< that the face is set to; 0: none yet
+    double em; ///< the face's current size; 0: not set
 };
 
 static void *note_lost(FT_Memory memory, void *block)
@@ -50,7 +50,7 @@ static void *resize(FT_Memory memory, long before, long size, void *block)
     return note_lost(memory, realloc(block, (size_t)size));
 }
 
-/// Where systems have the font.
+/// The paths of the font on common systems.
 static const char *const places[] = {
     "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", // Debian
     "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf", // Fedora
@@ -60,7 +60,7 @@ static const char *const places[] = {
     "/Library/Fonts/DejaVuSans.ttf",
 };
 
-/// False: there is no such font.
+/// Opens the font at a path. False: there is none.
 static bool open_path(glint_letters *letters, const char *path)
 {
     if (FT_New_Face(letters->library, path, 0, &letters->face))
@@ -125,7 +125,7 @@ glint_status glint_letters_open(glint_letters **out, glint_error *error)
     return GLINT_OK;
 }
 
-/// A font's file has a sum of all of it.
+/// Returns a key of the font: its file contains a checksum of all of it.
 glint_key glint_letters_key(const glint_letters *letters)
 {
     glint_key key = { 0 };
@@ -160,13 +160,13 @@ void glint_letters_measure(glint_letters *letters, double em, int *above, int *b
     *line = (int)(letters->face->height * unit + 0.999);
 }
 
-/// Where a text is so far.
+/// The state of a text that is being drawn.
 typedef struct pen {
     double x; ///< pixels
-    FT_UInt before; ///< the letter before; 0: none
+    FT_UInt before; ///< previous letter, for kerning; 0: none
 } pen;
 
-/// Loads the next letter, and moves the pen to where it begins. False: there is none.
+/// Loads the next letter, and moves the pen to its start. False: the text has no more letters.
 static bool next_letter(glint_letters *letters, const char **text, pen *at)
 {
     FT_Face face = letters->face;
@@ -191,7 +191,7 @@ int glint_letters_width(glint_letters *letters, double em, const char *text, siz
     return (int)(at.x + 0.999);
 }
 
-/// Adds a rectangle of coverage: what two letters cover of a pixel is taken as not related.
+/// Adds a rectangle of coverage. The coverages of two letters in a pixel are treated as independent.
 static void add_coverage(const FT_Bitmap *from, int x, int y, glint_mask *mask)
 {
     for (unsigned row = 0; row < from->rows; row++)
@@ -202,14 +202,14 @@ static void add_coverage(const FT_Bitmap *from, int x, int y, glint_mask *mask)
         }
 }
 
-/// The loaded letter, which begins at x on the line above row y: the part of it that the mask has.
+/// Draws the loaded letter, which begins at x on the baseline above row y, clipped to the mask.
 static void draw_letter(glint_letters *letters, double x, int y, glint_mask *mask)
 {
     FT_Outline *outline = &letters->face->glyph->outline;
     FT_BBox box;
     if (letters->face->glyph->format != FT_GLYPH_FORMAT_OUTLINE || outline->n_points == 0)
         return;
-    FT_Outline_Translate(outline, (FT_Pos)(x * 64 + (x < 0 ? -0.5 : 0.5)), -(FT_Pos)y * 64); // the mask's corner is 0, 0
+    FT_Outline_Translate(outline, (FT_Pos)(x * 64 + (x < 0 ? -0.5 : 0.5)), -(FT_Pos)y * 64); // mask corner at 0, 0
     FT_Outline_Get_CBox(outline, &box);
     const FT_Pos left = box.xMin >> 6 > 0 ? box.xMin >> 6 : 0;
     const FT_Pos right = (box.xMax + 63) >> 6 < mask->width ? (box.xMax + 63) >> 6 : mask->width;
@@ -243,7 +243,7 @@ void glint_letters_draw(glint_letters *letters, double em, const char *text, siz
 
 static char library_name[48];
 
-// The library's own version; without memory to start it in, the one that this was compiled with.
+// Stores the version of the library in use or, without memory to start it, the version compiled against.
 static void name_library(void)
 {
     FT_Library library;

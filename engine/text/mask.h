@@ -1,4 +1,4 @@
-/// How much of each pixel is covered. Internal.
+/// The coverage of each pixel. Internal.
 #ifndef GLINT_TEXT_MASK_H
 #define GLINT_TEXT_MASK_H
 
