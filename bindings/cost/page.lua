@@ -1,5 +1,4 @@
--- The page of glint cost: page.html with its @NAMES@ replaced, including the plot and the pictures. It needs no
--- network.
+-- The page of glint cost: page.html with its @NAMES@ replaced, and the plot and pictures embedded. It needs no network.
 local the = ...
 local format = string.format
 

@@ -1,11 +1,11 @@
--- Puts the fields of objects into the API for editors and the manual page, from the engine's tables: where a line is
--- `---@fields OBJECT` or `.\" fields OBJECT...`; of several objects each field is named once. As a script of
--- glint, with FROM=FILE in the environment, it prints the whole text.
+-- Inserts the fields of objects from the engine's tables into the API for editors and into the manual page, at each
+-- line `---@fields OBJECT` or `.\" fields OBJECT...`. A field of several objects is named once. Run as a script of
+-- glint with FROM=FILE in the environment, it prints the whole text.
 local glint = require "glint"
 
 local function number(x) return ("%.14g"):format(x) end
 
--- A default as text; nil where there is none that says something.
+-- Returns a default as text; nil if there is none worth printing.
 local function default(row)
   local value = row.default
   if row.required or value == nil then return nil end
@@ -24,7 +24,7 @@ local function type_of(row)
   return "{ " .. table.concat(parts, ", ") .. " }"
 end
 
--- "---@field shininess? number|glint.pattern  exponent >= 0 of the highlight. Default 32"
+-- Returns "---@field shininess? number|glint.pattern  exponent >= 0 of the highlight. Default 32".
 local function annotation(row)
   local text, value = row.doc .. (row.unit and ", " .. row.unit or ""), default(row)
   if row.follows then
@@ -35,7 +35,7 @@ local function annotation(row)
   return ("---@field %s%s %s  %s"):format(row.name, row.required and "" or "?", type_of(row), text)
 end
 
--- "shininess (32)", "model (phong, blinn_phong)", "ambient (as diffuse)"
+-- Returns "shininess (32)", "model (phong, blinn_phong)", "ambient (as diffuse)".
 local function item(row)
   local names, value = {}, default(row)
   for name in row.type:gmatch '"([^"]+)"' do names[#names + 1] = name end

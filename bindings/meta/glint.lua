@@ -1,11 +1,11 @@
 ---@meta glint
 
--- The whole API of glint for editors (LuaLS). tests/lua/check_meta.lua holds it equal to what the module registers.
+-- The whole API of glint for editors (LuaLS). tests/lua/check_meta.lua checks that it equals what the module registers.
 --
 -- Lengths are in world units, the world is right-handed, angles are in degrees. Colours are linear, 1 = display white.
 -- A wrong name, type or value raises an error such as
 --     scene.lua:7: material.shininess: number >= 0 expected, got -1
--- Strings are not taken for numbers; NaN and infinity are refused wherever a quantity is expected.
+-- Strings do not count as numbers. NaN and infinity are refused wherever a quantity is expected.
 
 ---@class glint
 ---@field version string  "major.minor.patch"
@@ -13,10 +13,10 @@ local glint = {}
 
 -- ---- Values ----
 
---- Three numbers that do not change. To change an object's vector, assign a whole one (`lamp.position = {0, 20, 0}`),
---- or one component where the object has a place (`lamp.x = 3`).
---- `a + b`, `a - b`, `a * b`, `a / b`, `a % b`, `a // b`, `a ^ b` and `-a` work component by component; either side may be a number.
---- An array `{x, y, z}` may stand for a vector. `#v` is 3, `==` compares the numbers.
+--- Three numbers, immutable. To change a vector of an object, assign a whole one (`lamp.position = {0, 20, 0}`), or one
+--- component if the object has a place (`lamp.x = 3`).
+--- `a + b`, `a - b`, `a * b`, `a / b`, `a % b`, `a // b`, `a ^ b` and `-a` work by component; one side may be a number.
+--- An array `{x, y, z}` may replace a vector. `#v` is 3; `==` compares the numbers.
 ---@class glint.vector
 ---@field x number  also v[1]
 ---@field y number  also v[2]
@@ -53,11 +53,11 @@ function vector:cross(b) end
 ---@return number
 function vector:length() end
 
---- Divided by its length.
+--- Returns the vector divided by its length.
 ---@return glint.vector
 function vector:unit() end
 
---- A direction that arrives, after a mirror of that unit normal: d - 2 (n.d) n.
+--- Reflects an incident direction in a mirror with the unit normal n: d - 2 (n.d) n.
 ---@param n glint.values
 ---@return glint.vector
 function vector:reflect(n) end
@@ -87,12 +87,12 @@ local material = {}
 ---@field diffuse glint.vector  kd (n.l); 0 where n.l <= 0
 ---@field specular glint.vector  ks S: (r.v)^shininess, or its kin by `model`; 0 where n.l <= 0
 
---- The two terms of one light of strength 1, by the kernels a frame uses. The vectors need not be unit.
+--- The two terms for one light of strength 1, computed by the kernels of a frame. The vectors need not be unit.
 ---@param geometry glint.geometry
 ---@return glint.reflection
 function material:evaluate(geometry) end
 
---- Gives the object back at once instead of when it is collected. Objects that hold it (a shape, a scene) keep using it.
+--- Releases the object now instead of when it is collected. Shapes and scenes that contain it can still use it.
 function material:close() end
 
 ---@param fields glint.material_fields
@@ -111,7 +111,7 @@ function glint.material(fields) end
 ---@field z number  of position
 local point_light = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function point_light:close() end
 
 ---@param fields glint.point_light_fields
@@ -124,7 +124,7 @@ function glint.point_light(fields) end
 ---@class glint.directional_light: glint.directional_light_fields
 local directional_light = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function directional_light:close() end
 
 ---@param fields glint.directional_light_fields
@@ -140,15 +140,15 @@ function glint.directional_light(fields) end
 ---@field z number  of position
 local spot_light = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function spot_light:close() end
 
 ---@param fields glint.spot_light_fields
 ---@return glint.spot_light
 function glint.spot_light(fields) end
 
---- Lights with a surface have soft shadows. With `intensity` each adds the mean over its surface of what a point light
---- there adds; with `radiance` L the integral of L cos cos' / distance^2 over its surface, instead of A V (n.l).
+--- Lights with a surface have soft shadows. With `intensity` each adds the mean over its surface of a point light
+--- there; with `radiance` L, the integral of L cos cos' / distance^2 over its surface, instead of A V (n.l).
 ---@class glint.disk_light_fields
 ---@fields disk_light
 
@@ -158,7 +158,7 @@ function glint.spot_light(fields) end
 ---@field z number  of position
 local disk_light = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function disk_light:close() end
 
 ---@param fields glint.disk_light_fields
@@ -171,7 +171,7 @@ function glint.disk_light(fields) end
 ---@class glint.polygon_light: glint.polygon_light_fields
 local polygon_light = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function polygon_light:close() end
 
 ---@param fields glint.polygon_light_fields
@@ -187,7 +187,7 @@ function glint.polygon_light(fields) end
 ---@field z number  of position
 local sphere_light = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function sphere_light:close() end
 
 ---@param fields glint.sphere_light_fields
@@ -223,8 +223,8 @@ function glint.sphere_light(fields) end
 ---@class glint.camera: glint.camera_fields
 local camera = {}
 
---- Where a picture of width x height pixels shows a point, whether something hides it or not: pixels to the right and down from
---- the upper left corner, where the centre of the first pixel is 0.5, 0.5, and the depth as in the pass `depth`. nil: the point
+--- Returns where a picture of width x height pixels shows a point, even if it is hidden: x and y in pixels from the
+--- upper left corner, where the first pixel's centre is 0.5, 0.5, and the depth as in the pass `depth`. nil: the point
 --- is not in front of the camera.
 ---@param point glint.vec3  world units
 ---@param width number  pixels
@@ -232,7 +232,7 @@ local camera = {}
 ---@return number? x, number? y, number? depth
 function camera:project(point, width, height) end
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function camera:close() end
 
 ---@param fields glint.camera_fields
@@ -250,7 +250,7 @@ function glint.camera(fields) end
 ---@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh|glint.box|glint.disk|glint.cylinder|glint.cone|glint.torus|glint.group|glint.union|glint.intersection|glint.difference
 
 
---- An affine map: a value that does not change. `a * b` is first b, then a; equal when all numbers are.
+--- An affine map, immutable. `a * b` applies b first, then a. Maps are equal when all their numbers are.
 ---@class glint.transform
 ---@operator mul(glint.transform): glint.transform
 
@@ -261,20 +261,20 @@ function glint.camera(fields) end
 ---@return glint.transform
 function glint.translate(x, y, z) end
 
---- Counter-clockwise as seen with the axis pointing at the eye; quarter turns are exact.
+--- Rotates counter-clockwise, seen with the axis pointing at the eye; quarter turns are exact.
 ---@param axis "x"|"y"|"z"|glint.vec3  not zero, need not be unit
 ---@param degrees number
 ---@return glint.transform
 function glint.rotate(axis, degrees) end
 
---- scale(s) or scale(x, y, z) or scale {x, y, z}; none of them 0.
+--- scale(s) or scale(x, y, z) or scale {x, y, z}; no factor may be 0.
 ---@param x number|glint.vec3
 ---@param y? number
 ---@param z? number
 ---@return glint.transform
 function glint.scale(x, y, z) end
 
---- 12 numbers row by row (x' = m1 x + m2 y + m3 z + m4, ...), or 16 of which the last four are 0, 0, 0, 1.
+--- 12 numbers row by row (x' = m1 x + m2 y + m3 z + m4, ...), or 16 with 0, 0, 0, 1 as the last four.
 ---@param numbers number[]
 ---@return glint.transform
 function glint.matrix(numbers) end
@@ -291,7 +291,7 @@ function glint.matrix(numbers) end
 ---@field z number  of center
 local sphere = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function sphere:close() end
 
 ---@param fields glint.sphere_fields
@@ -305,7 +305,7 @@ function glint.sphere(fields) end
 ---@class glint.plane: glint.plane_fields
 local plane = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function plane:close() end
 
 ---@param fields glint.plane_fields
@@ -326,7 +326,7 @@ function glint.plane(fields) end
 ---@field max glint.vector  that of the largest; only read
 local spheres = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function spheres:close() end
 
 ---@param fields glint.spheres_fields
@@ -339,8 +339,8 @@ function glint.spheres(fields) end
 ---| "flat"  # lit once a face, at its centroid
 ---| "gouraud"  # lit once a vertex, with its normal; between them by barycentric coordinates
 
---- Polygons that share vertices, from tables or from a file, .obj, .stl or .ply; copied once. Give `file`, or `vertices` and
---- `faces`. Faces that are not convex are cut up rightly; those that cross themselves are refused.
+--- Polygons that share vertices, from tables or from a file, .obj, .stl or .ply; copied once. Give `file`, or
+--- `vertices` and `faces`. Concave faces are triangulated; faces that cross themselves are refused.
 ---@class glint.mesh_fields: glint.shape_fields
 ---@field file? string  a mesh, relative to the working directory: .stl; .ply (without `material` also its colours, a material each); else a Wavefront .obj (v, vt, vn, f; without `material` also usemtl and mtllib: Kd, Ks, Ns, d or Tr, map_Kd, map_Ks, map_d, map_Bump with -bm)
 ---@field vertices? glint.vec3[]|number[]|string  places: a list of {x, y, z}, a flat table or packed numbers
@@ -360,7 +360,7 @@ function glint.spheres(fields) end
 ---@field max glint.vector  that of the largest; only read
 local mesh = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function mesh:close() end
 
 ---@param fields glint.mesh_fields
@@ -373,7 +373,7 @@ function glint.mesh(fields) end
 ---@field segments integer  around the equator, 3 to 16384; half as many from pole to pole
 ---@field shading? glint.shading  Default "phong", with the sphere's own normals at the vertices
 
---- A mesh in the shape of a sphere, to set beside the exact one.
+--- A mesh that approximates a sphere, to compare with the exact one.
 ---@param fields glint.sphere_mesh_fields
 ---@return glint.mesh
 function glint.sphere_mesh(fields) end
@@ -385,7 +385,7 @@ function glint.sphere_mesh(fields) end
 ---@class glint.box: glint.box_fields
 local box = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function box:close() end
 
 ---@param fields glint.box_fields
@@ -403,7 +403,7 @@ function glint.box(fields) end
 ---@field z number  of center
 local disk = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function disk:close() end
 
 ---@param fields glint.disk_fields
@@ -419,7 +419,7 @@ function glint.disk(fields) end
 ---@class glint.cylinder: glint.cylinder_fields
 local cylinder = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function cylinder:close() end
 
 ---@param fields glint.cylinder_fields
@@ -435,7 +435,7 @@ function glint.cylinder(fields) end
 ---@class glint.cone: glint.cone_fields
 local cone = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function cone:close() end
 
 ---@param fields glint.cone_fields
@@ -454,7 +454,7 @@ function glint.cone(fields) end
 ---@field z number  of center
 local torus = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function torus:close() end
 
 ---@param fields glint.torus_fields
@@ -466,8 +466,8 @@ function glint.torus(fields) end
 ---@field name? string  at most 63 bytes. Default ""
 ---@field [integer] glint.shape  what is in it
 
---- Shapes under one transform. A shape or group may be in several groups and scenes: it shows in each, and what is changed
---- in it changes in all of them. At most 64 groups one within the other, none within itself.
+--- Shapes under one transform. A shape or group may be in several groups and scenes. It appears in each, and changes to
+--- it apply everywhere. Groups nest at most 64 deep, and a group cannot contain itself.
 ---@class glint.group
 ---@field transform glint.transform
 ---@field name string  at most 63 bytes
@@ -482,7 +482,7 @@ function group:add(shape) end
 ---@param shape glint.shape
 function group:remove(shape) end
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function group:close() end
 
 ---@param fields glint.group_fields
@@ -492,15 +492,15 @@ function glint.group(fields) end
 ---@class glint.combined_fields: glint.shape_fields
 ---@field [integer] glint.shape  its parts: spheres, boxes, capped cylinders and cones, tori, planes, closed meshes, combined solids and groups of these
 
---- Everything inside any part.
---- One solid of several: its parts, 1 .. 64 in all, where a torus counts twice and a closed mesh four times. A plane is the half-space behind it, a group what any of it is. A part shows only where
---- it bounds the whole, with its own material or, without one, the whole's, which is that of its first part that has one where it is not
---- given; light inside has the `ior` and `absorption` of that. The whole is one object. `two_sided` of parts means nothing.
+--- Everything inside any of its 1 .. 64 parts, as one solid (a torus counts twice, a closed mesh four times). A plane
+--- is the half-space behind it; a group is everything inside its shapes. A part shows only on the boundary of the
+--- solid, with its own material or, without one, the solid's. That defaults to the first material among the parts; its
+--- `ior` and `absorption` apply inside. The solid is one object. `two_sided` of parts has no effect.
 ---@class glint.union: glint.combined_fields
 ---@field count integer  how many parts it was given; only read
 local union = {}
 
---- Adds a part; returns it.
+--- Adds a part and returns it.
 ---@param shape glint.shape
 ---@return glint.shape
 function union:add(shape) end
@@ -508,7 +508,7 @@ function union:add(shape) end
 ---@param shape glint.shape
 function union:remove(shape) end
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function union:close() end
 
 ---@param fields glint.combined_fields
@@ -521,7 +521,7 @@ function glint.union(fields) end
 ---@field count integer  how many parts it was given; only read
 local intersection = {}
 
---- Adds a part; returns it.
+--- Adds a part and returns it.
 ---@param shape glint.shape
 ---@return glint.shape
 function intersection:add(shape) end
@@ -529,20 +529,20 @@ function intersection:add(shape) end
 ---@param shape glint.shape
 function intersection:remove(shape) end
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function intersection:close() end
 
 ---@param fields glint.combined_fields
 ---@return glint.intersection
 function glint.intersection(fields) end
 
---- Everything inside the first part and outside the others. Where one of these ends at a face of the first, that face is open.
+--- Everything inside the first part and outside the others. If one of them ends at a face of the first, it is open.
 --- See glint.union for parts, their materials and the inside.
 ---@class glint.difference: glint.combined_fields
 ---@field count integer  how many parts it was given; only read
 local difference = {}
 
---- Adds a part; returns it.
+--- Adds a part and returns it.
 ---@param shape glint.shape
 ---@return glint.shape
 function difference:add(shape) end
@@ -550,7 +550,7 @@ function difference:add(shape) end
 ---@param shape glint.shape
 function difference:remove(shape) end
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function difference:close() end
 
 ---@param fields glint.combined_fields
@@ -560,7 +560,7 @@ function glint.difference(fields) end
 -- ---- Overlays: labels, colour bars, axes ----
 
 --- Drawn over a finished picture: only in .png files of beauty, not in other passes and not in .pfm, .npy and .exr.
---- Lengths in points are dpi / 72 pixels where `dpi` is set, else pixels.
+--- Lengths in points are dpi / 72 pixels if `dpi` is set, otherwise pixels.
 ---@class glint.overlay_fields
 ---@field at? "top left"|"top"|"top right"|"left"|"center"|"right"|"bottom left"|"bottom"|"bottom right"|number[]  where it is, or {x, y} in shares of the room it leaves within the margin. Default of a label "top left", a colour bar "right", axes "bottom left"
 ---@field position? number[]  {x, y} of its upper left corner in pixels from that of the picture, in place of `at`
@@ -574,11 +574,11 @@ function glint.difference(fields) end
 ---@class glint.label_fields: glint.overlay_fields
 ---@field text string  UTF-8, lines divided by newlines, at most 383 bytes; "" shows nothing
 
---- A text over the picture. Set in frame(t), it makes a picture of its own key, and nothing is rendered again for it.
+--- A text over the picture. A label set in frame(t) changes the picture's key, but nothing is rendered again for it.
 ---@class glint.label: glint.label_fields
 local label = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function label:close() end
 
 ---@param fields glint.label_fields
@@ -598,7 +598,7 @@ function glint.label(fields) end
 ---@class glint.colorbar: glint.colorbar_fields
 local colorbar = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function colorbar:close() end
 
 ---@param fields glint.colorbar_fields
@@ -611,12 +611,12 @@ function glint.colorbar(fields) end
 ---@field box? glint.vec3[]|table  {lowest corner, highest corner} in the world, a box { low, size, xy, xz, yz } or a cell { origin, a, b, c }: axes with numbers along edges of it, in place of `at`, `position`, `margin`, `length` and `background`. Default nil
 ---@field values? glint.vec3[]  what the numbers are at those two corners. Default nil: places in the world, of a tilted cell lengths along its sides
 
---- The directions x (red), y (green) and z (blue) as the camera has them. With a `box` three edges of it, those that bound what
---- is seen of it, with marks, round numbers and their names; a direction that the eye looks along has none.
+--- The directions x (red), y (green) and z (blue) in the camera's view. With a `box`, three edges on its visible
+--- outline, with marks, round numbers and names; a direction along the view has none.
 ---@class glint.axes: glint.axes_fields
 local axes = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function axes:close() end
 
 ---@param fields glint.axes_fields
@@ -627,18 +627,18 @@ function glint.axes(fields) end
 
 -- ---- Scene ----
 
---- Read from a scene its fields are read-only: assign a whole table.
+--- The fields of one read from a scene are read-only: assign a whole table.
 ---@class glint.indirect
 ---@field samples? integer  ways of light followed from each point seen, 1 .. 65536. Default 16
 ---@field bounces? integer  matt surfaces on a way that light is followed beyond, 0 .. 2^31; then `ambient` stands for the rest. Default 2
 
---- Ambient light times the share of the sky that is open, weighed by the cosine. Read from a scene, or made by
+--- Ambient light times the unoccluded share of the sky, weighted by the cosine. If read from a scene, or made by
 --- glint.ambient_occlusion, its fields are read-only: assign a whole table.
 ---@class glint.ambient_occlusion
 ---@field samples? integer  rays from each point seen, 1 .. 65536. Default 16
 ---@field distance? number  world units, > 0: surfaces farther away close nothing. Default math.huge
 
---- The scene's field of this name as a value, which a scene takes among its objects as well.
+--- Makes the scene's field of this name as a value, which a scene also accepts among its objects.
 ---@param fields glint.ambient_occlusion
 ---@return glint.ambient_occlusion
 function glint.ambient_occlusion(fields) end
@@ -652,13 +652,13 @@ function glint.ambient_occlusion(fields) end
 ---@class glint.scene: glint.scene_fields
 local scene = {}
 
---- Adds a shape, light or overlay, numbered after the others of its kind. Raises when it is in the scene already.
+--- Adds a shape, light or overlay, numbered after the others of its kind. Raises if it is in the scene already.
 ---@generic T: glint.shape|glint.light|glint.overlay|glint.ambient_occlusion
 ---@param object T
 ---@return T object  the same
 function scene:add(object) end
 
---- Takes a shape, light or overlay out. Raises when it is not there.
+--- Removes a shape, light or overlay. Raises if it is not in the scene.
 ---@param object glint.shape|glint.light|glint.overlay|glint.ambient_occlusion
 function scene:remove(object) end
 
@@ -669,24 +669,24 @@ function scene:remove(object) end
 ---@field object glint.shape
 ---@field element? integer  which of a glint.spheres, or which triangle of a mesh, from 1; nil for other shapes
 
---- The nearest hit of one ray, in doubles, by the kernels a frame uses.
+--- Returns the nearest hit of one ray, computed in double precision by the kernels of a frame.
 ---@param origin glint.vec3  world units
 ---@param direction glint.vec3  not zero, need not be unit
 ---@return glint.hit? hit  nil when nothing is hit
 function scene:cast(origin, direction) end
 
---- The shapes, then the lights, then labels and the like, each in the order of definition. `#scene` is their number.
+--- Returns the shapes, the lights, then the overlays, each in the order of definition. `#scene` is their number.
 ---@return (glint.shape|glint.light|glint.overlay)[]
 function scene:objects() end
 
---- Renders one frame. In a plain loop the calls are numbered from 1: a call that --frames or --shard leaves out returns
---- nil and "skipped". Nothing is written without `output`.
+--- Renders one frame. In a plain loop the calls are numbered from 1: a call that --frames or --shard excludes returns
+--- nil and "skipped". Without `output` nothing is written.
 ---@param options? glint.render
 ---@return glint.image? image
 ---@return "skipped"? reason
 function scene:render(options) end
 
---- Frees the scene, and everything that only it holds, at once.
+--- Frees the scene at once, and everything that only the scene retains.
 function scene:close() end
 
 ---@param fields glint.scene_table
@@ -756,7 +756,7 @@ function glint.scene(fields) end
 ---@field exposure number  stops, of its codes, as the script or --exposure says; only read
 local image = {}
 
---- One pixel, linear. (0, 0) is the top left.
+--- Returns one pixel, linear. (0, 0) is the top left.
 ---@param x integer  0 .. width - 1
 ---@param y integer  0 .. height - 1
 ---@param pass? glint.pass  Default "beauty"
@@ -765,27 +765,27 @@ local image = {}
 ---@return number b
 function image:pixel(x, y, pass) end
 
---- A pass as float32 numbers, little endian, row by row from the top: "<f" of string.unpack, "<f4" of NumPy. Light has three
---- numbers a pixel, depth, object_id and the like one.
+--- Returns a pass as float32 numbers, little endian, row by row from the top: "<f" of string.unpack, "<f4" of NumPy.
+--- Light has three numbers per pixel; depth, object_id and similar passes have one.
 ---@param pass? glint.pass  Default "beauty"
 ---@return string
 function image:bytes(pass) end
 
---- Writes a .png, .pfm, .npy or .exr, whole or not at all. Missing folders are made. Wrong use raises; a file that cannot be
---- written gives nil and a message.
+--- Writes a .png, .pfm, .npy or .exr, which appears whole or not at all. Missing folders are made. Wrong use raises; a
+--- failure to write the file returns nil and a message.
 ---@param path string
 ---@param options? glint.save_options
 ---@return true? done
 ---@return string? message
 function image:save(path, options) end
 
---- Gives the picture's memory back at once instead of when it is collected.
+--- Frees the picture's memory now instead of when it is collected.
 function image:close() end
 
 -- ---- Jobs ----
 
---- Parameters that `--set name=value` changes. Each is its default, or a table of it with limits.
---- They are read as `P.name`; the type is the default's.
+--- Parameters that `--set name=value` changes. Each is a default, or a table with the default and its limits.
+--- They are read as `P.name`. The default determines the type.
 ---@class glint.param
 ---@field [1] number|boolean|string  the default
 ---@field min? number  smallest value allowed
@@ -797,8 +797,8 @@ function image:close() end
 ---@return table<string, any>
 function glint.params(list) end
 
---- A number that knows how fast it changes with variables: what arithmetic and functions of `math` make of it does, too, and
---- fields of materials, lights, spheres, planes, cameras and scenes take it.
+--- A number with its derivatives by variables. Arithmetic and the functions of `math` compute further dual numbers.
+--- Fields of materials, lights, spheres, planes, cameras and scenes accept them.
 ---@class glint.dual
 ---@operator add(any): any
 ---@operator sub(any): any
@@ -808,13 +808,13 @@ function glint.params(list) end
 ---@operator pow(any): any
 ---@operator unm: any
 
---- A variable at a value: passes "d:<name>" are how fast the picture changes with it. At most 32 names in a script.
+--- A variable with a value: the pass "d:<name>" is the derivative of the picture by it. At most 32 names in a script.
 ---@param name string  1 to 31 bytes without blanks and commas
 ---@param value number
 ---@return glint.dual
 function glint.variable(name, value) end
 
---- The plain number.
+--- Returns the plain number.
 ---@param x glint.dual|number
 ---@return number
 function glint.value(x) end
@@ -829,7 +829,7 @@ function glint.value(x) end
 ---@class glint.animation: glint.animation_fields
 local animation = {}
 
---- Renders the frames. For plain Lua; the command runs what a script returns.
+--- Renders the frames. For plain Lua: the command renders the frames that a script returns.
 ---@param options? table
 function animation:run(options) end
 
@@ -837,8 +837,8 @@ function animation:run(options) end
 ---@return glint.animation
 function glint.animation(fields) end
 
---- A contact sheet of a sweep's frames, drawn when all of them are there: rows of labelled pictures with the names of the
---- axes, as a picture, or as a page with a slider for each axis.
+--- A contact sheet of a sweep's frames, drawn when all of them are finished: rows of labelled pictures with the names
+--- of the axes, as a picture, or as a page with a slider for each axis.
 ---@class glint.sheet
 ---@field label? boolean|string|fun(values: table<string, any>, n: integer): string  under each picture: true, every axis and its value; false, nothing; "n = {shininess}", with {file} and {frame} too; or what the function makes of the values by name. Default true
 ---@field columns? integer  pictures in a row of a .png, 1 .. 65535. Default: the values of the first axis
@@ -860,7 +860,7 @@ function glint.animation(fields) end
 ---@class glint.sweep: glint.sweep_fields
 local sweep = {}
 
---- Renders the frames. For plain Lua; the command runs what a script returns.
+--- Renders the frames. For plain Lua: the command renders the frames that a script returns.
 ---@param options? table
 function sweep:run(options) end
 
@@ -870,16 +870,16 @@ function glint.sweep(fields) end
 
 -- ---- Patterns and shaders ----
 
--- A function that says what a material is at a point, or what one light leaves there. It is called once a frame, with
--- symbols instead of numbers; its operations on them are recorded as a program, which runs at the speed of a kernel
--- with the bits of plain Lua. Loops and calls are unrolled; variables outside may change from frame to frame. What is
--- not known yet cannot be compared: `a < b`, `==`, `#`, `..` and math.sin of a symbol raise, and say what to write. `if`,
--- `and` and `or` cannot raise; a function of a new form is run by plain Lua at 64 points, too, and must give what the
--- program gives. A branch that none of them takes is not seen.
+-- A function that describes a material at a point, or the light that it reflects from one lamp. It is called once per
+-- frame with symbols instead of numbers. The operations on symbols are recorded as a program, which runs at the speed
+-- of a kernel and returns the bits of plain Lua. Loops and calls are unrolled. Variables outside may change between
+-- frames. Symbols cannot be compared: `a < b`, `==`, `#`, `..` and math.sin of a symbol raise, with a hint. `if`, `and`
+-- and `or` cannot raise, so plain Lua also runs each new function at 64 points and must return the program's results. A
+-- branch that no point takes goes undetected.
 
---- Three numbers or symbols: p, s.n, and results computed from them. `a + b`, `a - b`, `a * b`, `a / b`, `a % b`, `a // b`, `a ^ b`
---- and `-a` work component by component; either side may be a number or a symbol. Where an operation takes a vector, a
---- table with x, y and z or a list of three will do.
+--- Three numbers or symbols: p, s.n, and results computed from them. `a + b`, `a - b`, `a * b`, `a / b`, `a % b`,
+--- `a // b`, `a ^ b` and `-a` work by component; one side may be a number or a symbol. Operations on vectors also
+--- accept a table with x, y and z, or a list of three.
 ---@class glint.triple
 ---@field x number  also v[1]
 ---@field y number  also v[2]
@@ -910,11 +910,11 @@ function triple:cross(b) end
 ---@return number
 function triple:length() end
 
---- Divided by its length.
+--- Returns the vector divided by its length.
 ---@return glint.triple
 function triple:unit() end
 
---- A direction that arrives, after a mirror of that unit normal: d - 2 (n.d) n.
+--- Reflects an incident direction in a mirror with the unit normal n: d - 2 (n.d) n.
 ---@param n glint.values
 ---@return glint.triple
 function triple:reflect(n) end
@@ -924,7 +924,7 @@ function triple:reflect(n) end
 ---@return number z
 function triple:unpack() end
 
---- A number, a symbol, a vector, a table {x, y, z} of numbers and symbols, or (of operations by name) the name of a colour.
+--- A number, symbol, vector, table {x, y, z} of numbers and symbols, or (for named operations) the name of a colour.
 ---@alias glint.values glint.triple|glint.vector|number[]|number|string
 
 --- The inputs of a function at a point.
@@ -943,13 +943,13 @@ function triple:unpack() end
 ---@field ks glint.triple  of shaders: the material's specular
 ---@field shininess number  of shaders: the material's
 
---- A colour or a number at each point. Of a material's fields diffuse, ambient, specular, mirror, transmission, shininess,
---- roughness, bump and opacity take one, of a scene's background. `#pattern` is the length of its program, `tostring(pattern)` the program; `pattern(p, s)`
---- calls the function. NaN and negative values count as 0.
+--- A colour or a number at each point. The material fields diffuse, ambient, specular, mirror, transmission, shininess,
+--- roughness, bump and opacity accept patterns, and a scene's background. `#pattern` is its program's length,
+--- `tostring(pattern)` the program; `pattern(p, s)` calls the function. NaN and negative values count as 0.
 ---@class glint.pattern
 local pattern = {}
 
---- The colour at a point, by the frame's kernel; of one number, three times that. Values of `s` go by their names.
+--- Returns the colour at a point, by the frame's kernel; a single number three times. Values of `s` have their names.
 ---@param at table  {p = {x, y, z}, uv = {u, v}, n = ..., ...}
 ---@return glint.vector
 function pattern:evaluate(at) end
@@ -958,12 +958,12 @@ function pattern:evaluate(at) end
 ---@return glint.pattern
 function glint.pattern(f) end
 
---- The light that a point reflects from one lamp: the diffuse part, and optionally the specular one. It is a material's `model`, and
---- called where n.l > 0. Ambient light stays the engine's.
+--- The light that a point reflects from one lamp: the diffuse part and, optionally, the specular part. It is a
+--- material's `model`, and is called where n.l > 0. Ambient light stays the engine's.
 ---@class glint.shader
 local shader = {}
 
---- Both parts at a point, by the frame's kernel.
+--- Returns both parts at a point, computed by the frame's kernel.
 ---@param at table  {n = {x, y, z}, l = ..., v = ..., light = ..., kd = ..., ...}
 ---@return glint.reflection
 function shader:evaluate(at) end
@@ -978,16 +978,16 @@ function glint.shader(f) end
 ---@field filter? "bilinear"|"nearest"  between four texels, of a picture made smaller as the footprint calls for; or the texel itself. Default "bilinear"
 ---@field transfer? "srgb"|"linear"  how its codes are meant. Default "srgb", but for a picture that says that it is linear
 
---- A picture. Inside a pattern it is called: photo(u, v, footprint) or photo(s.uv, s.uv_footprint) is a vector of red,
---- green and blue, with alpha as its field `a`; (0, 0) is the lower left corner, (1, 1) the upper right one, and without a
---- footprint the picture is taken as it is. As the value of a material's field it lies there by the shape's uv, as a scene's
+--- A picture. Inside a pattern call it: photo(u, v, footprint) or photo(s.uv, s.uv_footprint) returns red, green and
+--- blue as a vector, and alpha as its field `a`. (0, 0) is the lower left corner, (1, 1) the upper right one. Without a
+--- footprint the picture is not filtered. As a material's field the texture is placed by the shape's uv, as a scene's
 --- background by the direction.
 ---@class glint.texture: glint.texture_fields
 ---@field width integer  pixels
 ---@field height integer  pixels
 local texture = {}
 
---- The colour at {uv = {u, v}}, by the frame's kernel.
+--- Returns the colour at {uv = {u, v}}, computed by the frame's kernel.
 ---@param at table
 ---@return glint.vector
 function texture:evaluate(at) end
@@ -996,11 +996,11 @@ function texture:evaluate(at) end
 ---@return glint.texture
 function glint.texture(fields) end
 
---- A function that gives the colour of a number: viridis, magma and cividis run evenly from dark to light, turbo through the
---- rainbow, coolwarm from blue over grey to red, for numbers on both sides of a middle. Numbers beyond the range have the
---- colours of its ends. Inside a pattern it takes symbols, too, and gives the same bits.
---- A map of one's own is a list of colours, evenly from low to high, or a function that gives the colour of a share 0 .. 1; it has 256
---- steps.
+--- A function from numbers to colours: viridis, magma and cividis run evenly from dark to light, turbo
+--- through the rainbow, coolwarm from blue over grey to red, for numbers on both sides of a middle. Numbers
+--- beyond the range get the colours of its ends. Inside a pattern it also accepts symbols, with the same
+--- bits. A map of your own is a list of evenly spaced colours, or a function from 0 .. 1 to a colour; it has
+--- 256 steps.
 ---@param map "viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|glint.color[]|fun(share: number): glint.color
 ---@param low? number  what the first colour stands for. Default 0
 ---@param high? number  what the last one stands for, another number than low. Default 1
@@ -1011,9 +1011,9 @@ function glint.colormap(map, low, high, scale, missing) end
 
 -- ---- Operations ----
 
--- For numbers, with the same bits on every machine; inside a pattern for symbols, with the same bits again. Those of
--- numbers take vectors, too, component by component; a number with a vector counts for each component. The results of
--- less and its like are 1 and 0; as a condition every number but 0 is true.
+-- For numbers, with the same bits on every machine; inside a pattern also for symbols, with the same bits again.
+-- Operations on numbers also accept vectors and work by component; a number is combined with each component.
+-- Comparisons such as less return 1 or 0. As a condition every number except 0 is true.
 
 ---@param a glint.values
 ---@param b glint.values
@@ -1039,7 +1039,7 @@ function glint.unit(a) end
 ---@return glint.triple
 function glint.reflect(d, n) end
 
---- From three numbers or symbols, or from one value for all of them.
+--- Makes a vector from three numbers or symbols, or from one value for all of them.
 ---@param x glint.values
 ---@param y? number
 ---@param z? number
@@ -1083,14 +1083,14 @@ function glint.abs(a) end
 ---@return any
 function glint.sqrt(a) end
 
---- a < b ? a : b; of more values the least.
+--- a < b ? a : b; of more values the smallest.
 ---@param a glint.values
 ---@param b glint.values
 ---@param ... glint.values
 ---@return any
 function glint.min(a, b, ...) end
 
---- a > b ? a : b; of more values the greatest.
+--- a > b ? a : b; of more values the largest.
 ---@param a glint.values
 ---@param b glint.values
 ---@param ... glint.values
@@ -1105,7 +1105,7 @@ function glint.floor(a) end
 ---@return any
 function glint.ceil(a) end
 
---- To the nearest whole number, halves away from 0.
+--- Rounds to the nearest whole number, halves away from 0.
 ---@param a glint.values
 ---@return any
 function glint.round(a) end
@@ -1115,7 +1115,7 @@ function glint.round(a) end
 ---@return any
 function glint.fract(a) end
 
---- a % b of Lua on floats.
+--- a % b as in Lua on floats.
 ---@param a glint.values
 ---@param b glint.values
 ---@return any
@@ -1172,24 +1172,24 @@ function glint.lesseq(a, b) end
 ---@return any
 function glint.equal(a, b) end
 
---- Both; a word of Lua, so that it is written glint["and"](a, b).
+--- 1 if both are true. `and` is a keyword of Lua: write glint["and"](a, b).
 ---@param a glint.values
 ---@param b glint.values
 ---@return any
 glint["and"] = function(a, b) end
 
---- Either.
+--- 1 if either is true. `or` is a keyword of Lua: write glint["or"](a, b).
 ---@param a glint.values
 ---@param b glint.values
 ---@return any
 glint["or"] = function(a, b) end
 
---- 1 of 0, else 0.
+--- 1 if a is 0, else 0.
 ---@param a glint.values
 ---@return any
 glint["not"] = function(a) end
 
---- a where c is true, else b. Both are computed.
+--- a if c is true, else b. Both are computed.
 ---@param c glint.values
 ---@param a glint.values
 ---@param b glint.values
@@ -1209,7 +1209,7 @@ function glint.step(edge, x) end
 ---@return any
 function glint.smoothstep(a, b, x) end
 
---- Not below a, not above b.
+--- Clamps the value to the range from a to b.
 ---@param x glint.values
 ---@param a glint.values
 ---@param b glint.values
@@ -1243,8 +1243,8 @@ function glint.pow(a, b) end
 
 ---@alias glint.easing "linear"|"smooth"|"smoother"|"in"|"out"
 
---- A share of a way for a share of its time: 0 before it, 1 after it. smooth (the default): 3 t^2 - 2 t^3; smoother:
---- 6 t^5 - 15 t^4 + 10 t^3; in: t^2; out: 2 t - t^2.
+--- Returns the share of a motion done at a share of its time: 0 before the start, 1 after the end. smooth (the
+--- default): 3 t^2 - 2 t^3; smoother: 6 t^5 - 15 t^4 + 10 t^3; in: t^2; out: 2 t - t^2.
 ---@param t number
 ---@param kind glint.easing?
 ---@return number  0 .. 1
@@ -1255,8 +1255,8 @@ function glint.ease(t, kind) end
 ---@field ease (glint.easing|"spline")?  of the way from each key to the next; spline: through the keys without a halt (Catmull-Rom)
 ---@field cyclic boolean?  after the last key the first comes again
 
---- A function of time through keys: a number, a vector for values of three, else a list. Before the first key it has the first's value,
---- after the last the last's.
+--- Returns a function of time through keys. It returns a number, a vector for values of three numbers, otherwise a
+--- list. Before the first key it returns the first value, after the last key the last value.
 ---@param keys glint.keys
 ---@return fun(t: number): any
 function glint.keys(keys) end
@@ -1272,7 +1272,7 @@ function glint.atan2(y, x) end
 ---@return any
 function glint.acos(a) end
 
---- cosine ^ shininess as the built-in models have it, 0 where the cosine is not above 0.
+--- cosine ^ shininess as in the built-in models, 0 where the cosine is not above 0.
 ---@param cosine glint.values
 ---@param shininess glint.values
 ---@return any
@@ -1283,18 +1283,18 @@ function glint.highlight(cosine, shininess) end
 ---@return number
 function glint.noise(p, y, z) end
 
---- Three of them, unlike.
+--- Returns three independent noise values.
 ---@param p glint.values
 ---@return glint.triple
 function glint.noise3(p, y, z) end
 
---- Distances to the nearest and to the next of points of which each unit cube has one.
+--- Returns the distances to the nearest and second nearest of random points, one in each unit cube.
 ---@param p glint.values
 ---@return number first
 ---@return number second
 function glint.cell(p, y, z) end
 
---- A number of [0, 1) that has nothing to do with that of other places.
+--- Returns a pseudo-random number in [0, 1), independent of the numbers at other points.
 ---@param p glint.values
 ---@return number
 function glint.hash(p, y, z) end
@@ -1304,21 +1304,21 @@ function glint.hash(p, y, z) end
 ---@return number
 function glint.parity(p, y, z) end
 
---- The parity of a place: 0 or 1. With a footprint, a number or a vector, the mean over a box of that width around p; a
---- component that is a whole number lies in its surface and has no mean.
+--- The parity of a point: 0 or 1. With a footprint (a number or vector) the mean over a box of that width around p. A
+--- component that is a whole number is not averaged: the surface lies in that plane.
 ---@param p glint.values
 ---@param footprint? glint.values
 ---@return number
 function glint.checker(p, footprint) end
 
---- The parity of floor(x), with a footprint its mean over that width.
+--- The parity of floor(x); with a footprint, its mean over that width.
 ---@param x number
 ---@param footprint? number
 ---@return number
 function glint.stripe(x, footprint) end
 
---- Bricks of one by one unit in x and y, every other row moved by half a brick: 1 on a brick, 0 on the mortar along its left
---- and lower sides. With a footprint, the mean over that width.
+--- Bricks of one by one unit in x and y, with every other row shifted by half a brick: 1 on a brick, 0 on the mortar
+--- along its left and lower sides. With a footprint, the mean over that width.
 ---@param p glint.values
 ---@param mortar? number  its width. Default 0.1
 ---@param footprint? number
@@ -1342,19 +1342,19 @@ function glint.log(x) end
 
 -- ---- Pictures that are there ----
 
---- A finished picture or a photo. Its numbers are linear light, whatever the file holds.
+--- A finished picture or a photo. Its numbers are linear light, whatever the file stores.
 ---@class glint.picture
 ---@field width integer  pixels; only read
 ---@field height integer  pixels; only read
 local picture = {}
 
---- Red, green and blue; (0, 0) is the top left.
+--- Returns red, green and blue; (0, 0) is the top left.
 ---@param x integer
 ---@param y integer
 ---@return number, number, number
 function picture:pixel(x, y) end
 
---- All pixels as float32 numbers, little endian, three a pixel, row by row from the top.
+--- Returns all pixels as float32 numbers, little endian, three per pixel, row by row from the top.
 ---@return string
 function picture:bytes() end
 

@@ -1,4 +1,4 @@
-// glint.colormap: a function that gives the colour of a number, within patterns and outside.
+// glint.colormap: a function from numbers to colours, inside and outside patterns.
 #include "bindings/pattern/pattern.h"
 
 #include <math.h>
@@ -6,14 +6,14 @@
 
 #define COLORMAP "glint.colormap" // the type of the userdata that hold the tables as textures
 #define ENTRIES 256
-#define MISSING_CODE 128 // of red, green and blue of missing values: grey
+#define MISSING_CODE 128 // red, green and blue of missing values: grey
 
 const char *const glintL_colormaps[] = { "viridis", "magma", "cividis", "turbo", "coolwarm", NULL };
 _Static_assert(sizeof glintL_colormaps / sizeof *glintL_colormaps == GLINT_COLORMAP_COUNT + 1, "a name each");
 
-static const char TEXTURES; // its address is the registry's key of those that were made, by number
+static const char TEXTURES; // its address is the registry's key of the textures made so far, by number
 
-// A table of sRGB codes as a picture of one row, between whose texels light is mixed.
+// Makes a texture of one row from a table of sRGB colours. Between texels it interpolates linear light.
 static glint_status make_texture(uint8_t rgb[ENTRIES][3], glint_texture **out, glint_error *error)
 {
     glint_texture_desc desc = glint_texture_desc_default();
@@ -51,7 +51,7 @@ static void push_texture(lua_State *L, glint_colormap which)
 
 // ---- Maps of a script's own ----
 
-// The colour on top as sRGB, 0 .. 1 each; pops it.
+// Reads the colour on top as sRGB, 0 .. 1 each; pops it.
 static void take_color(lua_State *L, const char *path, double out[3])
 {
     glintL_read_color(L, -1, path, out);
@@ -66,7 +66,7 @@ static void put_color(const double color[3], uint8_t out[3])
         out[c] = (uint8_t)(255 * color[c] + 0.5);
 }
 
-// The values of the function for 0 .. 1.
+// Samples the function over 0 .. 1.
 static void read_function(lua_State *L, int index, const char *what, uint8_t rgb[ENTRIES][3])
 {
     char path[96];
@@ -81,7 +81,7 @@ static void read_function(lua_State *L, int index, const char *what, uint8_t rgb
     }
 }
 
-// Between two colours codes are mixed, as in other programs' maps.
+// Interpolates sRGB values between two colours, like the maps of other programs.
 void glintL_read_colors(lua_State *L, int index, const char *what, uint8_t rgb[ENTRIES][3])
 {
     char path[96];
@@ -127,15 +127,15 @@ static int close_texture(lua_State *L)
     return 0;
 }
 
-// Whether the function is called with a missing value: a number that is none. Symbols of patterns are never missing.
+// Returns whether the argument is a missing value: NaN. Symbols of patterns are never missing.
 static bool is_missing(lua_State *L)
 {
     return lua_gettop(L) == 1 && lua_type(L, 1) == LUA_TNUMBER && isnan(lua_tonumber(L, 1));
 }
 
-// The function; its upvalues are the texture, the ends of its range, whether it is logarithmic, and the colour of missing
-// values. The middles of the first and the last texel are
-// these ends, and beyond them the colour of the nearer end.
+// The map's function. Upvalues: the texture, the ends of its range, whether it is logarithmic, and the colour of
+// missing values. The ends of the range are at the centres of the first and last texel. Values beyond them get the
+// colour of the nearer end.
 static int color_of(lua_State *L)
 {
     glint_texture *const *texture = lua_touserdata(L, lua_upvalueindex(1));
@@ -148,7 +148,7 @@ static int color_of(lua_State *L)
     if (lua_gettop(L) != 1)
         return glintL_error(L, "colormap: one number or symbol expected, got %d values", lua_gettop(L));
     glintL_term share = glintL_read_term(L, 1, "colormap");
-    if (lua_toboolean(L, lua_upvalueindex(4))) // of the logarithms: low and high are those, too
+    if (lua_toboolean(L, lua_upvalueindex(4))) // low and high are logarithms already
         share = glintL_apply1(L, GLINT_OP_LOG2, share);
     if (low != 0)
         share = glintL_apply2(L, GLINT_OP_SUB, share, glintL_number_term(low));

@@ -1,4 +1,4 @@
-// glint.pattern and glint.shader: a function of a script that becomes a program.
+// glint.pattern and glint.shader: turn a function of a script into a program.
 #include "bindings/pattern/pattern.h"
 
 #include <stdlib.h>
@@ -99,7 +99,7 @@ static int count_instructions(lua_State *L)
     return 1;
 }
 
-// The listing is C's own block: pushed under protection, so that it is freed.
+// Pushes the listing, a block of C's, in protected mode, so that an error still frees it.
 static int push_text(lua_State *L)
 {
     lua_pushstring(L, lua_touserdata(L, 1));
@@ -126,7 +126,7 @@ static int to_string(lua_State *L)
     return 1;
 }
 
-// The function itself: a pattern within another's function, or at plain numbers.
+// Calls the function, inside another pattern's function or with plain numbers.
 static int call(lua_State *L)
 {
     check_self(L);

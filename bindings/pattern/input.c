@@ -4,11 +4,11 @@
 #include <string.h>
 
 typedef struct field {
-    const char *name, *long_name; // the long one is material:evaluate's; NULL: it has none
-    glint_input first; // of `count` inputs that follow one another
+    const char *name, *long_name; // long_name: the name in material:evaluate; NULL: none
+    glint_input first; // the first of `count` consecutive inputs
     int count;
     bool is_of_shaders;
-    double initial[3]; // what evaluate{} takes where the field is not given
+    double initial[3]; // default in evaluate{}
 } field;
 
 static const field FIELDS[] = {
@@ -61,7 +61,7 @@ static void push_field(lua_State *L, const glintL_trace *trace, const field *f)
 
 void glintL_push_point(lua_State *L) { push_field(L, glintL_current_trace(L), &FIELDS[0]); }
 
-// 1: s, 2: the field's name. The field is stored in s.
+// Reads a field of s. 1: s, 2: the field's name. Stores the field in s.
 static int read_surroundings(lua_State *L)
 {
     const glintL_trace *trace = glintL_current_trace(L);

@@ -1,10 +1,10 @@
-// glint.NAME for the operations of programs: of plain numbers, of symbols, and of vectors component by component.
+// glint.NAME for the operations of programs: for plain numbers, symbols, and vectors by component.
 #include "bindings/pattern/pattern.h"
 
 #include <stdio.h>
 #include <string.h>
 
-// The operation is the upvalue of each function.
+// Returns the operation, the upvalue of each function.
 static glint_op this_op(lua_State *L) { return (glint_op)lua_tointeger(L, lua_upvalueindex(1)); }
 
 static void check_count(lua_State *L, const glint_op_info *info, int least, int most)
@@ -19,13 +19,13 @@ static void check_count(lua_State *L, const glint_op_info *info, int least, int 
     glintL_error(L, "%s: %d or %d arguments expected, got %d", info->name, least, most, count);
 }
 
-// Whether it gives 0 or 1.
+// Returns whether the operation's result is 0 or 1.
 static bool is_choice(glint_op op)
 {
     return (op >= GLINT_OP_LESS && op <= GLINT_OP_NOT) || op == GLINT_OP_STEP || op == GLINT_OP_PARITY;
 }
 
-// Operations that know nothing of places: each component of vectors for itself, a scalar with each of them.
+// Operations on numbers. Vectors are processed by component; a scalar is combined with each component.
 static int apply_each(lua_State *L)
 {
     const glint_op op = this_op(L);
@@ -54,7 +54,7 @@ static int apply_each(lua_State *L)
     return 1;
 }
 
-// Operations on a place: a vector, or x, y and z.
+// Operations on a point: a vector, or x, y and z.
 static int apply_place(lua_State *L)
 {
     const glint_op op = this_op(L);
@@ -80,7 +80,7 @@ static bool is_of_places(glint_op op)
            op == GLINT_OP_PARITY;
 }
 
-// min and max of more than two: of the first two, then of that and the next.
+// min and max of more than two arguments: combines the first two, then the result with the next.
 static int apply_fold(lua_State *L)
 {
     if (lua_gettop(L) <= 2)
@@ -122,7 +122,7 @@ static const struct {
 
 #define COMPOSED_COUNT (sizeof COMPOSED / sizeof *COMPOSED)
 
-// The upvalues: the function of plain numbers, the place in COMPOSED.
+// Upvalues: the function for plain numbers, the index in COMPOSED.
 static int apply_composed(lua_State *L)
 {
     const lua_Integer place = lua_tointeger(L, lua_upvalueindex(2));

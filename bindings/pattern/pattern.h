@@ -1,11 +1,11 @@
 /// Patterns and shaders: functions of a script that are traced to programs of the engine. Private to bindings/.
 ///
 ///   term.c        numbers and symbols in C: read from Lua, computed with, pushed
-///   symbol.c      glint.symbol: a number that is known at the point only, and its operators
+///   symbol.c      glint.symbol: a number that is known only at each point, and its operators
 ///   triple.c      glint.triple: three numbers or symbols, their operators and methods
 ///   operation.c   glint.NAME for every operation
 ///   tiling.c      glint.checker, stripe, brick
-///   input.c       what a function reads of a point: p, and the fields of s
+///   input.c       what a function can read at a point: p, and the fields of s
 ///   trace.c       a function called with symbols; its result as a program
 ///   points.c      the same function with plain numbers, against the program
 ///   functions.c   the objects that glint.pattern and glint.shader make
@@ -21,135 +21,137 @@
 
 #define GLINTL_SYMBOL "glint.symbol"
 #define GLINTL_TRIPLE "glint.triple"
-#define GLINTL_SURROUNDINGS "glint.surroundings" ///< s
+#define GLINTL_SURROUNDINGS "glint.surroundings" ///< the type of s
 
 // ---- term.c ----
 
-/// A number, or a symbol: a value of the builder of the function that is traced.
+/// A number, or a symbol: a value in the builder of the function that is being traced.
 typedef struct glintL_term {
     bool is_symbol;
     double number;
     glint_value value;
 } glintL_term;
 
-/// A scalar is three times the same term.
+/// A scalar has the same term three times.
 typedef struct glintL_operand {
     bool is_vector;
     glintL_term at[3];
 } glintL_operand;
 
-#define GLINTL_CHOICES_MAX 4096 ///< of a call that are told apart
+#define GLINTL_CHOICES_MAX 4096 ///< choices tracked in one call
 
-/// The symbols of a call that came from choices: glint.less, glint.checker and such, in their order.
+/// The symbols in a call that result from choices (glint.less, glint.checker and so on), in order.
 typedef struct glintL_choices {
     uint32_t count;
-    uint64_t used[GLINTL_CHOICES_MAX / 64]; ///< a bit each: something was made of it
-    char place[96]; ///< where the first of those came about that were not: "scene.lua:12: "; "": no second call looked
+    uint64_t used[GLINTL_CHOICES_MAX / 64]; ///< a bit for each choice: its result was used
+    char place[96]; ///< position of the first unused choice: "scene.lua:12: "; "": no second call looked for it
 } glintL_choices;
 
-/// A function that is running: with symbols, or (builder NULL) with the numbers of one point.
+/// A running function: with symbols or, if builder is NULL, with the numbers of one point.
 typedef struct glintL_trace {
     glint_builder *builder;
     const double *point; ///< GLINT_INPUT_COUNT numbers; NULL: symbols
     bool is_shader;
-    bool has_power; ///< `^` was used with other bits than C's pow
+    bool has_power; ///< `^` was used with bits that may differ from C's pow
     glintL_choices choices;
-    glintL_choices *before; ///< of the same function: a choice that was not used there is false; NULL: none is
-    uint64_t serial; ///< no two of a Lua state have the same
-    struct glintL_trace *outer; ///< the function within which this one was called, or NULL
-    char place[96]; ///< where the function begins: "scene.lua:12: "
-    int64_t steps; ///< of Lua, about, of the outermost one
-    lua_Hook hook; ///< the state's hook before the outermost call; restored after it
+    glintL_choices *before; ///< from the function's previous call: choices unused there are false now; NULL: none is
+    uint64_t serial; ///< unique in its Lua state
+    struct glintL_trace *outer; ///< the function that called this one, or NULL
+    char place[96]; ///< position of the function: "scene.lua:12: "
+    int64_t steps; ///< approximate Lua instructions of the outermost function
+    lua_Hook hook; ///< the state's hook before the outermost call, which restores it
     int hook_mask, hook_count;
 } glintL_trace;
 
-/// The innermost one, or NULL.
+/// Returns the innermost running function, or NULL.
 glintL_trace *glintL_current_trace(lua_State *L);
-void glintL_enter_trace(lua_State *L, glintL_trace *trace); ///< gives it a serial number
+void glintL_enter_trace(lua_State *L, glintL_trace *trace); ///< assigns a serial number
 void glintL_leave_trace(lua_State *L, const glintL_trace *trace);
 
 glintL_term glintL_number_term(double number);
 /// results  written: as many as the operation has.
 ///
-/// Numbers alone give numbers, with the bits that the program would have.
+/// If all operands are numbers, so are the results, with the bits that the program would compute.
 void glintL_apply(lua_State *L, glint_op op, const glintL_term *operands, glintL_term *results);
 glintL_term glintL_apply1(lua_State *L, glint_op op, glintL_term a);
 glintL_term glintL_apply2(lua_State *L, glint_op op, glintL_term a, glintL_term b);
 glintL_term glintL_apply3(lua_State *L, glint_op op, glintL_term a, glintL_term b, glintL_term c);
 glintL_term glintL_dot_terms(lua_State *L, const glintL_term a[3], const glintL_term b[3]);
 
-/// False: the value is not a number, symbol, vector, triple, list of three of them, or (when allow_color) name of a colour.
+/// Reads an operand. False: the value is not a number, symbol, vector, triple, list of three of them, or (if
+/// allow_color) name of a colour.
 bool glintL_to_operand(lua_State *L, int index, bool allow_color, glintL_operand *out);
-/// Raises "<path>: number, symbol or vector expected, got ..."
+/// The same, but raises "<path>: number, symbol or vector expected, got ...".
 void glintL_read_operand(lua_State *L, int index, const char *path, glintL_operand *out);
-/// One number or symbol.
+/// Reads one number or symbol.
 glintL_term glintL_read_term(lua_State *L, int index, const char *path);
-/// A vector in one argument, or three numbers; returns the index after it.
+/// Reads a point: a vector in one argument, or three numbers. Returns the index after it.
 int glintL_read_place(lua_State *L, int index, const char *path, glintL_term out[3]);
 void glintL_push_term(lua_State *L, glintL_term term);
-void glintL_push_choice(lua_State *L, glintL_term term); ///< like glintL_push_term, for a value that is 0 or 1; see glintL_trace.before
+void glintL_push_choice(lua_State *L, glintL_term term); ///< for a value of 0 or 1; see glintL_trace.before
 void glintL_push_operand(lua_State *L, const glintL_operand *operand);
 
 // ---- symbol.c, triple.c ----
 
-/// The metamethods of arithmetic, of symbols, triples and vectors.
+/// Sets the arithmetic metamethods of symbols, triples and vectors.
 void glintL_set_arithmetic(lua_State *L);
-/// Metamethods shared by symbols and triples: arithmetic, and those that raise.
+/// Sets the metamethods shared by symbols and triples: arithmetic, and those that raise.
 void glintL_set_operators(lua_State *L);
-/// Three numbers are pushed as a vector.
+/// Pushes a triple; three plain numbers become a vector.
 void glintL_push_triple(lua_State *L, const glintL_term v[3]);
-/// The same of red, green, blue and alpha, with a field `a`.
+/// The same for red, green, blue and alpha, with a field `a`.
 void glintL_push_color(lua_State *L, const glintL_term v[4]);
 
 // ---- input.c ----
 
-/// Pushes `p`, and `s`, whose fields are made when they are read.
+/// Push `p` and `s`. The fields of `s` are made when they are first read.
 void glintL_push_point(lua_State *L);
 void glintL_push_surroundings(lua_State *L);
-/// Reads {p = ..., uv = ...} at `index`; missing fields have defaults.
+/// Reads {p = ..., uv = ...} at `index`. Missing fields get defaults.
 void glintL_read_inputs(lua_State *L, int index, bool is_shader, double inputs[GLINT_INPUT_COUNT]);
 
 // ---- trace.c ----
 
-/// The result of a traced function, as a userdata on the stack that holds a reference to the program.
+/// The result of a traced function: a userdata on the stack that owns a reference to the program.
 typedef struct glintL_traced {
     glint_program *program;
     bool has_power;
 } glintL_traced;
 
-/// Runs a function. It marks the end of the script's Lua code on the call stack, see glintL_traced_place.
+/// Runs a function. Marks the end of the script's Lua code on the call stack, see glintL_traced_place.
 int glintL_call_function(lua_State *L);
-/// Calls the function of the pattern at `index` and pushes what it gave; the 64 points are looked at when its structure is new.
-/// As a background a texture goes around, whatever it does at its border elsewhere.
+/// Runs the function of the pattern at `index` and pushes its program. Compares a new structure with plain Lua at 64
+/// points. is_background: a texture wraps around in u, whatever its own wrap mode.
 glintL_traced *glintL_make_program(lua_State *L, int index, bool is_background);
-/// Runs the function of the pattern at `index` with the numbers of a point.
-/// Returns how many numbers it gave, as the program's outputs are counted.
+/// Runs the function of the pattern at `index` with the numbers of a point. Returns how many numbers it returned,
+/// counted like the program's outputs.
 size_t glintL_run_on_numbers(lua_State *L, int index, const double inputs[GLINT_INPUT_COUNT], double *outputs);
 
-/// Pushes where the function of the pattern at `index` begins, "scene.lua:12: "; "": it has none.
+/// Pushes the position of the function of the pattern at `index`, "scene.lua:12: "; "": it has no function.
 const char *glintL_push_pattern_place(lua_State *L, int index);
 
 // ---- points.c ----
 
-/// Raises when plain Lua and the program differ at one of 64 points.
+/// Raises if plain Lua and the program differ at one of 64 points.
 void glintL_compare_points(lua_State *L, int index, const glintL_traced *traced);
 
 // ---- functions.c ----
 
-/// The function of a pattern or shader is the user value 1, the structures that were looked at are the keys of the table 2.
+/// User value 1 is the function of a pattern or shader. User value 2 is a table whose keys are the structures already
+/// compared.
 typedef struct glintL_pattern {
     glint_program_kind kind;
-    glint_texture *texture; ///< of glint.texture, whose user value 1 has its fields; NULL: there is a function
+    glint_texture *texture; ///< of glint.texture, whose user value 1 has its fields; NULL: a function
 } glintL_pattern;
 
-/// A pattern, shader or texture; NULL when the value at index is none.
+/// Returns a pattern, shader or texture; NULL: the value at index is none.
 glintL_pattern *glintL_to_pattern(lua_State *L, int index);
 glintL_pattern *glintL_push_pattern(lua_State *L, glint_program_kind kind, const char *type);
-int glintL_pattern_evaluate(lua_State *L); ///< the method
+int glintL_pattern_evaluate(lua_State *L); ///< the method `evaluate`
 
 // ---- texture.c ----
 
-/// Red, green, blue and alpha of a texture at u, v, of a footprint; numbers give numbers.
+/// Computes red, green, blue and alpha of a texture at u, v with a footprint. Numbers give numbers.
 void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[3], glintL_term out[4]);
 
 // ---- What patterns.c opens ----

@@ -1,12 +1,12 @@
-// Materials and scenes whose fields hold patterns. The userdata of such an object keeps them; the object itself gets their
-// programs each time that a frame is planned.
+// Materials and scenes whose fields hold patterns. The userdata of such an object stores the patterns. The object gets
+// their programs each time that a frame is planned.
 #include "bindings/pattern/pattern.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static const char PATTERNED; // its address is the registry's key of materials' userdata that keep patterns, as weak keys
-static const char CLOSED; // and of those that a script has closed, of materials that may still be in a scene
+static const char PATTERNED; // its address is the registry's key of materials' userdata with patterns, as weak keys
+static const char CLOSED; // the same for userdata that a script has closed, whose materials may still be in a scene
 
 void glintL_refuse_within_trace(lua_State *L, const char *what)
 {
@@ -19,7 +19,7 @@ void glintL_refuse_within_trace(lua_State *L, const char *what)
 static void note_patterned(lua_State *L, int index)
 {
     if (!luaL_testudata(L, index, GLINTL_MATERIAL))
-        return; // a scene is found without
+        return; // scenes are found without a list
     glintL_push_table(L, &PATTERNED);
     if (!lua_getmetatable(L, -1)) {
         lua_createtable(L, 0, 1);
@@ -40,7 +40,7 @@ void glintL_keep_source(lua_State *L, int index, const glintL_field *field, int 
     luaL_checkstack(L, 8, "pattern");
     index = lua_absindex(L, index);
     if (!is_source && !glintL_push_kept(L, index, field->name))
-        return; // the common case: there was none, and there is none
+        return; // the common case: no pattern before and after
     if (!is_source) {
         lua_pushnil(L);
         glintL_keep(L, index, field->name, -1);
@@ -87,8 +87,9 @@ void glintL_keep_closed(lua_State *L, int index)
 
 // ---- Tracing ----
 
-// Pushes what the pattern on top gave in this frame; a pattern of several fields is called once. `frame` is the index of the
-// table of those that were. A texture is another program as a background, and no other field takes one there.
+// Pushes the result of the pattern on top for this frame. A pattern used in several fields runs once. `frame` is the
+// index of the table of results. A background texture has a separate program, because no other field uses a texture in
+// that way.
 static void push_traced(lua_State *L, int frame, bool is_background)
 {
     lua_pushvalue(L, -1);
@@ -101,7 +102,7 @@ static void push_traced(lua_State *L, int frame, bool is_background)
     lua_rawset(L, frame);
 }
 
-// Whether some number of the program changes with a variable.
+// Returns whether a number of the program depends on a variable.
 static bool changes(const glint_program *program)
 {
     bool any = false;
@@ -110,14 +111,14 @@ static bool changes(const glint_program *program)
     return any;
 }
 
-// Pushes where the function of the field's pattern begins.
+// Pushes the position of the function of the field's pattern.
 static const char *push_place(lua_State *L, int index, const glintL_field *field)
 {
     luaL_checkstack(L, 4, "message");
     return glintL_push_kept(L, index, field->name) ? glintL_push_pattern_place(L, -1) : lua_pushliteral(L, "");
 }
 
-// The engine names the field first: the message begins where the function of its pattern does.
+// Raises the engine's error, with the position of the function of the field that the message names first.
 static void refuse_field(lua_State *L, int index, const char *name, const glintL_field *fields, glint_status status,
                          const glint_error *error)
 {
@@ -134,7 +135,7 @@ static void refuse_field(lua_State *L, int index, const char *name, const glintL
     glintL_check_status(L, name, error, status);
 }
 
-// Gives the object whose userdata is at `index` the programs of its patterns.
+// Sets the programs of the patterns in the object whose userdata is at `index`.
 static void trace_object(lua_State *L, int index, const char *type, int frame)
 {
     const int top = lua_gettop(L);
@@ -152,14 +153,14 @@ static void trace_object(lua_State *L, int index, const char *type, int frame)
             push_traced(L, frame, strcmp(type, GLINTL_SCENE) == 0);
     lua_settop(L, top);
     void *object = glintL_test_object(L, index, type);
-    if (!object) // a function closed it
+    if (!object) // a pattern's function has closed it
         return;
     class->get(object, &desc);
     for (const glintL_field *field = fields; field->name; field++) {
         glint_program *program = NULL;
         if (!field->program_offset || !glintL_push_kept(L, index, field->name))
             continue;
-        lua_rawget(L, frame); // of a pattern that was assigned meanwhile there is none
+        lua_rawget(L, frame); // a pattern assigned in the meantime has no result
         const glintL_traced *traced = lua_touserdata(L, -1);
         if (traced)
             program = traced->program;
@@ -192,8 +193,8 @@ void glintL_trace_material(lua_State *L, int index)
 
 typedef struct entry {
     const glint_material *material;
-    lua_Integer place; // of its userdata in a list
-    size_t met; // its number among the scene's backgrounds, from 1; 0: it belongs to another scene
+    lua_Integer place; // of its userdata, in a list
+    size_t met; // number of the scene's background, from 1; 0: another scene's
 } entry;
 
 typedef struct entries {
@@ -227,7 +228,7 @@ static void meet(entries *all, const glint_shape *shape)
         meet(all, glint_group_child(shape, i));
 }
 
-// Pushes a list of the userdata that keep patterns, and the entries of their materials.
+// Pushes a list of the userdata that store patterns, and the entries of their materials.
 static entries *push_entries(lua_State *L)
 {
     size_t count = 0;
@@ -251,7 +252,7 @@ static entries *push_entries(lua_State *L)
     return all;
 }
 
-// The scene's own patterns, with a table of their programs.
+// Traces the scene's own patterns, with a table of their programs.
 static void trace_background(lua_State *L, const glint_scene *scene)
 {
     const int top = lua_gettop(L);
@@ -273,7 +274,7 @@ void glintL_trace_scene(lua_State *L, const glint_scene *scene)
             meet(all, glint_scene_shape_at(scene, i));
         qsort(all->items, all->count, sizeof *all->items, by_turn);
     }
-    lua_newtable(L); // what the patterns gave
+    lua_newtable(L); // the results of patterns
     for (size_t i = 0; i < all->count; i++) {
         if (all->items[i].met == 0)
             continue;

@@ -1,4 +1,4 @@
-// Opens the module's functions for patterns, and tells other values about them.
+// Opens the module's functions for patterns, and registers them with the other values.
 #include "bindings/pattern/pattern.h"
 
 static const luaL_Reg METHODS[] = {

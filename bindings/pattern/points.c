@@ -1,7 +1,8 @@
-// A pattern's function run by plain Lua at 64 points, against the program that was traced from it.
+// Runs a pattern's function in plain Lua at 64 points and compares the results with the traced program.
 //
-// Lua 5.4 has no way to trap `if`, `and`, `or` and `==` on a symbol, where a symbol is always true and equal to no number.
-// Such a function gives other numbers in plain Lua at some of the points; one with something random does at all of them.
+// Lua 5.4 cannot intercept `if`, `and`, `or` and `==` on a symbol: a symbol is always true and equal to no number. A
+// function that uses them returns other numbers in plain Lua at some of the points. A function that uses random numbers
+// differs at all of them.
 #include "bindings/pattern/pattern.h"
 
 #include <math.h>
@@ -9,9 +10,9 @@
 #include <string.h>
 
 #define POINTS 64
-#define POWER_TOLERANCE 1e-6 // relative; of functions with `^`, whose last bits are C's in plain Lua
+#define POWER_TOLERANCE 1e-6 // relative; for functions with `^`, which plain Lua computes with C's pow
 
-// SplitMix64: G. Steele et al., "Fast splittable pseudorandom number generators", OOPSLA 2014. 0 .. 1.
+// SplitMix64: G. Steele et al., "Fast splittable pseudorandom number generators", OOPSLA 2014. Returns 0 .. 1.
 static double next_number(uint64_t *state)
 {
     uint64_t z = *state += 0x9e3779b97f4a7c15u;
@@ -22,7 +23,7 @@ static double next_number(uint64_t *state)
 
 static double between(uint64_t *state, double low, double high) { return low + (high - low) * next_number(state); }
 
-// A unit vector with z above 0.1.
+// Makes a unit vector with z above 0.1.
 static void make_direction(uint64_t *state, double v[3])
 {
     const double z = between(state, 0.1, 1), side = sqrt(1 - z * z), angle = between(state, 0, 6.283185307179586);
@@ -31,7 +32,7 @@ static void make_direction(uint64_t *state, double v[3])
     v[2] = z;
 }
 
-// Most points are anywhere in -20 .. 20; some are near the origin, on whole numbers, and at 0 itself.
+// Most points are anywhere in -20 .. 20. Some are near the origin, at whole numbers, and at 0.
 static void make_place(uint64_t *state, int number, double p[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -90,7 +91,7 @@ static void refuse(lua_State *L, int index, const double in[GLINT_INPUT_COUNT], 
     lua_error(L);
 }
 
-// One number is grey; a specular part that is not given is black.
+// Returns output i. A single number is grey; a missing specular part is black.
 static double at(const double *outputs, size_t count, size_t i)
 {
     return count == 1 ? outputs[0] : i < count ? outputs[i] : 0;

@@ -1,10 +1,10 @@
-// material:evaluate of a material that has programs: they are run at one point, and their numbers take the fields' places.
+// material:evaluate for a material with programs: runs them at one point, and uses the results as the fields' values.
 #include "bindings/pattern/pattern.h"
 
 #include <math.h>
 #include <string.h>
 
-// Returns a number as a frame takes it: NaN and negative values become 0.
+// Returns a number as a frame uses it: NaN and negative values become 0.
 static double reflectance(double x) { return x > 0 ? fmin(x, 0x1p100) : 0; }
 
 static glint_status run(const glint_program *program, const double inputs[GLINT_INPUT_COUNT], double *out, size_t count,

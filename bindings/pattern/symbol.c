@@ -1,4 +1,4 @@
-// glint.symbol: a number that is known at the point only. Operators on it write the program.
+// glint.symbol: a number that is known only at each point. Operators on it write the program.
 #include "bindings/pattern/pattern.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 
 // ---- Powers ----
 
-#define PRODUCTS_MAX 16 // whole exponents up to it are products
+#define PRODUCTS_MAX 16 // largest whole exponent computed by products
 
 static glintL_term whole_power(lua_State *L, glintL_term base, int exponent)
 {
@@ -22,7 +22,7 @@ static glintL_term whole_power(lua_State *L, glintL_term base, int exponent)
     return power;
 }
 
-// x ^ 2 is x * x in Lua, too. Other powers are C's pow there and may differ in their last bits here.
+// In Lua x ^ 2 is x * x, too. Other powers use C's pow there, so their last bits may differ from the program's.
 static glintL_term power_of(lua_State *L, glintL_term base, glintL_term exponent)
 {
     const double e = exponent.number;
@@ -43,10 +43,10 @@ static glintL_term operate(lua_State *L, glint_op op, glintL_term a, glintL_term
 {
     const bool is_number = !a.is_symbol && !b.is_symbol;
     if (op == GLINT_OP_POW && is_number)
-        return glintL_number_term(b.number == 2 ? a.number * a.number : pow(a.number, b.number)); // Lua's
+        return glintL_number_term(b.number == 2 ? a.number * a.number : pow(a.number, b.number)); // as in Lua
     if (op == GLINT_OP_POW)
         return power_of(L, a, b);
-    if (op == GLINT_OP_FLOOR) // of the quotient
+    if (op == GLINT_OP_FLOOR) // floor of the quotient
         return glintL_apply1(L, GLINT_OP_FLOOR, glintL_apply2(L, GLINT_OP_DIV, a, b));
     return glintL_apply2(L, op, a, b);
 }
@@ -59,7 +59,7 @@ static int apply_operator(lua_State *L, glint_op op)
     };
     glintL_operand a, b, result;
     for (int i = 1; i <= 2; i++)
-        if (lua_type(L, i) == LUA_TSTRING) // Lua would take "1" for a number
+        if (lua_type(L, i) == LUA_TSTRING) // Lua would convert "1" to a number
             glintL_refuse(L, i, signs[op], "number, symbol or vector");
     glintL_read_operand(L, 1, signs[op], &a);
     glintL_read_operand(L, 2, signs[op], &b);
@@ -96,7 +96,7 @@ static int negate(lua_State *L)
 
 // ---- What a function that is traced cannot do ----
 
-// math.min and math.max compare what they are given.
+// Refuses math.min and math.max, which compare their arguments.
 static void refuse_least(lua_State *L)
 {
     lua_Debug caller;

@@ -9,7 +9,7 @@
 typedef struct symbol {
     uint64_t serial; // of its trace
     glint_value value;
-    uint32_t choice; // its number among them, from 1 on; 0: it is none
+    uint32_t choice; // the number of its choice, from 1 on; 0: not a choice
 } symbol;
 
 typedef struct traces {
@@ -120,9 +120,9 @@ glintL_term glintL_dot_terms(lua_State *L, const glintL_term a[3], const glintL_
 
 // ---- From Lua ----
 
-// A number that changes with variables: while a function is traced a parameter of the program, for one point the number. A slope that
-// is 0 by a variable that the number is made of is the least number there, so that the program knows what it depends on: of its
-// products nothing is left in float32.
+// Converts a number with slopes: while tracing, to a parameter of the program; at one point, to the number. A slope of
+// 0 by a variable that the number depends on becomes the smallest number, so that the program records the dependency;
+// its products vanish in float32.
 static glintL_term dual_term(lua_State *L, const glintL_trace *trace, const glintL_dual *d)
 {
     glint_error error;
@@ -137,7 +137,7 @@ static glintL_term dual_term(lua_State *L, const glintL_trace *trace, const glin
     return term;
 }
 
-// False: neither a number nor a symbol. Raises for a symbol that has outlived its function.
+// Reads a number or a symbol; false: it is neither. Raises for a symbol that has outlived its function.
 static bool to_term(lua_State *L, int index, glintL_term *out)
 {
     if (lua_type(L, index) == LUA_TNUMBER) {
@@ -162,7 +162,7 @@ static bool to_term(lua_State *L, int index, glintL_term *out)
     return true;
 }
 
-// The element at the key on top of the stack, which it takes. Metamethods are not called.
+// Pops a key and reads the element there, without metamethods.
 static bool to_element(lua_State *L, int index, glintL_term *out)
 {
     lua_rawget(L, index);
@@ -233,7 +233,7 @@ void glintL_read_operand(lua_State *L, int index, const char *path, glintL_opera
                      path);
     if (lua_istable(L, index))
         glintL_error(L, "%s: number, symbol or vector {x, y, z} of three of them expected, got another table", path);
-    if (glintL_to_dual(L, index)) // a pattern's function takes it
+    if (glintL_to_dual(L, index)) // inside a pattern's function it is allowed
         glintL_error(L, "%s: number or vector expected, got a number made of glint.variable; glint.value(x) is the number "
                         "alone", path);
     if (lua_isnoneornil(L, index))

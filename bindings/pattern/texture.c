@@ -1,4 +1,4 @@
-// glint.texture: a picture, called with u and v inside a pattern, or given to a field as it is.
+// glint.texture: a picture, called with u and v inside a pattern, or assigned directly to a field.
 #include "bindings/pattern/pattern.h"
 #include "bindings/run/run.h"
 
@@ -38,7 +38,7 @@ static void read_file(lua_State *L, char out[4096])
     memcpy(out, file, length + 1);
     lua_pop(L, 1);
     const glintL_run *run = glintL_get_run(L);
-    if (run->request.is_untrusted) // which would learn from the answers what files there are
+    if (run->request.is_untrusted) // the answers would tell an untrusted script which files exist
         glintL_error(L, "texture.file: an untrusted script reads no files");
     file = glintL_push_file(L, out);
     snprintf(out, 4096, "%s", file);
@@ -47,7 +47,7 @@ static void read_file(lua_State *L, char out[4096])
         run->reporter.reads(run->reporter.context, out);
 }
 
-// The texture's fields for reading, in a table that is its user value 1.
+// Stores the texture's fields for reading in a table, its user value 1.
 static void keep_fields(lua_State *L, const arguments *a, const glint_texture *texture)
 {
     lua_createtable(L, 0, 6);
@@ -91,7 +91,7 @@ static int close_texture(lua_State *L)
 
 // ---- photo(u, v, footprint) ----
 
-// Looks up in a builder; numbers give numbers.
+// Adds a lookup to a builder; numbers give numbers.
 static glint_status apply(glint_builder *builder, const glint_texture *texture, const glintL_term in[3],
                           glintL_term out[4], glint_error *error)
 {
@@ -111,7 +111,7 @@ static glint_status apply(glint_builder *builder, const glint_texture *texture, 
     return status;
 }
 
-// With plain numbers alone there may be no builder at hand: one is made for the call.
+// With only plain numbers there may be no builder; then the call makes one.
 void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[3], glintL_term out[4])
 {
     const glintL_trace *trace = glintL_current_trace(L);

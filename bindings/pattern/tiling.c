@@ -1,4 +1,4 @@
-// glint.checker, stripe and brick: made of parity and floor; with a footprint, the mean over a box of that width.
+// glint.checker, stripe and brick: made from parity and floor; with a footprint, the mean over a box of that width.
 #include "bindings/pattern/pattern.h"
 
 static glintL_term number(double x) { return glintL_number_term(x); }
@@ -17,9 +17,9 @@ static glintL_term choose(lua_State *L, glintL_term width, glintL_term mean, gli
     return glintL_apply3(L, GLINT_OP_SELECT, is_wide, mean, sharp);
 }
 
-// The mean over x - w/2 .. x + w/2 of the wave that is 1 for the first `share` of each unit and 0 for the rest: the
-// difference of its integral, floor(x) share + min(fract(x), share). The unit that x is in is taken off first, so that no
-// digits are lost far from the origin. Rounding leaves 0 .. 1 by a little, which the clamp takes back.
+// Returns the mean over x - w/2 .. x + w/2 of the wave that is 1 in the first `share` of each unit and 0 in the rest:
+// the difference of its integral, floor(x) share + min(fract(x), share). The whole unit of x is subtracted first, so
+// that no digits are lost far from the origin. Rounding may leave 0 .. 1 slightly, so the result is clamped.
 static glintL_term mean_of_wave(lua_State *L, glintL_term x, glintL_term share, glintL_term width)
 {
     const glintL_term place = glintL_apply1(L, GLINT_OP_FRACT, x), half = mul(L, number(0.5), width);
@@ -33,7 +33,7 @@ static glintL_term mean_of_wave(lua_State *L, glintL_term x, glintL_term share, 
     return glintL_apply3(L, GLINT_OP_CLAMP, mean, number(0), number(1));
 }
 
-// The integral of the wave that is 1 in every even unit and -1 in every odd one.
+// Integrates the wave that is 1 in every even unit and -1 in every odd one.
 static glintL_term mean_sign(lua_State *L, glintL_term x, glintL_term width)
 {
     const glintL_term half = mul(L, number(0.5), x), narrow = mul(L, number(0.5), width);
@@ -48,8 +48,8 @@ static glintL_term parity_of(lua_State *L, glintL_term x, glintL_term y, glintL_
     return parity;
 }
 
-// The sign of one component of a checker, its mean where that is called for. A whole number has no mean: it is the plane
-// that the surface lies in, such as y = 0 of a floor, and both sides of it would be seen.
+// Returns the sign of one component of a checker, or its mean with a footprint. Whole numbers are not averaged: x is
+// then the plane of the surface, such as y = 0 for a floor, and the mean would mix both sides.
 static glintL_term sign_of(lua_State *L, glintL_term x, glintL_term width)
 {
     const glintL_term odd = parity_of(L, x, number(0), number(0));
@@ -95,14 +95,14 @@ static int stripe(lua_State *L)
     return 1;
 }
 
-// 1 within the first `share` of each unit.
+// Returns 1 in the first `share` of each unit.
 static glintL_term band(lua_State *L, glintL_term x, glintL_term share)
 {
     return glintL_apply2(L, GLINT_OP_LESS, glintL_apply1(L, GLINT_OP_FRACT, x), share);
 }
 
-// Bricks of one by one unit in x and y, every other row moved by half a brick: 1 on a brick, 0 on mortar, which is
-// `mortar` wide along the left and the lower side of each.
+// Bricks of one by one unit in x and y, with every other row shifted by half a brick. Returns 1 on a brick and 0 on
+// mortar, which is `mortar` wide along the left and lower side of each brick.
 static int brick(lua_State *L)
 {
     glintL_term p[3], mortar = number(0.1);

@@ -1,4 +1,4 @@
-// Calls a function of a script with symbols, and makes a program of its results.
+// Calls a function of a script with symbols, and makes a program from its results.
 #include "bindings/pattern/pattern.h"
 
 #include <stdio.h>
@@ -8,7 +8,7 @@
 #define TRACED "glint.traced"
 #define SESSION "glint.session"
 
-// A call as Lua holds it, so that an error leaves no builder behind.
+// A call, owned by Lua, so that an error also frees the builder.
 typedef struct session {
     glintL_trace trace;
     size_t count; // number of results: 1 or 3 for a pattern, 3 or 6 for a shader
@@ -51,7 +51,7 @@ const char *glintL_traced_place(lua_State *L, lua_CFunction reached)
     return trace ? trace->place : NULL;
 }
 
-// Whether a message begins as "file:12: " does.
+// Returns whether a message begins with a position such as "file:12: ".
 static bool has_place(const char *text)
 {
     for (const char *colon = strchr(text, ':'); colon; colon = strchr(colon + 1, ':')) {
@@ -62,7 +62,7 @@ static bool has_place(const char *text)
     return false;
 }
 
-// Returns what to write instead of a function of Lua that needs a number.
+// Pushes the replacement for a Lua function that needs a number.
 static const char *push_own_function(lua_State *L, const char *text)
 {
     const char *name = glintL_push_name_after(L, text, "bad argument #1 to '");
@@ -73,7 +73,7 @@ static const char *push_own_function(lua_State *L, const char *text)
     return lua_pushliteral(L, "a symbol has no number yet; write glint's own function, glint.sin(x) for math.sin(x)");
 }
 
-// Adds what to write instead to Lua's own messages about symbols.
+// Adds a hint to Lua's own messages about symbols.
 static int explain(lua_State *L)
 {
     const glintL_trace *trace = glintL_current_trace(L);
@@ -91,7 +91,7 @@ static int explain(lua_State *L)
         cure = "a table has nothing at a value of the point; use glint.select";
     else if (strstr(text, "values expected, numbers included"))
         cure = "is it a loop without an end? To Lua a comparison of values of the point is always true";
-    if (!cure || !trace || strstr(text, cure)) { // a pattern within a pattern has said it
+    if (!cure || !trace || strstr(text, cure)) { // an inner pattern has added it
         lua_settop(L, 1);
         return 1;
     }
@@ -111,7 +111,7 @@ static void refuse_result(lua_State *L, const glintL_trace *trace, int index)
     lua_error(L);
 }
 
-// Reads what the function gave, from 2 upwards.
+// Reads the function's results, from index 2 on.
 static void read_results(lua_State *L, session *s)
 {
     const int count = lua_gettop(L) - 1, most = s->trace.is_shader ? 2 : 1;
@@ -137,7 +137,8 @@ static void read_results(lua_State *L, session *s)
     }
 }
 
-// 1: the session, 2: the function. Upwards of this C function the script's Lua code ends, for positions in messages.
+// Runs a function. 1: the session, 2: the function. The script's Lua code ends below this C function, for positions in
+// messages.
 int glintL_call_function(lua_State *L)
 {
     session *s = lua_touserdata(L, 1);
@@ -149,7 +150,7 @@ int glintL_call_function(lua_State *L)
     return 0;
 }
 
-// Where the function of the pattern at `index` begins; a texture has none.
+// Stores the position of the function of the pattern at `index`; a texture has none.
 static void set_place(lua_State *L, int index, glintL_trace *trace)
 {
     lua_Debug info;
@@ -173,7 +174,7 @@ static session *push_session(lua_State *L, int index)
 
 // ---- A loop without an end ----
 
-#define STEPS_MAX 200000000 // of Lua, in one call: some seconds
+#define STEPS_MAX 200000000 // Lua instructions in one call: some seconds
 #define STEPS_BETWEEN 1000000
 
 static glintL_trace *outermost(lua_State *L)
@@ -197,7 +198,7 @@ static void count_steps(lua_State *L, lua_Debug *where)
                      trace->is_shader ? "shader" : "pattern", STEPS_MAX / 1000000);
 }
 
-// The hook that was there goes on being called, unless it is to be at each step: an interrupt.
+// Installs a hook. The previous hook is still called, unless it runs at every instruction: then it is an interrupt.
 static void begin_steps(lua_State *L, glintL_trace *trace)
 {
     const int count = lua_gethookcount(L);
@@ -211,7 +212,7 @@ static void begin_steps(lua_State *L, glintL_trace *trace)
 
 static void end_steps(lua_State *L, const glintL_trace *trace)
 {
-    if (!trace->outer && lua_gethook(L) == count_steps) // an interrupt has put its own in place
+    if (!trace->outer && lua_gethook(L) == count_steps) // unless an interrupt has set its own hook
         lua_sethook(L, trace->hook, trace->hook_mask, trace->hook_count);
 }
 
@@ -223,7 +224,7 @@ static int print_nothing(lua_State *L)
     return 0;
 }
 
-// Puts the function on top in the place of the global `print`, and leaves the one that was there.
+// Swaps the function on top with the global `print`.
 static void swap_print(lua_State *L)
 {
     luaL_checkstack(L, 4, "pattern");
@@ -238,8 +239,8 @@ static void swap_print(lua_State *L)
     lua_pop(L, 1);
 }
 
-// Calls the function of the pattern at `index`; the session is a userdata at `held`. It prints when it is called with symbols the first
-// time, not at each of the points where it is tried.
+// Calls the function of the pattern at `index`; the session is a userdata at `held`. Only the first call with symbols
+// may print, not the calls at single points.
 static void call(lua_State *L, int index, int held)
 {
     session *s = lua_touserdata(L, held);
@@ -341,8 +342,8 @@ static void push_listing(lua_State *L, const glint_program *program)
     free(text);
 }
 
-// 1: the pattern, 2: the session of its call. Calls its function again, with choices that it made nothing of as false, and gives
-// the program as text.
+// Calls the function again with its unused choices as false, and pushes the program as text. 1: the pattern, 2: the
+// session of its call.
 static int list_again(lua_State *L)
 {
     const glintL_pattern *pattern = lua_touserdata(L, 1);
@@ -358,8 +359,8 @@ static int list_again(lua_State *L)
     return 1;
 }
 
-// To Lua a choice is true, be it 0 or 1: an `if` on it always goes one way, which neither plain Lua nor the program shows. So where a
-// choice was made and not used, false in its place must change nothing.
+// Raises for an `if` on a choice. In Lua a choice is true even when it is 0, so the `if` always takes the same branch,
+// which neither plain Lua nor the program reveals. So an unused choice must be replaceable by false without any effect.
 static void refuse_branches(lua_State *L, int index, int held, const glintL_traced *traced)
 {
     const session *s = lua_touserdata(L, held);
@@ -383,8 +384,8 @@ static void refuse_branches(lua_State *L, int index, int held, const glintL_trac
     lua_settop(L, top);
 }
 
-// New structures are compared with plain Lua once; the table of those that were is the pattern's user value 2. The session of the
-// call is a userdata at `held`.
+// Compares a new structure with plain Lua once; user value 2 of the pattern lists the structures compared. The session
+// of the call is a userdata at `held`.
 static void compare_once(lua_State *L, int index, int held, const glintL_traced *traced)
 {
     uint64_t key[2];

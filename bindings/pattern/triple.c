@@ -1,5 +1,5 @@
-// glint.triple: a table of three numbers or symbols x, y, z, one of them a symbol, with the operators of vectors. Three numbers are
-// a vector.
+// glint.triple: a table of three terms x, y, z with at least one symbol, and with the operators of vectors. Three plain
+// numbers are a vector instead.
 #include "bindings/pattern/pattern.h"
 
 #include <string.h>
@@ -48,7 +48,7 @@ void glintL_push_color(lua_State *L, const glintL_term v[4])
     lua_rawset(L, -3);
 }
 
-// A vector argument; a scalar is not taken for one.
+// Reads a vector argument; does not accept a scalar.
 static void read_vector(lua_State *L, int index, const char *path, glintL_term out[3])
 {
     glintL_operand operand;
@@ -113,7 +113,7 @@ int glintL_unit(lua_State *L)
     return 1;
 }
 
-// As in GLSL: d - 2 (n.d) n, of a direction that arrives and a unit normal.
+// As in GLSL: d - 2 (n.d) n, for an incident direction and a unit normal.
 int glintL_reflect(lua_State *L)
 {
     glintL_term d[3], n[3];
@@ -134,7 +134,7 @@ static int unpack(lua_State *L)
     return 3;
 }
 
-// glint.vector(x, y, z), or of a list, a vector or one number.
+// glint.vector(x, y, z), or from a list, a vector or one number.
 static int new_vector(lua_State *L)
 {
     glintL_operand operand;
@@ -158,7 +158,7 @@ static const luaL_Reg METHODS[] = {
     { NULL, NULL },
 };
 
-// Looks up fields that the table itself does not have: r, g, b and u, v, the numbers 1, 2, 3, and methods.
+// Looks up fields that the table itself lacks: r, g, b and u, v, the numbers 1, 2, 3, and methods.
 static int read_field(lua_State *L)
 {
     static const char letters[] = "rgbuv", places[] = "01201";
@@ -167,7 +167,7 @@ static int read_field(lua_State *L)
         const lua_Integer i = lua_tointeger(L, 2);
         place = i >= 1 && i <= 3 ? (int)i - 1 : -1;
         if (place < 0)
-            return 0; // where ipairs stops
+            return 0; // ends ipairs
     } else if (lua_type(L, 2) != LUA_TSTRING) {
         return glintL_bad_key(L, "vector", 2);
     } else {

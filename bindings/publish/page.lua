@@ -1,12 +1,12 @@
--- The page of glint publish: page.html with its @NAMES@ filled in. It needs no network and no server.
--- The pages of --live have its figure.
+-- The page of glint publish: page.html with its @NAMES@ replaced. It needs no network and no server. --live inserts its
+-- figure into other pages.
 local the = ...
 
 local function html(text)
   return (text:gsub("[&<>\"']", { ["&"] = "&amp;", ["<"] = "&lt;", [">"] = "&gt;", ['"'] = "&quot;", ["'"] = "&#39;" }))
 end
 
--- JSON of values and tables of them by name.
+-- Returns JSON for values and for tables with names.
 local function json(value)
   if type(value) ~= "table" then return the.json(value) end
   local list = {}
@@ -15,10 +15,10 @@ local function json(value)
   return "{" .. table.concat(list, ",") .. "}"
 end
 
--- Inside a script element no "<" may stand, so that no text ends the element.
+-- Escapes "<", so that no text can end its script element.
 local function embedded(value) return (json(value):gsub("<", "\\u003c")) end
 
--- The values that --set gave, where they are not the script's own.
+-- Returns the values of --set that differ from the script's own.
 local function values_of(params)
   local values = {}
   for _, param in ipairs(params) do
@@ -33,7 +33,7 @@ local function attributes_of(page)
   return table.concat(list, " ")
 end
 
--- The files of the page. Those in the script's folder are found from there and by the whole name, which `same` has.
+-- Returns the page's files. Those in the script's folder have relative names; `same` maps full names to them.
 local function files_of(page)
   local files, same = {}, {}
   for name, bytes in pairs(page.files) do
@@ -73,7 +73,7 @@ local function fill(template, values)
   return (template:gsub("@(%u+)@", function(name) return values[name] and tostring(values[name]) end))
 end
 
--- The picture with its controls, and all that it needs.
+-- Returns the picture with its controls and everything that they need.
 function the.live(page)
   check_controls(page)
   local files, same = files_of(page)

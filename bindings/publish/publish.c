@@ -1,5 +1,5 @@
-// glint publish SCRIPT -o PAGE: one page with the engine, the script, the files it reads, its controls and a picture of the
-// frame, which stands there until the engine has started. --live puts the same figure into pages of other commands.
+// glint publish SCRIPT -o PAGE: one page with the engine, the script, the files it reads, its controls and a picture of
+// the frame, shown until the engine has started. --live inserts the same figure into pages of other commands.
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -27,11 +27,11 @@ static const glintL_carried MODULE = { "@page.lua", PAGE_LUA, sizeof PAGE_LUA };
 
 typedef struct publication {
     const cli_options *options;
-    const char *who; // for messages: publish or --live
+    const char *who; // publish or --live, for messages
     glintL_run *run;
     cli_script script;
     struct {
-        char *path, *name; // of a file that the script reads; its name in the page; owned
+        char *path, *name; // of a file that the script reads, and its name in the page; owned
     } files[FILES_MAX];
     size_t file_count;
     glint_image *image; // of the frame
@@ -49,7 +49,7 @@ static void add_file(publication *p, const char *path, const char *name)
     for (size_t i = 0; i < p->file_count; i++)
         if (strcmp(p->files[i].path, path) == 0)
             return;
-    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) // the script itself reports what is not there
+    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) // the script itself reports a missing file
         return;
     if (p->file_count == FILES_MAX) {
         glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0, "%s: the script reads more than %d files", p->who, FILES_MAX);
@@ -64,7 +64,7 @@ static void add_file(publication *p, const char *path, const char *name)
 
 static void note_file(void *context, const char *path) { add_file(context, path, path); }
 
-// note(path, optional, module): the page has glint's own modules already.
+// note(path, optional, module): adds a file, except glint's own modules, which the page has already.
 static int note(lua_State *L)
 {
     publication *p = lua_touserdata(L, lua_upvalueindex(1));
@@ -78,7 +78,7 @@ static int note(lua_State *L)
 
 static int skip(lua_State *L)
 {
-    (void)L; // a file that the script writes
+    (void)L; // skip(path): the script writes the file
     return 0;
 }
 
@@ -131,7 +131,7 @@ static bool render(publication *p)
 
 // ---- The engine for the page ----
 
-// Reads a whole file. NULL: errno says why.
+// Reads a whole file. NULL: errno gives the reason.
 static uint8_t *read_file(const char *path, size_t *size)
 {
     FILE *file = fopen(path, "rbe");
@@ -151,7 +151,7 @@ static uint8_t *read_file(const char *path, size_t *size)
     return bytes;
 }
 
-// Reads a file of the folder that `make web` leaves: GLINT_WEB, web/ next to the command, or ../share/glint/web.
+// Reads a file of the folder made by `make web`: GLINT_WEB, web/ next to the command, or ../share/glint/web.
 static uint8_t *read_part(const publication *p, const char *name, size_t *size)
 {
     char folder[GLINTL_PATH_SIZE], path[GLINTL_PATH_SIZE + 64];
@@ -243,7 +243,7 @@ static void push_page(lua_State *L, const void *context)
 
 typedef struct making {
     const publication *of;
-    const char *what; // of page.lua: publish or live
+    const char *what; // the function of page.lua: publish or live
     glintL_made_text text;
 } making;
 
@@ -258,7 +258,7 @@ static int make_text(lua_State *L)
     return is_made ? 0 : luaL_error(L, "%s", message);
 }
 
-// Runs the script and makes the page, or only its figure. The caller drops the text, also on failure.
+// Runs the script and makes the page, or only its figure. The caller drops the text, on failure too.
 static bool make(publication *p, making *job)
 {
     if (!read_engine(p) || !render(p))

@@ -1,4 +1,4 @@
-// The mixer: a page of one file with a picture's light passes, and a slider and a colour for each.
+// The mixer: a page in one file with a picture's light passes, and a slider and a colour for each.
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@ static const char *const CURVES[] = { "clamp", "reinhard", "filmic" };
 
 // ---- What the page says ----
 
-// The least light of each code 1 .. 255, as the bits of a float, for each tone curve.
+// Prints the least light for each pixel value 1 .. 255, as the bits of a float, for each tone curve.
 static void print_steps(FILE *out)
 {
     for (unsigned curve = 0; curve < sizeof CURVES / sizeof *CURVES; curve++) {
@@ -31,7 +31,7 @@ static void print_steps(FILE *out)
     }
 }
 
-// Light of each sRGB code 0 .. 255.
+// Prints the light for each sRGB value 0 .. 255.
 static void print_decoded(FILE *out)
 {
     for (int i = 0; i < 256; i++)
@@ -58,7 +58,7 @@ static void print_title(FILE *out, const char *text)
             fputc(*text, out);
 }
 
-// Returns the replacement of @NAME@ in the page, except for the pixels.
+// Prints the replacement of @NAME@ in the page, except for the pixels.
 static void print_value(FILE *out, const char *name, const cli_options *options, const relight_mix *mix,
                         const char *file, const glint_image *image)
 {
@@ -95,7 +95,7 @@ static glint_status no_memory(glint_error *error)
     return GLINT_ERR_NOMEM;
 }
 
-// The light passes as an .exr of floats, in base64, piece by piece.
+// Writes the light passes as an .exr of floats, in base64, piece by piece.
 static glint_status append_pixels(glint_draft *draft, const glint_image *image, glint_error *error)
 {
     enum { PIECE = 3 << 18 };

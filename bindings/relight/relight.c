@@ -1,4 +1,4 @@
-// glint relight FILE.exr: the picture with other strengths and colours of its lights, made of its light passes.
+// glint relight FILE.exr: a picture with other strengths and colours of its lights, made from its light passes.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,7 @@ static int fail(char *message, int code, const char *path, const char *text)
 
 // ---- --light ----
 
-// False: it is neither a strength nor a colour, or the second of its kind.
+// Reads a strength or a colour. False: it is neither, or the light has one already.
 static bool take_value(relight_light *light, const char *value, char *message)
 {
     char *end;
@@ -79,7 +79,7 @@ relight_light relight_light_at(const relight_mix *mix, const glint_image *image,
     return light ? *light : (relight_light) { .strength = 1, .color = 0xffffff };
 }
 
-// Whether a file has all lights that --light names.
+// Checks that a file has all lights that --light names.
 static bool check_lights(const relight_mix *mix, const glint_image *image, const char *path, char *message)
 {
     for (size_t i = 0; i < mix->count; i++) {
@@ -109,7 +109,7 @@ static bool check_lights(const relight_mix *mix, const glint_image *image, const
 
 // ---- Files ----
 
-// Reads a file's lights. NULL: `*code` and the message say why.
+// Reads a file's lights. NULL: `*code` and the message give the reason.
 static glint_image *read_file(const job *j, const char *path, int *code, char *message)
 {
     glint_image *image = NULL;
@@ -181,7 +181,7 @@ static int write_picture(job *j, const char *file, int64_t number, char *message
     return 0;
 }
 
-// Whether the pictures have the numbers of their files: these ascend. Else they are counted from 1.
+// Returns whether the pictures get the numbers of their files, which must ascend. Otherwise they are counted from 1.
 static bool has_numbers(const cli_file_list *list)
 {
     for (size_t i = 0; i < list->count; i++)
@@ -204,7 +204,7 @@ static int write_all(job *j, char *message)
     return j->run->exit_code;
 }
 
-// A file whose lights are looked for before anything is written.
+// Checks the lights of one file before anything is written.
 static int check_files(const job *j, char *message)
 {
     int code = 0;
@@ -233,7 +233,7 @@ static bool is_page(const char *path)
     return length > 5 && strcmp(path + length - 5, ".html") == 0;
 }
 
-// Reads the name that -o gives. False: the message says what is wrong.
+// Reads the name in -o. False: the message says what is wrong.
 static bool open_output(job *j, char *message)
 {
     const char *path = j->options->output;

@@ -1,4 +1,5 @@
-// The brightness of a run's pictures: clipped values of 16-bit linear files, and the light that --exposure auto must not clip.
+// The brightness of a run's pictures: warns about clipped values in 16-bit linear files, and finds the largest value
+// for --exposure auto.
 #include "bindings/run/run.h"
 
 bool glintL_tone_is_data(const glint_tone_desc *tone)
@@ -34,7 +35,7 @@ void glintL_look_at_brightness(glintL_run *run, const glint_image *image, const 
     if (!run->measures && !glintL_tone_is_data(tone))
         return;
     glint_image_brightness(image, tone->exposure, &run->brightness,
-                           &error); // without linear beauty there is nothing to add
-    if (first && !run->is_command) // which reports the whole run at its end
+                           &error); // without linear beauty there is nothing to measure
+    if (first && !run->is_command) // the command reports the whole run at its end
         glintL_warn_of_clipping(run);
 }

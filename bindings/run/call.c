@@ -1,7 +1,7 @@
 // scene:render{...}: one frame of a plain loop.
 //
-// The calls are numbered, and frame selection and shards skip the others. Under the command, files are written behind
-// the script's back while it goes on; in plain Lua a call returns when its file is written.
+// Calls are numbered. Frame selection and shards skip the others. Under the command, files are written in the
+// background while the script continues; in plain Lua a call returns when its file is written.
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -47,7 +47,8 @@ static void read_fields(lua_State *L, int index, glintL_render *render)
     }
 }
 
-// Whether the numbered call is one of those to render. Every Nth, since their number is not known.
+// Returns whether the numbered call is to be rendered. Shards take every Nth call, because the number of calls is not
+// known.
 static bool is_selected(glintL_run *run)
 {
     const glintL_selection *selection = &run->request.selection;
@@ -59,8 +60,8 @@ static bool is_selected(glintL_run *run)
 
 // ---- The name of the first call ----
 //
-// -o without a place for the number is the name itself when the script makes one call, and numbered when it makes
-// several: settled by the second call or by the end of the script.
+// If the name in -o has no place for the number, it is used as it is when the script makes one call, and numbered when
+// it makes several. The second call or the end of the script decides.
 
 static bool is_open(const glintL_run *run, const glintL_render *render)
 {
@@ -96,13 +97,13 @@ static glintL_naming naming_of(const glintL_run *run, const glintL_render *rende
 {
     bool writes = *render->output && strcmp(render->output, "none") != 0;
     bool request = run->request.render_text[glintL_render_find("output")] != NULL;
-    // A name the script gives for one call is that call's name; one from the command line serves all of them.
+    // A name from the script belongs to its one call; a name from the command line is used for all calls.
     glintL_naming naming = { .pattern = writes ? render->output : NULL, .is_numbered = request && is_numbered };
     glintL_film_take(run, &naming);
     return naming;
 }
 
-// Whether the files of the work are there, under the name the first call would get either way.
+// Returns whether the work's files exist, under either of the names that the first call could get.
 static bool is_kept(glintL_run *run, glintL_work *work, bool open)
 {
     glint_error error;
@@ -116,8 +117,8 @@ static bool is_kept(glintL_run *run, glintL_work *work, bool open)
     return false;
 }
 
-// Renders and reports one call, or finds it kept, when the work has no picture afterwards. The first call of an open
-// name is reported when that is settled.
+// Renders and reports one call, or finds its files, in which case the work has no picture. A first call with an
+// undecided name is reported when the name is decided.
 static bool render_call(glintL_run *run, glintL_work *work, bool open)
 {
     glint_error error;
@@ -139,8 +140,8 @@ static int raise_failure(lua_State *L, glintL_run *run)
     return glintL_error(L, PATH "%s", run->interrupted ? "interrupted" : run->message);
 }
 
-// Gives the rendered image to the handle at `first`, or the plan of an existing file to the one after it; leaves the one
-// that got something on top. Does not raise.
+// Gives the rendered image to the handle at `first`, or the plan of an existing file to the next one, and leaves that
+// handle on top. Does not raise.
 static glint_status fill_handle(lua_State *L, int first, const glint_scene *scene, glintL_work *work, bool open,
                                 glint_error *error)
 {
@@ -150,7 +151,7 @@ static glint_status fill_handle(lua_State *L, int first, const glint_scene *scen
         lua_settop(L, first);
         return GLINT_OK;
     }
-    if (open) { // the work keeps its own
+    if (open) { // the work needs its own plan later
         glint_status status = glint_plan_create(scene, &work->render.desc, &plan, error);
         if (status)
             return status;
@@ -161,7 +162,7 @@ static glint_status fill_handle(lua_State *L, int first, const glint_scene *scen
     return GLINT_OK;
 }
 
-// Prepares the film the call's frame goes into, if any.
+// Opens the film for the call's frame, if there is one.
 static void open_film(lua_State *L, glintL_run *run, const glintL_render *render)
 {
     char message[GLINTL_MESSAGE_SIZE];
@@ -183,7 +184,7 @@ static int render_selected(lua_State *L, glintL_run *run, const glint_scene *sce
     glintL_observe_frame(L, run, 1, &render->desc, run->count);
     if (run->exit_code)
         return raise_failure(L, run);
-    int first = lua_gettop(L) + 1; // the handles exist before what they hold
+    int first = lua_gettop(L) + 1; // handles are made before the objects, so that nothing leaks
     glintL_new_box(L, GLINTL_IMAGE);
     glintL_push_kept_image(L);
     if (!glintL_run_open(run, &error) || glintL_work_create(scene, render, run->count, writes, true, &work, &error))

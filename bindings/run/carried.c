@@ -1,4 +1,4 @@
-// Texts that are made of data by modules in Lua, which the command and the module carry with them as bytes.
+// Generates texts from data by Lua modules that the command and the module carry as bytes.
 #include <lualib.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,7 +40,7 @@ char *glintL_close_text(FILE *out, char **text)
     return NULL;
 }
 
-// json(value): a number, a boolean, nil or a string as JSON spells it.
+// json(value): returns a number, boolean, nil or string as JSON.
 static int json(lua_State *L)
 {
     char *text = NULL;
@@ -56,7 +56,7 @@ static int json(lua_State *L)
         fputs(lua_isnil(L, 1) ? "null" : lua_toboolean(L, 1) ? "true" : "false", out);
     if (!out || !glintL_close_text(out, &text))
         return luaL_error(L, "out of memory");
-    char *spelling = lua_newuserdatauv(L, size + 1, 0); // on the collector's account before anything can raise
+    char *spelling = lua_newuserdatauv(L, size + 1, 0); // allocated by Lua, so that an error frees it
     memcpy(spelling, text, size + 1);
     free(text);
     lua_pushlstring(L, spelling, size);

@@ -1,11 +1,11 @@
-// The range of numbers behind the name of a colour map: "viridis:1:9".
+// The range in the text of a colour map: "viridis:1:9".
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "bindings/run/run.h"
 
-// A finite number after a colon; NULL: there is none.
+// Reads a finite number after a colon; NULL: there is none.
 static const char *read_end(const char *text, double *out)
 {
     char *end;

@@ -6,7 +6,7 @@
 
 #define PI 0x1.921fb54442d18p+1
 
-static const char LIST; // its address is the registry's key of a frame's list, until the next one's
+static const char LIST; // its address is the registry's key of the current frame's list
 
 bool glintL_wants_variable(const glintL_run *run, const char *name)
 {
@@ -24,11 +24,11 @@ bool glintL_wants_variable(const glintL_run *run, const char *name)
 
 typedef struct gathering {
     const glint_scene *scene;
-    glint_slope *out; // NULL: they are counted
+    glint_slope *out; // NULL: only counts
     size_t count;
 } gathering;
 
-// How fast the program of a field changes; NULL: it does not, or there is none.
+// Returns the derivative of a field's program by a variable; NULL: it is 0, or there is no program.
 static const glint_program *find_tangent(const glintL_class *class, const void *object, const glintL_field *field, int variable)
 {
     union {
@@ -43,7 +43,7 @@ static const glint_program *find_tangent(const glintL_class *class, const void *
     return program ? glint_program_tangent(program, (size_t)variable) : NULL;
 }
 
-// The slopes of the object whose userdata is at `index` by a variable. Allocates nothing.
+// Adds the slopes by a variable of the object whose userdata is at `index`. Allocates nothing.
 static void gather_object(lua_State *L, int index, const char *type, int variable, gathering *g)
 {
     const glintL_class *class = glintL_class_of(L, type);
@@ -105,8 +105,8 @@ void glintL_find_derivatives(lua_State *L, const glint_scene *scene, glintL_rend
         total += g.count;
         first[i + 1] = total;
     }
-    // Objects that the allocation collects are not gathered, and a finalizer may change the rest: at most the counted number
-    // is taken.
+    // The allocation may collect objects, and their finalizers may change others. So at most as many slopes are stored
+    // as were counted.
     struct {
         glint_derivative of[GLINT_DERIVATIVES_MAX];
         char names[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE];

@@ -1,4 +1,4 @@
-// Films of a run: frames go to a folder beside the film, and into it when all of them are there.
+// Films of a run: the frames are stored in a folder next to the film, and joined when all of them exist.
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 
 // ---- Names ----
 
-// "PATH.frames/%04d.png", a '%' of the path doubled; owned by the caller. NULL: out of memory.
+// Returns "PATH.frames/%04d.png", with each '%' of the path doubled; the caller frees it. NULL: out of memory.
 static char *pattern_of(const char *path)
 {
     size_t used = 0, room = 2 * strlen(path) + 32;
@@ -310,7 +310,7 @@ bool glintL_films_finish(glintL_run *run)
     }
     if (run->exit_code)
         return false;
-    glintL_films_destroy(run->films); // another run in the same script makes its films anew
+    glintL_films_destroy(run->films); // a later run in the same script starts its films anew
     run->films = NULL;
     return true;
 }

@@ -1,4 +1,4 @@
-// Films by ffmpeg: the frames go to it through a socket, raw; it writes a draft, which gets its name when all is well.
+// Films made by ffmpeg. It receives raw frames through a socket and writes a draft, which is renamed on success.
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
@@ -13,7 +13,7 @@
 #include "bindings/run/film.h"
 #include "bindings/run/system.h"
 
-#define WAIT_MS 50 // between looks at whether the run was interrupted
+#define WAIT_MS 50 // between checks for an interrupt
 #define GRACE_MS 2000 // from SIGTERM to SIGKILL
 #define ARGUMENTS_MAX 64
 
@@ -37,16 +37,16 @@ typedef struct encoder {
     const glintL_run *run;
     const glintL_film *film;
     int width, height; // of a frame
-    int sent_width, sent_height; // even, where the format wants that
+    int sent_width, sent_height; // rounded up to even where the format requires it
     pid_t process;
-    int socket; // our end of its input; -1: closed
-    FILE *said; // what it printed
+    int socket; // our end of ffmpeg's input; -1: closed
+    FILE *said; // ffmpeg's output
 } encoder;
 
 // ---- Starting ----
 
-// The arguments: sRGB in; BT.709 of limited range out, so that players show the colours of the frames. Nothing in the
-// file tells dates or versions.
+// Lists the arguments. Input is sRGB; output is BT.709 of limited range, so that players show the colours of the
+// frames. The file contains no dates or versions.
 static void list_arguments(const encoder *e, const char *target, const char **list, char numbers[2][64])
 {
     static const char *const mp4[] = { "-c:v", "libx264",   "-preset",    "medium", "-crf",
@@ -85,7 +85,7 @@ static void list_arguments(const encoder *e, const char *target, const char **li
     list[count] = NULL;
 }
 
-// Starts ffmpeg in a process group of its own: a Ctrl-C is for us to pass on. 0 or an errno.
+// Starts ffmpeg in its own process group, so that Ctrl-C reaches only glint, which stops it. Returns 0 or an errno.
 static int spawn(encoder *e, int input, const char *target)
 {
     posix_spawn_file_actions_t actions;
@@ -109,12 +109,12 @@ static int spawn(encoder *e, int input, const char *target)
     return code;
 }
 
-// 0 or an errno.
+// Returns 0 or an errno.
 static int start(encoder *e, const char *target)
 {
     int ends[2];
     size_t room = strlen(target) + 8;
-    char *url = malloc(room); // a ':' in a name is no protocol's
+    char *url = malloc(room); // so that a ':' in a name is not read as a protocol
     e->said = tmpfile();
     if (!url || !e->said || !glintL_socket_pair(ends)) {
         int code = url && errno ? errno : ENOMEM;
@@ -131,7 +131,7 @@ static int start(encoder *e, const char *target)
 
 // ---- Feeding ----
 
-// Sends all of it. False: the run was interrupted, or ffmpeg has gone.
+// Sends all of the data. False: the run was interrupted, or ffmpeg has ended.
 static bool send_all(const encoder *e, const uint8_t *data, size_t size)
 {
     struct pollfd wait = { .fd = e->socket, .events = POLLOUT };
@@ -149,7 +149,7 @@ static bool send_all(const encoder *e, const uint8_t *data, size_t size)
     return size == 0;
 }
 
-// Sends a frame; a column or row that makes a side even repeats the last one.
+// Sends a frame. An added column or row, which makes a side even, repeats the last one.
 static bool send_frame(const encoder *e, const glint_picture *picture, uint8_t *row)
 {
     size_t width = (size_t)e->width, sent = (size_t)e->sent_width;
@@ -164,7 +164,7 @@ static bool send_frame(const encoder *e, const glint_picture *picture, uint8_t *
     return good;
 }
 
-// Returns the exit code; 0 too when ffmpeg has gone, since it says why.
+// Sends all frames. Returns the exit code; 0 also when ffmpeg has ended early, since it reports the reason.
 static int feed(const encoder *e, char *message)
 {
     glint_error error;
@@ -196,7 +196,7 @@ static int feed(const encoder *e, char *message)
 
 // ---- Ending ----
 
-// Waits for ffmpeg, and ends it when `stop` or the run is interrupted. Returns its status.
+// Waits for ffmpeg, and ends it if `stop` is set or the run is interrupted. Returns its status.
 static int wait_for(const encoder *e, bool stop)
 {
     const struct timespec pause = { 0, WAIT_MS / 5 * 1000000L };
@@ -255,7 +255,7 @@ static int encode(encoder *e, const char *target, char *message)
     }
     int code = feed(e, message);
     close(e->socket);
-    glintL_film_tell(e->run, e->film, e->film->count); // ffmpeg works off what it holds
+    glintL_film_tell(e->run, e->film, e->film->count); // ffmpeg still encodes the frames that it has buffered
     int status = wait_for(e, code != 0);
     if (e->run->interrupted) {
         snprintf(message, GLINTL_MESSAGE_SIZE, "interrupted");
@@ -266,7 +266,7 @@ static int encode(encoder *e, const char *target, char *message)
 
 static int fail_without(const glintL_run *run, const glintL_film *film, char *message)
 {
-    bool gaps = run->request.selection.range_count > 0; // then the shell's list of files is right, else the pattern
+    bool gaps = run->request.selection.range_count > 0; // with gaps the shell lists the files, else the pattern
     if (film->pattern)
         snprintf(
             message, GLINTL_MESSAGE_SIZE,
@@ -297,7 +297,7 @@ int glintL_film_pipe(glintL_run *run, const glintL_film *film, char message[GLIN
         snprintf(message, GLINTL_MESSAGE_SIZE, "%s", error.message);
         return glintL_run_exit_code(status);
     }
-    int odd = film->kind == GLINTL_FILM_GIF ? 0 : 1; // 4:2:0 wants even sides
+    int odd = film->kind == GLINTL_FILM_GIF ? 0 : 1; // 4:2:0 needs even sides
     e.width = glint_picture_width(first);
     e.height = glint_picture_height(first);
     e.sent_width = e.width + (e.width & odd);

@@ -1,4 +1,4 @@
-// Renders a list of jobs frame by frame, in any order, and knows the axes of its frames.
+// Renders the frames of a list of jobs in any order, and provides the axes of the frames.
 #include <stdio.h>
 #include <string.h>
 
@@ -74,7 +74,8 @@ void glintL_walk_add_axes(glintL_walk *walk, glintL_order *order)
 
 // ---- Frames of a list, one at a time ----
 
-// Makes the job that has frame g of the list the one at hand. Returns its number; *n: the frame's in the job.
+// Makes the job that contains frame g of the list the current one. Returns the job's number; *n: the frame's number in
+// the job.
 static lua_Integer take_frame(glintL_walk *walk, int64_t g, int64_t *n)
 {
     lua_Integer i = 1;
@@ -97,7 +98,7 @@ static bool end_sweep(glintL_walk *walk, glintL_jobs_state *state)
     return good;
 }
 
-// Takes the job that has frame g, with the scene as the jobs before leave it. False: the run has failed.
+// Takes the job that contains frame g, with the scene as the previous jobs leave it. False: the run has failed.
 static bool reach(glintL_walk *walk, int64_t g, glintL_jobs_state *state, int64_t *n)
 {
     const int top = lua_gettop(walk->L);

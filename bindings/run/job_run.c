@@ -17,7 +17,7 @@ static int read_count(lua_State *L, int index, const char *path, const char *exp
     return (int)count;
 }
 
-// Reads one option; `frames` and `shard` only as strings, left to parse_selection.
+// Reads one option. `frames` and `shard` are only checked to be strings; parse_selection reads them.
 static void read_option(lua_State *L, int index, const char *name, glintL_request *request, glintL_render *render)
 {
     char path[48];
@@ -59,8 +59,8 @@ static void read_options(lua_State *L, int index, glintL_request *request, glint
     }
 }
 
-// Reads `frames` and `shard` of the table at 2, which read_option has checked. The selection is owned: nothing raises
-// after it has something. False: the message is written.
+// Reads `frames` and `shard` from the table at 2, which read_option has checked. The selection owns memory, so nothing
+// may raise after it is filled. False: the message is written.
 static bool parse_selection(lua_State *L, glintL_selection *selection, char message[GLINTL_MESSAGE_SIZE])
 {
     bool good = true;
@@ -87,14 +87,14 @@ static int run_protected(lua_State *L)
     return 0;
 }
 
-// Runs the list at `list`, whose only element is the job at 1, as `request` says; the run and the job are then as before.
-// Does not raise.
+// Runs the list at `list`, whose only element is the job at 1, with `request`; then restores the run and the job. Does
+// not raise.
 static bool run_as(lua_State *L, glintL_run *run, int list, const glintL_request *request, const glintL_render *render)
 {
     glintL_job *job = lua_touserdata(L, 1);
     glintL_request before = run->request;
     glintL_render render_before = job->render;
-    // The command line's own selection may be for a later run of the script.
+    // A later run of the script may need the command line's selection.
     bool is_own = request->selection.ranges != before.selection.ranges;
     bool good = false;
     run->request = *request;
@@ -127,7 +127,7 @@ static int push_summary(lua_State *L, const glintL_run *run, double start_ms)
     return 1;
 }
 
-// Plain Lua has no command line: each run counts its frames from 1.
+// In plain Lua, without a command line, each run numbers its frames from 1.
 static void begin_plain(glintL_run *run)
 {
     glintL_films_destroy(run->films);
@@ -138,7 +138,7 @@ static void begin_plain(glintL_run *run)
     run->brightness = (glint_brightness) { 0 };
 }
 
-// The command line's selection, when there is one, else the script's. False: the message is written.
+// Chooses the command line's selection if there is one, otherwise the script's. False: the message is written.
 static bool merge(lua_State *L, const glintL_run *run, glintL_request *request, char message[GLINTL_MESSAGE_SIZE])
 {
     const glintL_selection *given = &run->request.selection;
@@ -193,7 +193,7 @@ int glintL_job_run(lua_State *L)
     if (request.selection.ranges != run->request.selection.ranges)
         glintL_selection_clear(&request.selection);
     if (!good) {
-        lua_pushstring(L, run->interrupted ? "interrupted" : run->message); // it says where, as far as that is known
+        lua_pushstring(L, run->interrupted ? "interrupted" : run->message); // contains the position, as far as known
         return lua_error(L);
     }
     return push_summary(L, run, start);

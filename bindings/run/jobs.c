@@ -1,4 +1,4 @@
-// Frames of animations and sweeps: numbered through a list of them, selected, rendered in the order that costs least.
+// Frames of animations and sweeps: numbered through a list, selected, and rendered in the order that costs least.
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,7 +21,7 @@ static bool push_expected(lua_State *L, int index)
     return false;
 }
 
-// Pushes the job that one value stands for; false: it is none, and nothing is pushed. A scene is a still.
+// Pushes the job for one value; false: it is not a job, and nothing is pushed. A scene becomes a still.
 static bool push_one(lua_State *L, int index)
 {
     index = lua_absindex(L, index);
@@ -72,9 +72,9 @@ int64_t glintL_jobs_total(lua_State *L, int index)
 
 // ---- The list ----
 
-// Which frames to render: those selected from first to last, of these the ones at places from .. to.
+// The frames to render: of the selected frames, those at positions from .. to.
 typedef struct part {
-    int64_t from, to, place; // place: of the last frame passed
+    int64_t from, to, place; // place: position of the last frame passed
 } part;
 
 static part open_part(glintL_run *run, int64_t frames)
@@ -97,7 +97,8 @@ static bool takes(const glintL_run *run, part *p, int64_t number)
     return p->place >= p->from && p->place <= p->to;
 }
 
-// Whether the run renders several frames of the job at hand, whose first frame has that number, and may do so in any order.
+// Returns whether the run renders several frames of the current job, whose first frame has that number, and may render
+// them in any order.
 static bool may_reorder(const glintL_walk *walk, int64_t first, const part *p)
 {
     const int64_t last = first + walk->job->frames - 1;
@@ -281,7 +282,7 @@ bool glintL_jobs_run(lua_State *L, int index, glintL_run *run)
     return good;
 }
 
-// Shows the scene at the times of a shutter that looks so often. False: the run has failed.
+// Shows the scene at the times of a shutter with `times` moments. False: the run has failed.
 static bool show_times(glintL_walk *walk, int64_t n, double share, int times)
 {
     glintL_run *run = walk->run;
@@ -296,7 +297,7 @@ static bool show_times(glintL_walk *walk, int64_t n, double share, int times)
     return true;
 }
 
-// The same of each shutter that the run is to see, where it is open. False: the run has failed.
+// The same for every number of moments that the run asks for, if the shutter is open. False: the run has failed.
 static bool show_moments(glintL_walk *walk, int64_t n)
 {
     glintL_run *run = walk->run;
@@ -312,7 +313,7 @@ static bool show_moments(glintL_walk *walk, int64_t n)
            glintL_run_fail(run, GLINTL_EXIT_FAILED, run->explain_frame, "out of memory");
 }
 
-// Plans frame n of the job at hand, and keeps its scene and the plan of a frame next to it when the run is to.
+// Plans frame n of the current job. Stores its scene and the plan of a neighbouring frame if the run requests them.
 static void explain_frame(glintL_walk *walk, int64_t n)
 {
     glintL_run *run = walk->run;

@@ -1,4 +1,4 @@
-// Passes light:NAME: the list that a frame's description has of them, and whether its scene has those lights.
+// Passes light:NAME: their list in a frame's description, and the check that the scene has those lights.
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,7 +18,7 @@ bool glintL_add_light_pass(glintL_render *to, const char *name)
     return true;
 }
 
-// Copies the next name of a list; returns what follows it, NULL at the end.
+// Copies the next name of a list; returns the rest of the list, NULL at the end.
 static const char *next_name(const char *at, char name[GLINT_NAME_SIZE])
 {
     const size_t length = strcspn(at, ",");
@@ -35,7 +35,7 @@ bool glintL_light_pass_at(const char *list, size_t index, char name[GLINT_NAME_S
     return list;
 }
 
-// Whether a name is a pass of the scene's; else `near` is the one that is most like it, or "".
+// Returns whether the scene has a light pass of this name; otherwise `near` is the most similar name, or "".
 static bool has_pass(const glint_scene *scene, const char *name, char near[GLINT_NAME_SIZE])
 {
     char own[GLINT_NAME_SIZE];
@@ -60,7 +60,7 @@ glint_status glintL_check_light_passes(const glint_scene *scene, const glintL_re
         at = next_name(at, name);
         if (has_pass(scene, name, near))
             continue;
-        if (!*near) // the engine's message lists what there is
+        if (!*near) // the engine's message lists the passes
             return GLINT_OK;
         error->status = GLINT_ERR_INVALID;
         snprintf(error->message, sizeof error->message,

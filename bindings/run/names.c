@@ -1,9 +1,4 @@
-// Names of files: a pattern, the frame's number and the pass.
-//
-//   "shot_%04d.png", "shot_####.png"   the number, padded with zeros
-//   "50%%.png", "shot%#3.png"          a per cent sign, a number sign
-//   "shot.png"                         "shot_0012.png" when the pattern serves several frames
-//   passes                             "shot_0012.ambient.png"
+// File names: a pattern, the frame's number and the pass.
 #include <ctype.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -14,12 +9,12 @@
 
 #include "bindings/run/run.h"
 
-#define DIGITS_MAX 18 // widest place for a number
+#define DIGITS_MAX 18 // digits of a number, at most
 
 // Parses the placeholder in a pattern at `text`, which begins with '%' or '#'.
 typedef struct place {
-    size_t length; // of the pattern; 0: wrong
-    int digits; // -1: a plain sign
+    size_t length; // in the pattern; 0: invalid
+    int digits; // -1: an escaped '%' or '#'
 } place;
 
 static place read_place(const char *text)
@@ -46,13 +41,15 @@ static const char *base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-// "%d" may stand anywhere, "#" in the last part of the path only: folders are called "shot#3".
+// Returns whether `at` is a place for the number. "%d" may be anywhere, "#" only in the last part of the path, because
+// folders have names such as "shot#3".
 static bool is_place(const char *pattern, const char *at)
 {
     return *at == '%' || (*at == '#' && at >= base_name(pattern));
 }
 
-// An existing pipe or device keeps its name: it is written in place, and nothing is made beside it.
+// Returns whether the path is an existing pipe or device. It is written directly under its own name, and no other file
+// is made next to it.
 bool glintL_name_is_special(const char *path)
 {
     struct stat info;
@@ -67,7 +64,7 @@ bool glintL_name_is_plain(const char *name, size_t length)
     return good;
 }
 
-// The dot of ".png", ".pfm", ".npy" or ".exr"; NULL: another ending, or no name before it.
+// Returns the dot of ".png", ".pfm", ".npy" or ".exr"; NULL: another extension, or an empty name before it.
 static const char *ending(const char *path)
 {
     static const char *const known[] = { ".png", ".pfm", ".npy", ".exr" };
@@ -148,7 +145,7 @@ bool glintL_name_has_number(const char *pattern)
     return glintL_name_is_special(pattern);
 }
 
-// Copies the pattern with the number in its places. False: too long.
+// Copies the pattern with the number inserted. False: too long.
 static bool fill(const glintL_naming *naming, int64_t number, char path[GLINTL_PATH_SIZE])
 {
     size_t used = 0;
@@ -179,7 +176,7 @@ bool glintL_name_file(const glintL_naming *naming, int64_t number, const char *p
         size_t used = strlen(insert);
         const bool light = strncmp(pass, "light:", 6) == 0;
         snprintf(insert + used, sizeof insert - used, ".%s", pass);
-        for (char *at = insert + used + 1; *at; at++) // of d:NAME and light:NAME whatever the script calls it
+        for (char *at = insert + used + 1; *at; at++) // d:NAME and light:NAME may contain any characters
             if (!isalnum((unsigned char)*at) && *at != '-')
                 *at = '_';
         if (light)

@@ -1,5 +1,5 @@
-// The order in which a sweep's frames are rendered: the axis whose step costs least changes most often, and each frame
-// differs from the one before by one step on one axis. Numbers and files of frames do not depend on it.
+// The order in which a sweep's frames are rendered. The axis with the cheapest step changes fastest, and consecutive
+// frames differ by one step on one axis. The numbers and files of frames do not depend on the order.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 
 #define PROBES_MAX 4 // values of an axis whose plans are compared
 
-// The axis of each digit, from the one that changes most often.
+// Sorts the axes by the cost of a step, the cheapest first: it changes fastest.
 static void sort_axes(glintL_order *order)
 {
     order->is_found = true;
@@ -50,7 +50,7 @@ int64_t glintL_order_frame(const glintL_order *order, int64_t place)
     if (!order->is_found)
         return place + 1;
     int64_t n = 1, below = order->frames; // below: frames of the digits not yet read, from the slowest
-    bool back = false; // the number that the slower digits are is odd
+    bool back = false; // the slower digits form an odd number, so this digit runs backwards
     for (int i = order->axis_count - 1; i >= 0; i--) {
         const glintL_order_axis *axis = &order->axes[order->by_work[i]];
         below /= axis->count;
@@ -79,7 +79,7 @@ static void add_stage(glintL_order_axis *axis, const char *name)
         snprintf(axis->stages + used, sizeof axis->stages - used, "%s%s", used ? ", " : "", name);
 }
 
-// Adds the stages of a step. Every step ends with `resolve` and `tone`: they are named where nothing else runs.
+// Adds the stages of a step. Every step ends with `resolve` and `tone`, which are named only if no other stage runs.
 static void add_stages(glintL_order_axis *axis, const glint_plan *plan, uint32_t runs)
 {
     const glint_stage_info *stages;
@@ -92,7 +92,8 @@ static void add_stages(glintL_order_axis *axis, const glint_plan *plan, uint32_t
             add_stage(axis, stages[i].name);
 }
 
-// Compares the first values of an axis, with all others as in frame `middle`. False: a frame cannot be planned.
+// Compares plans of the axis's first values, with all other axes as in frame `middle`. False: a frame cannot be
+// planned.
 static bool probe_axis(glintL_order_axis *axis, int64_t middle, glintL_plan_frame *plan_frame, void *context)
 {
     const int64_t count = axis->count < PROBES_MAX ? axis->count : PROBES_MAX, first = middle - axis->middle * axis->stride;
@@ -119,7 +120,7 @@ bool glintL_order_find(glintL_order *order, glintL_plan_frame *plan_frame, void 
 {
     int64_t middle = 1;
     bool good = true;
-    for (int i = 0; i < order->axis_count; i++) // what changes nothing at the ends may do so between them
+    for (int i = 0; i < order->axis_count; i++) // an axis may have no effect at another's ends
         middle += order->axes[i].middle * order->axes[i].stride;
     for (int i = 0; i < order->axis_count && good; i++)
         good = probe_axis(&order->axes[i], middle, plan_frame, context);

@@ -1,4 +1,4 @@
-// The camera of a scene that has none: from the front, a little from the right and from above, with all shapes in view.
+// A camera for a scene without one: it views all shapes from the front, a little from the right and from above.
 #include <math.h>
 
 #include "bindings/run/run.h"

@@ -1,4 +1,4 @@
-// The files that a run has written, so that no picture replaces another one without a word.
+// The files that a run has written, to warn when one picture replaces another.
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 
 static uint64_t hash_step(uint64_t hash, char byte) { return (hash ^ (unsigned char)byte) * 0x100000001b3u; } // FNV-1a
 
-// Hashes a path, in which "./" and doubled slashes mean nothing. Never 0.
+// Hashes a path, ignoring "./" and doubled slashes. Never 0.
 static uint64_t hash_path(const char *path)
 {
     uint64_t hash = 0xcbf29ce484222325u;
@@ -30,7 +30,7 @@ static uint64_t hash_picture(const glintL_file *file, int64_t index)
     return file->key[0] ? hash : (uint64_t)index;
 }
 
-// The entry of a path, or the free one where it belongs. The table has free ones.
+// Returns the entry of a path, or the free entry for it. The table always has free entries.
 static glintL_place *find(glintL_place *table, size_t room, uint64_t path)
 {
     size_t at = path % room;
@@ -39,7 +39,7 @@ static glintL_place *find(glintL_place *table, size_t room, uint64_t path)
     return &table[at];
 }
 
-// False: out of memory.
+// Enlarges the table. False: out of memory.
 static bool grow(glintL_run *run)
 {
     size_t room = run->place_room ? 2 * run->place_room : 64;
@@ -65,8 +65,8 @@ static void warn(glintL_run *run, const char *path, int64_t first, int64_t index
                     index, path, first, stem < 300 ? stem : 300, path, dot ? dot : "");
 }
 
-// Whether the file had another picture: *first is the frame that it was written for. False for want of memory, too, when the run
-// has failed.
+// Returns whether the file had another picture; *first is the frame that it was written for. Also false when out of
+// memory: then the run has failed.
 static bool replaces(glintL_run *run, const char *name, uint64_t picture, int64_t index, int64_t *first)
 {
     if (glintL_name_is_special(name))

@@ -1,5 +1,5 @@
-// The text entries of a picture's file: key, script, its text's hash, parameters, frame, options, place in a sweep; and from these, whether
-// files belong together.
+// The text entries of a picture's file: key, script, hash of its text, parameters, frame, options, place in a sweep.
+// They also show whether files belong together.
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 #include "bindings/run/run.h"
 
-#define TEXT_MAX 65000 // a PNG text takes 64 KiB
+#define TEXT_MAX 65000 // a PNG text holds 64 KiB
 
 // ---- Writing ----
 
@@ -102,7 +102,7 @@ static bool differ(char *message, const file *a, const char *has, const file *b,
     return false;
 }
 
-// Whether both have the same text.
+// Checks that both files have the same text.
 static bool match_text(const file *a, const file *b, const char *keyword, const char *what, char *message)
 {
     const char *one = glint_picture_text(a->picture, keyword), *other = glint_picture_text(b->picture, keyword);
@@ -120,7 +120,7 @@ static const char *swept_line(const file *a, const char *line, size_t name_lengt
     return glintL_find_line(glint_picture_text(a->picture, "glint:sweep"), line, name_length, &length);
 }
 
-// Returns whether every line of a's text is also in b's, except for the values that a sweep changes.
+// Returns whether every line of a's text is also in b's, except the values that a sweep changes.
 static bool match_lines(const file *a, const file *b, const char *keyword, char *message)
 {
     const char *lines = glint_picture_text(a->picture, keyword);

@@ -1,14 +1,14 @@
-// The run from its beginning to its end: its renderer and writer, and the records of its frames in order.
+// The life of a run: its renderer and writer, and the records of its frames in order.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bindings/run/film.h"
 
-// Pictures that wait to be encoded, and files to be written. With the picture that is encoded and the one that is rendered
-// these are the four whose memory a renderer holds on to (render.c).
+// Limit for pictures waiting to be encoded, and for files waiting to be written. With the picture being encoded and the
+// one being rendered, these are the four whose memory a renderer retains (render.c).
 #define QUEUE_DEPTH 2
-#define UNTRUSTED_REUSE_MEMORY ((size_t)1 << 30) // of a process with a limit
+#define UNTRUSTED_REUSE_MEMORY ((size_t)1 << 30) // for a process with a memory limit
 
 glintL_run *glintL_run_create(void)
 {
@@ -33,7 +33,7 @@ void glintL_run_destroy(glintL_run *run)
 {
     if (!run)
         return;
-    glint_writer_destroy(run->writer); // before the records its results point to
+    glint_writer_destroy(run->writer); // before the records, which hold its results
     glint_renderer_destroy(run->renderer);
     glint_plan_destroy(run->explain_plan);
     free(run->explain_order);
@@ -91,10 +91,10 @@ void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_ren
         return;
     run->kept_scene = glint_scene_retain(scene);
     run->kept_render = *render;
-    run->kept_render.desc.derivatives = NULL; // which the scene's next frame has others of
+    run->kept_render.desc.derivatives = NULL; // they belong to the scene's next frame by now
     run->kept_render.desc.derivative_count = 0;
     run->kept_render.derivative_count = 0;
-    run->kept_render.desc.light_passes = NULL; // costs are of the picture
+    run->kept_render.desc.light_passes = NULL; // the study measures the picture without them
     run->kept_render.light_passes[0] = '\0';
 }
 
@@ -108,7 +108,7 @@ static int collect_run(lua_State *L)
     return 0;
 }
 
-// Plain Lua keeps the script's name in arg[0].
+// Reads the script's name, which plain Lua stores in arg[0].
 static void read_script_name(lua_State *L, glintL_run *run)
 {
     if (lua_getglobal(L, "arg") == LUA_TTABLE) {
@@ -141,7 +141,7 @@ static glint_status open_renderer(glintL_run *run, glint_error *error)
     desc.threads = run->request.threads;
     desc.time_stages = run->times_stages;
     desc.count_work = run->counts_work;
-    desc.no_reuse = run->request.no_reuse || run->request.repeat > 1; // repeats measure the whole frame
+    desc.no_reuse = run->request.no_reuse || run->request.repeat > 1; // repeats measure whole frames
     desc.reuse_memory = run->request.reuse_memory;
     if (run->request.is_untrusted && !desc.reuse_memory)
         desc.reuse_memory = UNTRUSTED_REUSE_MEMORY;
@@ -149,7 +149,7 @@ static glint_status open_renderer(glintL_run *run, glint_error *error)
     if (status)
         return status;
     run->renderer_threads = run->request.threads;
-    run->renderer = renderer; // from here on a signal can cancel it
+    run->renderer = renderer; // from now on a signal can cancel it
     if (run->interrupted)
         glint_renderer_cancel(renderer);
     return GLINT_OK;
@@ -162,14 +162,14 @@ bool glintL_run_open(glintL_run *run, glint_error *error)
     if (run->renderer && run->renderer_threads != run->request.threads) {
         glint_renderer_destroy(run->renderer);
         run->renderer = NULL;
-        glintL_run_collect(run, true); // the writer may only go when nothing is left at it
+        glintL_run_collect(run, true); // the writer may be destroyed only when it has no files left
         glint_writer_destroy(run->writer);
         run->writer = NULL;
     }
-    const bool writes = run->mode != GLINTL_MODE_WATCH; // whose pictures go to no file
+    const bool writes = run->mode != GLINTL_MODE_WATCH; // in this mode no picture is written
     if (run->renderer && (run->writer || !writes))
         return true;
-    sigemptyset(&stops); // these are for the script's thread: the threads made here inherit the mask
+    sigemptyset(&stops); // only the script's thread handles them: threads made here inherit the mask
     sigaddset(&stops, SIGINT);
     sigaddset(&stops, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &stops, &before);
@@ -193,7 +193,7 @@ glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work)
     record->stats = work->stats;
     record->film = work->film;
     memcpy(record->derivative, work->render.derivative, sizeof record->derivative);
-    record->pixel_count = (double)work->stats.pixels; // none if the frame's file is kept; then nothing is counted
+    record->pixel_count = (double)work->stats.pixels; // kept frames have no pixels to count
     const char *lights = glint_plan_render_desc(work->plan)->light_passes;
     size_t light_count = 0;
     while (glint_plan_light_pass(work->plan, light_count))
@@ -233,7 +233,7 @@ static void count_record(glintL_run *run, const glintL_record *record)
     }
 }
 
-// Reports and drops the records at the head whose files are all written.
+// Reports and removes the records at the head whose files are all written.
 static void flush_records(glintL_run *run)
 {
     while (run->head && run->head->files_left == 0) {
@@ -269,7 +269,7 @@ bool glintL_run_collect(glintL_run *run, bool wait)
             record->failed = true;
             if (result.status != GLINT_ERR_CANCELLED)
                 glintL_run_fail(run, glintL_run_exit_code(result.status), record->index, "%s", result.message);
-            glint_writer_cancel(run->writer); // what else is queued would meet the same end
+            glint_writer_cancel(run->writer); // the other queued files would fail in the same way
         }
         flush_records(run);
     }

@@ -1,11 +1,12 @@
-/// The fields that describe a frame and its file, each once: scene:render{}, animations and sweeps, the options of the
-/// command with their help and completions, and the text entries of files are all made from this list, in its order.
+/// The fields that describe a frame and its file, each listed once. scene:render{}, animations and sweeps, the options
+/// of the command with their help and completions, and the text entries of files are all generated from this list, in
+/// its order.
 #ifndef GLINT_L_RENDER_FIELDS_H
 #define GLINT_L_RENDER_FIELDS_H
 
 /// FIELD(name, kind, sort, member of glintL_render, least, most, words)
-/// OPTION(the same, text of the option in --help, help): a field with an option of its name that needs no more than this;
-/// text "": its words; NULL: a switch. Other fields have their options in bindings/command/options.c.
+/// OPTION(the same, value of the option in --help, help): a field with an option of its name that this row describes
+/// completely; value "": the words; NULL: a switch. The other fields have their options in bindings/command/options.c.
 #define GLINTL_RENDER_LIST(FIELD, OPTION)                                                                               \
     FIELD(width, NUMBER, WHOLE, desc.width, 1, GLINT_SIDE_MAX, NULL)                                                    \
     FIELD(height, NUMBER, WHOLE, desc.height, 1, GLINT_SIDE_MAX, NULL)                                                  \

@@ -1,4 +1,4 @@
-// The fields that describe a frame and its file, from a script's table and from the command line.
+// The fields that describe a frame and its file, read from a script's table and from the command line.
 #include <errno.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -12,8 +12,8 @@
 #define SAMPLES_MAX 65536.0
 
 typedef enum sort {
-    WHOLE, // a double of the engine's, min .. max
-    REAL, // likewise, not only whole
+    WHOLE, // a whole number, stored as double, min .. max
+    REAL, // the same, also with fractions
     CHOICE, // an enum
     COLORS, // a colour map and its range
     BITS,
@@ -117,14 +117,14 @@ static void describe(const detail *what, char out[256])
     }
 }
 
-// False: not allowed, or not a field that takes a number.
+// Stores a number. False: it is not allowed, or the field takes no number.
 static bool set_number(glintL_render *render, const detail *what, double value)
 {
     char *field = (char *)render + what->offset;
     int bits = value == 16 ? 16 : 8;
     switch (what->sort) {
     case WHOLE:
-        // Within the limits, so the conversion is exact; NaN fails them.
+        // Within the limits the conversion is exact. NaN fails the comparison.
         if (!(value >= what->min && value <= what->max) || value != (double)(int64_t)value)
             return false;
         memcpy(field, &value, sizeof value);
@@ -146,14 +146,14 @@ static bool set_choice(glintL_render *render, const detail *what, const char *te
 {
     for (unsigned value = 0; what->names[value]; value++) {
         if (strcmp(what->names[value], text) == 0) {
-            memcpy((char *)render + what->offset, &value, sizeof value); // an enum is stored as GCC and Clang do
+            memcpy((char *)render + what->offset, &value, sizeof value); // enums are stored as int by GCC and Clang
             return true;
         }
     }
     return false;
 }
 
-// "viridis", "viridis:1:9". False: `message` is written where the name is good.
+// Reads "viridis" or "viridis:1:9". False: the name is wrong, or the range is, and then `message` is written.
 static bool set_colors(glintL_render *render, const detail *what, const char *text, char message[GLINTL_MESSAGE_SIZE])
 {
     char name[32];
@@ -167,7 +167,7 @@ static bool set_colors(glintL_render *render, const detail *what, const char *te
     return true;
 }
 
-// NULL: none is near.
+// Returns the nearest choice; NULL: none is near.
 static const char *nearest_choice(const detail *what, const char *text)
 {
     const char *near = NULL;
@@ -195,7 +195,7 @@ static bool add_derivative(glintL_render *to, const char *name)
     return true;
 }
 
-// Adds a pass to `to`. The passes of a frame are set together.
+// Adds a pass to `to`. Reading a list replaces all passes of a frame.
 static bool add_pass(glintL_render *to, const char *name, size_t length)
 {
     char copy[GLINTL_PASS_NAME_SIZE];
@@ -214,7 +214,7 @@ static bool add_pass(glintL_render *to, const char *name, size_t length)
     glint_pass pass = glint_pass_from_name(copy);
     if (pass == GLINT_PASS_COUNT)
         return false;
-    if (pass != GLINT_PASS_BEAUTY) // which is always written
+    if (pass != GLINT_PASS_BEAUTY) // beauty is always written
         to->file_passes |= 1u << pass;
     return true;
 }
@@ -227,7 +227,7 @@ static void clear_passes(glintL_render *render)
     memset(render->derivative, 0, sizeof render->derivative);
 }
 
-// "normals" is not a pass; did you mean ...
+// Writes the message: "normals" is not a pass; did you mean ...
 static void complain_pass(const char *name, size_t length, char message[GLINTL_MESSAGE_SIZE])
 {
     char copy[64], allowed[256];
@@ -252,7 +252,7 @@ static void complain_pass(const char *name, size_t length, char message[GLINTL_M
         snprintf(message, GLINTL_MESSAGE_SIZE, "'%s' is not a pass; %s expected", copy, allowed);
 }
 
-// "ambient,depth"; "" and "none": no files beside the beauty.
+// Reads "ambient,depth"; "" and "none": no files except the beauty.
 static bool read_passes(const char *text, glintL_render *render, char message[GLINTL_MESSAGE_SIZE])
 {
     glintL_render read = *render;
@@ -275,7 +275,7 @@ static bool read_passes(const char *text, glintL_render *render, char message[GL
     return true;
 }
 
-// "X,Y,W,H"; whether it is within the frame is seen when that is planned.
+// Reads "X,Y,W,H". Planning the frame checks that the region is inside the frame.
 static bool set_region(double region[4], const char *text)
 {
     double read[4];
@@ -294,7 +294,7 @@ static bool set_region(double region[4], const char *text)
     return true;
 }
 
-// For a field whose value is spelt in letters. False: `message` is written.
+// Sets a field whose value is a word. False: `message` is written.
 static bool set_word(glintL_render *render, const detail *what, const char *text, char message[GLINTL_MESSAGE_SIZE])
 {
     char allowed[256];
@@ -371,7 +371,7 @@ static void read_pass_list(lua_State *L, int index, const char *path, int field,
     *render = read;
 }
 
-// {x, y, width, height}
+// Reads {x, y, width, height}.
 static void read_region(lua_State *L, int index, const char *path, int field, glintL_render *render)
 {
     char text[128] = "", full[128];

@@ -1,4 +1,4 @@
-// Which frames: "1-3,5,7-20:2,90-" and shards "2/4".
+// Frame selection: "1-3,5,7-20:2,90-" and shards "2/4".
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -15,14 +15,14 @@ static bool read_whole(const char **text, int64_t *out)
         return false;
     errno = 0;
     long long value = strtoll(*text, &end, 10);
-    if (errno || value == INT64_MAX) // the mark of an open end
+    if (errno || value == INT64_MAX) // INT64_MAX marks an open end
         return false;
     *out = value;
     *text = end;
     return true;
 }
 
-// One part of the list: "5", "1-3", "7-20:2", "90-". False: not one, or it is empty.
+// Reads one part of the list: "5", "1-3", "7-20:2", "90-". False: it is invalid or empty.
 static bool read_range(const char **text, glintL_range *range)
 {
     range->step = 1;
@@ -136,7 +136,7 @@ void glintL_selection_part(const glintL_selection *selection, int64_t first, int
     }
 }
 
-// Whether frames outside first .. last were named by number; writes the warning.
+// Returns whether frames outside first .. last were selected by number; writes the warning.
 static bool names_others(const glintL_selection *selection, int64_t first, int64_t last, char message[GLINTL_MESSAGE_SIZE])
 {
     for (size_t i = 0; i < selection->range_count; i++) {
@@ -156,7 +156,7 @@ static bool names_others(const glintL_selection *selection, int64_t first, int64
     return false;
 }
 
-// Whether a range has one of the frames first .. last.
+// Returns whether a range contains one of the frames first .. last.
 static bool has_any(const glintL_range *range, int64_t first, int64_t last)
 {
     int64_t before = range->first < first ? first - range->first : 0; // rounded up to whole steps

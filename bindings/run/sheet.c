@@ -1,4 +1,4 @@
-// Contact sheets: labels, columns and titles by the axes of the files; the engine draws.
+// Contact sheets: chooses labels, columns and titles from the axes of the files. The engine draws the sheet.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "bindings/run/sheet.h"
 
 #define DEFAULT_GAIN 8.0
-#define ROW_MAX 6 // cells of one axis that stand in one row unless columns are given
+#define ROW_MAX 6 // cells of a single axis in one row, unless columns are given
 #define LABEL_SIZE 512
 
 static bool ends_in(const char *path, const char *ending)
@@ -56,7 +56,7 @@ static const char *frame_of(const glintL_axes *axes, size_t cell)
     return frame ? frame : "?";
 }
 
-// Whether the numbers of the frames tell the cells apart.
+// Returns whether the cells have different frame numbers.
 static bool frames_differ(const glintL_axes *axes)
 {
     for (size_t i = 1; i < axes->cell_count; i++)
@@ -65,7 +65,7 @@ static bool frames_differ(const glintL_axes *axes)
     return axes->cell_count > 1;
 }
 
-// "name value" of every axis, a part each; without axes the frame, else the file.
+// Writes "name value" for every axis, as separate parts; without axes the frame number, otherwise the file name.
 static void default_label(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, char out[LABEL_SIZE])
 {
     char value[64];
@@ -81,7 +81,7 @@ static void default_label(const glintL_sheet *sheet, const glintL_axes *axes, si
         snprintf(out, LABEL_SIZE, "%s", base_name(sheet->files[cell]));
 }
 
-// What {name} stands for; NULL: nothing of that name.
+// Returns the value for {name}; NULL: unknown name.
 static const char *find_value(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, const char *name,
                               size_t length, char value[64])
 {
@@ -97,7 +97,7 @@ static const char *find_value(const glintL_sheet *sheet, const glintL_axes *axes
     return length == 5 && memcmp(name, "frame", 5) == 0 ? frame_of(axes, cell) : NULL;
 }
 
-// Fills in the template. False: the message names the unknown word.
+// Fills in the template. False: the message names the unknown name.
 static bool fill_label(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, char out[LABEL_SIZE],
                        char *message)
 {
@@ -135,7 +135,7 @@ static void free_list(char **list, size_t count)
     free(list);
 }
 
-// The labels of all cells, owned by the caller. NULL: the message says why.
+// Returns the labels of all cells, owned by the caller. NULL: the message says why.
 static char **make_labels(const glintL_sheet *sheet, const glintL_axes *axes, char *message)
 {
     char label[LABEL_SIZE];
@@ -161,7 +161,7 @@ static char **make_labels(const glintL_sheet *sheet, const glintL_axes *axes, ch
 
 // ---- The picture ----
 
-// A grid has a column for each value of its first axis; else the sheet is about square.
+// Returns the number of columns: the number of values of a grid's first axis; otherwise the sheet is about square.
 static int columns_of(const glintL_sheet *sheet, const glintL_axes *axes)
 {
     if (sheet->columns)
@@ -171,8 +171,8 @@ static int columns_of(const glintL_sheet *sheet, const glintL_axes *axes)
     return (int)ceil(sqrt((double)sheet->count));
 }
 
-// How many axes of a grid lie across: those whose values together are the columns. A single axis may run over several
-// rows. 0: no columns would belong to one value each.
+// Returns how many axes of a grid go across: those whose combined values make the columns. A single axis may take
+// several rows. 0: no number of axes fits the columns.
 static size_t count_across(const glintL_axes *axes, size_t columns)
 {
     size_t product = 1;

@@ -10,24 +10,24 @@
 // ---- sheet.c ----
 
 typedef struct glintL_sheet {
-    const char *path; ///< in .png or .html
-    char *const *files; ///< cells, row by row
+    const char *path; ///< .png or .html
+    char *const *files; ///< the cells, row by row
     size_t count;
-    char *const *places; ///< "name=value" lines of each cell, its place on the axes; NULL: as the file says
-    char *const *labels; ///< NULL: made of `label`
+    char *const *places; ///< "name=value" lines of each cell, its place on the axes; NULL: read from the file
+    char *const *labels; ///< NULL: made from `label`
     const char *label; ///< with {name} for a value; "none"; NULL: every axis and its value
     const char *title; ///< NULL: none
-    int64_t columns; ///< 0: by the axes
+    int64_t columns; ///< 0: from the axes
     int64_t difference; ///< the cell, from 1, that the others are compared with; 0: none
     double gain; ///< 0: the default
-    double size, dpi; ///< of its text, points; pixels an inch: 0: not said
-    bool transparent; ///< without paper
-    const glint_overlay_desc *colorbar; ///< of all pictures; NULL: none
-    bool mixes; ///< files of different makings are welcome
+    double size, dpi; ///< size of the text, points; pixels per inch: 0: not given
+    bool transparent; ///< no background
+    const glint_overlay_desc *colorbar; ///< for all pictures; NULL: none
+    bool mixes; ///< files may come from different scripts or settings
     const char *live; ///< HTML of a live figure for the page; NULL: none
 } glintL_sheet;
 
-/// Checks what can be checked before there are files. False: the message says what is wrong.
+/// Checks everything that does not depend on the files. False: the message says what is wrong.
 bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZE]);
 /// Draws the sheet. Returns the exit code; the message says what is wrong.
 int glintL_sheet_make(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZE]);
@@ -38,39 +38,39 @@ typedef struct glintL_axis {
     char *name; ///< owned
     char **values; ///< owned, in the order of the cells
     size_t count;
-    size_t *index; ///< owned: which value each cell has
+    size_t *index; ///< owned: index of each cell's value
 } glintL_axis;
 
 typedef struct glintL_axes {
     glintL_axis axis[GLINTL_AXES_MAX]; ///< the first changes fastest
     size_t count;
-    bool is_grid; ///< the cells are every combination, in order
-    glint_picture **pictures; ///< owned: their sizes and texts
+    bool is_grid; ///< the cells are all combinations, in order
+    glint_picture **pictures; ///< owned: for their sizes and texts
     size_t cell_count;
 } glintL_axes;
 
-/// Reads the files of a sheet and finds its axes: the places, then parameters, options and passes that differ. False: a file is
-/// missing, of another size or of another making; *code is then the exit code. In any case `out` is to be dropped.
+/// Reads the files of a sheet and finds its axes: the places, then parameters, options and passes that differ. False: a
+/// file is missing, or differs in size or origin; *code is the exit code. The caller drops `out` in any case.
 bool glintL_axes_find(const glintL_sheet *sheet, glintL_axes *out, int *code, char message[GLINTL_MESSAGE_SIZE]);
 void glintL_axes_drop(glintL_axes *axes);
-/// A value as a label has it: numbers of at most four digits.
+/// Writes a value as in labels: numbers with at most four digits.
 void glintL_axis_spell(const char *value, char out[64]);
 
 // ---- sheet_page.c ----
 
-/// The page with a slider for each axis; labels as on the sheet. Returns the exit code.
+/// Writes the page with a slider for each axis, and the labels of the sheet. Returns the exit code.
 int glintL_sheet_page(const glintL_sheet *sheet, const glintL_axes *axes, char *const *labels,
                       char message[GLINTL_MESSAGE_SIZE]);
 
 // ---- sweep_sheet.c ----
 
-void glintL_list_sheet(lua_State *L); ///< its fields, see glintL_list_variant
-/// Checks sweep.sheet at `index`; raises.
+void glintL_list_sheet(lua_State *L); ///< lists its fields, see glintL_list_variant
+/// Checks sweep.sheet at `index`; raises if it is wrong.
 void glintL_sweep_check_sheet(lua_State *L, int index);
-/// Checks the sheet of the sweep at `index` against its axes, once it has both; raises.
+/// Checks the sheet of the sweep at `index` against its axes, when both are set; raises if they do not match.
 void glintL_sweep_check_together(lua_State *L, int index);
-/// Draws the sheet of the sweep at `index` whose frames are numbered from `first`, when it has one. Waits for the frames
-/// to be written. `partial`: some were not selected, and missing ones are a warning. False: the run has failed.
+/// Draws the sheet of the sweep at `index`, if it has one. Its frames are numbered from `first`. Waits until they are
+/// written. partial: some frames were not selected, and missing files only give a warning. False: the run has failed.
 bool glintL_sweep_make_sheet(lua_State *L, int index, const glintL_naming *naming, int64_t first, bool partial);
 
 #endif

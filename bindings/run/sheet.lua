@@ -1,9 +1,9 @@
--- The page of a sheet: sheet.html with its @NAMES@ filled in, except for the pictures, which are marked by a zero byte.
+-- The page of a sheet: sheet.html with its @NAMES@ replaced. A zero byte marks the place of the pictures.
 local the = ...
 
 local function html(text) return (text:gsub("[<&]", { ["<"] = "&lt;", ["&"] = "&amp;" })) end
 
--- A string of JavaScript that cannot end the script it stands in; newlines become two spaces.
+-- Returns a JavaScript string that cannot end its script element; newlines become two spaces.
 local ESCAPES <const> = { ['"'] = '\\"', ["\\"] = "\\\\", ["<"] = "\\u003c", ["\n"] = "  " }
 local function quoted(text)
   return '"' .. text:gsub('[\1-\31"\\<]', function(c) return ESCAPES[c] or " " end) .. '"'
@@ -18,7 +18,7 @@ end
 function the.sheet(sheet)
   local axes, labels = {}, {}
   for i, a in ipairs(sheet.axes or {}) do axes[i] = axis(a) end
-  if not sheet.axes then -- without a grid one slider runs through the pictures
+  if not sheet.axes then -- without a grid, one slider goes through all pictures
     local every = "Array.from({ length: %d }, (_, i) => String(i + 1))"
     axes[1] = ('  { name: "picture", values: ' .. every .. " },\n"):format(#sheet.labels)
   end

@@ -1,4 +1,4 @@
-// The axes of a sheet: by which values its cells differ.
+// The axes of a sheet: the values that distinguish its cells.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,7 +51,7 @@ static bool read_files(const glintL_sheet *sheet, glintL_axes *out, int *code, c
 
 // ---- The axes ----
 
-// The value of a name in "name=value" lines, owned by the caller; "-" where there is none. NULL: out of memory.
+// Returns the value of a name in "name=value" lines, owned by the caller; "-" if there is none. NULL: out of memory.
 static char *copy_value(const char *lines, const char *name, size_t name_length)
 {
     size_t length = 0;
@@ -76,7 +76,7 @@ static void drop_axis(glintL_axis *axis)
     *axis = (glintL_axis) { 0 };
 }
 
-// Adds the value of one cell, which the axis owns from now on.
+// Adds the value of one cell. The axis takes it over.
 static bool add_value(glintL_axis *axis, size_t cell, char *value)
 {
     size_t at = 0;
@@ -112,7 +112,7 @@ static bool fill_axis(const glintL_sheet *sheet, const glintL_axes *axes, const 
     return good;
 }
 
-// Adds the axis "pass" when the files are of several passes.
+// Adds the axis "pass" if the files show several passes.
 static bool add_passes(glintL_axes *axes)
 {
     glintL_axis *axis = &axes->axis[axes->count];
@@ -140,7 +140,7 @@ static bool has_axis(const glintL_axes *axes, const char *name, size_t name_leng
     return false;
 }
 
-// Adds an axis for every name in the first cell's lines; without `all`, for those only whose values differ.
+// Adds an axis for every name in the first cell's lines; without `all`, only for names whose values differ.
 static bool add_axes(const glintL_sheet *sheet, glintL_axes *axes, const char *keyword, bool all)
 {
     const char *lines = lines_of(sheet, axes, 0, keyword);
@@ -160,7 +160,7 @@ static bool add_axes(const glintL_sheet *sheet, glintL_axes *axes, const char *k
     return true;
 }
 
-// Whether cell i has value i / stride % count on each axis.
+// Returns whether cell i has value i / stride % count on each axis.
 static bool is_grid(const glintL_axes *axes)
 {
     size_t stride = 1;
@@ -193,7 +193,7 @@ bool glintL_axes_find(const glintL_sheet *sheet, glintL_axes *out, int *code, ch
         return no_memory(message);
     }
     out->is_grid = is_grid(out);
-    if (!out->is_grid) { // files of a shell's nested loops change the last name fastest
+    if (!out->is_grid) { // in files of nested shell loops the last name changes fastest
         reverse(out);
         out->is_grid = is_grid(out);
         if (!out->is_grid)

@@ -1,4 +1,4 @@
-// A sheet as one HTML page: a slider for each axis, the pictures inside as data URIs. It needs nothing from elsewhere.
+// A sheet as one HTML page: a slider for each axis, with the pictures as data URIs. It needs no other files.
 #include <errno.h>
 #include <string.h>
 
@@ -71,7 +71,7 @@ static void push_content(lua_State *L, const void *context)
 
 // ---- Pictures ----
 
-#define PIECE 24576 // bytes; three by three, so that only the last is padded
+#define PIECE 24576 // bytes; a multiple of three, so that only the last piece is padded
 
 static glint_status append_text(glint_draft *draft, const char *text, glint_error *error)
 {
@@ -96,7 +96,7 @@ static glint_status append_file(glint_draft *draft, const char *path, glint_erro
     return status;
 }
 
-// The page with the pictures where its zero byte is.
+// Writes the page, with the pictures at its zero byte.
 static glint_status append_page(glint_draft *draft, const glintL_sheet *sheet, const glintL_made_text *page,
                                 glint_error *error)
 {

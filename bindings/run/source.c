@@ -1,5 +1,6 @@
-// The identity of a script's text: a hash of it and of the Lua modules it has required, whatever their order and place.
-// The frames of one film come from one text, and their keys cannot show that, because each frame has its own.
+// The identity of a script's text: a hash of the script and of the Lua modules that it has loaded, in any order and
+// from any place. The frames of one film must come from one text. Their keys cannot show that, because they differ for
+// each frame.
 #include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -9,14 +10,14 @@
 
 #include "bindings/run/run.h"
 
-// A sum does not depend on the order.
+// Adds a hash. The sum does not depend on the order.
 static void add_hash(XXH128_hash_t hash, XXH128_hash_t *sum)
 {
     sum->low64 += hash.low64;
     sum->high64 += hash.high64;
 }
 
-// Adds a file under a name to the sum; one that cannot be read is left out. False: out of memory.
+// Adds a file under a name to the sum. Skips a file that cannot be read. False: out of memory.
 static bool add_file(const char *name, const char *path, XXH128_hash_t *sum)
 {
     char bytes[8192];
@@ -38,8 +39,8 @@ static bool add_file(const char *name, const char *path, XXH128_hash_t *sum)
     return good;
 }
 
-// Pushes the file that a template of package.path finds for a module, or nil. As package.searchpath does, which takes a
-// lack of memory for a file that is not there.
+// Pushes the file that a template of package.path finds for a module, or nil. Unlike package.searchpath it reports lack
+// of memory.
 static void push_found(lua_State *L, const char *module, const char *templates)
 {
     luaL_gsub(L, module, ".", "/");

@@ -1,4 +1,4 @@
-// The run of a Lua state, as all files find it, and its first failure.
+// The run of a Lua state, and its first failure.
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,8 +7,8 @@
 
 #include "bindings/run/run.h"
 
-#define CALLERS_MAX 8 // lines of a traceback
-#define LEVELS_MAX 200 // of the stack that are looked at: a recursion without end has as many as there can be
+#define CALLERS_MAX 8 // lines of a traceback, at most
+#define LEVELS_MAX 200 // levels of the stack that are searched, since endless recursion fills the stack
 
 static const char RUN; // its address is the registry's key of the run
 
@@ -51,7 +51,7 @@ glintL_run *glintL_get_run(lua_State *L)
     return box ? *box : NULL;
 }
 
-// Whether a chunk is a module of glint's own, which lies in a folder glint: its lines tell users nothing.
+// Returns whether a chunk is one of glint's own modules, in a folder glint. Its lines mean nothing to users.
 static bool is_own_module(lua_State *L, const char *source)
 {
     static const char folder[] = "glint/";
@@ -69,7 +69,7 @@ static bool is_own_module(lua_State *L, const char *source)
     return is_loaded;
 }
 
-// Appends to the message on top the lines of the script that led to where it says it arose.
+// Appends the lines of the script that led to the error to the message on top.
 static int add_callers(lua_State *L)
 {
     lua_Debug where;
@@ -82,7 +82,7 @@ static int add_callers(lua_State *L)
         const char *line = lua_pushfstring(L, "%s:%d", where.short_src, where.currentline);
         const char *said = strstr(lua_tostring(L, -2), line);
         const char after = said ? said[strlen(line)] : ' ';
-        if (said && (after < '0' || after > '9')) { // it is in the message
+        if (said && (after < '0' || after > '9')) { // the message has this line already
             lua_pop(L, 1);
             continue;
         }
@@ -105,7 +105,7 @@ int glintL_message_handler(lua_State *L)
         lua_settop(L, 1);
         return add_callers(L);
     }
-    // Hooks, which end a script that goes on for ever, may be off here.
+    // __tostring could run forever, because the hooks that stop an untrusted script may be off here.
     if (!glintL_get_run(L)->request.is_untrusted && luaL_callmeta(L, 1, "__tostring") && lua_type(L, -1) == LUA_TSTRING)
         return 1;
     if (lua_type(L, 1) == LUA_TNUMBER)
@@ -125,7 +125,7 @@ bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *
     va_start(args, format);
     vsnprintf(run->message, sizeof run->message, format, args);
     va_end(args);
-    // An untrusted script has a limit of memory.
+    // An untrusted script has a memory limit.
     const bool is_short = run->request.is_untrusted && strstr(run->message, "out of memory");
     run->exit_code = is_short ? GLINTL_EXIT_USAGE : exit_code;
     run->failed_index = index;

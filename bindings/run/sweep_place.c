@@ -1,4 +1,4 @@
-// Where a frame stands in a sweep: names of the axes and values, as text for files and as a table for labels.
+// The place of a frame in a sweep: names of the axes and values, as text for files and as a table for labels.
 #include <string.h>
 
 #include "bindings/run/run.h"
@@ -13,11 +13,11 @@ int glintL_sweep_push_axis(lua_State *L, int axes, lua_Integer i)
     return axis;
 }
 
-// Pushes the name of the object at `object`, and returns it; "" where it has none.
+// Pushes and returns the name of the object at `object`; "" if it has none.
 static const char *push_object_name(lua_State *L, int object)
 {
     const int top = lua_gettop(L);
-    const bool is_named = lua_isuserdata(L, object) && !glintL_test_object(L, object, GLINTL_SCENE) && // it has no name
+    const bool is_named = lua_isuserdata(L, object) && !glintL_test_object(L, object, GLINTL_SCENE) && // has no name
                           luaL_getmetafield(L, object, "__name") != LUA_TNIL &&
                           glintL_test_object(L, object, lua_tostring(L, -1)) &&
                           lua_getfield(L, object, "name") == LUA_TSTRING;
@@ -28,7 +28,7 @@ static const char *push_object_name(lua_State *L, int object)
     return lua_tostring(L, -1);
 }
 
-// Pushes what an axis is called: its field; where another axis has that too, with the object before it.
+// Pushes the name of an axis: its field; with the object before it if another axis has the same field.
 static void push_axis_name(lua_State *L, int axes, lua_Integer i)
 {
     int top = lua_gettop(L), object = glintL_sweep_push_axis(L, axes, i), others = 0;
@@ -60,7 +60,7 @@ void glintL_sweep_push_title(lua_State *L, int axes, lua_Integer i)
     lua_settop(L, top + 1);
 }
 
-// Pushes the least string among the keys of the table at `value` that comes after the one at `after` (nil: of all), or nil.
+// Pushes the smallest string key of the table at `value` after the one at `after` (nil: of all), or nil.
 static void push_next_name(lua_State *L, int value, int after)
 {
     lua_pushnil(L);
@@ -76,7 +76,7 @@ static void push_next_name(lua_State *L, int value, int after)
     }
 }
 
-// Pushes the table at `value`, of numbers or of named ones: a vector, a colour, the fields of indirect.
+// Pushes the text of the table at `value`, with or without names: a vector, a colour, the fields of indirect.
 static void push_table_text(lua_State *L, int value)
 {
     luaL_Buffer text;
@@ -113,7 +113,7 @@ static void push_table_text(lua_State *L, int value)
     lua_remove(L, name);
 }
 
-// Pushes how the value on top, number `i` of its axis, is spelt on one line.
+// Pushes the value on top, number `i` of its axis, as text on one line.
 static void push_value_text(lua_State *L, int64_t i)
 {
     char number[32];

@@ -87,7 +87,7 @@ void glintL_sweep_check_sheet(lua_State *L, int index)
     }
 }
 
-// The contents of the sheet; the table `kept` on the stack owns the strings.
+// The contents of the sheet. The table `kept` on the stack owns the strings.
 typedef struct lists {
     char **files, **places, **labels;
 } lists;
@@ -100,7 +100,7 @@ static int64_t read_whole(lua_State *L, int sheet, const char *name)
     return value;
 }
 
-static const char *read_text(lua_State *L, int sheet, const char *name) // which the table keeps
+static const char *read_text(lua_State *L, int sheet, const char *name) // the table retains it
 {
     const char *text = lua_getfield(L, sheet, name) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
     lua_pop(L, 1);
@@ -123,7 +123,7 @@ static glintL_sheet read_sheet(lua_State *L, int sheet, const lists *l, int64_t 
     out.dpi = lua_tonumber(L, -1);
     lua_getfield(L, sheet, "transparent");
     out.transparent = lua_toboolean(L, -1);
-    lua_getfield(L, sheet, "colorbar"); // which the table keeps
+    lua_getfield(L, sheet, "colorbar"); // the table retains it
     const glint_overlay *bar = glintL_test_object(L, -1, GLINTL_OVERLAY);
     out.colorbar = bar ? glint_overlay_get(bar) : NULL;
     if (lua_getfield(L, sheet, "label") == LUA_TBOOLEAN && !lua_toboolean(L, -1))
@@ -132,7 +132,7 @@ static glintL_sheet read_sheet(lua_State *L, int sheet, const lists *l, int64_t 
     return out;
 }
 
-// Whether every {name} of a template is an axis of the sweep, whose frame has these "name=value" lines.
+// Checks that every {name} of a template is an axis of the sweep, whose frame has these "name=value" lines.
 static void check_template(lua_State *L, const char *label, const char *lines)
 {
     size_t unused;
@@ -170,7 +170,7 @@ void glintL_sweep_check_together(lua_State *L, int index)
 
 // ---- Drawing ----
 
-// "out/%04d.png" -> "out/sheet.png", "x_%04d.png", "x.png" and "x.mp4" -> "x_sheet.png".
+// Writes the default name: "out/%04d.png" -> "out/sheet.png"; "x_%04d.png", "x.png" and "x.mp4" -> "x_sheet.png".
 static void default_output(const glintL_naming *naming, char out[GLINTL_PATH_SIZE])
 {
     const char *pattern = naming->film ? naming->film->path : naming->pattern, *slash = strrchr(pattern, '/'),
@@ -185,7 +185,7 @@ static void default_output(const glintL_naming *naming, char out[GLINTL_PATH_SIZ
              length ? "_sheet.png" : "sheet.png");
 }
 
-// "sheet.png" -> "sheet_0013.png": of a later sweep of the same run, by its first frame.
+// Adds the number of the first frame, for a later sweep of the same run: "sheet.png" -> "sheet_0013.png".
 static void number_output(char path[GLINTL_PATH_SIZE], int64_t first)
 {
     char ending[16];
@@ -195,7 +195,7 @@ static void number_output(char path[GLINTL_PATH_SIZE], int64_t first)
     snprintf(path + stem, GLINTL_PATH_SIZE - stem, "_%04" PRId64 "%s", first, ending);
 }
 
-// Pushes what the label function returns for frame n: function(values, n), values[name] = value on each axis.
+// Pushes the result of the label function for frame n: function(values, n), with values[name] = value for each axis.
 static void push_label(lua_State *L, int function, int job, int64_t n)
 {
     lua_pushvalue(L, function);
@@ -208,7 +208,7 @@ static void push_label(lua_State *L, int function, int job, int64_t n)
 
 static char *keep(lua_State *L, int kept)
 {
-    char *text = (char *)(uintptr_t)lua_tostring(L, -1); // read only from here on
+    char *text = (char *)(uintptr_t)lua_tostring(L, -1); // only read from here on
     lua_rawseti(L, kept, (lua_Integer)lua_rawlen(L, kept) + 1);
     return text;
 }
@@ -220,7 +220,7 @@ static char **new_list(lua_State *L, int64_t count, int kept)
     return list;
 }
 
-// The first and last frame that have no file; 0: all have.
+// Returns the first frame without a file, and the last one; 0: all have files.
 static int64_t find_missing(const lists *l, int64_t count, int64_t *last)
 {
     int64_t first = 0;
@@ -269,7 +269,7 @@ typedef struct sheet_call {
     bool partial;
 } sheet_call;
 
-// Draws the sheet, of which all but the files is known.
+// Draws the sheet from the files, when everything else is known.
 static void draw(glintL_run *run, const sheet_call *what, const glintL_sheet *sheet, const lists *l)
 {
     char message[GLINTL_MESSAGE_SIZE];
@@ -315,7 +315,7 @@ static int draw_protected(lua_State *L)
         number_output(output, what->first);
     glintL_sheet sheet = read_sheet(L, 3, &l, job->frames, output);
     sheet.live = run->live;
-    if (sheet.dpi == 0) // that of its pictures
+    if (sheet.dpi == 0) // uses the dpi of the pictures
         sheet.dpi = dpi_of(run, job);
     if (glintL_places_note(run, "sheet", output, what->first))
         draw(run, what, &sheet, &l);
@@ -330,7 +330,7 @@ bool glintL_sweep_make_sheet(lua_State *L, int index, const glintL_naming *namin
     lua_settop(L, top);
     if (type != LUA_TTABLE)
         return true;
-    if (!glintL_run_collect(run, true)) // its frames are files from here on
+    if (!glintL_run_collect(run, true)) // from here on all its frames are written
         return false;
     lua_pushcfunction(L, glintL_message_handler);
     lua_pushcfunction(L, draw_protected);

@@ -25,7 +25,7 @@
 #endif
 
 #if !HAS_LINUX
-// Not inherited by programs that are started, and never waited for when `waits` is false.
+// Makes a descriptor that child processes do not inherit, and that does not block unless `waits`.
 static bool make_private(int fd, bool waits)
 {
     const int flags = fcntl(fd, F_GETFL);
@@ -87,7 +87,7 @@ void glintL_wake_call(const glintL_wake *wake)
 {
     const uint64_t one = 1;
     if (write(wake->to, &one, sizeof one) < 0)
-        return; // full: it is awake
+        return; // full: the thread will wake up
 }
 
 void glintL_wake_clear(const glintL_wake *wake)
@@ -185,7 +185,8 @@ void glintL_keep_points(void)
 }
 
 #if !HAS_LINUX
-// As a shell finds it: a path that has a folder as it is, any other word in the folders of PATH. To be freed; NULL: not found.
+// Finds a program as a shell does: a path with a folder as it is, another word in the folders of PATH. The caller frees
+// it. NULL: not found.
 static char *find_program(const char *started_as)
 {
     char word[4096];
@@ -219,7 +220,7 @@ bool glintL_program_folder(const char *started_as, char *folder, size_t size)
     return slash != NULL;
 }
 
-// "model name : ..." of /proc/cpuinfo; not all processors have one.
+// Reads "model name : ..." from /proc/cpuinfo, which not all processors have.
 static bool read_model(char out[128])
 {
 #if HAS_LINUX

@@ -1,5 +1,6 @@
-/// Functions that operating systems have under different names, or not at all. Each uses Linux's function there and a portable
-/// one elsewhere (macOS, the BSDs); GLINT_PORTABLE, from `make PORTABLE=1`, takes the portable one on Linux, too, for tests.
+/// Functions that operating systems have under different names, or not at all. On Linux they use its own function,
+/// elsewhere (macOS, the BSDs) a portable one. GLINT_PORTABLE, set by `make PORTABLE=1`, uses the portable ones on
+/// Linux too, for tests.
 #ifndef GLINT_L_SYSTEM_H
 #define GLINT_L_SYSTEM_H
 
@@ -10,28 +11,29 @@
 #include <time.h>
 
 #ifndef MSG_NOSIGNAL
-#define MSG_NOSIGNAL 0 // then the sockets made here have SO_NOSIGPIPE
+#define MSG_NOSIGNAL 0 // the sockets made here have SO_NOSIGPIPE instead
 #endif
 
 /// Wakes a thread that polls. {0} is not open.
 typedef struct glintL_wake {
-    int from; ///< to poll for POLLIN
+    int from; ///< poll it for POLLIN
     int to;
 } glintL_wake;
 
-/// False: errno says why.
+/// False: errno gives the reason.
 bool glintL_wake_open(glintL_wake *wake);
-void glintL_wake_close(glintL_wake *wake); ///< does nothing unless open
+void glintL_wake_close(glintL_wake *wake); ///< no effect unless open
 void glintL_wake_call(const glintL_wake *wake); ///< from any thread, any number of times
-void glintL_wake_clear(const glintL_wake *wake); ///< after poll: calls up to now are taken
+void glintL_wake_clear(const glintL_wake *wake); ///< call after poll: clears all calls so far
 
-/// Sockets that no other program inherits and that never raise SIGPIPE; neither end blocks. -1: errno says why.
+/// Make sockets that child processes do not inherit and that never raise SIGPIPE or block. -1: errno gives the reason.
 int glintL_socket(int domain, int type);
 int glintL_accept(int listener);
-/// Two ends joined; these block. False: errno says why.
+/// Makes two connected, blocking sockets. False: errno gives the reason.
 bool glintL_socket_pair(int ends[2]);
 
-/// A condition that is waited for until a time of GLINTL_COND_CLOCK, which no setting of the date moves where there is such.
+/// Makes a condition for timed waits on the clock GLINTL_COND_CLOCK, which is not affected by setting the date if the
+/// system has such a clock.
 void glintL_cond_init(pthread_cond_t *cond);
 #if defined(__linux__) && !defined(GLINT_PORTABLE)
 #define GLINTL_COND_CLOCK CLOCK_MONOTONIC
@@ -39,23 +41,25 @@ void glintL_cond_init(pthread_cond_t *cond);
 #define GLINTL_COND_CLOCK CLOCK_REALTIME
 #endif
 
-/// Bytes that cannot be guessed. False: there are none to be had.
+/// Fills unpredictable bytes. False: none are available.
 bool glintL_random(void *bytes, size_t size);
 
-/// Numbers of this thread keep their points, whatever locale is set later (not on NetBSD, whose locales belong to processes).
+/// Keeps the decimal point in numbers of this thread, whatever locale is set later (except on NetBSD, where locales
+/// belong to processes).
 void glintL_keep_points(void);
 
-/// The folder of the program that runs, "/usr/bin/", links followed; `started_as` is its argv[0]. False: it cannot be told.
+/// Finds the folder of the running program, "/usr/bin/", with links resolved; `started_as` is its argv[0]. False: not
+/// found.
 bool glintL_program_folder(const char *started_as, char *folder, size_t size);
 
-/// Returns the kind of a path that is not a file to be read from beginning to end: "device", "pipe", "socket" or "folder". NULL: it
-/// is one, or nothing is there. Does not wait for the other end of a pipe, which opening it would.
+/// Returns "device", "pipe", "socket" or "folder" for a path that is not a regular file. NULL: it is one, or does not
+/// exist. Does not block on a pipe, unlike opening it.
 const char *glintL_other_kind(const char *path);
 
-/// The most memory that this process has had at a time, bytes.
+/// Returns the peak memory of this process, bytes.
 long long glintL_peak_bytes(void);
 
-/// The processor's model, or its kind where the system does not tell.
+/// Writes the processor's model, or its architecture if the system does not provide the model.
 void glintL_processor_name(char out[128]);
 
 #endif

@@ -1,4 +1,4 @@
-// One frame of a list of jobs: its scene is built, planned at its times, and rendered.
+// One frame of a list of jobs: builds its scene, plans it at its times, and renders it.
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@ const glintL_job *glintL_walk_get_job(lua_State *L, int index, lua_Integer i)
     return job;
 }
 
-// A picture of the run's preview size: quick, and of the same shape.
+// Reduces the picture to the run's preview size and shape, for speed.
 static void shrink(glintL_run *run, glint_render_desc *desc)
 {
     double longest = desc->width > desc->height ? desc->width : desc->height;
@@ -55,7 +55,8 @@ static const char *output_of(const glintL_run *run, const glintL_job *job)
     return text ? text : job->render.output;
 }
 
-// Whether several frames of the whole script go to this job's pattern. Allocates nothing: its answer is a name.
+// Returns whether several frames of the whole script use this job's name pattern. Allocates nothing: the result decides
+// a name.
 static bool is_shared(const glintL_walk *walk)
 {
     const char *output = output_of(walk->run, walk->job);
@@ -70,7 +71,7 @@ static bool is_shared(const glintL_walk *walk)
     return frames > 1 || walk->run->earlier > 0;
 }
 
-// The job on top of the stack becomes the one at hand.
+// Makes job i of the list the current one and leaves it on top of the stack.
 static void take_job(glintL_walk *walk, lua_Integer i)
 {
     lua_rawgeti(walk->L, walk->list, i);
@@ -110,7 +111,7 @@ int glintL_walk_build(lua_State *L)
     return 0;
 }
 
-// Finds the slopes of the job's scene as it has just been built, and leaves it on the stack.
+// Finds the slopes of the job's scene, which was just built, and leaves the scene on the stack.
 static int derive(lua_State *L)
 {
     glintL_walk *walk = lua_touserdata(L, 3);
@@ -121,7 +122,7 @@ static int derive(lua_State *L)
     return 0;
 }
 
-// Looks at the job's scene, which frame n has just been built in.
+// Checks the job's scene for warnings, just after frame n was built.
 static int observe(lua_State *L)
 {
     glintL_walk *walk = lua_touserdata(L, 3);
@@ -180,7 +181,7 @@ bool glintL_walk_settle(glintL_walk *walk, lua_Integer i, int64_t first)
     return good;
 }
 
-// Notes a sweep's place with the work. False: out of memory; the work is gone, and the run has failed.
+// Stores a sweep's place in the work. False: out of memory; the work is destroyed, and the run has failed.
 static bool keep_place(glintL_walk *walk, glintL_work *work)
 {
     if (walk->job->kind != GLINTL_JOB_SWEEP)
@@ -204,7 +205,7 @@ glint_scene *glintL_walk_scene(glintL_walk *walk)
     return scene;
 }
 
-// Keeps an engine's failure at a frame. False.
+// Reports an engine's failure at a frame. Returns false.
 static bool fail_at(glintL_walk *walk, int64_t number, const glint_error *error)
 {
     return glintL_run_fail(walk->run, glintL_run_exit_code(error->status), number, "frame %" PRId64 ": %s", number,
@@ -221,7 +222,7 @@ glint_scene *glintL_walk_open_scene(glintL_walk *walk, int64_t number)
 
 // ---- While the shutter is open ----
 
-// Derivatives of a time: those that anything depends on then.
+// Copies the derivatives of one time, except those that nothing depends on.
 static void take_derivatives(const glint_render_desc *from, glint_derivative of[GLINT_DERIVATIVES_MAX], glint_render_desc *to)
 {
     to->derivatives = of;
@@ -231,7 +232,7 @@ static void take_derivatives(const glint_render_desc *from, glint_derivative of[
             of[to->derivative_count++] = from->derivatives[i];
 }
 
-// Plans frame n at each time that the shutter looks. False: the run has failed; the plans made so far are in the list.
+// Plans frame n at each of the shutter's times. False: the run has failed; the plans made so far are in the list.
 static bool plan_times(glintL_walk *walk, glintL_work *work, int64_t n, const glint_camera_desc *camera,
                        glint_plan **plans)
 {
@@ -262,7 +263,7 @@ bool glintL_walk_moves(glintL_walk *walk)
     return is_function && walk->job->kind == GLINTL_JOB_ANIMATION;
 }
 
-// Makes of a planned frame the mean of the times that the camera's shutter is open, if it is. False: the run has failed.
+// Turns a planned frame into the mean over the open shutter's times, if the shutter is open. False: the run has failed.
 static bool expose(glintL_walk *walk, glintL_work *work, int64_t n)
 {
     glint_error error;

@@ -1,12 +1,12 @@
-// Explains a run whose pictures are all black. The first picture is examined once it is known to be black; a
-// picture with light in it ends the search, so that a run of others pays for nothing.
+// Explains why all pictures of a run are black. The first picture is examined once it is known to be black. A picture
+// with light ends the search, so that other runs lose no time.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "bindings/run/run.h"
 
-#define RAYS_ACROSS 25 // that look for something to see
+#define RAYS_ACROSS 25 // rays across the picture that search for a hit
 #define RAYS_DOWN 15
 
 static bool is_dark(const double c[3]) { return !(c[0] > 0 || c[1] > 0 || c[2] > 0); }
@@ -43,7 +43,7 @@ static bool normalize(double v[3])
     return length > 0 && isfinite(length);
 }
 
-// The view's axes, unit. False: up is along the view.
+// Computes the view's axes, unit vectors. False: up is along the view.
 static bool find_axes(const glint_camera_desc *camera, double forward[3], double right[3], double up[3])
 {
     for (int i = 0; i < 3; i++)
@@ -55,12 +55,12 @@ static bool find_axes(const glint_camera_desc *camera, double forward[3], double
     return true;
 }
 
-// The hit of the ray nearest to the picture's middle, of a grid of them. False: none hits.
+// Returns the hit of the ray nearest to the picture's centre, from a grid of rays. False: no ray hits.
 static bool find_hit(const glint_scene *scene, const glint_camera_desc *camera, const glint_render_desc *desc, glint_hit *hit)
 {
     double forward[3], right[3], up[3], window[4], best = HUGE_VAL;
     if (!find_axes(camera, forward, right, up))
-        return true; // not known
+        return true; // treated as a hit: not known
     glint_camera_window(camera, desc->width, desc->height, window);
     for (int i = 0; i < RAYS_ACROSS * RAYS_DOWN; i++) {
         const double sx = 2 * (i % RAYS_ACROSS + 0.5) / RAYS_ACROSS - 1,
@@ -83,7 +83,7 @@ static bool find_hit(const glint_scene *scene, const glint_camera_desc *camera, 
     return best < HUGE_VAL;
 }
 
-// Whether the ray from the eye to the hit leaves a closed shape there.
+// Returns whether the ray from the eye to the hit leaves a closed shape there.
 static bool is_inside(const glint_camera_desc *camera, const glint_hit *hit)
 {
     const glint_shape_kind kind = glint_shape_get(hit->shape)->kind;

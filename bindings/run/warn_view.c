@@ -1,43 +1,43 @@
-// Warnings about where things are: a light inside a closed sphere, an object that no frame can show, a smooth mesh of so few
-// faces that their own shadows show.
+// Warnings about positions: a light inside a closed sphere, an object that no frame can show, a smooth mesh of so few
+// faces that their own shadows are visible.
 //
-// Each is given only where it is certain, of shapes of their own and of those in groups, where their transforms put them. A
-// ball around a shape is out of a picture when one plane of the view has it outside; its
-// shadow, the points whose segment to the light meets the sphere, is convex, so the same test holds for it: nothing of
-// it is inside the plane when the sphere is outside and the light lies no further out than the sphere's near side.
+// Each is given only if it is certain, for single shapes and for shapes in groups, after their transforms. A bounding
+// ball is outside the picture when it is outside one plane of the view. Its shadow (the points whose segment to the
+// light meets the ball) is convex, so the same test applies: no part of the shadow is inside the plane if the ball is
+// outside and the light is no further out than the ball's near side.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "bindings/run/run.h"
 
-#define MEMBERS_MAX 1000 // of a scene, and of its groups: above that single shapes are not looked for
+#define MEMBERS_MAX 1000 // of a scene with its groups: in larger scenes single shapes are not checked
 #define LIGHTS_MAX 64
-#define BEND_MOST 11.0 // degrees from a smooth mesh's faces to its normals: shadows cut off light of a cosine of 0.19
-#define UNSEEN_MAX 1000 // shapes that a run keeps a line about; more are not told of
+#define BEND_MOST 11.0 // degrees between faces and normals of a smooth mesh: shadows cut off light at a cosine of 0.19
+#define UNSEEN_MAX 1000 // shapes with an entry in a run's list; others are not reported
 
-// The addresses are the registry's keys of two tables. A shape's userdata -> its place in the other, or false once a view
-// has had it: weak, so that no shape is held on to. The place -> what the shape is called; it outlives the shape.
+// Registry keys of two tables. NOTED, with weak keys: a shape's userdata -> its index in UNSEEN, or false once a frame
+// may show it. UNSEEN: index -> description of the shape, which outlives the shape.
 static const char NOTED, UNSEEN;
 
 typedef struct view {
     double eye[3];
-    double out[5][3], limit[5]; // planes: outside where out . p > limit
+    double out[5][3], limit[5]; // planes: a point is outside where out . p > limit
     double forward[3];
     bool is_perspective;
 } view;
 
-// A shape, or what holds all of it, in the world.
+// A bounding ball of a shape, in world space.
 typedef struct ball {
     double center[3], radius;
-    bool is_sphere; // it is just that
+    bool is_sphere; // the shape is exactly this sphere
 } ball;
 
 typedef struct members {
     const glint_light *lights[LIGHTS_MAX];
     int light_count;
-    int shape_count; // in groups
-    bool shows_more; // mirrors, a lens and the like: what is outside the view may show all the same
+    int shape_count; // including those in groups
+    bool shows_more; // mirrors, a lens and the like can show objects outside the view
 } members;
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -59,7 +59,8 @@ static bool normalize(double v[3])
 
 // ---- The view ----
 
-// A plane whose outward normal leans from `side` towards the eye's back; of an orthographic view it stands upright.
+// Adds a plane of the view. Its outward normal is between `side` and the backward direction; in an orthographic view it
+// is `side`.
 static void add_plane(view *v, int i, const double side[3], double sign, double reach)
 {
     for (int c = 0; c < 3; c++)
@@ -68,7 +69,7 @@ static void add_plane(view *v, int i, const double side[3], double sign, double 
     v->limit[i] = dot(v->out[i], v->eye) + (v->is_perspective ? 0 : reach);
 }
 
-// False: the camera looks along its `up`, where its sides are the engine's choice.
+// Computes the view. False: the camera looks along its `up`, so that the engine chooses the sides.
 static bool make_view(const glint_camera_desc *camera, const glint_render_desc *desc, view *v)
 {
     double right[3], up[3], window[4];
@@ -92,12 +93,12 @@ static bool make_view(const glint_camera_desc *camera, const glint_render_desc *
     return true;
 }
 
-// Whether the whole ball is outside one plane and, with a light, its whole shadow.
+// Returns whether the whole ball is outside one plane and, with a light, also its whole shadow.
 static bool is_outside(const view *v, const ball *all, const glint_light_desc *light)
 {
     double radius = all->radius * (1 + 1e-9);
     for (int i = 0; i < 5; i++) {
-        double near = dot(v->out[i], all->center) - radius, spread = 0; // of the shadow: towards the inside if < 0
+        double near = dot(v->out[i], all->center) - radius, spread = 0; // of the shadow; < 0: inwards
         if (light && light->kind == GLINT_LIGHT_POINT)
             spread = near - dot(v->out[i], light->position);
         else if (light)
@@ -110,7 +111,7 @@ static bool is_outside(const view *v, const ball *all, const glint_light_desc *l
 
 // ---- What is in the scene ----
 
-// Whether the object has a field of this name with something else than 0, black, false or nil in it.
+// Returns whether the object has a field of this name with a value other than 0, black, false or nil.
 static bool has(lua_State *L, const char *type, const void *object, const void *desc, int index, const char *name)
 {
     const glintL_field *field = glintL_find_field(glintL_fields_of(glintL_class_of(L, type)->variant(object)), name);
@@ -137,7 +138,7 @@ static bool shows_through(lua_State *L, const glint_material *material)
                     has(L, GLINTL_MATERIAL, material, desc, 0, "mirror"));
 }
 
-// Calls `visit` with each object of the scene at `scene`: its userdata is on top.
+// Calls `visit` for each object of the scene at `scene`, with its userdata on top.
 static void each_member(lua_State *L, int scene, void (*visit)(lua_State *L, void *context), void *context)
 {
     if (lua_getiuservalue(L, scene, 1) == LUA_TTABLE) {
@@ -150,7 +151,7 @@ static void each_member(lua_State *L, int scene, void (*visit)(lua_State *L, voi
     lua_pop(L, 1);
 }
 
-// The ball of a shape before its transform; false: not known.
+// Computes the ball of a shape before its transform; false: unknown.
 static bool find_ball(const glint_shape *shape, ball *out)
 {
     const glint_shape_desc *desc = glint_shape_get(shape);
@@ -175,7 +176,7 @@ static bool find_ball(const glint_shape *shape, ball *out)
     return true;
 }
 
-// Takes a ball along; by a transform that does not keep angles, a larger one around what becomes of it.
+// Transforms a ball. If the transform does not preserve angles, the result is a larger ball around the image.
 static void move_ball(const glint_transform *t, ball *b)
 {
     double from[3], squares[3] = { 0 }, between = 0;
@@ -197,7 +198,7 @@ static void move_ball(const glint_transform *t, ball *b)
     b->is_sphere = b->is_sphere && keeps_angles;
 }
 
-// Makes `all` a ball around both.
+// Enlarges `all` to contain both balls.
 static void join_balls(ball *all, const ball *b)
 {
     double way[3];
@@ -216,7 +217,7 @@ static void join_balls(ball *all, const ball *b)
     all->radius = radius;
 }
 
-// Takes what a shape fills into `all`, whose radius is below 0 while it is empty. A plane has no ball.
+// Adds the bounds of a shape to `all`, whose radius is negative while it is empty. A plane has no ball.
 static void bound_shape(const glint_shape *shape, const glint_transform *around, ball *all)
 {
     ball b;
@@ -243,7 +244,8 @@ bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radi
     return all.radius > 0 && isfinite(all.radius);
 }
 
-// Returns whether a shape, or a shape of a group, has a mirror, a transparent material or holes; counts the shapes visited.
+// Returns whether a shape, or any shape in a group, has a mirror, a transparent material or holes. Counts the shapes
+// visited.
 static bool any_shows_through(lua_State *L, const glint_shape *shape, int *count)
 {
     glint_material *const *list;
@@ -269,7 +271,7 @@ static void gather(lua_State *L, void *context)
         all->shows_more = all->shows_more || any_shows_through(L, shape, &all->shape_count);
     if (!desc || !desc->shadows)
         return;
-    // Other kinds have a surface, or shine in a cone: their shadows are not looked at here.
+    // Other lights have an area or a cone; their shadows are not checked here.
     bool is_simple = desc->kind == GLINT_LIGHT_POINT || desc->kind == GLINT_LIGHT_DIRECTIONAL;
     if (is_simple && all->light_count < LIGHTS_MAX)
         all->lights[all->light_count++] = light;
@@ -284,7 +286,7 @@ typedef struct look {
     int64_t number;
     const view *view; // NULL: unknown
     const members *all;
-    int noted, unseen; // the tables of these names
+    int noted, unseen; // stack indices of the two tables
     bool whole; // every frame is rendered
 } look;
 
@@ -308,7 +310,7 @@ static bool is_dark(const glint_light_desc *light)
     return light->intensity == 0 || (light->color[0] == 0 && light->color[1] == 0 && light->color[2] == 0);
 }
 
-// A sphere lets no light out; seen from outside it hides all that its light could show.
+// Warns about a light inside a sphere: no light leaves the sphere, and from outside the sphere hides everything lit.
 static void look_for_inner_light(const look *l, const glint_shape_desc *shape, const ball *sphere)
 {
     char name[160];
@@ -333,8 +335,9 @@ static void look_for_inner_light(const look *l, const glint_shape_desc *shape, c
     }
 }
 
-// Faces throw shadows, normals shade: where a light grazes a face that the normals have turned towards it, the face is dark to
-// its edge. Only for spheres of triangles: the script chooses their number of faces, but not that of a model.
+// Warns about coarse smooth meshes. Shadows come from the faces, shading from the normals: where a light grazes a face
+// whose normals are turned towards it, the face is dark to its edge. Only for spheres of triangles, since the script
+// chooses their number of faces, unlike a model's.
 static void look_for_bends(const look *l, const glint_shape *shape, const ball *b)
 {
     char name[160];
@@ -362,7 +365,7 @@ static bool is_unseen(const look *l, const ball *b)
     return unseen;
 }
 
-// Gives the shape a line in the list of the unseen, and pushes its place; pushes nil when the list is full.
+// Adds the shape to the list of unseen shapes, and pushes its index; pushes nil when the list is full.
 static void push_place(lua_State *L, const look *l, const glint_shape_desc *shape, const ball *b)
 {
     char name[160];
@@ -381,7 +384,7 @@ static void push_place(lua_State *L, const look *l, const glint_shape_desc *shap
     lua_rawseti(L, l->unseen, 0);
 }
 
-// Remembers of the shape whose userdata is on top whether any frame has shown it.
+// Records whether any frame has shown the shape whose userdata is on top.
 static void look_for_unseen(lua_State *L, const look *l, const glint_shape_desc *shape, const ball *b)
 {
     lua_pushvalue(L, -1);
@@ -403,13 +406,13 @@ static void look_for_unseen(lua_State *L, const look *l, const glint_shape_desc 
     lua_rawset(L, l->noted);
 }
 
-// One shape, or all of a group, under the transforms around it; its userdata is on top, or nil.
+// Checks one shape, or all in a group, under the transforms around it; its userdata is on top, or nil.
 static void look_into(lua_State *L, const look *l, const glint_shape *shape, const glint_transform *outer, int *count)
 {
     ball b;
     const glint_shape_desc *desc = glint_shape_get(shape);
     const glint_transform placed = glint_transform_product(outer, &desc->transform);
-    if (++*count > MEMBERS_MAX || desc->kind >= GLINT_SHAPE_UNION) // no part of a combined solid stands alone
+    if (++*count > MEMBERS_MAX || desc->kind >= GLINT_SHAPE_UNION) // skips parts of combined solids
         return;
     for (size_t i = 0; i < glint_group_count(shape); i++) {
         const glint_shape *child = glint_group_child(shape, i);
@@ -438,7 +441,7 @@ static void look_at(lua_State *L, void *context)
         look_into(L, l, shape, &here, &count);
 }
 
-// Finds out which frames use their camera's lens.
+// Records which frames use their camera's lens.
 static void note_focus(glintL_run *run, const glint_camera_desc *camera)
 {
     run->has_aperture = run->has_aperture || camera->aperture > 0;
@@ -478,7 +481,7 @@ void glintL_report_unseen(lua_State *L, glintL_run *run)
     lua_pushnil(L);
     while (lua_next(L, -2)) {
         const char *name = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
-        if (name && (!first || strcmp(name, first) < 0)) // tables have no order; the list keeps the string
+        if (name && (!first || strcmp(name, first) < 0)) // tables have no order; the list retains the string
             first = name;
         count += name != NULL;
         lua_pop(L, 1);

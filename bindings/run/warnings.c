@@ -1,4 +1,4 @@
-// Warnings that teach: each appears once, names the cause and the cure, and is never a guess.
+// Warnings that teach: each appears once, names the cause and the cure, and is certain.
 //
 //   a shininess without a specular colour, a parameter that is not read       here
 //   a light inside a closed sphere, an object outside the view, a smooth
@@ -6,7 +6,7 @@
 //   pictures that are all black                                               warn_black.c, at the end
 //   a picture that is clipped                                                 brightness.c, events.c, at the end
 //
-// --warnings=error makes the first of them end the run with 2.
+// --warnings=error ends the run with exit code 2 at the first warning.
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -17,20 +17,20 @@
 
 #define SAID_MAX 100 // warnings of one run
 
-// The addresses are the registry's keys of two tables: a material's userdata, weak -> where it was made; and that place ->
-// how many materials made there have a shininess and never had a specular.
+// Registry keys of two tables. MADE: a material's userdata (weak) -> the place where it was made. DULL: that place ->
+// the number of materials made there that have a shininess and never had a specular.
 static const char MADE, DULL;
 
 // ---- Said once ----
 
-// Returns the part of a message that identifies it, without the frame that it begins with.
+// Returns the part of a message that identifies it, without the frame at its beginning.
 static const char *gist_of(const char *message)
 {
     const size_t digits = strncmp(message, "frame ", 6) == 0 ? strspn(message + 6, "0123456789") : 0;
     return digits && message[6 + digits] == ':' ? message + 6 + digits : message;
 }
 
-// Whether it is new, and among the first SAID_MAX. Without memory it may be said again.
+// Returns whether a warning is new and among the first SAID_MAX. When memory is short it may be repeated.
 static bool is_new(glintL_run *run, const char *message)
 {
     message = gist_of(message);
@@ -108,7 +108,7 @@ void glintL_run_note(const glintL_run *run, const char *format, ...)
 
 // ---- Shininess without specular ----
 
-// Adds to the count of the place on top, and pops it.
+// Adds to the count of the place on top, and pops the place.
 static void count_dull(lua_State *L, lua_Integer change)
 {
     glintL_push_table(L, &DULL);
@@ -163,7 +163,7 @@ static void report_dull(lua_State *L, glintL_run *run)
     glintL_push_table(L, &DULL);
     lua_pushnil(L);
     while (lua_next(L, -2)) {
-        const char *where = lua_tostring(L, -2); // the table keeps it
+        const char *where = lua_tostring(L, -2); // the table retains it
         if (!first || strcmp(where, first) < 0)
             first = where;
         lua_pop(L, 1);
@@ -178,7 +178,7 @@ static void report_dull(lua_State *L, glintL_run *run)
 
 static bool is_part_of_name(int c) { return isalnum(c) || c == '_'; }
 
-// How often the word stands in the file; -1: it cannot be read.
+// Returns how often the word occurs in the file; -1: it cannot be read.
 static int count_word(const char *path, const char *word)
 {
     FILE *file = fopen(path, "r");
@@ -203,7 +203,8 @@ static bool is_set(const glintL_run *run, const char *name)
     return false;
 }
 
-// A parameter that is read under conditions only is not unused: so the script's text must not have its name again.
+// Warns about parameters that are not read, except those whose name occurs again in the script: they may be read under
+// some condition.
 static void report_params(lua_State *L, glintL_run *run, const char *script)
 {
     glintL_push_params(L);

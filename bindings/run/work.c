@@ -1,4 +1,4 @@
-// One frame: its plan, its files and their keys, rendering, and handing over to the writer.
+// One frame: its plan, its files and their keys, rendering, and the transfer to the writer.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +12,7 @@ static glint_status fail(glint_error *error, glint_status status, const char *wh
     return status;
 }
 
-// A .png of depth is scaled by the nearest point of the whole frame.
+// Returns whether a region writes depth to a .png, which is scaled by the nearest point of the whole frame.
 static bool is_depth_of_part(const glintL_render *render)
 {
     return render->desc.region[2] > 0 && render->file_passes >> GLINT_PASS_DEPTH & 1 &&
@@ -35,7 +35,7 @@ glint_status glintL_work_create(const glint_scene *scene, const glintL_render *r
     work->render = *render;
     glint_render_desc *desc = &work->render.desc;
     desc->passes = writes || keep_image ? render->file_passes : 0;
-    desc->codes = writes ? !is_linear : !keep_image; // a run that writes nothing makes the codes all the same: to time it
+    desc->codes = writes ? !is_linear : !keep_image; // a run that writes nothing makes codes too, for its timing
     if (keep_image || is_linear || (writes && glintL_tone_is_data(&desc->tone)))
         desc->passes |= 1u << GLINT_PASS_BEAUTY;
     glint_status status = glintL_check_light_passes(scene, render, error);
@@ -96,7 +96,7 @@ const char *glintL_pass_name(const glintL_work *work, glint_pass pass, char room
     return room;
 }
 
-// Names one pass's file, and finds its keys.
+// Names one pass's file and computes its keys.
 static glint_status add_file(glintL_work *work, const glintL_naming *naming, glint_pass pass, glint_error *error)
 {
     char name[GLINTL_PASS_NAME_SIZE];
@@ -129,7 +129,7 @@ glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, gl
     if (!naming->pattern)
         return GLINT_OK;
     if (glintL_name_is_exr(naming->pattern)) {
-        passes = 1u << GLINT_PASS_BEAUTY; // that file has them all
+        passes = 1u << GLINT_PASS_BEAUTY; // this one file contains all passes
     } else {
         passes |= ((1u << work->render.derivative_count) - 1) << GLINT_PASS_DERIVATIVE;
         while (glint_plan_light_pass(work->plan, lights))
@@ -169,7 +169,7 @@ bool glintL_work_is_kept(glintL_run *run, const glintL_work *work)
     return work->file_count > 0;
 }
 
-// Once for each light of the run.
+// Warns once for each light of the run.
 static void warn_of_caps(glintL_run *run, const glint_plan *plan)
 {
     const glint_effect *effects;
@@ -182,7 +182,8 @@ static void warn_of_caps(glintL_run *run, const glint_plan *plan)
                             effects[i].caller);
 }
 
-// A sample goes through one point of the lens. A preview has one sample for its speed, a command line because it says so.
+// Warns that each sample goes through one point of the lens. Not for previews and command lines that ask for one
+// sample.
 static void warn_of_lens(glintL_run *run, const glint_plan *plan)
 {
     const glint_effect *effects;
@@ -209,7 +210,7 @@ static void warn_of_colormap(glintL_run *run, const glintL_work *work)
 
 static void warn_of_overlay(void *run, const char *message) { glintL_run_warn(run, "%s", message); }
 
-// Whether the picture's values count: it is written as codes, or would be without -o none.
+// Returns whether the picture's brightness counts: it is written as integer values, or would be without -o none.
 static bool is_looked_at(const glintL_run *run, const glintL_work *work)
 {
     return work->render.desc.codes || (run->measures && strcmp(work->render.output, "none") == 0);
@@ -284,7 +285,7 @@ bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept)
     return glintL_run_collect(run, false);
 }
 
-// Renders, and reports all but the last of the repeats.
+// Renders, and reports all but the last repeat.
 static bool render_repeats(glintL_run *run, glintL_work *work)
 {
     glint_error error;
@@ -305,7 +306,7 @@ static bool render_repeats(glintL_run *run, glintL_work *work)
     return true;
 }
 
-// Measures the pass that is scaled for viewing. Several passes may have nothing in common, and are an error.
+// Measures the pass that is scaled for viewing. Several such passes may differ in range, so they are an error.
 static bool measure_range(glintL_run *run, const glintL_work *work)
 {
     glint_error error;

@@ -1,4 +1,4 @@
-// Values in: numbers, vectors and lists of a script, and the messages about wrong ones.
+// Reads values from a script: numbers, vectors and lists, with messages about wrong values.
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -7,9 +7,9 @@
 
 #include "bindings/value/glintL.h"
 
-#define SPELT_MAX 40 // longest part of a script's string shown in a message
+#define SPELT_MAX 40 // bytes of a script's string shown in a message, at most
 
-// Pushes "file:line: " of the nearest Lua code that runs, or "".
+// Pushes "file:line: " of the innermost running Lua code, or "".
 void glintL_push_position(lua_State *L)
 {
     const glintL_tracing *tracing = glintL_get_tracing(L);
@@ -18,7 +18,7 @@ void glintL_push_position(lua_State *L)
         lua_getinfo(L, "Slf", &where);
         const char *place = tracing ? tracing->place(L, lua_tocfunction(L, -1)) : NULL;
         lua_pop(L, 1);
-        if (place) { // the line is gone with a tail call
+        if (place) { // a tail call loses the line
             lua_pushstring(L, place);
             return;
         }
@@ -136,7 +136,7 @@ int glintL_bad_key(lua_State *L, const char *path, int index)
     return glintL_error(L, "%s%sname of a field expected, got %s", path, *path ? ": " : "", got);
 }
 
-// Values read here lose their slopes.
+// Refuses a dual number where its slopes would be lost.
 static void refuse_dual(lua_State *L, int index, const char *path)
 {
     if (glintL_to_dual(L, index))
@@ -146,12 +146,12 @@ static void refuse_dual(lua_State *L, int index, const char *path)
 double glintL_read_number(lua_State *L, int index, const char *path)
 {
     refuse_dual(L, index, path);
-    if (lua_type(L, index) != LUA_TNUMBER) // a string is no number here
+    if (lua_type(L, index) != LUA_TNUMBER) // a string does not count as a number
         glintL_refuse(L, index, path, "number");
     return lua_tonumber(L, index);
 }
 
-// Whether the table's only keys are 1, 2 and 3; any of them may be missing.
+// Checks that the table has no keys except 1, 2 and 3, any of which may be missing.
 static void check_three_keys(lua_State *L, int index, const char *path, const char *expected)
 {
     lua_pushnil(L);
@@ -203,7 +203,7 @@ void glintL_read_vector(lua_State *L, int index, const char *path, double out[3]
     glintL_read_three(L, index, path, "{x, y, z}", out);
 }
 
-// Raises for the first of 1 .. that the table lacks.
+// Raises for the first index from 1 on that the table lacks.
 static void refuse_hole(lua_State *L, int index, const char *path)
 {
     for (lua_Integer i = 1;; i++) {

@@ -1,12 +1,12 @@
-// Classes: how the fields of boxes are read and written, and their metatables.
+// Classes: reading and writing the fields of boxes, and their metatables.
 #include <stdint.h>
 #include <string.h>
 
 #include "bindings/value/glintL.h"
 
-static const char LISTED; // its address is the registry's key of the table behind glint._fields()
+static const char LISTED; // its address is the registry's key of the table for glint._fields()
 
-typedef union description { // of whatever object
+typedef union description { // of any object
     max_align_t align;
     char bytes[GLINTL_DESC_SIZE];
 } description;
@@ -18,7 +18,7 @@ const glintL_field *glintL_fields_of(const glintL_variant *variant)
     return variant->kind ? glint_object_fields(variant->kind, NULL) : variant->fields;
 }
 
-// The class is the first upvalue of each metamethod. 1: the object.
+// Returns the class, the first upvalue of each metamethod. 1: the object.
 static const glintL_class *this_class(lua_State *L) { return lua_touserdata(L, lua_upvalueindex(1)); }
 
 static const luaL_Reg *find_function(const luaL_Reg *functions, const char *name)
@@ -29,7 +29,7 @@ static const luaL_Reg *find_function(const luaL_Reg *functions, const char *name
     return NULL;
 }
 
-// "x", "y" and "z" are parts of the variant's place: which one, or -1.
+// Returns which component of the variant's place "x", "y" or "z" is, or -1.
 static int component(const glintL_variant *variant, const char *name)
 {
     return variant->place && name[0] >= 'x' && name[0] <= 'z' && !name[1] ? name[0] - 'x' : -1;
@@ -54,7 +54,7 @@ static int unknown_field(lua_State *L, const glintL_class *class, const glintL_v
     return glintL_no_such_field(L, variant->name, name, glintL_nearer(name, near, "close"));
 }
 
-// An object no userdata stands for any more gets a new one, made before its pointer is read: making it may run a
+// Makes a new userdata if the object has none any more, before reading the object's pointer again: making it may run a
 // finalizer of the script, which may close the owner.
 static void push_object_field(lua_State *L, const glintL_class *class, const glintL_field *field, description *desc)
 {
@@ -83,7 +83,7 @@ static void push_value(lua_State *L, const glintL_class *class, const glintL_fie
         push_object_field(L, class, field, &desc);
 }
 
-// The pattern in the place of a field's value.
+// Pushes the pattern that replaces a field's value.
 static bool push_source(lua_State *L, const glintL_class *class, const glintL_field *field, const void *object)
 {
     description desc;
@@ -101,7 +101,7 @@ static int read_member(lua_State *L)
 {
     const glintL_class *class = this_class(L);
     const luaL_Reg *function;
-    if (lua_type(L, 2) == LUA_TSTRING) { // methods first: a closed object can still be closed
+    if (lua_type(L, 2) == LUA_TSTRING) { // methods first, so that a closed object can be closed again
         const char *name = lua_tostring(L, 2);
         if (strcmp(name, "close") == 0) {
             lua_pushvalue(L, lua_upvalueindex(2));
@@ -166,8 +166,8 @@ static const glintL_field *writable_field(lua_State *L, const glintL_class *clas
     return NULL;
 }
 
-// Reading a table allocates, which may run a finalizer of the script that changes or closes the object: its description is
-// fetched again, and the value is put into that.
+// Reads a table into a copy of the description. Reading allocates, which may run a finalizer of the script that changes
+// or closes the object, so the description is fetched again before the value is stored.
 static void *read_nested(lua_State *L, const glintL_class *class, const glintL_field *field, description *desc)
 {
     description fields = *desc;
@@ -227,10 +227,10 @@ static int close_object(lua_State *L)
     glintL_box *box = luaL_testudata(L, 1, class->type);
     if (!box)
         return glintL_refuse(L, 1, "", class->type + sizeof "glint." - 1);
-    if (!lua_toboolean(L, lua_upvalueindex(2))) // not by the collector
+    if (!lua_toboolean(L, lua_upvalueindex(2))) // not when called by the collector
         glintL_get_tracing(L)->keep_closed(L, 1);
     void *object = box->object;
-    box->object = NULL; // first: nothing can come between
+    box->object = NULL; // first, so that the object is released only once
     if (object)
         class->release(object);
     return 0;
@@ -328,7 +328,7 @@ void glintL_list_object(lua_State *L, const glintL_variant *variant, const glint
     lua_pop(L, 2);
 }
 
-// Upvalues: the class, the variant, its number.
+// Makes an object. Upvalues: the class, the variant, its number.
 static int new_object(lua_State *L)
 {
     const glintL_class *class = this_class(L);

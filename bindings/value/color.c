@@ -1,4 +1,4 @@
-// Colours of a script: {r, g, b} and single numbers are linear; "#rgb", "#rrggbb" and CSS names are sRGB.
+// Colours in a script: {r, g, b} and single numbers are linear; "#rgb", "#rrggbb" and CSS names are sRGB.
 #include <ctype.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -58,7 +58,7 @@ static const named NAMES[] = {
 
 static int compare(const void *name, const void *entry) { return strcmp(name, ((const named *)entry)->name); }
 
-// Case does not matter, as in CSS.
+// Finds a CSS name, ignoring case, as in CSS.
 static bool find_name(const char *text, size_t length, uint32_t *code)
 {
     char lower[LONGEST_NAME + 1] = { 0 };
@@ -73,7 +73,7 @@ static bool find_name(const char *text, size_t length, uint32_t *code)
     return true;
 }
 
-// "#rgb" or "#rrggbb".
+// Reads "#rgb" or "#rrggbb".
 static bool read_hex(const char *text, size_t length, uint32_t *code)
 {
     static const char digits[] = "0123456789abcdef";

@@ -1,4 +1,4 @@
-// Cures: what a message adds to a common mistake.
+// Cures: hints that messages add for common mistakes.
 #include <stdio.h>
 #include <string.h>
 
@@ -17,7 +17,7 @@ bool glintL_is_module(lua_State *L, int index)
     return is;
 }
 
-// Whether the table `name` of the loaded modules ("glint", "math") has a function of that name.
+// Returns whether the table of the loaded module ("glint", "math") has a function of that name.
 static bool has_function(lua_State *L, const char *module, const char *name)
 {
     luaL_checkstack(L, 4, "message");
@@ -34,7 +34,7 @@ static bool has_function(lua_State *L, const char *module, const char *name)
 
 bool glintL_makes(lua_State *L, const char *name) { return has_function(L, "glint", name); }
 
-// The C function that runs, as the script called it; false: not by a name.
+// Returns how the script called the running C function; false: not by a name.
 static bool find_call(lua_State *L, lua_Debug *call)
 {
     return lua_getstack(L, 0, call) && lua_getinfo(L, "n", call) && call->name;

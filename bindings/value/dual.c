@@ -1,13 +1,13 @@
-// Dual numbers: a number and how fast it changes with each of a few variables. Arithmetic makes further ones; a field of an object
-// that takes one has its value, and the object's userdata keeps the slopes.
+// Dual numbers: a number and its derivatives (slopes) by a few variables. Arithmetic makes new dual numbers. A field of
+// an object stores only the value; the object's userdata stores the slopes.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "bindings/value/glintL.h"
 
-static const char VARIABLES; // its address is the registry's key of the variables' names, a list
-static const char SLOPED; // and of the userdata that keep slopes, as weak keys
+static const char VARIABLES; // its address is the registry's key of the list of the variables' names
+static const char SLOPED; // the same for the userdata that store slopes, as weak keys
 
 // ---- Variables ----
 
@@ -47,7 +47,7 @@ const char *glintL_near_variable(lua_State *L, const char *name)
     const lua_Integer count = luaL_len(L, -1);
     for (lua_Integer i = 1; i <= count; i++) {
         lua_rawgeti(L, -1, i);
-        near = glintL_nearer(name, near, lua_tostring(L, -1)); // the list keeps the string
+        near = glintL_nearer(name, near, lua_tostring(L, -1)); // the list retains the string
         lua_pop(L, 1);
     }
     lua_pop(L, 1);
@@ -95,7 +95,7 @@ bool glintL_read_dual(lua_State *L, int index, glintL_dual *out)
 glintL_dual glintL_dual_apply(const glintL_dual *a, double by_a, const glintL_dual *b, double by_b, double value)
 {
     glintL_dual out = { .value = value, .depends = a->depends | (b ? b->depends : 0) };
-    for (int i = 0; i < GLINTL_VARIABLES_MAX; i++) { // a slope of 0 has nothing to pass on, however steep the function is
+    for (int i = 0; i < GLINTL_VARIABLES_MAX; i++) { // a slope of 0 stays 0, even where the derivative is infinite
         out.slope[i] = a->slope[i] != 0 ? by_a * a->slope[i] : 0;
         if (b && b->slope[i] != 0)
             out.slope[i] += by_b * b->slope[i];
@@ -111,7 +111,7 @@ glintL_dual glintL_dual_pow(const glintL_dual *a, const glintL_dual *b)
 
 // ---- Operators ----
 
-// Whether the other operand has an operator of its own, a symbol's or a vector's: that makes the result.
+// Returns whether the other operand (a symbol or vector) has its own operator, and lets it compute the result.
 static bool defer(lua_State *L, const char *event)
 {
     for (int i = 1; i <= 2; i++) {
@@ -176,7 +176,7 @@ static int divide(lua_State *L)
     return push_result(L, glintL_dual_apply(&a, 1 / b.value, &b, -q / b.value, q));
 }
 
-// As Lua has it: a - floor(a / b) b.
+// As in Lua: a - floor(a / b) b.
 static int modulo(lua_State *L)
 {
     glintL_dual a, b;
@@ -300,7 +300,7 @@ bool glintL_read_duals(lua_State *L, int index, const char *path, bool is_color,
     return true;
 }
 
-// Stores a field's slopes in an object, as assigned, in the engine's units.
+// The slopes of one field of an object, in the engine's units.
 typedef struct slopes {
     glintL_dual of[3]; // of each component
 } slopes;
@@ -312,7 +312,7 @@ static int count_of(const glintL_field *field)
 
 static void key_of(const glintL_field *field, char key[64]) { snprintf(key, 64, "d:%s", field->name); }
 
-// The slopes of the value at `index`; false: it has none.
+// Finds the slopes of the value at `index`; false: it has none.
 static bool find_slopes(lua_State *L, int index, const glintL_field *field, slopes *out)
 {
     const int count = count_of(field);
@@ -338,7 +338,7 @@ static void put_slopes(lua_State *L, int object, const glintL_field *field, cons
     char key[64];
     key_of(field, key);
     if (!s && !glintL_push_kept(L, object, key))
-        return; // the common case: there were none, and there are none
+        return; // the common case: no slopes before and after
     if (!s) {
         lua_pushnil(L);
         glintL_keep(L, object, key, -1);

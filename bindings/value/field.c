@@ -1,4 +1,4 @@
-// Fields: one member of a description, between its name in a script and its place in the engine's struct.
+// Fields: one member of a description, with its name in a script and its offset in the engine's struct.
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,7 +7,7 @@
 
 #include "bindings/value/glintL.h"
 
-#define PATH_SIZE 192 // a path longer than this is cut in messages
+#define PATH_SIZE 192 // longer paths are cut in messages
 #define PI 0x1.921fb54442d18p+1
 
 const glintL_field *glintL_find_field(const glintL_field *fields, const char *name)
@@ -38,7 +38,7 @@ static double read_finite(lua_State *L, int index, const char *path)
     return x;
 }
 
-// An enum of the engine is stored as the int GCC and Clang give it.
+// Reads an enum, which the engine stores as an int, as GCC and Clang do.
 static void read_enum(lua_State *L, int index, const char *path, const char *const *names, void *out)
 {
     luaL_Buffer list;
@@ -99,11 +99,11 @@ static void read_object(lua_State *L, int index, const char *path, const glintL_
     memcpy(out, &object, sizeof object);
 }
 
-// A list of points. The block belongs to Lua, which keeps it until the next list of points is read: long enough for the
-// engine to copy it.
+// Reads a list of points. The block belongs to Lua, which retains it until the next list is read; the engine copies it
+// before that.
 static void read_points(lua_State *L, int index, const char *path, void *out)
 {
-    static const char block; // its address is the registry's key
+    static const char block; // its address is a registry key
     char element[PATH_SIZE + 24];
     if (!lua_istable(L, index))
         glintL_refuse(L, index, path, "list of {x, y, z}");
@@ -158,7 +158,7 @@ void glintL_begin_table(const glintL_field *parts, void *desc)
     }
 }
 
-// Reads a table pushed by push_nested from the table behind it.
+// Reads a table pushed by push_nested, from the table behind it.
 static void read_nested(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
 {
     if (!lua_istable(L, index))
@@ -172,7 +172,7 @@ static void read_nested(lua_State *L, int index, const char *path, const glintL_
     lua_settop(L, top);
 }
 
-// A function or a pattern where the field wants the other kind.
+// Refuses a function or pattern if the field needs the other kind.
 static void refuse_source(lua_State *L, int index, const char *path, bool is_shader)
 {
     const bool is_other = glintL_get_tracing(L)->is_source(L, index, !is_shader);
@@ -188,8 +188,8 @@ static void refuse_source(lua_State *L, int index, const char *path, bool is_sha
     glintL_error(L, "%s: a value or a pattern expected, got %s; write glint.pattern(function(p, s) ... end)", path, got);
 }
 
-// Nothing here but read_points allocates unless it raises, so that no finalizer of the script can run meanwhile and close an object
-// whose pointer was read.
+// Only read_points may allocate here (and errors), so that no finalizer of the script can run and close an object whose
+// pointer was read.
 void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
 {
     char full[PATH_SIZE];
@@ -274,7 +274,7 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
 
 // ---- One value out ----
 
-// Degrees in the fewest digits that give the same radians again, so that what was 40 reads 40.
+// Converts to degrees, with the fewest digits that give the same radians, so that 40 reads back as 40.
 static double to_degrees(double radians)
 {
     char text[32];
@@ -330,7 +330,7 @@ void glintL_freeze(lua_State *L, const char *name)
 {
     luaL_checkstack(L, 4, "field");
     lua_newtable(L);
-    lua_newtable(L); // its metatable
+    lua_newtable(L); // the new table's metatable
     lua_pushvalue(L, -3);
     lua_pushcclosure(L, each_part, 1);
     lua_setfield(L, -2, "__pairs");
@@ -410,7 +410,7 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
     case GLINT_TYPE_CUSTOM:
         ((const glintL_custom *)field->custom)->push(L, desc);
         break;
-    case GLINT_TYPE_PROGRAM: // what the userdata keeps is read before
+    case GLINT_TYPE_PROGRAM: // the caller reads the source from the userdata before
     case GLINT_TYPE_OTHER:
         lua_pushnil(L);
         break;

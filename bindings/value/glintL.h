@@ -1,8 +1,8 @@
 /// Shared by the files of the binding. The engine knows nothing about Lua, and uses nothing from here.
 ///
-/// An object of the engine travels as a full userdata `glintL_box` holding one reference. Assigning a field copies
-/// the description, changes one member and hands it back to the engine, which checks it: the object is unchanged
-/// when the check fails. Errors raised to Lua read "material.shininess: number >= 0 expected, got -1".
+/// Lua holds an object of the engine as a full userdata `glintL_box` with one reference. Assigning a field copies the
+/// description, changes one member and passes it back to the engine, which checks it. If the check fails, the object is
+/// unchanged. Errors raised to Lua read "material.shininess: number >= 0 expected, got -1".
 #ifndef GLINT_L_H
 #define GLINT_L_H
 
@@ -13,78 +13,82 @@
 
 // ---- check.c: arguments and tables in ----
 
-/// One field of a description, and how Lua spells it: of the objects rows of glint_object_fields, of other tables the binding's own.
+/// One field of a description, and its form in Lua: for objects a row of glint_object_fields, for other tables the
+/// binding's own.
 typedef glint_object_field glintL_field;
 
-/// How a binding's own field is read and written: GLINT_TYPE_CUSTOM.
+/// Functions that read and write a binding's own field: GLINT_TYPE_CUSTOM.
 typedef struct glintL_custom {
     void (*read)(lua_State *L, int index, const char *path, void *desc); ///< raises for a wrong value
     void (*push)(lua_State *L, const void *desc);
 } glintL_custom;
 #define GLINTL_CUSTOM(read, push) .type = GLINT_TYPE_CUSTOM, .custom = &(const glintL_custom) { read, push }
 
-/// How far away something is, or where.
+/// A distance, or a point.
 typedef struct glintL_distance {
-    double number; ///< 0: it is not given so
+    double number; ///< 0: not given as a number
     bool has_point;
     double point[3];
 } glintL_distance;
 
-/// Pushes "<file>:<line>: " of the Lua code that called; "" where there is none.
+/// Pushes "<file>:<line>: " of the calling Lua code; "" if there is none.
 void glintL_push_position(lua_State *L);
-/// Raises `message` with the position of the Lua code that called.
+/// Raises `message` with the position of the calling Lua code.
 int glintL_error(lua_State *L, const char *format, ...);
 /// Raises "<path>.<message>" for an engine error; `path` may be "" (only the message). Does nothing for GLINT_OK.
 void glintL_check_status(lua_State *L, const char *path, const glint_error *error, glint_status status);
 /// Reads the value at `index` into the field of `desc`; raises "<path>.<field>: ... expected, got ...".
 void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc);
-/// Writes the defaults of a table's parts.
+/// Writes the defaults of a nested table's fields.
 void glintL_begin_table(const glintL_field *parts, void *desc);
-/// Pushes the field's value as Lua sees it.
+/// Pushes the field's value as a Lua value.
 void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc);
-/// Replaces the table on top of the stack by an empty one that reads like it: assigning to a part of a value read from an
-/// object's field of this name would not reach the object, and raises.
+/// Replaces the table on top of the stack by an empty one that reads the same, but raises on assignment: the table is a
+/// copy of a field of this name, so that an assignment would not reach the object.
 void glintL_freeze(lua_State *L, const char *name);
 /// Reads every key of the table at `index`; raises on an unknown key (naming the nearest known one), a non-string key
 /// (unless allow_array, when integer keys are left to the caller) and a missing required field.
 void glintL_read_table(lua_State *L, int index, const char *path, const glintL_field *fields, void *desc,
                        bool allow_array);
-/// "#rgb", "#rrggbb" or a CSS name, as 0xRRGGBB. False: it is none.
+/// Finds "#rgb", "#rrggbb" or a CSS name and returns it as 0xRRGGBB. False: not a colour.
 bool glintL_find_color(const char *text, size_t length, uint32_t *code);
-/// The nearest of `fields` to a misspelt name, else what it means among them, or NULL.
+/// Returns the name among `fields` that is nearest to a misspelt name, or its equivalent from other programs, or NULL.
 const char *glintL_nearest(const char *name, const glintL_field *fields);
 const glintL_field *glintL_find_field(const glintL_field *fields, const char *name);
 void glintL_read_vector(lua_State *L, int index, const char *path, double out[3]);
 void glintL_read_color(lua_State *L, int index, const char *path, double out[3]);
-double glintL_read_number(lua_State *L, int index, const char *path); ///< any number, NaN and infinity too
-/// Three finite numbers: a vector or an array of exactly three; `expected` says so in the message.
+double glintL_read_number(lua_State *L, int index, const char *path); ///< any number, also NaN and infinity
+/// Reads three finite numbers: a vector or an array of exactly three. `expected` describes them in the message.
 void glintL_read_three(lua_State *L, int index, const char *path, const char *expected, double out[3]);
-/// Which of `best` (NULL: none yet) and `candidate` the misspelt `name` is nearer to; NULL when neither is near.
+/// Returns whichever of `best` (NULL: none yet) and `candidate` is nearer to the misspelt `name`; NULL if neither is
+/// near.
 const char *glintL_nearer(const char *name, const char *best, const char *candidate);
-/// What `name` is called here where other programs call it so ("color" of a material: "diffuse"), of those that `has`
-/// knows; or NULL.
+/// Returns the name used here for a name from other programs ("diffuse" for a material's "color"), if `has` accepts it;
+/// otherwise NULL.
 const char *glintL_meaning(const char *name, bool (*has)(const void *context, const char *known), const void *context);
 /// Raises "<path>.<name>: no such field", with "; did you mean '...'?" unless `near` is NULL.
 int glintL_no_such_field(lua_State *L, const char *path, const char *name, const char *near);
-/// The value at `index` for messages when it is where a field's name should be: raises.
+/// Raises the error for a key that is not a field's name: the value at `index`.
 int glintL_bad_key(lua_State *L, const char *path, int index);
 /// Raises "<path>: <expected> expected, got <the value at index>".
 int glintL_refuse(lua_State *L, int index, const char *path, const char *expected);
-/// Pushes the value at `index` as messages spell it: 5, true, string "64", sphere, closed material.
+/// Pushes the value at `index` as written in messages: 5, true, string "64", sphere, closed material.
 const char *glintL_push_spelling(lua_State *L, int index);
-/// Checks that the table at `index` holds 1 .. n and nothing else (string keys pass when `allow_fields`); returns n.
+/// Checks that the table at `index` has the keys 1 .. n and no others (with `allow_fields`, string keys are ignored).
+/// Returns n.
 size_t glintL_check_list(lua_State *L, int index, const char *path, bool allow_fields);
 
 // ---- cure.c: what messages add to common mistakes ----
 
-bool glintL_is_module(lua_State *L, int index); ///< whether the value is the table that require "glint" gives
+bool glintL_is_module(lua_State *L, int index); ///< whether the value is the table that require "glint" returns
 bool glintL_makes(lua_State *L, const char *name); ///< whether glint has a function of that name
-/// Each pushes the end of a message, "" where it has no cure: of glint:sphere { ... }, of scene.add(x).
+/// Push a hint for a message, or "": for glint:sphere { ... }, and for scene.add(x).
 const char *glintL_push_dot_cure(lua_State *L, int index);
 const char *glintL_push_colon_cure(lua_State *L, int index);
-/// The end of one of Lua's own messages, pushed; NULL: it has no cure. May leave other values on the stack.
+/// Pushes a hint for one of Lua's own messages; NULL: there is none. May leave other values on the stack.
 const char *glintL_push_lua_cure(lua_State *L, const char *text);
-/// Pushes the name after `before` in the text, up to "'" or ")"; NULL, and nothing pushed: the text has no `before`.
+/// Pushes the name after `before` in the text, up to "'" or ")". NULL: the text does not contain `before`, and nothing
+/// is pushed.
 const char *glintL_push_name_after(lua_State *L, const char *text, const char *before);
 
 // ---- vector.c: the immutable value of a vector or colour ----
@@ -94,67 +98,69 @@ void glintL_push_vector(lua_State *L, const double v[3]);
 /// The same with a field `a`.
 void glintL_push_texel(lua_State *L, const double v[4]);
 #define GLINTL_VECTOR_TYPE "glint.vector"
-/// NULL when the value at index is not one.
+/// Returns NULL if the value at index is not a vector.
 const double *glintL_to_vector(lua_State *L, int index);
-int glintL_unpack(lua_State *L); ///< the method
+int glintL_unpack(lua_State *L); ///< the method `unpack`
 
 // ---- dual.c: numbers that know how fast they change with variables ----
 
-#define GLINTL_VARIABLES_MAX 32 ///< of one script
+#define GLINTL_VARIABLES_MAX 32 ///< in one script
 #define GLINTL_DUAL "glint.dual"
 
 typedef struct glintL_dual {
     double value;
-    double slope[GLINTL_VARIABLES_MAX]; ///< by each variable
-    uint32_t depends; ///< a bit for each variable that it is made of, also where the slope is 0
+    double slope[GLINTL_VARIABLES_MAX]; ///< derivative by each variable
+    uint32_t depends; ///< a bit for each variable that the value depends on, even with slope 0
 } glintL_dual;
 
-/// Pushes the variable of this name at a value; the first call of a name makes it. Raises when there are too many.
+/// Pushes a variable with this name and value. The first call with a name makes the variable. Raises when there are too
+/// many.
 void glintL_push_variable(lua_State *L, const char *name, double value);
-/// The variable's number, from 0; -1: there is none. The nearest one's name, or NULL.
+/// Return the variable's number, from 0 (-1: none), and the nearest variable's name, or NULL.
 int glintL_find_variable(lua_State *L, const char *name);
 const char *glintL_near_variable(lua_State *L, const char *name);
-/// lua/variable.c: the same, and from the first one on `math` takes dual numbers.
+/// lua/variable.c: the same. When the first variable is made, extends `math` to dual numbers.
 void glintL_make_variable(lua_State *L, const char *name, double value);
-/// Pushes the result of glint's elementary function of that name for the dual number at 1; returns false, and pushes nothing, for other names.
+/// Pushes the result of glint's elementary function of that name for the dual number at 1. Returns false and pushes
+/// nothing for other names.
 bool glintL_dual_function(lua_State *L, const char *name);
-/// Pushes a dual number, or a number where it has no slope.
+/// Pushes a dual number, or a plain number if no slope is set.
 void glintL_push_dual(lua_State *L, const glintL_dual *d);
-const glintL_dual *glintL_to_dual(lua_State *L, int index); ///< NULL: it is none
-/// A dual number or a number; false: it is neither.
+const glintL_dual *glintL_to_dual(lua_State *L, int index); ///< NULL: not a dual number
+/// Reads a dual number or a number; false: it is neither.
 bool glintL_read_dual(lua_State *L, int index, glintL_dual *out);
-/// The value of a function of a (and b, or NULL), whose derivatives by them are by_a and by_b.
+/// Returns the value of a function of a (and b, or NULL), whose derivatives by them are by_a and by_b.
 glintL_dual glintL_dual_apply(const glintL_dual *a, double by_a, const glintL_dual *b, double by_b, double value);
 glintL_dual glintL_dual_pow(const glintL_dual *a, const glintL_dual *b);
-/// The numbers of a field's value where there is a dual number among them, of three in a table, of a colour one for all;
-/// false: there is none. Allocates nothing.
+/// Reads the numbers of a field's value if any is a dual number: three from a table; for a colour also one for all
+/// three. False: none is a dual number. Allocates nothing.
 bool glintL_read_duals(lua_State *L, int index, const char *path, bool is_color, int count, double *out);
-/// Keeps the slopes of a value that was assigned to a field with the userdata at `index`, or forgets those that were there.
+/// Stores the slopes of a value assigned to a field in the userdata at `index`, or removes the previous slopes.
 void glintL_keep_slopes(lua_State *L, int index, const glintL_field *field, int value);
-/// The same of one component.
+/// The same for one component.
 void glintL_keep_part_slopes(lua_State *L, int index, const glintL_field *field, int part, int value);
-/// The same of all fields of the constructor's table at `table`.
+/// The same for all fields of the constructor's table at `table`.
 void glintL_keep_table_slopes(lua_State *L, int index, int table, const glintL_field *fields);
-/// Pushes a field's value where it has slopes; false: it has none.
+/// Pushes a field's value if it has slopes; false: it has none.
 bool glintL_push_sloped(lua_State *L, int index, const glintL_field *field);
-/// The slopes of a field by a variable; false: it does not depend on that.
+/// Returns the slopes of a field by a variable; false: the field does not depend on the variable.
 bool glintL_get_slope(lua_State *L, int index, const glintL_field *field, int variable, double out[3]);
-/// Counts the userdata at `index` among those with slopes.
+/// Adds the userdata at `index` to those with slopes.
 void glintL_note_sloped(lua_State *L, int index);
-/// Pushes a table that has as keys all userdata with slopes, and maybe others.
+/// Pushes a table whose keys are all userdata with slopes, and possibly others.
 void glintL_push_all_sloped(lua_State *L);
 void glintL_open_dual(lua_State *L);
 
 // ---- transform.c: the immutable value of an affine map ----
 
 void glintL_push_transform(lua_State *L, const glint_transform *t);
-/// NULL when the value at index is not one.
+/// Returns NULL if the value at index is not a transform.
 const glint_transform *glintL_to_transform(lua_State *L, int index);
 
 // ---- What patterns do where values are read: bindings/pattern is above, and says it when the module opens ----
 
 typedef struct glintL_tracing {
-    const char *(*place)(lua_State *L, lua_CFunction reached); ///< glintL_traced_place, and so on: see below
+    const char *(*place)(lua_State *L, lua_CFunction reached); ///< glintL_traced_place; the others likewise, see below
     bool (*is_source)(lua_State *L, int index, bool is_shader);
     void (*refuse)(lua_State *L, const char *what);
     void (*keep)(lua_State *L, int index, const glintL_field *field, int value);
@@ -172,36 +178,37 @@ const glintL_tracing *glintL_get_tracing(lua_State *L); ///< NULL before the mod
 #define GLINTL_SHADER "glint.shader"
 #define GLINTL_TEXTURE "glint.texture"
 
-/// Whether a field can have the value's program: of a shader's field, a shader; of others, a pattern or a texture.
+/// Returns whether the value is a program that a field can have: a shader for a shader's field, otherwise a pattern or
+/// texture.
 bool glintL_is_source(lua_State *L, int index, bool is_shader);
-/// Methods of vectors and triples, and glint.dot and so on.
+/// Methods of vectors and triples; also glint.dot and so on.
 int glintL_dot(lua_State *L);
 int glintL_cross(lua_State *L);
 int glintL_length(lua_State *L);
 int glintL_unit(lua_State *L);
 int glintL_reflect(lua_State *L);
-/// Returns the place of the traced function: "scene.lua:12: ". NULL: `reached`, found on the call stack of an error, is not
-/// the C function that calls it.
+/// Returns the position of the traced function: "scene.lua:12: ". NULL: `reached`, found on the call stack of an error,
+/// is not the C function that calls it.
 const char *glintL_traced_place(lua_State *L, lua_CFunction reached);
-/// Raises while a pattern's function runs: `what` would change the scene meanwhile.
+/// Raises if a pattern's function is running, during which `what` would change the scene.
 void glintL_refuse_within_trace(lua_State *L, const char *what);
-/// Keeps the patterns among the fields of the constructor's table at `table` with the object whose userdata is at `index`.
+/// Stores the patterns in the constructor's table at `table` with the object whose userdata is at `index`.
 void glintL_keep_sources(lua_State *L, int index, int table, const glintL_field *fields);
 /// The same for one field, whose value is at `value`.
 void glintL_keep_source(lua_State *L, int index, const glintL_field *field, int value);
-/// The userdata at `index` is about to be closed by the script: its patterns stay with the object.
+/// Called before the script closes the userdata at `index`: its patterns stay with the object.
 void glintL_keep_closed(lua_State *L, int index);
-/// Calls the functions of the patterns of all materials in the scene, and gives the materials their programs.
+/// Runs the functions of the patterns of all materials in the scene, and sets the materials' programs.
 void glintL_trace_scene(lua_State *L, const glint_scene *scene);
-/// Calls the functions of one material, whose userdata is at `index`.
+/// Runs the functions of one material, whose userdata is at `index`.
 void glintL_trace_material(lua_State *L, int index);
-/// Where material:evaluate looks. The vectors need not be unit.
+/// The directions for material:evaluate. They need not be unit vectors.
 typedef struct glintL_geometry {
     double normal[3], to_light[3], to_eye[3];
-    double p[3]; ///< what patterns and shaders read as p and s.world
+    double p[3]; ///< read by patterns and shaders as p and s.world
 } glintL_geometry;
 
-/// glint_material_evaluate, of materials with programs, too: at one point, without bumps.
+/// As glint_material_evaluate, but also for materials with programs: at one point, without bumps.
 glint_status glintL_evaluate_material(const glint_material *material, const glintL_geometry *at, glint_reflection *out,
                                       glint_error *error);
 void glintL_open_patterns(lua_State *L);
@@ -219,46 +226,45 @@ void glintL_open_patterns(lua_State *L);
 #define GLINTL_ANIMATION "glint.animation" ///< job.c: animations and sweeps are one type
 
 typedef struct glintL_box {
-    void *object; ///< a reference; NULL before it is made and after close
+    void *object; ///< owns a reference; NULL before the object is made and after close
 } glintL_box;
 
-/// Pushes the userdata with its metatable and a NULL object: handle first, resource second.
+/// Pushes a userdata with its metatable and a NULL object. Make it before the object, so that errors leak nothing.
 glintL_box *glintL_new_box(lua_State *L, const char *type);
-/// The object; raises "<type> expected, got ..." or "<type> is closed".
+/// Returns the object; raises "<type> expected, got ..." or "<type> is closed".
 void *glintL_check_object(lua_State *L, int index, const char *type);
-/// Same without raising: NULL when the value is something else.
+/// The same without raising: NULL if the value is something else.
 void *glintL_test_object(lua_State *L, int index, const char *type);
-/// Remembers (weakly) that the userdata on top of the stack stands for its object; and pushes it again later, nil
-/// when it is gone.
+/// Remember (weakly) the userdata on top of the stack for its object; push it again later, or nil if it is gone.
 void glintL_remember(lua_State *L, void *object);
 void glintL_push_remembered(lua_State *L, const void *object);
 
-/// The userdata of an object: the remembered one, else a new one holding a reference. NULL gives nil. The caller
-/// keeps the object alive meanwhile.
+/// Pushes an object's userdata: the remembered one, or a new one with a reference. NULL pushes nil. The caller keeps
+/// the object alive during the call.
 void glintL_push_object(lua_State *L, const char *type, void *object);
-/// Keeps the value at `value` alive as long as the userdata at `index`, under `key` (the name of a field).
+/// Keeps the value at `value` alive as long as the userdata at `index`, under `key`, the name of a field.
 void glintL_keep(lua_State *L, int index, const char *key, int value);
 /// Pushes the value stored under `key`; returns false, and pushes nothing, if there is none.
 bool glintL_push_kept(lua_State *L, int index, const char *key);
-/// Tells the collector that the userdata just made stands for so many bytes it cannot see, so that a loop that drops
+/// Tells the collector that the new userdata stands for so many bytes that it cannot see, so that a loop that drops
 /// images does not fill the memory. May run the collector.
 void glintL_charge(lua_State *L, size_t bytes);
 
 /// The script's view of one class of objects.
 typedef struct glintL_variant {
     const char *name; ///< "point_light": the path in messages
-    glint_object_kind kind; ///< the table of its fields; GLINT_OBJECT_NONE: `fields`
+    glint_object_kind kind; ///< selects the table of its fields; GLINT_OBJECT_NONE: `fields`
     const glintL_field *fields; ///< ends with a NULL name
-    bool is_list; ///< its constructor's table may hold a list, too
-    const char *place; ///< the vector field that `x`, `y` and `z` are parts of; NULL: none
-    const luaL_Reg *getters; ///< fields that are only read: functions of the object; NULL: none
+    bool is_list; ///< its constructor's table may also contain a list
+    const char *place; ///< the vector field whose components are `x`, `y` and `z`; NULL: none
+    const luaL_Reg *getters; ///< read-only fields: functions of the object; NULL: none
     const luaL_Reg *methods; ///< in addition to the class's; NULL: none
 } glintL_variant;
 
-const glintL_field *glintL_fields_of(const glintL_variant *variant); ///< NULL: it has none
+const glintL_field *glintL_fields_of(const glintL_variant *variant); ///< NULL: it has no fields
 
-/// How the objects of one type are read and written. `desc` is a copy of the description, of at most
-/// GLINTL_DESC_SIZE bytes.
+/// How the objects of one type are read and written. `desc` is a copy of the description, at most GLINTL_DESC_SIZE
+/// bytes.
 typedef struct glintL_class {
     const char *type;
     const glintL_variant *(*variant)(const void *object);
@@ -266,22 +272,22 @@ typedef struct glintL_class {
     glint_status (*set)(void *object, const void *desc, glint_error *error);
     void *(*retain)(void *object);
     void (*release)(void *object);
-    /// One field was read from a script: checks or adjusts the rest, before `set`. NULL: nothing to do.
+    /// Called when a field was read from a script, before `set`: checks or adjusts the rest. NULL: nothing to do.
     void (*assigned)(lua_State *L, const glintL_field *field, void *desc);
-    /// Fills in fields that follow others, for reading. NULL: there are none.
+    /// Fills in fields whose defaults depend on others, for reading. NULL: there are none.
     void (*follow)(void *desc);
-    /// `field` was taken over by the object: the place for a warning. NULL: nothing to do.
+    /// Called when the object has accepted `field`: gives warnings. NULL: nothing to do.
     void (*accepted)(lua_State *L, const glintL_field *field, const void *desc);
-    const luaL_Reg *methods; ///< besides close; NULL: none
+    const luaL_Reg *methods; ///< in addition to close; NULL: none
     // For glintL_open_objects:
-    void (*begin)(int variant, void *desc); ///< writes the defaults of the variant with this number
+    void (*begin)(int variant, void *desc); ///< writes the defaults of variant number `variant`
     glint_status (*create)(const void *desc, void **out, glint_error *error);
-    /// The constructor's table, at 1, was read: checks what its fields are together. NULL: nothing to do.
+    /// Called when the constructor's table, at 1, was read: checks the fields together. NULL: nothing to do.
     void (*given)(lua_State *L, const glintL_variant *variant, const void *desc);
-    void (*made)(lua_State *L, const void *desc); ///< the userdata, at 2, has its object. NULL: nothing to do
+    void (*made)(lua_State *L, const void *desc); ///< called when the userdata, at 2, has its object. May be NULL
 } glintL_class;
 
-/// Defines get, set, retain, release and create of a class whose objects have a description glint_NAME_desc.
+/// Defines get, set, retain, release and create for a class whose objects have a description glint_NAME_desc.
 #define GLINTL_FUNCTIONS(name) \
     static void get(const void *object, void *desc) { memcpy(desc, glint_##name##_get(object), sizeof(glint_##name##_desc)); } \
     static glint_status set(void *object, const void *desc, glint_error *error) { return glint_##name##_set(object, desc, error); } \
@@ -295,16 +301,16 @@ typedef struct glintL_class {
         return status; \
     } \
     _Static_assert(sizeof(glint_##name##_desc) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE")
-/// Members of the class that are these.
+/// The members of the class that point to these functions.
 #define GLINTL_FUNCTION_MEMBERS .get = get, .set = set, .retain = retain, .release = release, .create = create
 
 #define GLINTL_DESC_SIZE 2048
 
-/// The class of a type, by the metatable glintL_open_class made.
+/// Returns the class of a type from the metatable made by glintL_open_class.
 const glintL_class *glintL_class_of(lua_State *L, const char *type);
-/// Pushes the table of the registry at `key`, an address; made when it is not there.
+/// Pushes the registry's table at `key`, an address; makes the table if necessary.
 void glintL_push_table(lua_State *L, const void *key);
-/// Likewise, a table whose keys ("k") or values ("v") do not keep what they stand for.
+/// The same for a table with weak keys ("k") or values ("v").
 void glintL_push_weak_table(lua_State *L, const void *key, const char *mode);
 
 // ---- class.c: fields and metatables of boxes ----
@@ -313,22 +319,22 @@ void glintL_push_weak_table(lua_State *L, const void *key, const char *mode);
 void glintL_open_class(lua_State *L, const glintL_class *type);
 /// The same, and adds the constructors of its variants to the table on top of the stack.
 void glintL_open_objects(lua_State *L, const glintL_class *type, const glintL_variant *variants, int count);
-/// Lists a sort of object, its fields and its methods in glint._fields(), which the test of meta/glint.lua reads.
+/// Lists a kind of object, its fields and its methods in glint._fields(), which the test of meta/glint.lua reads.
 /// `methods` may be NULL.
 void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL_Reg *methods);
-/// The same for a variant of a class, with the methods of every object.
+/// The same for a variant of a class, including the methods of every object.
 void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *type);
-/// rows.c: glint._rows(name): a list of { name, type, doc, unit, follows, required, default } of each field, empty where the object
-/// has no table of the engine.
+/// rows.c: glint._rows(name): returns a list of { name, type, doc, unit, follows, required, default } for each field,
+/// empty if the object has no table in the engine.
 int glintL_list_rows(lua_State *L);
-void glintL_note_rows(lua_State *L, const glintL_variant *variant); ///< lists a variant there
-/// The result of glint._fields(): variant -> name -> "field" or "method".
+void glintL_note_rows(lua_State *L, const glintL_variant *variant); ///< adds a variant to that list
+/// Pushes the result of glint._fields(): variant -> name -> "field" or "method".
 void glintL_push_listed(lua_State *L);
-/// Pushes what messages call the object at `index` ("plane", "closed shape"); false, and nothing pushed, when it is
-/// not of a class.
+/// Pushes the name of the object at `index` for messages ("plane", "closed shape"); false: it belongs to no class, and
+/// nothing is pushed.
 bool glintL_push_object_name(lua_State *L, int index);
 
-/// Each file's part of the module: adds its constructors to the table on top of the stack and makes its metatables.
+/// Each file's part of the module: adds its constructors to the table on top of the stack, and makes its metatables.
 void glintL_open_vector(lua_State *L);
 void glintL_open_material(lua_State *L);
 void glintL_open_variable(lua_State *L);
@@ -345,17 +351,17 @@ void glintL_open_params(lua_State *L);
 void glintL_open_animation(lua_State *L); ///< animation and sweep
 int luaopen_glint(lua_State *L);
 
-/// pattern/colormap.c: a list of colours, evenly from the first to the last, or a function of 0 .. 1, which is called, as 256
-/// sRGB codes. With a list it allocates nothing.
+/// pattern/colormap.c: reads a map as 256 sRGB colours, from a list of evenly spaced colours or from a function of 0 ..
+/// 1, which it calls. With a list it allocates nothing.
 void glintL_read_colors(lua_State *L, int index, const char *path, uint8_t rgb[256][3]);
 /// picture.c: glint.read_image.
 void glintL_open_picture(lua_State *L);
-/// Writes the four bytes of a float32, the least first; returns the place after them.
+/// Writes the four bytes of a float32, little endian; returns the position after them.
 char *glintL_put_float(char *to, float value);
 
-/// The constructor glint.spheres, of spheres.c.
+/// The constructor glint.spheres, in spheres.c.
 int glintL_new_spheres(lua_State *L);
-/// The constructors glint.mesh and glint.sphere_mesh, of mesh.c.
+/// The constructors glint.mesh and glint.sphere_mesh, in mesh.c.
 int glintL_new_mesh(lua_State *L);
 int glintL_new_sphere_mesh(lua_State *L);
 /// group.c: methods, the getter `count`, and the children in the list at `list`.
@@ -364,22 +370,22 @@ int glintL_group_remove(lua_State *L);
 int glintL_group_count(lua_State *L);
 void glintL_group_fill(lua_State *L, int list, int index, const char *name);
 
-/// Sets an object's field by name, for a sweep's axis: the value is on top of the stack and stays there.
-/// Works on anything with __newindex; raises as the assignment would.
+/// Sets an object's field by name, for a sweep's axis. The value is on top of the stack and stays there. Works on
+/// anything with __newindex; raises like the assignment.
 void glintL_set_field(lua_State *L, int object_index, const char *name);
 
 /// The fields of scene:render{}, of animations and of sweeps that describe a frame and its file.
 typedef struct glintL_render {
     glint_render_desc desc;
-    char output[4096]; ///< "" = none given
+    char output[4096]; ///< "": not given
     glint_encode encode;
     int colormap; ///< of the passes depth and d:NAME: 1 + a glint_colormap; 0: grey
-    double range[2]; ///< of these: see glint_write_desc
-    double dpi; ///< pixels an inch; 0: not said
-    uint32_t file_passes; ///< passes to write as files beside the beauty: bits 1u << GLINT_PASS_...
-    char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< likewise: names of the passes d:NAME
+    double range[2]; ///< of the colormap: see glint_write_desc
+    double dpi; ///< pixels per inch; 0: not given
+    uint32_t file_passes; ///< passes written to files in addition to beauty: bits 1u << GLINT_PASS_...
+    char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names of the passes d:NAME to write
     int derivative_count;
-    char light_passes[4096]; ///< likewise: names of the passes light:NAME, divided by commas; see glintL_render_point
+    char light_passes[4096]; ///< names of the passes light:NAME to write, separated by commas; see glintL_render_point
 } glintL_render;
 
 // ---- state.c: the current run. One per lua_State, in the registry; plain Lua has one with no options ----
@@ -387,9 +393,9 @@ typedef struct glintL_render {
 /// The request of the command line (or :run{}). The run owns the strings.
 typedef struct glintL_run glintL_run;
 glintL_run *glintL_get_run(lua_State *L); ///< NULL only before glintL_open_run
-void glintL_open_run(lua_State *L); ///< makes one, which the state owns, where there is none
-/// scene:render{...} of the scene at 1: reads the table at `index` (may be none), numbers the call, skips or renders it, writes its
-/// files. Pushes an image, or nil and "skipped". Returns the number of results.
+void glintL_open_run(lua_State *L); ///< makes a run, which the state owns, unless there is one
+/// scene:render{...} for the scene at 1: reads the table at `index` (may be none), numbers the call, skips or renders
+/// it, and writes its files. Pushes an image, or nil and "skipped". Returns the number of results.
 int glintL_render_call(lua_State *L, glint_scene *scene, int index);
 
 extern const char *const glintL_colormaps[]; ///< names of glint_colormap, NULL at the end

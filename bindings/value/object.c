@@ -1,13 +1,13 @@
-// Boxes: the userdata that stand for objects of the engine.
+// Boxes: the userdata for objects of the engine.
 #include <stdint.h>
 #include <limits.h>
 #include <string.h>
 
 #include "bindings/value/glintL.h"
 
-static const char TRACING; // its address is the registry's key of the patterns' functions
+static const char TRACING; // its address is the registry's key of the functions for patterns
 
-#define OBJECT_BYTES 1024 // about what the engine keeps of a sphere, a light or a material
+#define OBJECT_BYTES 1024 // roughly the engine's memory for a sphere, light or material
 
 static const char BOXES; // its address is the registry's key of the boxes by object
 
@@ -78,7 +78,7 @@ void glintL_push_remembered(lua_State *L, const void *object)
         lua_rawgetp(L, -1, object);
         lua_remove(L, -2);
         const glintL_box *box = lua_touserdata(L, -1);
-        if (box && box->object == object) // else closed, and its address used again
+        if (box && box->object == object) // otherwise it was closed, and its address is reused
             return;
     }
     lua_pop(L, 1);
@@ -138,7 +138,7 @@ bool glintL_push_kept(lua_State *L, int index, const char *key)
 void glintL_charge(lua_State *L, size_t bytes)
 {
     size_t kib = bytes / 1024;
-    if (kib > 0 && lua_gc(L, LUA_GCISRUNNING) == 1) // not when the script stopped it
+    if (kib > 0 && lua_gc(L, LUA_GCISRUNNING) == 1) // not if the script has stopped the collector
         lua_gc(L, LUA_GCSTEP, kib < INT_MAX ? (int)kib : INT_MAX);
 }
 

@@ -1,4 +1,4 @@
-// The rows of an object's table of fields as Lua values, for the documentation that is made of them and for tests.
+// The rows of an object's table of fields as Lua values, for tests and for the documentation generated from them.
 #include <stdint.h>
 
 #include "bindings/value/glintL.h"
@@ -35,7 +35,7 @@ static void push_rows(lua_State *L, const glintL_field *fields);
 
 static void push_row(lua_State *L, const glintL_field *field)
 {
-    // The editors' type for each glint_field_type, "" for choices, whose names are listed.
+    // The editors' type for each glint_field_type; "" for choices, whose names are listed instead.
     static const char *const types[] = { "number", "integer", "number", "boolean", "glint.vec3", "glint.vec3", "glint.color", "", "string",
                                          "", "glint.vec3[]", "number|glint.vec3", "glint.transform", "", "table", "any", "any" };
     static const char *const takers[] = { "glint.pattern", "glint.texture", "glint.shader" };
@@ -82,7 +82,7 @@ static void push_rows(lua_State *L, const glintL_field *fields)
     }
 }
 
-static const char VARIANTS; // its address is the registry's key of the variants that have rows, by name
+static const char VARIANTS; // its address is the registry's key of the variants with rows, by name
 
 void glintL_note_rows(lua_State *L, const glintL_variant *variant)
 {

@@ -1,4 +1,4 @@
-// glint.translate, glint.rotate, glint.scale, glint.matrix: affine maps, values that do not change.
+// glint.translate, glint.rotate, glint.scale, glint.matrix: affine maps, immutable values.
 #include <math.h>
 #include <string.h>
 
@@ -82,7 +82,7 @@ static void expect_count(lua_State *L, int count, const char *usage)
         glintL_error(L, "%s expected, got %d arguments", usage, lua_gettop(L));
 }
 
-// {x, y, z}, or x, y, z, or (when allowed) one number for all three.
+// Reads {x, y, z}, or x, y, z, or (if allowed) one number for all three.
 static void read_three(lua_State *L, const char *path, const char *usage, bool allow_one, double out[3])
 {
     if (lua_type(L, 1) != LUA_TNUMBER) {

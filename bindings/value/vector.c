@@ -1,5 +1,5 @@
-// glint.vector: three numbers that do not change, read by x, y, z, by r, g, b, by u, v and by 1, 2, 3. Its operators are those of
-// patterns, see bindings/pattern/symbol.c.
+// glint.vector: three immutable numbers, read by x, y, z, by r, g, b, by u, v and by 1, 2, 3. Its operators are those
+// of patterns, see bindings/pattern/symbol.c.
 #include <stdio.h>
 #include <string.h>
 
@@ -78,7 +78,7 @@ static int read_field(lua_State *L)
         if (i >= 1 && i <= 3)
             lua_pushnumber(L, v[i - 1]);
         else
-            lua_pushnil(L); // where ipairs stops
+            lua_pushnil(L); // ends ipairs
         return 1;
     }
     if (lua_type(L, 2) != LUA_TSTRING)

@@ -1,4 +1,4 @@
-// Misspelt words: the nearest known one, and the one that another program has for it.
+// Misspelt words: finds the nearest known word, or the equivalent of a name from other programs.
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
@@ -6,11 +6,12 @@
 
 #include "bindings/value/glintL.h"
 
-#define WORD_MAX 32 // longer names have no near ones
+#define WORD_MAX 32 // longer names match nothing
 
 static int least(int a, int b) { return a < b ? a : b; }
 
-// Edits that turn one word into the other: a letter added, left out, changed, or two neighbours swapped.
+// Returns the number of edits that turn one word into the other: a letter added, removed or changed, or two neighbours
+// swapped.
 static int distance(const char *a, const char *b)
 {
     int rows[3][WORD_MAX + 1], *before = rows[0], *above = rows[1], *row = rows[2];
@@ -33,7 +34,7 @@ static int distance(const char *a, const char *b)
     return above[nb];
 }
 
-// How far a known name is from the misspelt one; WORD_MAX when it is not near.
+// Returns the distance of a known name from the misspelt one; WORD_MAX if it is not near.
 static int farness(const char *name, const char *known)
 {
     size_t length = strlen(name);
@@ -42,7 +43,7 @@ static int farness(const char *name, const char *known)
     int edits = distance(name, known);
     if (edits <= (length < 5 ? 1 : (int)length / 3))
         return edits;
-    if (length >= 3 && strncmp(name, known, length) == 0) // the beginning of it
+    if (length >= 3 && strncmp(name, known, length) == 0) // a beginning of the known name
         return WORD_MAX - 1;
     return WORD_MAX;
 }
@@ -53,7 +54,8 @@ const char *glintL_nearer(const char *name, const char *best, const char *candid
     return farness(name, candidate) < limit ? candidate : best;
 }
 
-// Names in other programs and names here; the first name that the object has is meant.
+// Names in other programs, and their equivalents here. Several rows may have the same name: the first equivalent that
+// the object has applies.
 static const char *const MEANINGS[][2] = {
     { "color", "diffuse" },
     { "colour", "diffuse" },

@@ -1,4 +1,4 @@
-// One connection to the watch page's server: its unsent bytes, and how it ends.
+// One connection to the watch page's server: its unsent bytes and its timeouts.
 #include "bindings/watch/client.h"
 
 #include <errno.h>
@@ -7,10 +7,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#define REQUEST_MS 5000 // a request takes no longer to arrive,
-#define REPLY_MS 30000 // nor a reply to be taken
+#define REQUEST_MS 5000 // time limit for receiving a request
+#define REPLY_MS 30000 // time limit for sending a reply
 #define LINGER_MS 1000
-#define BACKLOG_MAX (1 << 20) // a page that does not read its events is let go
+#define BACKLOG_MAX (1 << 20) // unread events beyond this size close the connection
 #define SECRECY \
     "Cache-Control: no-store\r\nReferrer-Policy: no-referrer\r\nX-Content-Type-Options: nosniff\r\n" \
     "Cross-Origin-Resource-Policy: same-origin\r\n"
@@ -98,11 +98,11 @@ bool watch_client_send(watch_client *c)
             c->sent < c->size ? (const void *)(c->reply + c->sent) : (const void *)(c->picture->bytes + from_body);
         size_t left = c->sent < c->size ? c->size - c->sent : body - from_body;
         if (left == 0)
-            return linger(c); // all of the picture is gone
+            return linger(c); // the whole picture is sent
         ssize_t sent = send(c->socket, at, left, MSG_NOSIGNAL);
         if (sent < 0)
             return errno == EAGAIN || errno == EINTR;
         c->sent += (size_t)sent;
     }
-    return c->listens || c->size == 0 || linger(c); // other replies end with the connection
+    return c->listens || c->size == 0 || linger(c); // other replies end the connection
 }

@@ -1,4 +1,5 @@
-// The files of a watched script, by their folders: editors replace a file as often as they write into it.
+// The files of a watched script, watched through their folders, because editors often replace a file instead of writing
+// into it.
 #include <errno.h>
 #include <limits.h>
 #include <poll.h>
@@ -12,15 +13,15 @@
 #include "bindings/watch/folders.h"
 #include "bindings/watch/watch.h"
 
-#define SETTLE_MS 6 // after a write: more of the burst may follow
-#define GONE_MS 150 // after a deletion: editors move a file away before they write it anew
-#define RETRY_MS 500 // folders that are not there are looked for this often
+#define SETTLE_MS 6 // after a write: more writes of the burst may follow
+#define GONE_MS 150 // after a deletion: editors may move a file away before they write it again
+#define RETRY_MS 500 // interval for checking missing folders
 
 typedef struct watched {
     char *folder, *name; // owned
-    int folder_number; // -1: it is not there
-    unsigned run; // the last that added it
-    bool skipped; // the script writes it
+    int folder_number; // -1: the folder is missing
+    unsigned run; // the last run that added it
+    bool skipped; // the script writes this file
 } watched;
 
 struct watch_files {
@@ -34,7 +35,7 @@ struct watch_files {
     watched *list;
     size_t count;
     unsigned run;
-    double due_ms; // when to tell; 0: nothing to tell
+    double due_ms; // time of the report; 0: nothing to report
     char path[GLINTL_PATH_SIZE]; // the file that changed
 };
 
@@ -62,7 +63,8 @@ static watched *find(watch_files *files, const char *folder, const char *name)
     return NULL;
 }
 
-// Takes over folder and name. NULL: out of memory, or an optional file without a folder; both are freed.
+// Adds a file, and takes over folder and name. NULL: out of memory, or an optional file without a folder; both are
+// freed.
 static watched *add(watch_files *files, char *folder, char *name, bool optional)
 {
     watched *found = folder && name ? find(files, folder, name) : NULL;
@@ -90,7 +92,7 @@ static void add_path(watch_files *files, const char *path, bool optional, bool s
     if (!*name)
         return;
     char *folder = !slash ? strdup(".") : slash == path ? strdup("/") : strndup(path, (size_t)(slash - path));
-    char *real = folder ? realpath(folder, NULL) : NULL; // one spelling for one folder
+    char *real = folder ? realpath(folder, NULL) : NULL; // one spelling for each folder
     if (real) {
         free(folder);
         folder = real;
@@ -102,7 +104,7 @@ static void add_path(watch_files *files, const char *path, bool optional, bool s
     }
 }
 
-// A symbolic link: the file it leads to counts as well.
+// Also watches the file that a symbolic link leads to.
 static void add_target(watch_files *files, const char *path, bool skipped)
 {
     struct stat info;
@@ -120,7 +122,7 @@ static void note(watch_files *files, const char *path, bool optional, bool skipp
     add_path(files, path, optional, skipped);
     add_target(files, path, skipped);
     pthread_mutex_unlock(&files->lock);
-    glintL_wake_call(&files->wake); // there may be a folder to look for
+    glintL_wake_call(&files->wake); // there may be a new folder to watch
 }
 
 void watch_files_add(watch_files *files, const char *path, bool optional) { note(files, path, optional, false); }
@@ -166,7 +168,7 @@ static void tell_later(watch_files *files, const watched *file, double delay_ms)
     files->due_ms = glintL_now_ms() + delay_ms;
 }
 
-// A new file is reported when it has been written, a new link at once.
+// A new link is reported at once, a new file only when it has been written.
 static bool is_link(const watched *file)
 {
     char path[GLINTL_PATH_SIZE];
@@ -197,7 +199,7 @@ static void take_change(void *user, int number, const char *name, watch_change c
     }
 }
 
-// Looks for folders that were not there. Returns whether some still are not.
+// Looks for missing folders. Returns whether some are still missing.
 static bool find_folders(watch_files *files)
 {
     bool lacking = false;
@@ -265,7 +267,7 @@ watch_files *watch_files_create(void (*changed)(void *context, const char *path)
     pthread_mutex_init(&files->lock, NULL);
     files->folders = watch_folders_create();
     bool good = files->folders && glintL_wake_open(&files->wake);
-    sigfillset(&all); // signals are for the script's thread
+    sigfillset(&all); // signals go to the script's thread
     pthread_sigmask(SIG_BLOCK, &all, &before);
     good = good && pthread_create(&files->thread, NULL, watch, files) == 0;
     pthread_sigmask(SIG_SETMASK, &before, NULL);

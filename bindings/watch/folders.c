@@ -60,7 +60,7 @@ static watch_change change_of(unsigned mask)
 void watch_folders_read(watch_folders *folders, void (*take)(void *user, int number, const char *name, watch_change change),
                         void *user)
 {
-    union { // as aligned as an event
+    union { // aligned like an event
         struct inotify_event first;
         char bytes[16384];
     } buffer;
@@ -69,7 +69,7 @@ void watch_folders_read(watch_folders *folders, void (*take)(void *user, int num
         for (ssize_t at = 0; at < size;) {
             const struct inotify_event *event = (const void *)(buffer.bytes + at);
             take(user, event->wd, event->len ? event->name : "", change_of(event->mask));
-            if (event->mask & IN_MOVE_SELF) // the watch went along with the folder
+            if (event->mask & IN_MOVE_SELF) // the watch has moved with the folder
                 inotify_rm_watch(folders->notify, event->wd);
             at += (ssize_t)(sizeof *event + event->len);
         }
@@ -83,15 +83,15 @@ void watch_folders_read(watch_folders *folders, void (*take)(void *user, int num
 
 #define LOOK_MS 20
 
-// One name at the last look.
+// A file in a folder at the last check.
 typedef struct entry {
     char *name; // owned
     struct stat info;
-    bool seen; // in this look
+    bool seen; // in the current check
 } entry;
 
 typedef struct folder {
-    char *path; // owned; NULL: not looked at
+    char *path; // owned; NULL: unused
     ino_t inode;
     entry *entries; // owned
     size_t count;
@@ -140,7 +140,7 @@ static bool is_same(const struct stat *a, const struct stat *b)
     return same_time && a->st_ino == b->st_ino && a->st_size == b->st_size;
 }
 
-// Remembers what the folder has now; false: there is no such folder any more, or another in its place.
+// Compares the folder with the last check, and stores its files. False: the folder is gone or was replaced.
 static bool look(folder *f, int number, void (*take)(void *user, int number, const char *name, watch_change change),
                  void *user)
 {
@@ -160,7 +160,7 @@ static bool look(folder *f, int number, void (*take)(void *user, int number, con
             f->entries = grown ? grown : f->entries;
             char *name = grown ? strdup(d->d_name) : NULL;
             if (!name)
-                continue; // out of memory: it is new at the next look
+                continue; // out of memory: it counts as new at the next check
             e = &f->entries[f->count++];
             e->name = name;
         }

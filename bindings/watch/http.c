@@ -1,11 +1,11 @@
-// The server of the watch page: one poll() loop over a few non-blocking sockets, on 127.0.0.1 only.
+// The server of the watch page: one poll() loop over a few non-blocking sockets, only on 127.0.0.1.
 //
 //   GET  /TOKEN/            the page
 //   GET  /TOKEN/events      server-sent events: the state, at once and whenever it changes
-//   GET  /TOKEN/picture     the last good picture, PNG; what follows a '?' only tells pictures apart
+//   GET  /TOKEN/picture     the last good picture, PNG; the text after '?' only distinguishes pictures
 //   POST /TOKEN/frame       body: the number of the frame to show
-//   POST /TOKEN/set         body: name=value, as --set takes it, of a parameter that the script has
-//   POST /TOKEN/reset       parameters as the command line has them
+//   POST /TOKEN/set         body: name=value, in the syntax of --set, for a parameter of the script
+//   POST /TOKEN/reset       resets the parameters to those of the command line
 //
 // Anything else is 404. The token is random, so that other users and pages of other sites cannot guess it.
 #include <arpa/inet.h>
@@ -32,14 +32,14 @@ static const char page[] = {
 
 struct watch_server {
     pthread_t thread;
-    pthread_mutex_t lock; // over state, version, picture and stops
+    pthread_mutex_t lock; // protects state, version, picture and stops
     int listener;
     glintL_wake wake;
     bool stops;
     char token[TOKEN_SIZE], host[32], url[96];
     watch_orders orders;
     char *state; // owned
-    unsigned version, sent_version; // of the state; sent_version: of the thread alone
+    unsigned version, sent_version; // version of the state; sent_version is used only by the thread
     watch_picture *picture;
     watch_client *clients[CLIENTS_MAX];
     int count;
@@ -72,7 +72,7 @@ static bool reply_picture(watch_server *server, watch_client *c)
 
 // ---- Requests ----
 
-// Compares in a time that does not tell how much of it was right.
+// Compares in constant time, so that the time does not reveal how much was right.
 static bool same_token(const char *text, const char *token)
 {
     unsigned char difference = 0;
@@ -84,7 +84,8 @@ static bool same_token(const char *text, const char *token)
     return difference == 0;
 }
 
-// The value of a header, or NULL; it ends at "\r\n".
+// Returns the value of a header, up to "\r
+// ", or NULL.
 static const char *header(const char *head, const char *name)
 {
     size_t length = strlen(name);
@@ -105,7 +106,7 @@ static bool is_own_name(const watch_server *server, const char *host)
             strncmp(host + 9, port, length - 9) == 0);
 }
 
-// A name that another site's page has pointed to this machine is not ours, nor is a page of another origin.
+// Rejects another site's host name that resolves to this machine, and pages from another origin.
 static bool is_own_page(const watch_server *server, const char *head)
 {
     const char *host = header(head, "Host"), *origin = header(head, "Origin");
@@ -137,7 +138,7 @@ static bool take_order(watch_server *server, watch_client *c, const char *what, 
     return watch_client_say(c, "200 OK");
 }
 
-// The whole request is there. False: the client is let go.
+// Answers a complete request. False: close the client.
 static bool answer(watch_server *server, watch_client *c, char *body)
 {
     char *path = strchr(c->request, ' '), *end = path ? strpbrk(path + 1, " \r\n") : NULL;
@@ -165,14 +166,14 @@ static bool answer(watch_server *server, watch_client *c, char *body)
     return watch_client_say(c, "404 Not Found");
 }
 
-// Answers when all of the request has come. False: the client is let go.
+// Answers when the whole request has arrived. False: close the client.
 static bool take_request(watch_server *server, watch_client *c)
 {
     c->request[c->got] = '\0';
     char *head_end = strstr(c->request, "\r\n\r\n");
     if (!head_end)
         return c->got < WATCH_REQUEST_MAX && strlen(c->request) == c->got;
-    head_end[2] = '\0'; // headers are searched in the head alone
+    head_end[2] = '\0'; // search for headers only in the head
     const char *length_text = header(c->request, "Content-Length");
     unsigned long length = length_text ? strtoul(length_text, NULL, 10) : 0;
     char *body = head_end + 4;
@@ -202,10 +203,10 @@ static bool read_client(watch_server *server, watch_client *c)
     return take_request(server, c);
 }
 
-// How much is lost when a client is let go: nothing of one that has requested nothing, or has its reply.
+// Returns the priority of a client: lowest if its reply is sent, then if it has requested nothing.
 static int worth(const watch_client *c) { return c->lingers ? 0 : c->size == 0 ? 1 : c->listens ? 2 : 3; }
 
-// Makes room for one more: lets the least go, of those the one that came first.
+// Makes space for one more client: closes the one with the lowest priority, among equals the oldest.
 static void make_room(watch_server *server)
 {
     int least = 0;
@@ -231,7 +232,7 @@ static void accept_client(watch_server *server)
         close(socket);
 }
 
-// Sends a new state to those who listen. False: the server ends.
+// Sends a new state to all listeners. False: the server ends.
 static bool take_state(watch_server *server)
 {
     pthread_mutex_lock(&server->lock);
@@ -269,7 +270,7 @@ static void *serve(void *argument)
     watch_server *server = argument;
     struct pollfd list[2 + CLIENTS_MAX];
     while (take_state(server)) {
-        for (int i = server->count - 1; i >= 0; i--) { // what can be sent is sent at once
+        for (int i = server->count - 1; i >= 0; i--) { // sends as much as possible at once
             watch_client *c = server->clients[i];
             if (!watch_client_send(c) || (c->until_ms > 0 && glintL_now_ms() > c->until_ms))
                 close_client(server, i);
@@ -347,7 +348,7 @@ watch_server *watch_server_create(int port, const watch_orders *orders, char mes
         free_server(server);
         return NULL;
     }
-    sigfillset(&all); // signals are for the script's thread
+    sigfillset(&all); // signals go to the script's thread
     pthread_sigmask(SIG_BLOCK, &all, &before);
     int failed = pthread_create(&server->thread, NULL, serve, server);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
@@ -375,7 +376,7 @@ void watch_server_publish(watch_server *server, const char *state, watch_picture
 {
     char *copy = strdup(state);
     if (!copy)
-        return; // the page keeps what it has
+        return; // the page keeps the last state
     pthread_mutex_lock(&server->lock);
     free(server->state);
     server->state = copy;

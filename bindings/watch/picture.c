@@ -1,4 +1,4 @@
-// Pictures of glint watch: as PNG bytes, and made small for a terminal.
+// Pictures of glint watch: as PNG bytes, and reduced for a terminal.
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,7 +42,7 @@ void watch_picture_release(watch_picture *picture)
 
 // ---- Small pictures ----
 
-// The pixels from *from up to *to belong to place `i` of `places`; at least one.
+// Returns the pixels, from *from up to *to, that element `i` of `places` covers; at least one.
 static void span(int i, int places, int pixels, int *from, int *to)
 {
     *from = (int)((int64_t)i * pixels / places);
@@ -54,11 +54,11 @@ static void span(int i, int places, int pixels, int *from, int *to)
 typedef struct shrinking {
     const glint_picture *from;
     watch_small *to;
-    double light[256], *sums; // of a code; of a row
-    unsigned char *row; // of the picture
+    double light[256], *sums; // light: of each pixel value; sums: of a row
+    unsigned char *row; // of the full picture
 } shrinking;
 
-// Row y of the small picture: means.
+// Computes row y of the reduced picture by averaging.
 static void shrink_row(shrinking *s, int y)
 {
     const int width = s->to->width;

@@ -1,4 +1,4 @@
-// Requests from the threads of glint watch to its loop: a changed file, a frame to show, a parameter's value.
+// Requests from the threads of glint watch to its main loop: a changed file, a frame to show, a parameter's value.
 #include <errno.h>
 #include <poll.h>
 #include <stdlib.h>
@@ -36,7 +36,8 @@ void watch_requests_close(watch_requests *requests)
     pthread_mutex_destroy(&requests->lock);
 }
 
-// The lock is held. A preview ends soon, and showing it beats never showing any while a slider moves.
+// The caller holds the lock. A preview is usually not cancelled, because it ends soon: otherwise no preview would
+// appear while a slider moves.
 static void post(watch_requests *requests, bool cancels_preview)
 {
     if (requests->since_ms == 0)
@@ -71,7 +72,7 @@ static void request_frame(void *context, int64_t frame)
     pthread_mutex_unlock(&requests->lock);
 }
 
-// Puts a set in the place of one of the same name, or behind. False: out of memory.
+// Replaces the set with the same name, or appends it. False: out of memory.
 static bool put(glintL_set **sets, size_t *count, const char *name, const char *text, bool is_known)
 {
     size_t at = 0;
@@ -103,7 +104,7 @@ void watch_requests_know(watch_requests *requests, char *names)
     pthread_mutex_unlock(&requests->lock);
 }
 
-// The lock is held.
+// The caller holds the lock.
 static bool is_name(const watch_requests *requests, const char *name)
 {
     const size_t length = strlen(name);
@@ -155,7 +156,7 @@ bool watch_requests_take(watch_requests *requests, const glintL_run *run, watch_
 {
     struct pollfd wait = { .fd = requests->wake.from, .events = POLLIN };
     while (!watch_requests_waiting(requests)) {
-        // A signal between the test and poll() is seen at the next wake, a second later at most.
+        // A signal between this test and poll() is noticed at the next wake-up, at most a second later.
         if (run->interrupted)
             return false;
         if (poll(&wait, 1, 1000) > 0)
@@ -187,7 +188,7 @@ void watch_requests_begin_render(watch_requests *requests, glint_renderer *rende
     pthread_mutex_lock(&requests->lock);
     requests->rendering = renderer;
     requests->is_preview = is_preview;
-    if ((requests->script || requests->frame) && !is_preview) { // requested since the loop looked
+    if ((requests->script || requests->frame) && !is_preview) { // requested after the loop last checked
         glint_renderer_cancel(renderer);
         requests->cancelled = true;
     }
@@ -213,7 +214,7 @@ bool watch_requests_sets(watch_requests *requests, const glintL_set *given, size
     pthread_mutex_lock(&requests->lock);
     for (size_t i = 0; i < given_count && good; i++)
         good = put(out, count, given[i].name, given[i].text, false);
-    for (size_t i = 0; i < requests->override_count && good; i++) // the script may have lost the parameter since
+    for (size_t i = 0; i < requests->override_count && good; i++) // the script may no longer have the parameter
         good = put(out, count, requests->overrides[i].name, requests->overrides[i].text, true);
     pthread_mutex_unlock(&requests->lock);
     if (!good)

@@ -1,4 +1,5 @@
-// Pictures as sixels: by libsixel, which chooses 256 colours for each, or where it is not there of a cube of 216.
+// Pictures as sixels: with 256 colours chosen by libsixel for each picture or, without libsixel, with a cube of 216
+// colours.
 #include <stdlib.h>
 
 #include "bindings/watch/watch.h"
@@ -7,7 +8,7 @@
 
 // ---- By our own hand: a cube of colours; six rows at a time, for each colour the dots it has ----
 
-// Which of the cube's colours stands for a pixel: ordered dither, Bayer's 4 x 4 matrix.
+// Returns the cube's colour for a pixel, with ordered dithering by Bayer's 4 x 4 matrix.
 static int sixel_color(const unsigned char *rgb, int x, int y)
 {
     static const int bayer[4][4] = { { 0, 8, 2, 10 }, { 12, 4, 14, 6 }, { 3, 11, 1, 9 }, { 15, 7, 13, 5 } };
@@ -26,7 +27,7 @@ static void put_run(int dots, int count)
             fputc(63 + dots, stderr);
 }
 
-// One colour's dots in a band of up to six rows.
+// Writes one colour's dots in a band of up to six rows.
 static void put_band(const unsigned char *colors, int width, int rows, int color)
 {
     int before = 0, count = 0;
@@ -90,7 +91,7 @@ static int write_bytes(char *bytes, int size, void *context)
     return (int)fwrite(bytes, 1, (size_t)size, stderr);
 }
 
-// False, with nothing written: it could not.
+// Writes the picture with libsixel. False: it failed, and nothing was written.
 static bool put_chosen(const watch_small *small)
 {
     sixel_output_t *output = NULL;

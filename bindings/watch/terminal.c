@@ -1,4 +1,4 @@
-// Pictures in a terminal: the kitty graphics protocol, sixels, or half blocks of colour.
+// Pictures in a terminal: by the kitty graphics protocol, sixels, or coloured half blocks.
 #include <fcntl.h>
 #include <poll.h>
 #include <stdlib.h>
@@ -9,11 +9,11 @@
 
 #include "bindings/watch/watch.h"
 
-#define ANSWER_MS 150 // a terminal that has not answered by then never will
+#define ANSWER_MS 150 // a terminal that has not answered by then does not support the query
 
 // ---- What the terminal says ----
 
-// Asks whether the terminal knows the kitty protocol, then for its type: every terminal answers the second.
+// Queries support of the kitty protocol, then the terminal's type, which every terminal answers.
 static size_t query(int terminal, char *answer, size_t room)
 {
     static const char question[] = "\033_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\033\\\033[c";
@@ -33,7 +33,7 @@ static size_t query(int terminal, char *answer, size_t room)
     return size;
 }
 
-// "\033[?62;4;6c": the features between '?' and 'c'; 4 is sixel graphics.
+// Returns whether an answer such as "\033[?62;4;6c" lists feature 4, sixel graphics.
 static bool has_sixel(const char *answer)
 {
     const char *at = strstr(answer, "\033[?");
@@ -62,7 +62,8 @@ static watch_graphics find_graphics(void)
     return strstr(answer, "_Gi=31;OK") ? WATCH_KITTY : has_sixel(answer) ? WATCH_SIXEL : WATCH_BLOCKS;
 }
 
-// Terminals without colours, by their terminfo names: DEC's VT52 to VT525, all but VT525 and VT241; and "...-m".
+// Returns whether the terminal has colours. By terminfo name it has none if it is one of DEC's VT52 to VT525 except
+// VT525 and VT241, or if the name ends in "-m".
 static bool has_colors(void)
 {
     const char *term = getenv("TERM");
@@ -96,9 +97,9 @@ void watch_terminal_close(watch_terminal *terminal)
 
 // ---- Sizes ----
 
-typedef struct place { ///< for the picture
-    int columns, rows; ///< of characters
-    int width, height; ///< of pixels, where the terminal tells; else 0
+typedef struct place { ///< space for the picture
+    int columns, rows; ///< in characters
+    int width, height; ///< in pixels; 0: unknown
 } place;
 
 static place find_place(void)
@@ -108,11 +109,11 @@ static place find_place(void)
     if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0)
         p = (place) { size.ws_col, size.ws_row, size.ws_xpixel, size.ws_ypixel };
     p.height = p.height / p.rows * (p.rows > 3 ? p.rows - 2 : 1);
-    p.rows = p.rows > 3 ? p.rows - 2 : 1; // the line below
+    p.rows = p.rows > 3 ? p.rows - 2 : 1; // leaves space for the line below
     return p;
 }
 
-// The largest size of the picture's shape within the limits, and not above its own.
+// Computes the largest size with the picture's aspect ratio that fits the limits, and is not larger than the picture.
 static void fit(const watch_picture *picture, int max_width, int max_height, int *width, int *height)
 {
     double w = picture->width, h = picture->height;
@@ -189,7 +190,7 @@ static void put_base64(const unsigned char *bytes, size_t size)
 
 static void draw_kitty(const watch_picture *picture)
 {
-    const size_t chunk = 3072; // 4096 digits, the most the protocol takes at once
+    const size_t chunk = 3072; // 4096 base64 digits, the protocol's limit
     place p = find_place();
     int cell_width = p.width > 0 ? p.width / p.columns : 8, cell_height = p.height > 0 ? p.height / p.rows : 16;
     int width, height;
@@ -197,7 +198,7 @@ static void draw_kitty(const watch_picture *picture)
     cell_height = cell_height > 0 ? cell_height : 16;
     fit(picture, p.columns * cell_width, p.rows * cell_height, &width, &height);
     int columns = width / cell_width, rows = height / cell_height;
-    fputs("\033_Ga=d,d=A,q=2\033\\", stderr); // the picture before goes
+    fputs("\033_Ga=d,d=A,q=2\033\\", stderr); // deletes the previous picture
     for (size_t at = 0; at < picture->size; at += chunk) {
         size_t left = picture->size - at, size = left < chunk ? left : chunk;
         if (at == 0)
@@ -221,7 +222,7 @@ static void begin(watch_terminal *terminal)
 
 void watch_terminal_draw(watch_terminal *terminal, const watch_picture *picture, const char *line)
 {
-    static char buffer[1 << 16]; // a picture goes out in few writes
+    static char buffer[1 << 16]; // so that a picture takes few writes
     if (terminal->graphics != WATCH_TEXT) {
         setvbuf(stderr, buffer, _IOFBF, sizeof buffer);
         begin(terminal);
@@ -241,7 +242,7 @@ void watch_terminal_draw(watch_terminal *terminal, const watch_picture *picture,
 
 void watch_terminal_error(watch_terminal *terminal, const char *message)
 {
-    if (terminal->graphics != WATCH_TEXT) // the error stands in the picture's place, from its top
+    if (terminal->graphics != WATCH_TEXT) // the message replaces the picture, from its top
         begin(terminal);
     fprintf(stderr, "%sglint: %serror:%s %s%s\n", terminal->graphics != WATCH_TEXT ? "\033[K" : "",
             terminal->color ? "\033[1;31m" : "", terminal->color ? "\033[0m" : "", message,

@@ -1,7 +1,7 @@
--- Runs in the watched script's state before the script does, and tells the watcher which files it is about to read.
---   note(path, optional, module)   the file decides the picture; optional: only where its folder exists; module: the
---                                  part of the path that stands for the name of a module
---   skip(path)             the script writes the file itself
+-- Runs in the watched script's state before the script, and reports the files that it is about to read to the watcher.
+--   note(path, optional, module)   the picture depends on the file; optional: only if its folder exists; module: the
+--                                  part of the path that is the module's name
+--   skip(path)             the script itself writes the file
 local note, skip = ...
 
 local function noted(read)
@@ -11,7 +11,7 @@ local function noted(read)
   end
 end
 
--- The same for functions that raise errors themselves: the error belongs to the line of the script.
+-- The same for functions that raise errors themselves: the error gets the position of the script's line.
 local function placed(read)
   read = noted(read)
   return function(...)
@@ -33,7 +33,7 @@ function io.open(path, ...)
   return open(path, ...)
 end
 
--- A module that is not found may appear in any of the places that were searched.
+-- A module that is not found may later appear in any of the places searched.
 local search = package.searchers[2]
 package.searchers[2] = function(name)
   if type(package.path) == "string" then

@@ -1,7 +1,7 @@
 // glint watch SCRIPT: renders at every save, in the terminal and on a page.
 //
-// A change is shown twice: as a preview, small and with one sample a pixel, and then in full. The two have a renderer
-// each, kept from run to run, so that what a change leaves alone is not computed again.
+// A change is shown twice: first as a small preview with one sample per pixel, then at full quality. Each has a
+// renderer that lives across runs, so that results which a change does not affect are reused.
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 #include "bindings/watch/watch.h"
 
 #define PREVIEW_SIDE 640
-#define STEPS_BETWEEN_LOOKS 10000 // of the script
+#define STEPS_BETWEEN_LOOKS 10000 // instructions of the script between two checks
 
 static const char watch_track_lua[] = {
 #include "bindings/watch/track.lua.h"
@@ -31,27 +31,27 @@ typedef struct watcher {
     watch_files *files;
     watch_server *server; // NULL: no page
     watch_terminal terminal;
-    glint_renderer *renderers[2]; // by quality; the one at work is the run's
-    glintL_set *given; // of the command line
+    glint_renderer *renderers[2]; // by quality; the run owns the one in use
+    glintL_set *given; // from the command line
     size_t given_count;
     quality now;
     bool shown; // this run has shown a picture
-    bool has_begun; // what is shown now was requested later than at the start
-    bool differs; // the picture in full is another than the preview
-    double since_ms; // when what is shown now was requested; 0: at the start
+    bool has_begun; // the picture now shown was requested after the start
+    bool differs; // the full picture differs from its preview
+    double since_ms; // time of the current request; 0: the start
     int64_t pictures, frame, frames; // pictures: shown so far
-    int64_t calls; // of scene:render in the script; the frames of its jobs are numbered after them
+    int64_t calls; // of scene:render in the script; the frames of its jobs have higher numbers
     int width, height;
     double ms;
     bool is_preview;
-    char *params; // JSON of the last good run; owned
+    char *params; // JSON from the last good run; owned
     char error[GLINTL_MESSAGE_SIZE]; // "": the last run was good
-    char warnings[GLINTL_MESSAGE_SIZE]; // of the last run, a line each
+    char warnings[GLINTL_MESSAGE_SIZE]; // of the last run, one per line
 } watcher;
 
 // ---- Messages ----
 
-// The state as the page gets it.
+// Returns the state in the format of the page.
 static char *make_state(const watcher *w)
 {
     char *text = NULL;
@@ -142,7 +142,7 @@ static void show(void *context, const glintL_run *run, const glintL_work *work)
     publish(w, picture);
     if (w->output->json)
         print_picture_event(w);
-    char of[32] = ""; // a loop counts its calls while it runs
+    char of[32] = ""; // a loop counts its calls only while it runs
     if (w->calls == 0 && w->frames > 0 && w->script.has_jobs)
         snprintf(of, sizeof of, " of %" PRId64, w->frames);
     snprintf(line, sizeof line, "%.255s, frame %" PRId64 "%s: %d x %d%s, %.0f ms after the %s%s%s", w->run->script,
@@ -158,13 +158,13 @@ static void around_render(void *context, const glintL_run *run, bool begins)
     watcher *w = context;
     if (begins) {
         watch_requests_begin_render(&w->requests, run->renderer, w->now == PREVIEW);
-    } else if (watch_requests_end_render(&w->requests)) { // a cancelled renderer is of no use any more
+    } else if (watch_requests_end_render(&w->requests)) { // a cancelled renderer cannot be used again
         glint_renderer_destroy(w->run->renderer);
         w->run->renderer = NULL;
     }
 }
 
-// Shown below the picture. The run in full says nothing that its preview has not said.
+// Shows a warning below the picture. The full run does not repeat the warnings of its preview.
 static void warn(void *context, const char *message)
 {
     watcher *w = context;
@@ -195,9 +195,9 @@ static int skip_file(lua_State *L)
     return 0;
 }
 
-static watcher *current; // for the hook, which gets no more than the state
+static watcher *current; // for the hook, whose only argument is the state
 
-// A script that was changed meanwhile ends, even one that would never end by itself.
+// Ends a script that was changed in the meantime, even one that would never end by itself.
 static void look(lua_State *L, lua_Debug *where)
 {
     (void)where;
@@ -220,7 +220,7 @@ static void prepare(void *context, lua_State *L)
 
 // ---- One run ----
 
-// Shows `frame`, if the script has it; w->shown tells.
+// Selects `frame`, if the script has it; w->shown tells.
 static void select_frame(watcher *w, int64_t frame)
 {
     glintL_selection_clear(&w->run->request.selection);
@@ -228,7 +228,7 @@ static void select_frame(watcher *w, int64_t frame)
         glintL_run_fail(w->run, GLINTL_EXIT_FAILED, 0, "out of memory");
 }
 
-// The renderer of a quality goes to the run, and the other's comes back.
+// Gives the renderer of this quality to the run, and takes the other back.
 static void take_renderer(watcher *w, quality now)
 {
     glintL_run *run = w->run;
@@ -241,7 +241,7 @@ static void take_renderer(watcher *w, quality now)
     w->now = now;
 }
 
-// Prints the parameters as JSON, and returns their names, each between two line breaks.
+// Prints the parameters as JSON. Returns their names, each between two line breaks.
 static int params_protected(lua_State *L)
 {
     luaL_Buffer names;
@@ -303,7 +303,7 @@ static void begin_run(watcher *w, quality now)
         w->warnings[0] = '\0';
 }
 
-// Runs the script from its beginning; its calls of scene:render render meanwhile.
+// Runs the script from the beginning. Its calls of scene:render render immediately.
 static bool run_script(watcher *w, quality now)
 {
     glintL_run *run = w->run;
@@ -321,7 +321,7 @@ static bool run_script(watcher *w, quality now)
     return cli_run_script(&w->script, w->options, run);
 }
 
-// The script's jobs, as it left them.
+// Runs the jobs that the script returned.
 static bool run_jobs(watcher *w)
 {
     w->frames = w->calls + w->script.frames;
@@ -330,7 +330,8 @@ static bool run_jobs(watcher *w)
     return cli_run_jobs(&w->script, w->run);
 }
 
-// A loop of calls counts itself while it runs. When it is shorter than the requested frame, its last is shown.
+// Runs a script with a loop of calls, which counts them as it runs. If it has fewer calls than the requested frame,
+// shows its last one.
 static bool run_calls(watcher *w, quality now)
 {
     w->frames = w->run->count;
@@ -340,7 +341,7 @@ static bool run_calls(watcher *w, quality now)
     return run_script(w, now);
 }
 
-// Shows the wanted frame in one quality. False: an error, or something newer was requested.
+// Shows the wanted frame at one quality. False: an error, or a newer request.
 static bool render(watcher *w, quality now, bool run_again)
 {
     bool good = true, has_jobs = w->script.state && w->script.has_jobs;
@@ -348,7 +349,7 @@ static bool render(watcher *w, quality now, bool run_again)
         good = run_script(w, now);
         has_jobs = good && w->script.has_jobs;
         w->calls = w->run->count;
-        if (good) // else the page keeps its controls, to set right what is wrong
+        if (good) // otherwise the page keeps the controls needed to correct the mistake
             keep_params(w);
     } else {
         begin_run(w, now);
@@ -368,7 +369,7 @@ static void answer(watcher *w, bool run_again)
     bool good = render(w, PREVIEW, run_again);
     if (good && w->differs && !watch_requests_waiting(&w->requests) && !w->run->interrupted)
         good = render(w, FULL, false);
-    if (good && *w->error) { // good again, with nothing new to show
+    if (good && *w->error) { // the error is fixed, with nothing new to show
         w->error[0] = '\0';
         publish(w, NULL);
     }
@@ -393,7 +394,7 @@ static bool open_watcher(watcher *w, char message[GLINTL_MESSAGE_SIZE])
             return false;
     }
     watch_terminal_open(&w->terminal, w->options->terminal, w->output->color && !w->output->quiet);
-    w->given = run->request.sets; // the run's are made anew for each run
+    w->given = run->request.sets; // the run gets new sets for each run
     w->given_count = run->request.set_count;
     run->request.sets = NULL;
     run->request.set_count = 0;
@@ -421,7 +422,7 @@ static void close_watcher(watcher *w)
     free(w->params);
 }
 
-// Where the page is, and that watching has begun.
+// Prints the address of the page, and that watching has begun.
 static void tell_start(watcher *w)
 {
     if (w->server)

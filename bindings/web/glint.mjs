@@ -1,4 +1,5 @@
-// glint for pages, workers and Node: loads the engine, opens scripts and renders their frames, each job in a worker of its own.
+// glint for pages, workers and Node: loads the engine, opens scripts and renders their frames. Each job has its own
+// worker.
 //
 //   import { load } from "./glint.mjs"
 //   const glint = await load()
@@ -10,9 +11,9 @@
 import { encode } from "fast-png"
 
 const isNode = !!globalThis.process?.versions?.node
-const GRACE_S = 1 // beyond the script's time, for code of the script that no hook of Lua interrupts
+const GRACE_S = 1 // beyond the script's time, for script code that Lua's hook cannot interrupt
 
-/** An error of the engine or of the script: `message` has the words of the command. `file` and `line` say where, if that is known. */
+/** An error of the engine or the script, with the command's message. `file` and `line`: position, if known. */
 export class GlintError extends Error {
   constructor(message) {
     super(message)
@@ -34,15 +35,15 @@ class Image {
   #planes
   constructor(result) {
     const { planes, ...rest } = result
-    Object.assign(this, rest) // frame, width, height, rgba, warnings, printed, memory: bytes that the engine has
+    Object.assign(this, rest) // frame, width, height, rgba, warnings, printed, memory: bytes used by the engine
     this.#planes = planes
   }
-  /** The float32 numbers of a pass that was asked for, row by row from the top: those of the .pfm. */
+  /** The float32 numbers of a requested pass, row by row from the top, as in a .pfm. */
   plane(name = "beauty") {
     if (!(name in this.#planes)) throw new GlintError(`plane: '${name}' was not rendered; passes: ["${name}"] asks for it`)
     return this.#planes[name]
   }
-  /** The picture as a file, in bytes; without an alpha channel where no pixel is transparent. */
+  /** The picture as a PNG file, in bytes; without an alpha channel if every pixel is opaque. */
   png() {
     const { width, height, rgba } = this
     const isOpaque = rgba.every((value, i) => i % 4 < 3 || value === 255)
@@ -60,7 +61,7 @@ class Host {
   #engine
   #opening
   #seconds
-  #queue = [] // the first one is at work
+  #queue = [] // the first request is being processed
   #worker
   #timer
   #isOpen = false // the worker has run the script
@@ -72,7 +73,7 @@ class Host {
     this.#seconds = opening.seconds
   }
 
-  // Sends a message after those before it, and returns a promise of its answer.
+  // Sends a message after the earlier ones, and returns a promise of its answer.
   ask(message, signal) {
     if (signal?.aborted) return Promise.reject(aborted(signal))
     if (this.#isClosed) return Promise.reject(new GlintError(CLOSED))
@@ -96,12 +97,12 @@ class Host {
     asked[how](value)
   }
 
-  // A new worker opens the script first. So does one that takes the place of a worker which was stopped.
+  // A new worker opens the script first, also if it replaces a worker that was stopped.
   #begin() {
     const asked = this.#queue[0]
     if (!asked) return this.#worker?.unref?.()
     if (!this.#worker) {
-      const worker = this.#engine.start( // one that was stopped has nothing more to say
+      const worker = this.#engine.start( // messages of a stopped worker are ignored
         data => worker === this.#worker && this.#take(data), error => worker === this.#worker && this.#fail(error))
       this.#worker = worker
       this.#isOpen = false
@@ -151,7 +152,7 @@ class Host {
   }
 }
 
-/** A script that was opened. */
+/** An opened script. */
 class Job {
   #host
   #set
@@ -161,9 +162,9 @@ class Job {
     Object.assign(this, opened) // params, frames, fps, width, height, warnings, printed
   }
   /**
-   * Renders a frame. `set` beats the values the job was opened with; `passes` have their numbers in image.plane(), which takes
-   * longer than the picture only; `view` is the pass that image.rgba shows, as its .png does; other options are the fields of
-   * scene:render{}.
+   * Renders a frame. `set` overrides the values the job was opened with. `passes` are the passes whose numbers
+   * image.plane() returns; they take extra time. `view` is the pass that image.rgba shows, as in its .png. The other
+   * options are the fields of scene:render{}.
    */
   async render({ frame = 1, passes = [], view = "beauty", set, signal, ...options } = {}) {
     const named = [passes].flat().flatMap(list => String(list).split(",")).filter(name => name !== "")
@@ -173,11 +174,11 @@ class Job {
     message.options.bits = "8" // a page shows no more
     return new Image(await this.#host.ask(message, signal))
   }
-  /** What `glint explain --json` prints of a frame. */
+  /** Returns the output of `glint explain --json` for a frame. */
   explain({ frame = 1, set, signal, ...options } = {}) {
     return this.#host.ask({ call: "explain", frame, set: { ...this.#set, ...spellAll(set) }, options: spellAll(options) }, signal)
   }
-  /** Ends the worker. What it was asked and has not answered is an error. */
+  /** Ends the worker. Its unanswered requests fail. */
   close() { this.#host.close() }
 }
 
@@ -190,7 +191,7 @@ async function compile(wasm) {
   if (isNode && url.protocol === "file:") return WebAssembly.compile(await (await import("node:fs/promises")).readFile(url))
   const answer = await fetch(url)
   if (!answer.ok) throw new GlintError(`${url}: ${answer.status} ${answer.statusText}`)
-  return WebAssembly.compile(await answer.arrayBuffer()) // whatever type the server says it has
+  return WebAssembly.compile(await answer.arrayBuffer()) // the server may send any content type
 }
 
 class Engine {
@@ -199,7 +200,7 @@ class Engine {
     this.module = module
     this.#make = make
   }
-  // Starts a worker. `take` gets its messages; `fail` is called when it cannot go on.
+  // Starts a worker. `take` receives its messages; `fail` is called when the worker cannot continue.
   start(take, fail) {
     const worker = this.#make()
     if (worker.on) {
@@ -214,16 +215,16 @@ class Engine {
 }
 
 /**
- * Loads the engine. wasm: where glint.wasm is (a URL, bytes or a module); worker: where worker.mjs is (a URL); a blob has
- * its text in an async function.
+ * Loads the engine. wasm: glint.wasm as a URL, bytes or a module; worker: the URL of worker.mjs. With a blob URL, the
+ * text of worker.mjs runs in an async function.
  */
 export async function load({ wasm, worker } = {}) {
   const url = new URL(worker ?? "worker.mjs", import.meta.url)
-  const isBlob = url.protocol === "blob:" // a page from a disk may not make a module of one
+  const isBlob = url.protocol === "blob:" // a page opened from disk cannot make a module worker from a blob
   const Worker = isNode ? (await import("node:worker_threads")).Worker : globalThis.Worker
   const engine = new Engine(await compile(wasm), () => new Worker(url, isBlob ? {} : { type: "module" }))
   return {
-    /** Runs a script. files: { name: text or bytes } that it may read; set: { name: value }; seconds that it may take at a time. */
+    /** Runs a script. files: { name: text or bytes } to read; set: { name: value }; seconds: limit of each call. */
     async open(source, { name = "scene.lua", files = {}, set = {}, seconds = 10, signal } = {}) {
       const given = spellAll(set)
       const message = { call: "open", name, source, files, set: given, seconds }

@@ -8,10 +8,10 @@ _G.io = {
   open = open, lines = io.lines, type = io.type, write = io.write,
   stdin = io.stdin, stdout = io.stdout, stderr = io.stderr,
 }
-_G.collectgarbage = collect -- at once, whatever is asked for
+_G.collectgarbage = collect -- always collects at once, whatever the option
 _G.os.remove, _G.os.rename, _G.os.tmpname = os.remove, os.rename, os.tmpname
 
--- The text of a file that the script was given, or nil.
+-- Returns the text of a file given to the script, or nil.
 local function given(path)
   local file = open(path, "rb")
   local text = file and file:read "a"

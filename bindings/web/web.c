@@ -1,7 +1,7 @@
 // The module for browsers and Node: one job in the memory of WebAssembly. worker.mjs calls the functions here.
 //
-// The files of the job are in a file system in memory. The script runs once for each set of parameters, and its frames
-// are rendered as glint watch renders them, with one renderer, so that unchanged parts are reused.
+// The job's files are in a file system in memory. The script runs once for each set of parameters. Its frames are
+// rendered as by glint watch, with one renderer, so that unchanged parts are reused.
 #include <emscripten.h>
 #include <inttypes.h>
 #include <lualib.h>
@@ -14,7 +14,7 @@
 #include "bindings/run/carried.h"
 #include "bindings/run/film.h"
 
-#define INSTRUCTIONS 1000 // of the script, between two looks at the clock
+#define INSTRUCTIONS 1000 // instructions of the script between two checks of the clock
 #define REUSE_MEMORY ((size_t)256 << 20)
 #define SETS_MAX 256
 #define WARNINGS_SIZE 8192
@@ -23,23 +23,23 @@ typedef struct web_job {
     cli_options options;
     cli_script script;
     glintL_run *run;
-    glintL_set sets[SETS_MAX]; // whose strings are owned
-    double seconds, until_ms; // that the script may take in one call; when its time is over
-    double render_ms; // when the render at work has begun
-    int64_t calls; // of scene:render in the script; the frames of its jobs are numbered after them
+    glintL_set sets[SETS_MAX]; // their strings are owned
+    double seconds, until_ms; // time limit of the script in one call; the deadline
+    double render_ms; // start of the current render
+    int64_t calls; // of scene:render in the script; the frames of its jobs have higher numbers
     int64_t frames;
     double width, height; // of the first frame
-    double fps; // of the first animation; 24: calls of scene:render
+    double fps; // of the first animation; 24 for calls of scene:render
     char *params, *plan; // JSON; owned
     glint_image *image; // of the last frame
     glintL_render render;
-    uint8_t *bytes; // that were asked for last; owned
-    char warnings[WARNINGS_SIZE]; // of the last call, a line each
+    uint8_t *bytes; // result of the last request; owned
+    char warnings[WARNINGS_SIZE]; // of the last call, one per line
 } web_job;
 
 static web_job job;
 
-typedef struct module { // of Lua, carried
+typedef struct module { // a carried Lua module
     const char *name;
     const unsigned char *text;
     size_t size;
@@ -80,11 +80,11 @@ bool cli_order_points(cli_options *options, cli_output *output, glintL_run *run)
     return true;
 }
 
-void cli_hush_script(lua_State *L) { (void)L; } // there is no --exposure auto, which runs a script twice
+void cli_hush_script(lua_State *L) { (void)L; } // there is no --exposure auto, which would run a script twice
 
 // ---- The script's Lua ----
 
-// Once it has raised, each next instruction raises again, so that no pcall goes on.
+// Once this hook has raised, each further instruction raises again, so that no pcall can continue.
 static void look(lua_State *L, lua_Debug *where)
 {
     (void)where;
@@ -96,7 +96,7 @@ static void look(lua_State *L, lua_Debug *where)
     lua_error(L);
 }
 
-// The name of a module -> its text, or nil.
+// Pushes the text of the module with a name, or nil.
 static int carried_text(lua_State *L)
 {
     const char *name = luaL_checkstring(L, 1);
@@ -114,7 +114,7 @@ static int collect_garbage(lua_State *L)
     return 0;
 }
 
-// Runs prelude.lua in the small Lua of --untrusted, which cli_run_script has opened.
+// Runs prelude.lua in the reduced Lua of --untrusted, which cli_run_script has opened.
 static void prepare(void *context, lua_State *L)
 {
     (void)context;
@@ -138,7 +138,7 @@ EM_JS(void, tell_rendering, (int begins), {
         Module["rendering"](!!begins);
 })
 
-// The time of a render is not the script's.
+// Excludes the time of a render from the script's time.
 static void around_render(void *context, const glintL_run *run, bool begins)
 {
     (void)context, (void)run;
@@ -183,7 +183,7 @@ static void begin_run(void)
     job.until_ms = glintL_now_ms() + 1e3 * job.seconds;
 }
 
-// Renders calls of scene:render as far as they are the frame; 0: none.
+// Runs the script and renders the call of scene:render that is the frame; 0: none.
 static bool run_script(int64_t frame)
 {
     glintL_selection *selection = &job.run->request.selection;
@@ -196,7 +196,7 @@ static bool run_script(int64_t frame)
     return cli_run_script(&job.script, &job.options, job.run);
 }
 
-// The size of the first frame of the list of jobs, and the rate of its frames.
+// Stores the size of the list's first frame, and the frame rate.
 static void measure_job(lua_State *L)
 {
     lua_rawgeti(L, LUA_REGISTRYINDEX, job.script.jobs);
@@ -210,7 +210,7 @@ static void measure_job(lua_State *L)
     job.height = render.desc.height;
 }
 
-// Plans a frame in a run of its own. The plan is the run's.
+// Plans a frame in a separate run of the script. The run owns the plan.
 static bool explain(int64_t frame)
 {
     cli_script script;
@@ -223,7 +223,7 @@ static bool explain(int64_t frame)
     return job.run->explain_plan != NULL;
 }
 
-// The size of the first call of scene:render.
+// Stores the size of the first call of scene:render.
 static bool measure_call(void)
 {
     if (!explain(1))
@@ -258,7 +258,7 @@ static bool keep_params(void)
 
 // ---- What worker.mjs calls; each returns whether all is well, or NULL or 0 otherwise ----
 
-/// Begins the job of a script that is in the file system. seconds: time that the script may take in one call.
+/// Begins the job of a script in the file system. seconds: time limit of the script in one call.
 EMSCRIPTEN_KEEPALIVE bool web_open(const char *path, double seconds)
 {
     job.run = glintL_run_create();
@@ -288,7 +288,7 @@ EMSCRIPTEN_KEEPALIVE void web_clear_sets(void)
     }
 }
 
-/// As --set name=text, for the runs to come.
+/// Sets a parameter for later runs, as --set name=text.
 EMSCRIPTEN_KEEPALIVE bool web_set(const char *name, const char *text)
 {
     glintL_set set = { .name = strdup(name), .text = strdup(text) };
@@ -298,7 +298,7 @@ EMSCRIPTEN_KEEPALIVE bool web_set(const char *name, const char *text)
     return true;
 }
 
-/// Takes a field of scene:render{} for the frames to come, as text; NULL: the script's.
+/// Sets a field of scene:render{} for later frames, as text; NULL: uses the script's value.
 EMSCRIPTEN_KEEPALIVE bool web_option(const char *name, const char *text)
 {
     char message[GLINTL_MESSAGE_SIZE];
@@ -314,7 +314,7 @@ EMSCRIPTEN_KEEPALIVE bool web_option(const char *name, const char *text)
     return true;
 }
 
-/// Runs the script with the parameters that are set; then what it says of itself is known.
+/// Runs the script with the parameters set so far, and finds its frames, size and parameters.
 EMSCRIPTEN_KEEPALIVE bool web_run(void)
 {
     job.warnings[0] = '\0';
@@ -338,7 +338,7 @@ EMSCRIPTEN_KEEPALIVE const char *web_params(void) { return job.params; }
 EMSCRIPTEN_KEEPALIVE const char *web_warnings(void) { return job.warnings; }
 EMSCRIPTEN_KEEPALIVE const char *web_message(void) { return job.run && *job.run->message ? job.run->message : "out of memory"; }
 
-// A script that calls scene:render runs again; jobs are as it left them.
+// Runs a script with calls of scene:render again; otherwise runs its jobs.
 static bool render(int64_t frame)
 {
     glintL_run *run = job.run;
@@ -355,7 +355,7 @@ static bool render(int64_t frame)
     return !job.script.has_jobs || cli_run_jobs(&job.script, run);
 }
 
-/// keeps: the image has its float32 numbers, not the codes only, which are made tile by tile and reused.
+/// Renders a frame. keeps: the image stores its float32 numbers; otherwise only codes, which are cached tile by tile.
 EMSCRIPTEN_KEEPALIVE bool web_render(double frame, bool keeps)
 {
     job.run->keeps_images = keeps;
@@ -376,7 +376,7 @@ EMSCRIPTEN_KEEPALIVE bool web_render(double frame, bool keeps)
 EMSCRIPTEN_KEEPALIVE int web_image_width(void) { return glint_image_width(job.image); }
 EMSCRIPTEN_KEEPALIVE int web_image_height(void) { return glint_image_height(job.image); }
 
-// The number of the pass with that name in the last frame, or -1.
+// Returns the number of the pass with that name in the last frame, or -1.
 static int find_pass(const char *name)
 {
     const char *of = strncmp(name, "d:", 2) == 0 ? name + 2 : strncmp(name, "light:", 6) == 0 ? name + 6 : NULL, *other;
@@ -390,7 +390,7 @@ static int find_pass(const char *name)
     return -1;
 }
 
-// The 8-bit values of the last frame's pass, as its .png has them: RGBA, from the top.
+// Returns the 8-bit values of a pass of the last frame, as in its .png: RGBA, top row first.
 EMSCRIPTEN_KEEPALIVE const uint8_t *web_rgba(const char *view)
 {
     glint_error error;
@@ -409,10 +409,11 @@ EMSCRIPTEN_KEEPALIVE const uint8_t *web_rgba(const char *view)
     return NULL;
 }
 
-/// The name of light pass number `index` of the last frame, without "light:"; NULL: it has not so many.
+/// Returns the name of light pass number `index` of the last frame, without "light:"; NULL: there are fewer.
 EMSCRIPTEN_KEEPALIVE const char *web_light_pass(int index) { return glint_image_light_pass(job.image, (size_t)index); }
 
-/// The float32 numbers of a pass of the last frame as a file .npy, its size in *size; until the next call.
+/// Returns the float32 numbers of a pass of the last frame as an .npy file, with its size in *size; valid until the
+/// next call.
 EMSCRIPTEN_KEEPALIVE const uint8_t *web_plane(const char *name, size_t *size)
 {
     glint_error error;
@@ -430,7 +431,7 @@ EMSCRIPTEN_KEEPALIVE const uint8_t *web_plane(const char *name, size_t *size)
     return NULL;
 }
 
-/// What `glint explain --json` prints of a frame; until the next call.
+/// Returns the output of `glint explain --json` for a frame; valid until the next call.
 EMSCRIPTEN_KEEPALIVE const char *web_explain(double frame)
 {
     char *text = NULL;
@@ -441,7 +442,7 @@ EMSCRIPTEN_KEEPALIVE const char *web_explain(double frame)
         return NULL;
     begin_run();
     job.options.frame = (int64_t)frame;
-    const char **path = &job.run->request.render_text[glintL_render_find("output")]; // the plan of a file, as the command's
+    const char **path = &job.run->request.render_text[glintL_render_find("output")]; // the plan of a file
     *path = NULL;
     job.run->keeps_images = false;
     cli_explain(&job.options, &output, job.run);

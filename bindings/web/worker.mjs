@@ -1,20 +1,20 @@
-// The worker of one job: the loader of emscripten (createGlint, before this) and the answers to the messages of glint.mjs. One file
-// without imports, so that a page may make a worker of its text.
+// The worker of one job: the loader of emscripten (createGlint, inserted before this) and the answers to the messages
+// of glint.mjs. One file without imports, so that a page can make a worker from its text.
 //
-// A message is { call, ... }; the answer is { result } or { failed: message }. { rendering } says whether the time that passes
-// is the script's.
+// A message is { call, ... }; the answer is { result } or { failed: message }. { rendering } says whether the current
+// time counts for a render rather than the script.
 
-const MESSAGE_LINES = 1000 // that a script may print in one call
+const MESSAGE_LINES = 1000 // lines that a script may print in one call
 
 const port = globalThis.process?.versions?.node ? (await import("node:worker_threads")).parentPort : globalThis
 let engine, sets, printed = []
-const chosen = new Set() // options that differ from the script's
+const chosen = new Set() // options overridden by the page
 
 function print(line) {
   if (printed.length < MESSAGE_LINES) printed.push(line)
 }
 
-// Calls a function of web.c. Strings are passed for the time of the call; null stays NULL.
+// Calls a function of web.c. Strings are passed for the duration of the call; null stays NULL.
 function call(name, ...values) {
   const texts = []
   const numbers = values.map(value => {
@@ -38,7 +38,7 @@ function check(good) {
 
 const warnings = () => text("web_warnings").split("\n").filter(line => line !== "")
 
-// Puts a file into the memory's file system, with its folders.
+// Writes a file to the file system in memory, with its folders.
 function write(path, bytes) {
   engine.FS.mkdirTree(`/job/${path.slice(0, path.lastIndexOf("/") + 1)}`)
   engine.FS.writeFile(path, bytes)
@@ -50,11 +50,11 @@ const describe = () => ({
   warnings: warnings(), printed,
 })
 
-// Runs the script if these are other parameters than last time. { name: text }
+// Runs the script if the parameters { name: text } differ from the last time.
 function run(given) {
   const key = JSON.stringify(Object.entries(given).sort())
   if (key === sets) return
-  sets = undefined // until it has run
+  sets = undefined // unknown until it has run
   call("web_clear_sets")
   for (const [name, value] of Object.entries(given)) check(call("web_set", name, value))
   check(call("web_run"))
@@ -81,7 +81,7 @@ async function open({ module, name, source, files, set, seconds }) {
   return describe()
 }
 
-// Options of scene:render{}, as text; all others are the script's.
+// Sets the given options of scene:render{}, as text; all others get the script's values.
 function choose(options) {
   for (const name of chosen) if (!(name in options)) check(call("web_option", name, null))
   chosen.clear()
@@ -91,7 +91,7 @@ function choose(options) {
   }
 }
 
-// The float32 numbers of a pass: what follows the head of an .npy.
+// Returns the float32 numbers of a pass: the part of an .npy after its header.
 function plane(name) {
   const size = engine._malloc(4), at = call("web_plane", name, size)
   const length = new Uint32Array(engine.HEAPU8.buffer, size, 1)[0]
@@ -101,7 +101,7 @@ function plane(name) {
   return new Float32Array(engine.HEAPU8.slice(at + head, at + length).buffer)
 }
 
-// The names of the passes; light:* stands for all light passes.
+// Returns the names of the passes; light:* stands for all light passes.
 function namePasses(passes) {
   const lights = []
   for (let at; passes.includes("light:*") && (at = call("web_light_pass", lights.length));) lights.push(`light:${engine.UTF8ToString(at)}`)
@@ -135,7 +135,7 @@ async function answer(message) {
     const moved = result.rgba ? [result.rgba.buffer, ...Object.values(result.planes).map(numbers => numbers.buffer)] : []
     port.postMessage({ result }, moved)
   } catch (error) {
-    // A failure of the engine itself leaves a memory that is not to be used again.
+    // After a failure of the engine itself its memory must not be used again.
     port.postMessage(error?.failed !== undefined ? { failed: error.failed } : { failed: String(error), broken: true })
   }
 }

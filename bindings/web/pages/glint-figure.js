@@ -7,26 +7,26 @@
 //
 // Attributes:
 //   src        address of the script; without it, the text of a <script type="text/x-lua"> inside the element
-//   files      addresses of the files that the script reads, separated by commas; the script sees their last parts
-//   controls   names of the script's parameters that get a control, separated by commas; all of them without it
-//   width, height   size of the picture, in pixels; the script's own without them
+//   files      addresses of the files that the script reads, separated by commas; the script uses the last part of each
+//   controls   names of the script's parameters with a control, separated by commas; default: all parameters
+//   width, height   size of the picture, in pixels; default: the script's own
 //   frame      first frame shown, from 1
 //   timing     shows how long the last full picture took
 // A page may set `figure.given = { name, text, files, values }` instead of src and files.
-// The picture inside is shown until the first frame is there, and without JavaScript. `figure.values` has the values of the
-// controls. Each finished picture sends the event "glint-render"; its `detail` has { image, coarse, ms }. An error sends
-// "glint-error" with { error }.
+// The picture inside the element is shown until the first frame is rendered, and without JavaScript. `figure.values`
+// has the values of the controls. Each finished picture sends the event "glint-render" with the `detail` { image,
+// coarse, ms }. An error sends "glint-error" with { error }.
 import { load } from "./glint.mjs"
 
-const REST_MS = 150         // a control at rest for this long gets the full picture
-const COARSE_MS = 30        // limit for a picture while a control moves
-const PATIENCE_MS = 300     // a full picture that takes longer is cancelled for the next one; its worker starts anew
-const LOGARITHMIC = 100     // a range of more than this factor has a logarithmic slider
+const REST_MS = 150         // after this time without changes the full picture is rendered
+const COARSE_MS = 30        // time limit for a picture while a control moves
+const PATIENCE_MS = 300     // a full picture that takes longer is cancelled by the next request; its worker starts anew
+const LOGARITHMIC = 100     // larger ratios of a range's ends have a logarithmic slider
 
 let engine // one for all figures of a page
 const engineOfPage = () => engine ??= load()
 
-// Has the figures of the page use this promise of an engine; called before the first one starts.
+// Makes the page's figures use this promise of an engine. Call it before the first figure starts.
 export function useEngine(promise) {
   engine = promise
 }
@@ -49,18 +49,19 @@ const style = `
   button { font: inherit; padding: 0.25rem 0.8rem; min-height: 2rem; }
 `
 
-// Returns the number as people write it: three figures, without zeros at the end.
+// Returns the number with three significant digits and no trailing zeros.
 export function written(value) {
   return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(3)))
 }
 
-// A control of one parameter: a labelled slider, list, box or field. `changed(value, moving)` hears of each new value.
+// Makes the control of one parameter: a labelled slider, list, box or field. It calls `changed(value, moving)` for each
+// new value.
 export function control(param, changed) {
   const label = document.createElement("label")
   const name = document.createElement("span")
   name.textContent = param.name.replaceAll("_", " ")
   if (param.doc) label.title = param.doc
-  const output = document.createElement("span") // an <output> would be what the label is for
+  const output = document.createElement("span") // an <output> element would become the target of the label
   output.className = "note"
   const read = makeInput(param, label)
   const { input } = read
@@ -106,7 +107,7 @@ function makeInput(param, label) {
   return { input, set: value => { input.value = value }, value: param.type === "number" ? number : () => input.value }
 }
 
-// A slider of 1000 steps, or of whole numbers where the range has few; logarithmic over large ratios.
+// Makes a slider of 1000 steps, or of whole numbers if the range has few; logarithmic for large ratios.
 function makeSlider(param, input) {
   const whole = Number.isInteger(param.value) && Number.isInteger(param.min) && Number.isInteger(param.max) && param.max - param.min > 4
   const logarithmic = param.min > 0 && param.max / param.min > LOGARITHMIC
@@ -140,7 +141,8 @@ export function show(canvas, image) {
   canvas.getContext("2d").putImageData(new ImageData(image.rgba, image.width, image.height), 0, 0)
 }
 
-// Renders a job's pictures as controls ask for them: one at a time, the newest request wins, coarse while a control moves.
+// Renders a job's pictures as the controls request them: one at a time, the newest request first, coarse while a
+// control moves.
 export class Renderer {
   constructor(job, { size, shown, failed }) {
     Object.assign(this, { job, size, shown, failed })
@@ -149,7 +151,7 @@ export class Renderer {
     this.next = null
   }
 
-  // Asks for a picture. A coarse one is followed by the full one, once nothing was asked for a moment.
+  // Requests a picture. After a coarse picture the full one follows, when there has been no request for a moment.
   ask(request, coarse = false) {
     clearTimeout(this.rest)
     if (coarse) this.rest = setTimeout(() => this.ask(request), REST_MS)
@@ -201,7 +203,7 @@ async function fetched(address, as) {
   return as === "text" ? response.text() : new Uint8Array(await response.arrayBuffer())
 }
 
-// Plays frames one after the other, as fast as they are rendered and at most at the animation's own rate.
+// Plays frames in order, as fast as they are rendered, and at most at the animation's frame rate.
 class Player {
   constructor(frames, fps, go) {
     Object.assign(this, { frames, fps, go })
@@ -221,7 +223,7 @@ class Player {
     this.go(this.frame)
   }
 
-  // Called once a frame is shown.
+  // Called when a frame is shown.
   shown() {
     if (this.playing) this.timer = setTimeout(() => this.playing && this.step(), Math.max(0, this.due - performance.now()))
   }
@@ -246,7 +248,7 @@ export class GlintFigure extends HTMLElement {
     this.frame = 1
   }
 
-  // The engine starts when the figure comes near the visible part of the page.
+  // Starts the engine when the figure comes near the visible part of the page.
   connectedCallback() {
     this.watcher = new IntersectionObserver(entries => {
       if (!entries.some(entry => entry.isIntersecting)) return

@@ -9,7 +9,7 @@ import { tags } from "@lezer/highlight"
 import { load } from "./glint.mjs"
 import { control, Renderer, show } from "./glint-figure.js"
 
-const TYPING_MS = 350 // after the last key the script runs
+const TYPING_MS = 350 // delay between the last key and the script's run
 const get = id => document.getElementById(id)
 const engine = load()
 

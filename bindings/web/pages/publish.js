@@ -1,4 +1,4 @@
-// The script of a page that `glint publish` writes: all that it needs is in the page itself.
+// The script of a page written by `glint publish`. The page itself contains everything that it needs.
 import { load } from "./glint.mjs"
 import { useEngine } from "./glint-figure.js"
 import workerText from "./worker.txt"

@@ -1,10 +1,10 @@
-// Search in the pages of the site: sections that have all the words, those with a word in their heading first.
+// Searches the site's pages: lists the sections that contain all words, those with a word in their heading first.
 const input = document.querySelector('[role="search"] input')
 const found = document.getElementById("found")
 const SHOWN = 12
 let index
 
-// How well a section answers: 0 where a word is missing.
+// Returns how well a section matches: 0 if a word is missing.
 export function score({ heading, text }, words) {
   const [title, body] = [heading.toLowerCase(), text.toLowerCase()]
   let points = 0

@@ -1,6 +1,7 @@
-// Makes the site: the manual, the gallery and the reference as pages with search, beside the playground and the course.
+// Makes the site: the manual, the gallery and the reference as pages with search, next to the playground and the
+// course.
 //   node site.mjs ROOT WEB OUT
-// ROOT is the source tree, WEB what `make web` leaves, OUT the folder to write.
+// ROOT is the source tree, WEB the result of `make web`, OUT the folder to write.
 import { cpSync, mkdirSync, readFileSync, writeFileSync } from "node:fs"
 import { dirname, join, posix } from "node:path"
 import { Marked } from "marked"
@@ -8,7 +9,7 @@ import { Marked } from "marked"
 const [root, web, out] = process.argv.slice(2)
 const read = path => readFileSync(join(root, path), "utf8")
 
-// Pages made of the repository's texts: where each is written, its source, and its name in the navigation.
+// Pages generated from the repository's texts: the file to write, the source, and the name in the navigation.
 const pages = [
   { to: "learn.html", from: "bindings/docs/learn.md", title: "Learn glint" },
   { to: "how-to.html", from: "bindings/docs/how-to.md", title: "How to" },
@@ -52,9 +53,9 @@ ${body}
 
 // ---- Texts in Markdown ----
 
-const index = [] // { page, title, heading, anchor, text }: a section each, for the search
+const index = [] // { page, title, heading, anchor, text }: one per section, for the search
 
-// Returns the address in the site of a link in a source file. Files that are not pages go to source/.
+// Returns the site's address for a link in a source file. Files that are not pages go to source/.
 function target(from, link) {
   if (/^[a-z]+:|^#/.test(link)) return link
   const [path, anchor] = link.split("#")
@@ -94,7 +95,7 @@ function markdown({ to, from, title }) {
 
 // ---- The reference, from the declarations that editors read ----
 
-// Returns the blocks of comments and code that blank lines separate.
+// Splits text into blocks of comments and code separated by blank lines.
 function blocks(text) {
   return text.split(/\n\s*\n/).map(block => block.split("\n"))
 }
