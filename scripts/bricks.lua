@@ -11,9 +11,9 @@ local P = glint.params {
   mortar = { 0.05, min = 0.005, max = 0.2, doc = "width of a joint, world units" },
 }
 
-local WIDTH <const>, HEIGHT <const> = 0.8, 0.3 -- of a brick with its joint, world units
+local WIDTH <const>, HEIGHT <const> = 0.8, 0.3 -- of a brick including its joint, world units
 
--- How far a place is from the nearest joint's middle, and which brick it is in.
+-- Returns the distance of a point from the middle of the nearest joint, and the brick that contains the point.
 local function lay(p)
   local y = p.y / HEIGHT
   local x = p.x / WIDTH + 0.5 * glint.stripe(y)

@@ -1,4 +1,4 @@
-/// A picture from C, with nothing but the public header: a ball on the ground under one lamp.
+/// A picture from C, using only the public header: a ball on the ground under one lamp.
 ///
 ///     cc c_example.c $(pkg-config --cflags --libs glint) -o c_example && ./c_example
 ///
@@ -19,7 +19,7 @@ static void need(glint_status status)
     exit(1);
 }
 
-// Adds a shape with a material of the given colour. The scene keeps what it needs of both.
+// Adds a shape with a material of the given colour. The scene retains what it needs of both.
 static void add(glint_scene *scene, glint_shape_desc *shape_desc, double red, double green, double blue,
                 double specular)
 {

@@ -1,16 +1,16 @@
-/// Patterns from C: a ball of marble on a chessboard, with nothing but the public header.
+/// Patterns from C, using only the public header: a ball of marble on a chessboard.
 ///
 ///     cc c_pattern.c $(pkg-config --cflags --libs glint) -o c_pattern && ./c_pattern
 ///
-/// A pattern is a program: a list of operations that says what a material is at a point. It is built value by value, once,
-/// and runs for every sample that shows the material. c_example.c tells the rest.
+/// A pattern is a program: a list of operations that describes a material at a point. It is built once, value by value,
+/// and runs for every sample that shows the material. The rest is explained in c_example.c.
 #include <stdio.h>
 #include <stdlib.h>
 
 #include <glint.h>
 
 static glint_error error;
-static glint_builder *pattern; ///< the one that is being built
+static glint_builder *pattern; ///< the pattern under construction
 
 static void need(glint_status status)
 {
@@ -34,7 +34,7 @@ static glint_value read(glint_input input)
     return out;
 }
 
-// Operations of one result with up to three operands; those that an operation does not have are not looked at.
+// Adds an operation with one result and up to three operands. Unused operands are ignored.
 static glint_value op(glint_op which, glint_value a, glint_value b, glint_value c)
 {
     const glint_value operands[] = { a, b, c };
@@ -57,7 +57,7 @@ static glint_program *finish(const glint_value *outputs, size_t count)
     return program;
 }
 
-// 0.05 or 0.9 by the parity of floor(x) + floor(y) + floor(z); on a plane across the y axis, y is exact.
+// Returns 0.05 or 0.9 by the parity of floor(x) + floor(y) + floor(z); on a plane across the y axis, y is exact.
 static glint_program *chessboard(void)
 {
     need(glint_builder_create(GLINT_PROGRAM_PATTERN, &pattern, &error));
@@ -66,7 +66,7 @@ static glint_program *chessboard(void)
     return finish(&gray, 1);
 }
 
-// Two colours, mixed by a sine of x that noise of two sizes bends.
+// Mixes two colours by a sine of x, which noise of two sizes distorts.
 static glint_program *marble(void)
 {
     static const double light[3] = { 0.92, 0.9, 0.86 }, dark[3] = { 0.16, 0.2, 0.3 };
@@ -84,7 +84,7 @@ static glint_program *marble(void)
     return finish(colour, 3);
 }
 
-// Adds a shape whose diffuse reflectance is the program's, which the material keeps.
+// Adds a shape with the program as its diffuse reflectance. The material retains the program.
 static void add(glint_scene *scene, glint_shape_desc *shape_desc, glint_program *diffuse, double specular)
 {
     glint_material_desc paint = glint_material_desc_default();

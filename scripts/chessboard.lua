@@ -18,7 +18,7 @@ local squares = glint.pattern(function(p, s)
   return glint.mix(light, dark, glint.checker(p / P.square, P.filtered and s.footprint / P.square or 0))
 end)
 
--- Rings around the men's feet: bands of the height, which moves with each man.
+-- Rings around the feet of the pieces: bands of the height, which move with each piece.
 local function rings(color)
   return glint.pattern(function(p) return glint.mix(color, dark, glint.smoothstep(0.8, 1, glint.sin(14 * p.y))) end)
 end
@@ -27,7 +27,7 @@ local board = glint.material { diffuse = squares, specular = 0.15, shininess = 6
 local white = glint.material { diffuse = rings { 0.9, 0.87, 0.78 }, specular = 0.4, shininess = 80 }
 local black = glint.material { diffuse = rings { 0.16, 0.1, 0.09 }, specular = 0.5, shininess = 80 }
 
--- A pawn on the square whose corner is x, z; its material's pattern is in its own space.
+-- A pawn on the square whose corner is at x, z. Its material's pattern is in the pawn's own space.
 local function pawn(x, z, material)
   return glint.group {
     transform = glint.translate(x + 0.5, 0, z + 0.5),

@@ -13,7 +13,7 @@ local bore = glint.material { diffuse = { 0.5, 0.2, 0.06 }, specular = 0.4, shin
 local glass = glint.material { diffuse = 0, specular = 0.4, shininess = 400, transmission = 1, mirror = 1,
   fresnel = true, absorption = { 0.25, 0.06, 0.12 } }
 
--- Where the pips of 1 .. 6 are on a face.
+-- Positions of the pips of 1 .. 6 on a face.
 local E = 0.5
 local FACES = {
   { { 0, 0 } }, { { -E, -E }, { E, E } }, { { -E, -E }, { 0, 0 }, { E, E } },
@@ -25,7 +25,7 @@ local function die()
   local rounded = glint.intersection { glint.box { min = { -1, -1, -1 }, max = { 1, 1, 1 } },
     glint.sphere { center = { 0, 0, 0 }, radius = 1.42 } }
   local parts = { rounded, material = ivory, name = "die" }
-  for number, places in ipairs(FACES) do -- opposite faces have 7 together
+  for number, places in ipairs(FACES) do -- opposite faces add up to 7
     local axis, side = (number - 1) % 3 + 1, number <= 3 and 1 or -1
     if number > 3 then axis = (6 - number) % 3 + 1 end
     for _, at in ipairs(places) do
@@ -58,7 +58,7 @@ local function lens()
     glint.sphere { center = { 0, 0, 1.1 }, radius = 1.5 }, material = glass, name = "lens" }
 end
 
--- A solid is moved as one.
+-- Moves a solid as a whole.
 local function at(x, y, z, angle, shape)
   return glint.group { shape, transform = glint.translate(x, y, z) * glint.rotate("y", angle) }
 end

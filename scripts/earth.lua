@@ -30,7 +30,7 @@ local function color(p)
   return glint.mix(land, { 0.4, 0.33, 0.28 }, glint.smoothstep(0.15, 0.45, h))
 end
 
--- The point of the unit sphere at a pixel, by the engine's uv.
+-- Paints the picture. Each pixel is a point of the unit sphere, by the engine's uv.
 local function paint(width)
   local picture = png.new(width, width // 2)
   for y = 0, picture.height - 1 do

@@ -15,7 +15,7 @@ local P = glint.params {
 
 local NAMES = { "lamp_x", "lamp_y", "lamp_z", "intensity", "shininess" }
 local HIDDEN = { 3.2, 4.1, 2.4, 1.6, 45 }
-local START = { -- a lamp under the floor lights nothing, and has no slope
+local START = { -- a lamp under the floor lights nothing, so its slopes would be 0
   { "lamp_x", -1, least = -20 }, { "lamp_y", 3, least = 0.5 }, { "lamp_z", 5, least = -20 },
   { "intensity", 1, least = 0.01 }, { "shininess", 12, least = 1 },
 }
@@ -29,7 +29,7 @@ local scene = glint.scene {
   glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0.6 } },
 }
 
--- The picture of five numbers, variables or plain.
+-- Renders the picture for five numbers, variables or plain.
 local function render(v, passes)
   lamp.position, lamp.intensity, shiny.shininess = { v.lamp_x, v.lamp_y, v.lamp_z }, v.intensity, v.shininess
   return scene:render { width = WIDTH, height = HEIGHT, passes = passes }

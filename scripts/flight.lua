@@ -44,8 +44,8 @@ return glint.animation {
   scene = scene, frames = P.frames, fps = 24,
   frame = function(t)
     camera.eye, camera.at = eye(t), at(t)
-    local here = eye(t) -- the lamp goes before, as far as the ball
+    local here = eye(t) -- the lamp flies ahead, with the ball
     lamp.position = { here.x * 0.5, 4.5, math.max(here.z - 5, -14) }
-    lamp.intensity = glint.ease(t * 4) -- it is turned up in the first quarter
+    lamp.intensity = glint.ease(t * 4) -- fades in during the first quarter
   end,
 }

@@ -26,7 +26,7 @@ local scene = glint.scene { camera = camera, ambient = 0.16, background = "#0d14
       return glint.mix({ 0.16, 0.13, 0.11 }, { 0.42, 0.36, 0.3 }, glint.checker(p * 1.6, 1.6 * s.footprint))
     end) } } }
 
--- A row of balls that goes away from the eye to the right.
+-- A row of balls leading away from the eye to the right.
 local balls = {}
 for i, color in ipairs { "#d9594c", "#e08a3c", "#edc458", "#7fb35a", "#5a9fce", "#8f74c4" } do
   balls[i] = glint.sphere { center = { -3.05 + 0.95 * i, 0.5, 5.3 - 1.5 * i }, radius = 0.5,
@@ -34,14 +34,14 @@ for i, color in ipairs { "#d9594c", "#e08a3c", "#edc458", "#7fb35a", "#5a9fce", 
   scene:add(balls[i])
 end
 
--- Lights far behind them.
+-- Lights far behind the balls.
 for i = 0, 40 do
   local x, glow = -13 + 0.68 * i, ({ { 1, 0.75, 0.4 }, { 1, 0.45, 0.35 }, { 0.5, 0.75, 1 } })[i % 3 + 1]
   scene:add(glint.sphere { center = { x, 2.6 + 0.9 * glint.cos(0.55 * i) + 0.5 * (i % 2), -16 }, radius = 0.17,
     material = glint.material { diffuse = 0, ambient = 24 * glint.vector(glow) } })
 end
 
--- From the first ball to the last, resting at each, and on to the lights.
+-- The focus moves from the first ball to the last, rests at each, and ends at the lights.
 local stops = {}
 for i, ball in ipairs(balls) do
   stops[#stops + 1] = { (i - 1) / #balls, ball.center }

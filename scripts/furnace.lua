@@ -38,7 +38,7 @@ local function direction(cosine, azimuth)
   return { sine * glint.cos(azimuth), cosine, sine * glint.sin(azimuth) }
 end
 
--- Sums over directions of equal weight; `seen`: to the eye from all lights, else from one light to all eyes.
+-- Sums over directions of equal weight. seen: from all lights to one eye; otherwise from one light to all eyes.
 local function share(material, cosine, seen)
   local one, sum, n = direction(cosine, 0), 0, P.steps
   for i = 0, n - 1 do
@@ -47,7 +47,7 @@ local function share(material, cosine, seen)
       local other = direction(c, math.pi * (k + 0.5) / n)
       local l, v = seen and other or one, seen and one or other
       local s = material:evaluate({ normal = { 0, 1, 0 }, to_light = l, to_eye = v }).specular.x
-      sum = sum + (seen and s or s * c / cosine) -- what leaves counts by its own cosine
+      sum = sum + (seen and s or s * c / cosine) -- outgoing light is weighted by its own cosine
     end
   end
   return sum / (n * n)

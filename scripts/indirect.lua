@@ -21,13 +21,13 @@ local white = glint.material { diffuse = 0.73 }
 local red = glint.material { diffuse = { 0.63, 0.06, 0.05 } }
 local green = glint.material { diffuse = { 0.14, 0.45, 0.09 } }
 
--- A wall, a thin box.
+-- A wall: a thin box.
 local function wall(min, max, material) return glint.box { min = min, max = max, material = material } end
 
 local scene = glint.scene {
   camera = glint.camera { eye = { 0, 2.5, 11.2 }, at = { 0, 2.5, 0 }, fov = 35 },
   ambient = P.ambient,
-  glint.polygon_light { -- corners counter-clockwise from below, where it shines
+  glint.polygon_light { -- corners counter-clockwise seen from below, the lit side
     vertices = { { -0.8, 4.98, -0.8 }, { 0.8, 4.98, -0.8 }, { 0.8, 4.98, 0.8 }, { -0.8, 4.98, 0.8 } },
     radiance = 5, color = { 1, 0.86, 0.66 }, samples = 16, name = "lamp",
   },

@@ -32,7 +32,7 @@ local scene = glint.scene {
 }
 local lattice
 
--- Balls at the heights of the wave, of materials by these.
+-- Places balls at the heights of the wave, with materials by height.
 local function place(t)
   local middle, count = (P.side + 1) / 2, 0
   for z = 1, P.side do

@@ -14,13 +14,13 @@ local P = glint.params { visible = { true, doc = "whether the lamps are seen" } 
 local scene = glint.scene {
   camera = glint.camera { eye = { 0, 2.6, 11 }, at = { 0, 1.75, 0 }, fov = 33 },
   ambient = 0.12, background = "#0b0d12",
-  -- A ball of radiance 0.4: it shows 0.4 pi = 1.26, white.
+  -- A ball of radiance 0.4: it shows 0.4 pi = 1.26, brighter than white.
   glint.sphere_light { position = { -2.3, 2.6, 1.2 }, radius = 0.35, radiance = 0.4, color = { 1, 0.85, 0.6 },
     samples = 9, visible = P.visible, name = "ball" },
-  -- A panel that shines to one side, as brightly seen from everywhere there; from behind it is not there.
+  -- A panel that shines to one side. It is equally bright from all directions there, and invisible from behind.
   glint.disk_light { position = { 3.3, 3.2, -0.4 }, normal = { -1, -0.6, 0.5 }, radius = 0.7, radiance = 0.45,
     color = { 0.55, 0.75, 1 }, samples = 9, visible = P.visible, name = "panel" },
-  -- A window in the back wall, in its very plane; by intensity, and without fall-off: it shows 0.3 times its colour.
+  -- A window in the plane of the back wall, set by intensity without falloff: it shows 0.3 times its colour.
   glint.polygon_light { vertices = { { -0.6, 2.3, -4 }, { 0.6, 2.3, -4 }, { 0.6, 3.7, -4 }, { -0.6, 3.7, -4 } },
     intensity = 0.3, color = { 1, 0.95, 0.85 }, samples = 9, visible = P.visible, name = "window" },
   glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0.5, mirror = 0.12 } },

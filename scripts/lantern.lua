@@ -16,9 +16,9 @@ local P = glint.params {
 
 local shell = glint.pattern(function(_, s)
   local across, up = s.uv.u * P.dots, s.uv.v * P.rows
-  across = across + 0.5 * glint.mod(glint.floor(up), 2) -- every other row by half a dot
+  across = across + 0.5 * glint.mod(glint.floor(up), 2) -- shifts every other row by half a dot
   local x, y = glint.fract(across) - 0.5, glint.fract(up) - 0.5
-  local around = glint.sin(math.pi * s.uv.v) -- of the equator
+  local around = glint.sin(math.pi * s.uv.v) -- circumference relative to the equator
   x = x * around * (2 * P.rows / P.dots)
   local hole = glint.less(x * x + y * y, P.size * P.size)
   return 1 - hole * glint.less(0.45, around)

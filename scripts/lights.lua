@@ -14,20 +14,20 @@ local function matt(color) return glint.material { diffuse = color } end
 local function glossy(color) return glint.material { diffuse = color, specular = 0.5, shininess = 90 } end
 
 local WALL <const>, FLOOR <const> = { 0.62, 0.6, 0.57 }, { 0.45, 0.36, 0.28 }
--- The window is a hole in the left wall, of four boxes around it.
+-- The window is a hole in the left wall, which consists of four boxes.
 local function wall(min, max) return glint.box { min = min, max = max, material = matt(WALL) } end
 
 local scene = glint.scene {
   camera = glint.camera { eye = { 1.2, 2.4, 9.5 }, at = { 0, 1.15, 0 }, fov = 32 },
   ambient = 0.05, background = "#10131a",
-  -- The lamps of a portrait: the key from the right, the fill beside the camera, the rim from behind.
+  -- The lamps of a portrait: the key from the right, the fill next to the camera, the rim light from behind.
   glint.disk_light { name = "key", position = { 4, 4.6, 3.4 }, normal = { -4, -3.4, -3.2 }, radius = 0.7,
     intensity = 0.75, color = { 1, 0.93, 0.82 }, samples = P.lamp_samples },
   glint.point_light { name = "fill", position = { -2, 3, 9 }, intensity = 0.14, color = { 0.8, 0.88, 1 },
     shadows = false },
   glint.spot_light { name = "rim", position = { 1.6, 4.8, -2.4 }, direction = { -1.4, -4, 2.2 }, inner = 20, outer = 40,
     intensity = 0.7 },
-  -- The window: the sky in it, and the sun that falls through.
+  -- The window: the sky in it, and the sunlight that enters.
   glint.polygon_light { name = "sky", group = "window", intensity = 0.35, color = { 0.62, 0.78, 1 }, visible = true,
     vertices = { { -3.6, 1.2, -0.9 }, { -3.6, 2.9, -0.9 }, { -3.6, 2.9, 1.1 }, { -3.6, 1.2, 1.1 } },
     samples = P.lamp_samples },

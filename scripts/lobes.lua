@@ -27,7 +27,7 @@ local function bright(color) return glint.material { model = "lambert", diffuse 
 
 local ink = bright("#5c6370")
 
--- Spheres along the line from one point to another.
+-- Adds spheres along the line from one point to another.
 local function line(data, x0, y0, x1, y1, radius)
   local n = math.max(1, math.ceil(math.sqrt((x1 - x0) ^ 2 + (y1 - y0) ^ 2) / radius))
   for i = 0, n do
@@ -36,7 +36,7 @@ local function line(data, x0, y0, x1, y1, radius)
   end
 end
 
--- The lobe of a material: a ray to each side, as long as what is reflected there.
+-- Draws the lobe of a material: a ray in each direction, as long as the light reflected there.
 local function lobe(material, x, y, data)
   local last_x, last_y = x, y
   for i = 0, STEPS do

@@ -42,7 +42,7 @@ local scene = glint.scene {
   glint.sphere { center = { 3.2, 1.3, -2.4 }, radius = 1.3, material = paint },
 }
 local function hue(angle) return 0.5 + 0.45 * glint.cos(angle) end
-for i = 0, 11 do -- something to see in them
+for i = 0, 11 do -- objects to see in them
   local angle = 2 * math.pi * i / 12
   scene:add(glint.sphere {
     center = { 5.2 * glint.cos(angle), 0.35, 5.2 * glint.sin(angle) - 1 },

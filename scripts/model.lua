@@ -23,9 +23,9 @@ local mesh = glint.mesh { file = P.file, shading = P.shading ~= "" and P.shading
 local low, high = glint.vector(mesh.min), glint.vector(mesh.max)
 local center, from, up = (low + high) * 0.5, vector "from":unit(), vector "up"
 local side = glint.cross(up, from):unit()
-local sky = glint.cross(from, side) -- up, as the picture has it
+local sky = glint.cross(from, side) -- the upward direction of the picture
 
--- How far from the centre all eight corners of the box around the mesh are in view.
+-- Finds the distance from the centre at which all eight corners of the mesh's box are in view.
 local half, distance = glint.tan(math.rad(12.5)), 0
 for i = 0, 7 do
   local x, y, z = i & 1 > 0 and low.x or high.x, i & 2 > 0 and low.y or high.y, i & 4 > 0 and low.z or high.z

@@ -42,7 +42,7 @@ local scene = glint.scene {
   ball(-4.6, -7, 2.6, paint(0.52, 0.30, 0.62)),
 }
 
--- glint.cos and glint.sin give the same bits on every machine, so that farms of mixed machines agree.
+-- glint.cos and glint.sin return the same bits on every machine, so that farms of different machines agree.
 return glint.animation {
   scene = scene, frames = P.frames, fps = 24, cyclic = true, width = 1280, height = 720, samples = 4,
   frame = function(t)

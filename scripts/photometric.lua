@@ -45,13 +45,13 @@ local P = glint.params {
   size = { 512, min = 8, max = 4096, doc = "pixels a side, where --size does not say" },
 }
 
-local given = glint._output() -- of the command line
+local given = glint._output() -- the value of -o
 if given and P.layout == "diligent" then
   error("-o: layout=diligent has names of its own; --set folder=... says where they go", 0)
 end
 local folder = given and (given:match "^(.*)/[^/]*$" or ".") or P.folder
 
--- The file of the k-th picture, where -o names it.
+-- Returns the file name of the k-th picture, if -o gives one.
 local function given_name(k)
   local name = given:match "[^/]*$"
   if name:find "%%0?%d*d" then return (name:gsub("%%0?%d*d", function(place) return place:format(k) end, 1)) end
@@ -59,7 +59,7 @@ local function given_name(k)
   return (name:gsub("%.?[^.]*$", function(ending) return ("_%04d"):format(k) .. ending end, 1))
 end
 
--- A material by its name, of the colour that the object gives; ambient = 1 shows where objects are, see below.
+-- Materials by name, with the object's colour. ambient = 1 marks the objects, see below.
 local MATERIALS = {
   matt = function(color) return { diffuse = color, specular = P.specular, shininess = 40 } end,
   glossy = function(color) return { diffuse = color, specular = 0.4, shininess = 80 } end,
@@ -73,7 +73,7 @@ local function ball(x, y, z, radius, material)
   return glint.sphere { center = { x, y, z }, radius = radius, material = material }
 end
 
--- The shapes of an object: paint(color) gives the material.
+-- The shapes of an object. paint(color) returns the material.
 local OBJECTS = {
   balls = function(paint)
     return { ball(0, 0, 0, 1.6, paint { 0.75, 0.72, 0.68 }), ball(1.5, 0.9, 0.9, 0.6, paint { 0.70, 0.25, 0.18 }),
@@ -94,7 +94,7 @@ local OBJECTS = {
   end,
 }
 
--- The entry of a table for each of the names that a text lists.
+-- Returns the table's entries for the names listed in a text.
 local function pick(text, entries, what)
   local list, known = {}, {}
   for name in pairs(entries) do known[#known + 1] = name end
@@ -108,7 +108,7 @@ local function pick(text, entries, what)
   return list
 end
 
--- Directions that cover a cap around the camera's axis evenly: a spiral of golden angles.
+-- Returns directions that cover a cap around the camera's axis evenly: a spiral of golden angles.
 local function direction(k)
   local z = 1 - (k - 0.5) / P.lights * (1 - glint.cos(math.rad(P.spread)))
   local angle, r = k * math.pi * (3 - math.sqrt(5)), math.sqrt(1 - z * z)
@@ -121,8 +121,8 @@ local function write(path, lines)
   assert(file:close())
 end
 
--- One object under all lights, then without them: every material has ambient = 1, so that white ambient light alone
--- shows where objects are. `look` is called with each light's number, direction and lamp, and gives the picture's file.
+-- Renders one object under all lights, then without them: every material has ambient = 1, so that white ambient light
+-- marks the objects. `look` is called with each light's number, direction and lamp, and returns the picture's file.
 local function render(shapes, look)
   local lamp = glint.directional_light { direction = { 0, 0, -1 }, shadows = P.shadows }
   local scene = glint.scene {
@@ -136,7 +136,7 @@ local function render(shapes, look)
   end
   scene:remove(lamp)
   scene.ambient = 1
-  return scene:render { width = P.size, height = P.size, passes = "normal,depth" } -- nil on a machine with another part
+  return scene:render { width = P.size, height = P.size, passes = "normal,depth" } -- nil: another machine's part
 end
 
 local function painter(fields)
@@ -147,7 +147,7 @@ local function painter(fields)
   end
 end
 
--- What --exposure multiplies the codes of pictures by. Light itself, in files of numbers, is as it is.
+-- Returns the factor of --exposure for pixel values. Files of numbers store unscaled light.
 local function gain(truth, file) return file:find "%.png$" and glint.pow(2, truth.exposure) or 1 end
 
 local function write_glint()
@@ -197,7 +197,7 @@ local function write_diligent(object, material)
       if truth:pixel(x, y, "depth") < math.huge then mask:set(x, y, 1) end
     end
   end
-  assert(truth:save(place .. "Normal_gt.npy", { pass = "normal" })) -- which makes the folder
+  assert(truth:save(place .. "Normal_gt.npy", { pass = "normal" })) -- also makes the folder
   mat.write(place .. "Normal_gt.mat", "Normal_gt", { height, width, 3 }, function(row, column, c)
     return normals[(row - 1) * width + column - 1][c]
   end)

@@ -32,7 +32,7 @@ local scene = glint.scene {
     material = glint.material { diffuse = { 0.5, 0.55, 0.6 } } },
 }
 
--- The way of the chain: a parabola from post to post, at x = -4 .. 4; its height, and how steep it is.
+-- The curve of the chain: a parabola from post to post, x = -4 .. 4. Its height, and its slope in degrees.
 local function height(x) return 1.1 + 2.4 * (x / 4) ^ 2 end
 local function slope(x) return math.deg(math.atan(2 * 2.4 * x / 16)) end
 
@@ -41,7 +41,7 @@ local function step_length(x) return math.sqrt(STEP ^ 2 + (height(x) - height(x 
 local length = 0
 for k = 1, 8 / STEP do length = length + step_length(-4 + k * STEP) end
 
--- x at a share of that way.
+-- Returns x at a share of the curve's length.
 local function along(share)
   local x, way = -4, share * length
   while way > 0 do
@@ -61,7 +61,7 @@ for i = 1, P.links do
   })
 end
 
-local peg = height(4) + size * (1 - P.thickness) - 0.09 -- the first and the last link hang on
+local peg = height(4) + size * (1 - P.thickness) - 0.09 -- the first and last links hang here
 for side = -1, 1, 2 do
   local x = 4 * side
   scene:add(glint.cylinder { base = { x, 0, -0.6 }, top = { x, peg + 0.2, -0.6 }, radius = 0.16, material = wood })

@@ -9,7 +9,7 @@ local P = glint.params {
   file = { "scan.ply", doc = "the .ply that is written" },
 }
 
--- How far the surface is in a direction, and its colour there.
+-- Returns the distance of the surface in a direction, and its colour there.
 local shape = glint.pattern(function(p)
   return 1 + 0.16 * glint.noise(p * 2.1) + 0.06 * glint.noise(p * 5.3) + 0.02 * glint.noise(p * 13)
 end)

@@ -27,7 +27,7 @@ local scene = glint.scene {
   glint.sphere { center = { 1.3, 0, 0 }, radius = 1.15, material = clay, name = "sphere" },
 }
 
--- The light comes from where it is mirrored to the eye at `turn` faces around the pole and `fall` faces from it.
+-- Lights the ball so that the highlight is `turn` faces around the pole and `fall` faces from it.
 local function from(turn, fall)
   local around, down = 2 * math.pi * turn / P.segments, math.pi * fall / ((P.segments + 1) // 2)
   local n = { glint.sin(down) * glint.cos(around), glint.cos(down), glint.sin(down) * glint.sin(around) }

@@ -37,7 +37,7 @@ local function hills(turn)
   return 0.05 + 0.07 * glint.noise { 4 * x, 0, 4 * z } + 0.02 * glint.noise { 15 * x, 3, 15 * z }
 end
 
--- Column x and row y of a picture of all directions: -z in its middle, +x to the right, upwards above.
+-- Column x and row y of a picture of all directions: -z in the middle, +x to the right, up at the top.
 local function paint(width)
   local picture = png.new(width, width // 2)
   for x = 0, width - 1 do
@@ -47,7 +47,7 @@ local function paint(width)
       local up = math.pi * (0.5 - (y + 0.5) / picture.height)
       local d = glint.vector(glint.cos(up) * glint.sin(turn), glint.sin(up), -glint.cos(up) * glint.cos(turn))
       local ground = glint.mix({ 0.1, 0.16, 0.06 }, { 0.2, 0.2, 0.12 }, glint.smoothstep(-0.3, 0.1, d.y))
-      local above = glint.clamp((d.y - horizon) * width / (2 * math.pi) + 0.5, 0, 1) -- of the pixel
+      local above = glint.clamp((d.y - horizon) * width / (2 * math.pi) + 0.5, 0, 1) -- share of the pixel
       picture:set(x, y, above > 0 and glint.mix(ground, sky(d), above) or ground)
     end
   end

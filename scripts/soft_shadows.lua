@@ -15,7 +15,7 @@ local P = glint.params {
 }
 
 local height = 5
-local lamp, size -- the lamp, and the field that says how large it is
+local lamp, size -- the lamp, and the field that sets its size
 if P.lamp == "sphere" then
   lamp, size = glint.sphere_light { position = { -1, height, 1.5 }, radius = 1, name = "lamp" }, "radius"
 elseif P.lamp == "disk" then
@@ -26,7 +26,7 @@ else
     name = "lamp" }, "vertices"
 end
 
--- A square of the area of a disk of this radius; corners counter-clockwise from below, where it shines.
+-- Returns a square with the area of a disk of this radius; corners counter-clockwise seen from below, the lit side.
 local function window(radius)
   local h = 0.5 * radius * math.sqrt(math.pi)
   return {
@@ -47,7 +47,7 @@ local scene = glint.scene {
   lamp,
   glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = chalk },
   glint.sphere { center = { -0.9, 0.8, 0 }, radius = 0.8, material = clay }, -- on the floor: its shadow begins sharp
-  glint.sphere { center = { 1.1, 2.0, -0.3 }, radius = 0.45, material = clay }, -- in the air: all of it is soft
+  glint.sphere { center = { 1.1, 2.0, -0.3 }, radius = 0.45, material = clay }, -- in the air: its whole shadow is soft
 }
 
 return glint.sweep {

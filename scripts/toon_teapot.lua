@@ -18,7 +18,7 @@ end)
 
 local china = glint.material { diffuse = glaze, specular = 0.6, shininess = 60, model = models.toon { edge = P.edge } }
 
--- Rings of points at(t, angle), t = 0 .. 1, joined to faces.
+-- Makes rings of points at(t, angle), t = 0 .. 1, joined by faces.
 local function tube(rings, at)
   local vertices, faces, n = {}, {}, P.around
   for i = 0, rings do
@@ -39,7 +39,7 @@ local PROFILE <const> = {
   { 0.4, 1.2 }, { 0.25, 1.27 }, { 0.1, 1.31 }, { 0.08, 1.36 }, { 0.13, 1.42 }, { 0.11, 1.5 }, { 0.001, 1.53 },
 }
 
--- Catmull and Rom's curve through points.
+-- A Catmull-Rom curve through points.
 local function curve(points, t)
   local x = t * (#points - 1)
   local i = math.min(math.floor(x), #points - 2)
@@ -58,7 +58,7 @@ local body = tube(96, function(t, angle)
   return { at[1] * glint.cos(angle), at[2], at[1] * glint.sin(angle) }
 end)
 
--- A pipe along a curve in the plane z = 0: x, y and radius of its points.
+-- Makes a pipe along a curve in the plane z = 0: x, y and radius of its points.
 local function pipe(points, rings)
   return tube(rings, function(t, angle)
     local at = curve(points, t)

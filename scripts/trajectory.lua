@@ -2,7 +2,7 @@
 --     glint scripts/trajectory.lua -o film.mp4                             a wave runs through a crystal
 --     glint scripts/trajectory.lua --set file=melt.dump --set column=c_pe --set map=magma --set low=-7 --set high=-5
 --     glint scripts/trajectory.lua --set file=run.xyz -f 90                one frame; those before are read over once
--- `glint.xyz` and `glint.lammps` find each frame from where they were: a film takes one walk through the file.
+-- `glint.xyz` and `glint.lammps` continue from the previous frame: a film reads the file once.
 local glint = require "glint"
 local particles, boxes = require "glint.particles", require "glint.box"
 
@@ -16,7 +16,7 @@ local P = glint.params {
 
 local FRAMES, SIDE = 48, 12
 
--- Writes a wave that sets out from the middle of a crystal, as extended XYZ.
+-- Writes a wave that starts in the middle of a crystal, as extended XYZ.
 local function write_wave(path)
   local file <close> = assert(io.open(path, "wb"))
   local middle = (SIDE - 1) / 2
@@ -41,7 +41,7 @@ if is_own then
 end
 local reader = require((is_own or file:lower():find "%.xyz$") and "glint.xyz" or "glint.lammps")
 local film = reader.film(file)
--- Removes the file at the end. A script in a browser has no finalizers, and its files go with the page.
+-- Removes the file at the end. In a browser scripts have no finalizers, and their files vanish with the page.
 local _, guard = pcall(setmetatable, {}, { __gc = function() return is_own and os.remove(file) end })
 
 local scene = glint.scene { ambient = 0.3, background = "white",
@@ -67,6 +67,6 @@ end
 
 local frames = film:length()
 scene.camera = show(0, 1):camera { from = { -0.75, -1.5, 1.05 }, up = { 0, 0, 1 },
-  margin = 1.15 } -- of the first frame; around it room for numbers
+  margin = 1.15 } -- for the first frame; leaves space for numbers
 return glint.animation { scene = scene, frames = frames, cyclic = is_own, fps = 24, width = 800, height = 600,
   samples = 4, frame = show }

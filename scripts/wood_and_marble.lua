@@ -12,7 +12,7 @@ local P = glint.params {
   turbulence = { 2.6, min = 0, max = 8, doc = "how far the veins are bent" },
 }
 
--- Octaves of |noise|, each half as strong and twice as fine as the one before, while it is wider than two pixels.
+-- Sums octaves of |noise|, each half as strong and twice as fine as the last, while they are wider than two pixels.
 local function turbulence(p, footprint, octaves)
   local sum, scale = 0, 1
   for _ = 1, octaves do

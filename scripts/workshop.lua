@@ -22,7 +22,7 @@ local P = glint.params {
   frames = { 1, min = 1, max = 10000, doc = "1 is a still; in more the lamp swings from side to side" },
 }
 
--- 1 when the term is part of the chosen step, else 0.
+-- Returns 1 if the term is part of the chosen step, else 0.
 local function shown(term)
   return (P.step == "all" or P.step == term) and 1 or 0
 end
@@ -38,7 +38,7 @@ local function paint(r, g, b, gloss)
   }
 end
 
--- A ball that rests on the ground, at (x, z).
+-- Makes a ball that rests on the ground, at (x, z).
 local function ball(x, z, radius, material)
   return glint.sphere { center = { x, radius, z }, radius = radius, material = material }
 end
@@ -48,7 +48,7 @@ local lamp = glint.sphere_light { position = { 0, 20, 0 }, radius = P.radius, sh
 local scene = glint.scene {
   camera = glint.camera { eye = { 0, 6.2, 20.5 }, at = { 0, 3.8, 0 }, fov = 42 },
   ambient = { 0.16, 0.17, 0.20 },
-  background = P.step == "all" and "#8fb3d9" or 0, -- a term is easier to judge on black
+  background = P.step == "all" and "#8fb3d9" or 0, -- a single term is easier to judge on black
   lamp,
   glint.sphere { center = { 0, -10000, 0 }, radius = 10000, material = paint(0.42, 0.40, 0.37, 0), name = "ground" },
   ball(-1.0, -4.5, 4.0, paint(0.70, 0.10, 0.08, 0.7)),

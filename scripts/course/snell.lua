@@ -11,9 +11,9 @@ local P = glint.params {
 local side = P.from == "above" and 1 or -1
 local ratio = P.from == "above" and 1 / P.ior or P.ior
 local sine, cosine = glint.sin(math.rad(P.angle)), glint.cos(math.rad(P.angle))
-local refracted = ratio * sine -- the sine of the refracted beam's angle; above 1 there is none
+local refracted = ratio * sine -- sine of the refracted beam's angle; above 1: total reflection
 
--- The share of the light that is mirrored: Fresnel's formula for unpolarised light.
+-- The mirrored share of the light: Fresnel's formula for unpolarised light.
 local mirrored = 1
 if refracted < 1 then
   local across = math.sqrt(1 - refracted * refracted)
@@ -32,10 +32,10 @@ local function beam(x, y, share, color, width)
   local paint = glint.material { diffuse = 0, ambient = { share * color[1], share * color[2], share * color[3] } }
   scene:add(glint.cylinder { base = { 0, 0, 0 }, top = { 3 * x, 3 * y, 0 }, radius = width or 0.035, material = paint })
 end
-beam(0, 1, 0.35, { 1, 1, 1 }, 0.01) -- the normal, both ways
+beam(0, 1, 0.35, { 1, 1, 1 }, 0.01) -- the normal, on both sides
 beam(0, -1, 0.35, { 1, 1, 1 }, 0.01)
 beam(-sine, side * cosine, 1, { 1, 0.8, 0.2 })
-beam(sine, side * cosine, mirrored ^ 0.5, { 1, 0.3, 0.2 }) -- the square root makes a faint beam visible
+beam(sine, side * cosine, mirrored ^ 0.5, { 1, 0.3, 0.2 }) -- the square root makes faint beams visible
 if refracted < 1 then
   beam(refracted, -side * math.sqrt(1 - refracted * refracted), (1 - mirrored) ^ 0.5, { 0.3, 0.8, 1 })
 end

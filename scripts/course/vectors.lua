@@ -10,14 +10,14 @@ local P = glint.params {
 }
 
 local radius = 2
-local function at_angle(degrees) -- a unit vector in the plane of the drawing, from straight up
+local function at_angle(degrees) -- returns a unit vector in the plane of the drawing, from straight up
   local a = math.rad(degrees)
   return glint.vector(glint.sin(a), glint.cos(a), 0)
 end
 local n, l, v, r = at_angle(0), at_angle(-P.light), at_angle(P.viewer), at_angle(P.light)
 local h = at_angle((P.viewer - P.light) / 2)
 
--- The model as the fixed viewer at v sees it: the camera of this figure stands elsewhere.
+-- The model as the fixed viewer at v sees it, since the camera of this figure is elsewhere.
 local seen_from_v = glint.shader(function(s)
   local cosine = s.n:dot(s.l)
   local reflected = 2 * cosine * s.n - s.l

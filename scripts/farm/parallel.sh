@@ -1,5 +1,5 @@
 #!/bin/bash
-# The shards of a job by GNU parallel, one at a time on each machine; see README.md beside this file.
+# Runs the shards of a job with GNU parallel, one at a time on each machine; see README.md next to this file.
 #     parallel.sh SHARDS SCRIPT [options of glint]
 #     PARALLEL="-S node1,node2 --workdir ." parallel.sh 40 SCRIPT [options of glint]
 set -eu

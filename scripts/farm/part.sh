@@ -1,9 +1,9 @@
 #!/bin/bash
-# One part of one big frame, of PARTS strips across it; see README.md beside this file.
+# Renders one part of a big frame, which is split into PARTS strips; see README.md next to this file.
 #     sbatch --array=1-16 part.sh PARTS WxH FOLDER SCRIPT [options of glint]
 #     parallel --retries 3 -N0 part.sh 16 7680x4320 FOLDER SCRIPT [options of glint] ::: $(seq 16)
 #     PART=3 part.sh 16 7680x4320 FOLDER SCRIPT [options of glint]
-# writes FOLDER/FRAME/PART.png; when all are there: glint join 'FOLDER/0001/####.png' -o frame.png
+# It writes FOLDER/FRAME/PART.png; when all parts exist: glint join 'FOLDER/0001/####.png' -o frame.png
 #SBATCH --job-name=glint
 #SBATCH --requeue
 #SBATCH --open-mode=append

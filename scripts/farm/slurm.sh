@@ -1,7 +1,7 @@
 #!/bin/bash
-# One shard of a job as a task of a Slurm array; see README.md beside this file.
+# Renders one shard of a job as a task of a Slurm array; see README.md next to this file.
 #     sbatch --array=1-40 slurm.sh 40 SCRIPT [options of glint]
-# The first argument is the number of shards, whichever of them the array has: --array=7,12 renders two of the 40 again.
+# The first argument is the number of shards, whatever the array contains: --array=7,12 renders two of the 40 again.
 #SBATCH --job-name=glint
 #SBATCH --requeue
 #SBATCH --open-mode=append

@@ -60,7 +60,7 @@ local pairs, select = pairs, select
 local gr = { options = options }
 gr.__index = gr
 
--- The data of the dialect's objects, by object: scenes see empty tables.
+-- The data of the dialect's objects, by object: scenes only see empty tables.
 local nodes, materials, lights, pictures, reliefs = {}, {}, {}, {}, {}
 for _, kept in ipairs { nodes, materials, lights, pictures, reliefs } do setmetatable(kept, { __mode = "k" }) end
 
@@ -68,10 +68,10 @@ local IDENTITY = glint.translate(0, 0, 0)
 
 -- ---- Nodes ----
 
--- kind: what picture.lua makes of it, nil for a group; call: the function that made it.
+-- Makes a node. kind: what picture.lua makes from it, nil for a group; call: the function that made it.
 local function new_node(call, name, node)
   node.name, node.call, node.children, node.places = check.text(call, "name", name), call, {}, {}
-  node.pre, node.post = IDENTITY, IDENTITY -- the transform by either generation's order
+  node.pre, node.post = IDENTITY, IDENTITY -- the transform in the order of each generation
   local object = setmetatable({}, gr)
   nodes[object] = node
   check.name_object(object, "node '" .. node.name .. "'")
@@ -120,7 +120,7 @@ end
 
 function gr.nh_sphere(name, center, radius)
   local node = { kind = "sphere", center = check.vector("nh_sphere", "centre", center, 3) }
-  node.radius = abs(check.number("nh_sphere", "radius", radius)) -- the course squares it
+  node.radius = abs(check.number("nh_sphere", "radius", radius)) -- the course squares the radius
   node.is_nothing, node.size = node.radius == 0, node.radius
   return new_node("nh_sphere", name, node)
 end
@@ -147,7 +147,7 @@ function gr.mesh(name, vertices, faces)
   return new_node("mesh", name, { kind = "mesh", model = model })
 end
 
--- Squares without numbers, by options.plane: the corner and the edges, from left to right and upwards in a picture.
+-- The unnumbered squares, by options.plane: the corner and the edges, left to right and upwards in a picture.
 local PLANES = {
   ["xz"] = { { -0.5, 0, 0.5 }, { 1, 0, 0 }, { 0, 0, -1 } },
   ["xz-2"] = { { -1, 0, 1 }, { 2, 0, 0 }, { 0, 0, -2 } },
@@ -166,7 +166,7 @@ local function plain_plane()
   return square[1], square[2], square[3]
 end
 
--- From a corner with two lengths, or around a middle with one.
+-- Places a square from a corner with two lengths, or around a middle with one.
 local function placed_plane(place, u, v, width, height)
   local name = height == nil and "middle" or "corner"
   local corner = check.vector("plane", name, place, 3)
@@ -202,7 +202,7 @@ local function set_parts(call, node, ...)
   for i = 1, count do node.parts[i] = node_of(call, "part " .. i, (select(i, ...))) end
 end
 
--- Without parts it is open: those that add_child gives it are its parts.
+-- Makes a combined solid. Without parts it is open: add_child then adds its parts.
 local function new_combined(call, operation, name, ...)
   local object = new_node(call, name, { kind = "combined", operation = operation, parts = {}, is_open = true })
   if select("#", ...) > 0 then set_parts(call, nodes[object], ...) end
@@ -216,7 +216,7 @@ for call, operation in pairs(operations.calls) do
   end
 end
 
--- A further argument, the size of a ball around it, is not used.
+-- A further argument, the radius of a bounding ball, is ignored.
 function gr.csg(name, a, sign, b)
   if nodes[name] then return new_combined("csg", operations.of("csg", sign), "csg", name, a) end
   if a == nil then return new_combined("csg", nil, name) end
@@ -265,7 +265,7 @@ function gr.set_material(self, material)
   node.material = materials[material] or check.refuse("set_material", "material", "material", material)
 end
 
--- A result of gr.texture, or the name of a file; across, down: repetitions.
+-- Returns a picture from a result of gr.texture or the name of a file. across, down: repetitions.
 local function picture_of(call, value, across, down)
   local known = pictures[value]
   if known and across == nil then return known end
@@ -321,8 +321,8 @@ end
 
 -- ---- Materials, lights, pictures ----
 
--- They have no methods in the course's dialect, and few in its variants: another that a scene calls is a function that
--- says so.
+-- Objects have no methods in the course's dialect, and few in its variants. Any other method is a function that raises
+-- an error.
 local function with_methods(kind, methods)
   return { __index = function(_, name)
     if type(name) ~= "string" or name:sub(1, 2) == "__" then return nil end
@@ -332,7 +332,7 @@ local function with_methods(kind, methods)
   end }
 end
 
--- Methods of materials: each changes a field of the record.
+-- Makes a method of materials, which changes a field of the record.
 local function changing(change)
   return function(self, ...)
     local record = materials[self] or check.refuse("material", "self", "material", self)
@@ -401,7 +401,7 @@ end
 
 function gr.perlin_material(...) return new_material(surface.noisy("perlin_material", ...)) end
 
--- A picture may be a material, with a highlight where it is given one, or lie on a shape that has another.
+-- A picture may be a material, if it is given a highlight, or lie on a shape that has another material.
 local function texture(call)
   return function(file, ks, ...)
     local record
@@ -418,7 +418,7 @@ local function texture(call)
 end
 gr.texture, gr.texture_map, gr.texture_material = texture "texture", texture "texture_map", texture "texture_material"
 
--- gr.bump(file): a relief; gr.bump(material, file): of that material.
+-- gr.bump(file) makes a relief; gr.bump(material, file) adds one to the material.
 local function bump(call)
   return function(file, height, more)
     local record = materials[file]
@@ -437,10 +437,10 @@ gr.bump, gr.bumpmap, gr.bump_map, gr.load_bumpmap = bump "bump", bump "bumpmap",
 
 require "gr.layers"(gr, shape_of, function(kind) return with_methods(kind, {}) end)
 
--- kind: the glint function that makes it.
+-- kind: the function of glint that makes the light.
 local function new_light(kind, fields)
   local record = { shine = glint[kind](fields) }
-  local more = {} -- for lists that have it several times
+  local more = {} -- for lists that contain it several times
   function record.again(n)
     more[n] = more[n] or glint[kind](fields)
     return more[n]
@@ -473,7 +473,7 @@ function gr.render(root, ...) picture.render(node_of("render", "root", root), to
 
 -- ---- What is too much ----
 
--- How many arguments each call reads.
+-- The number of arguments that each call reads.
 local READ = {
   node = 1, joint = 3, sphere = 1, cube = 1, cylinder = 1, cone = 1, torus = 3, nh_torus = 4, nh_sphere = 3,
   nh_box = 3, mesh = 3, light = 3, add_child = 2, set_material = 2, translate = 4, scale = 4, rotate = 3,
@@ -488,7 +488,7 @@ end
 
 -- ---- What is not there ----
 
--- A name that is not the dialect's is a function that says so when it is called.
+-- Returns a function that raises an error when called, for names outside the dialect.
 local function missing(_, name)
   if type(name) ~= "string" or name:sub(1, 2) == "__" then return nil end
   return function()

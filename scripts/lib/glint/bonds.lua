@@ -2,22 +2,22 @@
 --     local set = particles.new { scale = 0.25 }
 --     set:add_frame(xyz.frame "caffeine.xyz")
 --     scene:add(bonds.new(set))       -- before set:spheres(), which takes the set's data away
--- Each half of a bond has the material of its atom. Cells as wide as the longest bond hold the atoms, so that each
--- looks only at its neighbours: the time grows with the number of atoms.
--- In a periodic box (that of a LAMMPS frame is known, for others give it: box = { size = { 10, 10, 10 } }) atoms are
--- joined across its faces, too: each to the nearest image of the other, by a half that sets out from it and ends in the
--- middle of the bond, outside the box. box = false leaves these out.
+-- Each half of a bond has the material of its atom. The atoms are sorted into cells as wide as the longest bond, so
+-- each is compared only with its neighbours: the time grows linearly with the number of atoms. In a periodic box
+-- (known for LAMMPS frames, otherwise given as box = { size = { 10, 10, 10 } }) bonds also cross the faces: each atom
+-- is joined to the nearest image of the other by half a bond, which ends outside the box. box = false omits these
+-- bonds.
 local glint = require "glint"
 local elements, boxes = require "glint.elements", require "glint.box"
 
 local bonds = {}
 
-local CLOSEST = 0.4 -- angstroms: what is nearer is the same atom in another place
+local CLOSEST = 0.4 -- angstroms: closer atoms are one atom in alternate positions
 local NEVER = 0 / 0 -- a reach that no distance is below
-local SIDE = 1 << 20 -- cells across, at most
-local IMAGES = 8 -- how many sides of a periodic box the longest bond may be
+local SIDE = 1 << 20 -- cells along each axis, at most
+local IMAGES = 8 -- longest bond, in sides of the periodic box
 
--- The options with their defaults; unknown ones are refused.
+-- Returns the options with their defaults; refuses unknown ones.
 local function settings(options)
   local known = { radius = 0.15, tolerance = 0.45, distance = false }
   for name, value in pairs(options or {}) do
@@ -34,7 +34,7 @@ local function settings(options)
   return known
 end
 
--- Half of the longest bond a kind makes.
+-- Returns half the length of the longest bond of a kind.
 local function reach_of(name, set)
   if name == "ghost" then return NEVER end
   if set.distance then return set.distance / 2 end
@@ -45,7 +45,7 @@ local function reach_of(name, set)
   return element.covalent + set.tolerance / 2
 end
 
---- Every bond once: calls found(i, j) with the numbers of two atoms, i > j.
+--- Calls found(i, j) once for every bond, with the numbers of two atoms, i > j.
 ---@param x number[]  places
 ---@param y number[]
 ---@param z number[]
@@ -58,7 +58,7 @@ function bonds.each(x, y, z, reach, closest, found)
     low = { math.min(low[1], x[i]), math.min(low[2], y[i]), math.min(low[3], z[i]) }
     width = math.max(width, 2 * reach[i])
   end
-  local first, after = {}, {} -- of the atoms in a cell; the one after each
+  local first, after = {}, {} -- first: the first atom of each cell; after: the next atom of each atom
   for i = 1, #x do
     local xi, yi, zi, ri = x[i], y[i], z[i], reach[i]
     local cx, cy, cz = (xi - low[1]) // width | 0, (yi - low[2]) // width | 0, (zi - low[3]) // width | 0
@@ -92,7 +92,7 @@ local function box_of(set, options)
   if box and (box.periodic[1] or box.periodic[2] or box.periodic[3]) then return box end
 end
 
--- Like bonds.each in a periodic box: found(i, j, dx, dy, dz) with the way from j to i, or to its nearest images.
+-- As bonds.each in a periodic box: found(i, j, dx, dy, dz) has the vector from j to i, or between their nearest images.
 local function each_across(box, x, y, z, reach, closest, found)
   local n, widest, at, u, v, w, own = #x, 0, {}, {}, {}, {}, {}
   for i = 1, n do
@@ -115,7 +115,7 @@ local function each_across(box, x, y, z, reach, closest, found)
   end)
 end
 
---- The bonds of a set of glint.particles, as one group; nil when there are none.
+--- Returns the bonds of a set of glint.particles as one group; nil if there are none.
 ---@param set table
 ---@param options? { radius: number, tolerance: number, distance: number, box: table|false }  radius of the cylinders
 --- (default 0.15); tolerance in angstroms (default 0.45); distance, the longest bond of any two instead of covalent

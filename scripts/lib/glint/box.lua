@@ -1,6 +1,6 @@
--- The box of a simulation: { low, size, periodic, xy, xz, yz } as glint.lammps gives it; its sides are {size x, 0, 0},
--- {xy, size y, 0} and {xz, yz, size z}. By hand { size = { 10, 10, 10 } } is enough: from 0, upright, periodic.
---     scene:add(box.edges(frame.box))                 -- drawn as thin cylinders; of frame.cell of glint.xyz, too
+-- The box of a simulation: { low, size, periodic, xy, xz, yz } as in glint.lammps; its sides are {size x, 0, 0},
+-- {xy, size y, 0} and {xz, yz, size z}. { size = { 10, 10, 10 } } is enough by hand: at 0, upright, periodic.
+--     scene:add(box.edges(frame.box))                 -- drawn as thin cylinders; also for frame.cell of glint.xyz
 --     scene:add(glint.axes { box = frame.box or frame.cell })     -- with numbers along three of its edges
 local glint = require "glint"
 
@@ -17,7 +17,7 @@ local function three(value, name, kind)
   return value
 end
 
---- Returns a complete box from the given fields; raises when something is missing or wrong.
+--- Returns a complete box from the given fields; raises if something is missing or wrong.
 ---@param given table
 ---@param name string  for messages
 function box.check(given, name)
@@ -40,8 +40,8 @@ local CORNERS = {
   { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 1, 0 }, { 1, 0, 1 }, { 0, 1, 1 }, { 1, 1, 1 },
 }
 
---- The box that a cell { origin, a, b, c } is; nil where a does not lie along x, or b not in the plane of x and y. A
---- side of no length does not repeat.
+--- Converts a cell { origin, a, b, c } to a box; nil unless a lies along x and b in the plane of x and y. Sides of
+--- length 0 do not repeat.
 ---@param cell table
 ---@param periodic boolean[]
 function box.of_cell(cell, periodic)
@@ -52,7 +52,7 @@ function box.of_cell(cell, periodic)
   return { low = cell.origin, size = { a[1], b[2], c[3] }, periodic = periodic, xy = b[1], xz = c[1], yz = c[2] }
 end
 
--- The corner and the three sides of a box, or of a cell { origin, a, b, c }, whose sides may lie anyhow.
+-- Returns the corner and the three sides of a box, or of a cell { origin, a, b, c } with sides in any direction.
 local function sides_of(given, name)
   if type(given) == "table" and given.a then
     local sides = {}
@@ -63,8 +63,8 @@ local function sides_of(given, name)
   return b.low, { { b.size[1], 0, 0 }, { b.xy, b.size[2], 0 }, { b.xz, b.yz, b.size[3] } }
 end
 
---- The edges of a box, or of a cell { origin, a, b, c } as glint.xyz gives it: twelve thin cylinders that end in balls,
---- as one group.
+--- Makes the edges of a box, or of a cell { origin, a, b, c } as in glint.xyz: twelve thin cylinders with balls at
+--- their ends, as one group.
 ---@param given table
 ---@param options? { radius: number, material: table }  radius of the cylinders (default 1/250 of the box's diagonal);
 --- their material (default dark grey)
@@ -103,7 +103,7 @@ function box.edges(given, options)
   return glint.group(parts)
 end
 
---- The lowest and the highest corner of the upright box around a box or cell.
+--- Returns the lowest and the highest corner of the upright box around a box or cell.
 ---@param given table
 ---@return number[][]
 function box.corners(given)
@@ -117,20 +117,20 @@ function box.corners(given)
   return { first, last }
 end
 
--- The sides that shares are measured by: where a box is flat they are lengths.
+-- Returns the side lengths for fractional coordinates: 1 for a flat side, whose coordinates stay lengths.
 local function sizes_of(b)
   local size = b.size
   local x, y, z = size[1], size[2], size[3]
   return x == 0 and 1 or x, y == 0 and 1 or y, z == 0 and 1 or z
 end
 
---- A point from its shares of the box.
+--- Converts fractional coordinates in the box to a point.
 function box.unscale(b, u, v, w)
   local low, a, c, d = b.low, sizes_of(b)
   return low[1] + u * a + v * b.xy + w * b.xz, low[2] + v * c + w * b.yz, low[3] + w * d
 end
 
---- The shares of a point, 0 .. 1 inside.
+--- Converts a point to fractional coordinates, 0 .. 1 inside.
 function box.scale(b, x, y, z)
   local low, a, c, d = b.low, sizes_of(b)
   local w = (z - low[3]) / d
@@ -138,22 +138,22 @@ function box.scale(b, x, y, z)
   return (x - low[1] - v * b.xy - w * b.xz) / a, v, w
 end
 
---- Shares brought back into the box where it is periodic.
+--- Wraps fractional coordinates into the box along its periodic sides.
 function box.wrapped(b, u, v, w)
   local periodic = b.periodic
   return periodic[1] and u - math.floor(u) or u, periodic[2] and v - math.floor(v) or v,
     periodic[3] and w - math.floor(w) or w
 end
 
---- Which share of each side `reach` is, measured across the box: from one face to the one that repeats it.
+--- Converts `reach`, measured between opposite faces of the box, to fractional coordinates of each side.
 local function margins(b, reach)
   local x, y, z = sizes_of(b)
   local a, c = b.yz / z, (b.xy * b.yz / y - b.xz) / z -- the planes' normals: (1, -xy/y, c) and (0, 1, -yz/z)
   return reach / x * math.sqrt(1 + (b.xy / y) ^ 2 + c * c), reach / y * math.sqrt(1 + a * a), reach / z
 end
 
---- The repetitions of points inside the box that lie within `reach` of it: calls found(i, x, y, z) with the number of a
---- point and the place of its image. Only one of two opposite steps is taken, p, q, r or -p, -q, -r.
+--- Finds the periodic images of points in the box that lie within `reach` of it: calls found(i, x, y, z) with the
+--- number of a point and the position of its image. Uses only one of two opposite steps p, q, r and -p, -q, -r.
 ---@param b table
 ---@param n integer  how many points; the lists may be longer, and grow meanwhile
 ---@param x number[]  places, brought back into the box
@@ -165,7 +165,7 @@ function box.images(b, n, x, y, z, reach, found)
   local size, m, most = b.size, { margins(b, reach) }, {}
   for i = 1, 3 do
     most[i] = b.periodic[i] and math.ceil(m[i]) or 0
-    if not b.periodic[i] then m[i] = math.huge end -- points may lie outside
+    if not b.periodic[i] then m[i] = math.huge end -- points may be outside
   end
   for i = 1, n do
     local u, v, w = box.scale(b, x[i], y[i], z[i])

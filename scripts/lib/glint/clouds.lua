@@ -1,18 +1,18 @@
--- Clouds of points with a head: .ply without faces (text or binary), .pcd (ascii, binary or binary_compressed).
--- glint.points calls this. Columns have the names of the file; red, green and blue are the colour of a point. Points
--- that are not finite, as in the gaps of a scan, are ignored.
+-- Point clouds with a header: .ply without faces (text or binary), .pcd (ascii, binary or binary_compressed).
+-- glint.points calls this. Columns have the names in the file; red, green and blue are the colour of a point. Points
+-- that are not finite, as in the gaps of a scan, are skipped.
 local frames = require "glint.frames"
 
 local clouds = {}
 
-local BLOCK = 1 << 16 -- bytes that are read at once
-local CHUNK = 1 << 12 -- bytes that are put together at once
+local BLOCK = 1 << 16 -- bytes read at once
+local CHUNK = 1 << 12 -- bytes joined at once
 local PLY_TYPES = { char = "b", int8 = "b", uchar = "B", uint8 = "B", short = "h", int16 = "h", ushort = "H",
   uint16 = "H", int = "i4", int32 = "i4", uint = "I4", uint32 = "I4", float = "f", float32 = "f",
   double = "d", float64 = "d" }
 local PCD_TYPES = { F4 = "f", F8 = "d", I1 = "b", I2 = "h", I4 = "i4", I8 = "i8", U1 = "B", U2 = "H", U4 = "I4",
   U8 = "I8" }
--- Names that other programs give to the same thing.
+-- Names that other programs use for the same columns.
 local SAME = { x = "x", y = "y", z = "z", r = "red", g = "green", b = "blue", diffuse_red = "red",
   diffuse_green = "green", diffuse_blue = "blue", scalar_radius = "radius" }
 
@@ -24,14 +24,14 @@ local function words(line)
   return list
 end
 
--- The value of full colour: 255, or 1 if numbers have fractions, 65535 with 16 bits.
+-- Returns the value of full colour: 255; 1 if numbers have fractions; 65535 for 16 bits.
 local function most_of(code)
   return ({ f = 1, d = 1, H = 65535 })[code] or 255
 end
 
 -- ---- Rows ----
 
--- Calls of the function give the rows of a text as lists of numbers; nil after the last.
+-- Returns a function that returns the rows of a text as lists of numbers; nil after the last.
 local function text_rows(source, layout)
   local done, width = 0, #layout.codes
   return function()
@@ -53,7 +53,7 @@ local function text_rows(source, layout)
   end
 end
 
--- Likewise of bytes.
+-- The same for binary data.
 local function binary_rows(source, layout)
   if source.path == "-" then error("standard input: a cloud of points as text expected, got a binary one", 0) end
   local file = assert(io.open(source.path, "rb"))
@@ -79,8 +79,8 @@ local function binary_rows(source, layout)
   end
 end
 
--- The bytes that LZF packs, `size` of them: runs of up to 32 bytes as they are, and copies of at most 264 bytes from at
--- most 8192 back. Nil: they are not packed so.
+-- Unpacks `size` bytes from LZF: runs of up to 32 literal bytes, and copies of at most 264 bytes from at most 8192
+-- bytes back. nil: the data are invalid.
 local function unpack_lzf(packed, size)
   local out, n, at, parts = {}, 0, 1, {}
   while at <= #packed do
@@ -107,7 +107,7 @@ local function unpack_lzf(packed, size)
   return table.concat(parts)
 end
 
--- Likewise of bytes that LZF packs. They hold the first field of all points, then the second field of all points ...
+-- The same for LZF data, which contain the first field of all points, then the second field of all points, and so on.
 local function packed_rows(source, layout)
   local function fail(what) error(("%s: %s"):format(source.path, what), 0) end
   if source.path == "-" then fail "a cloud of points as text expected, got a binary one" end
@@ -144,7 +144,7 @@ end
 
 -- ---- Heads ----
 
--- The head of a .ply file, whose first line has been read.
+-- Reads the header of a .ply file, after its first line.
 local function read_ply(source)
   local layout, element, elements = { names = {}, codes = {} }, nil, 0
   while true do
@@ -172,7 +172,7 @@ local function read_ply(source)
   end
 end
 
--- The head of a .pcd file, whose first line has been taken back.
+-- Reads the header of a .pcd file, from its first line.
 local function read_pcd(source)
   local layout, head = { names = {}, codes = {}, field = {}, strides = {} }, {}
   repeat
@@ -181,7 +181,7 @@ local function read_pcd(source)
     if not line then source:fail("DATA", nil) end
     head[list[1]:upper()] = list
   until head.DATA
-  head.FIELDS = head.FIELDS or head.COLUMNS -- of version .5
+  head.FIELDS = head.FIELDS or head.COLUMNS -- in version .5
   local kind = (head.DATA[2] or ""):lower()
   for _, name in ipairs { "FIELDS", "SIZE", "TYPE" } do
     local list = head[name]
@@ -209,7 +209,7 @@ end
 
 -- ---- Frames ----
 
--- Adds red, green and blue of a field that packs the three, as the bits of a float or as a whole number.
+-- Adds red, green and blue from a field that packs all three, as the bits of a float or as a whole number.
 local function unpack_color(layout, place)
   local rgb, n = place.rgb or place.rgba, #layout.names
   if not rgb then return nil end
@@ -217,7 +217,7 @@ local function unpack_color(layout, place)
   local is_float = layout.codes[rgb] == "f"
   return function(list)
     local code = list[rgb]
-    if code ~= code then -- lost: a text has the bits of a colour as a number, and some are none
+    if code ~= code then -- NaN: as text, some colours' bits are not a number
       list[n + 1], list[n + 2], list[n + 3] = code, code, code
       return
     end
@@ -234,8 +234,8 @@ local function pick(wanted, place)
   end
 end
 
---- Begins the frame of a file whose first line has been read: fields and a function that gives a point, as readers of
---- glint.frames have them; nil where the line begins no such file.
+--- Begins the frame of a file whose first line has been read. Returns fields and a function that returns a point, as in
+--- the readers of glint.frames; nil if the line does not begin such a file.
 ---@param source table
 ---@param line string
 function clouds.start(source, line)

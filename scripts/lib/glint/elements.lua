@@ -1,11 +1,11 @@
 -- The elements: number, colour, van der Waals and covalent radius.
 --     local elements = require "glint.elements"
 --     elements.O.color, elements.O.radius, elements.symbol "CL"  -->  "#ff0d0d"  1.52  "Cl"
--- Colours: the CPK-derived scheme of Jmol (Jmol's documentation, "Jmol colors"), sRGB; without one from 110 on.
--- Radii, angstroms: A. Bondi, J. Phys. Chem. 68 (1964) 441, and for the main-group elements that Bondi does not give,
--- M. Mantina et al., J. Phys. Chem. A 113 (2009) 5806. Elements in neither have `radius` = 2 and `guessed` = true.
--- Covalent radii, angstroms: B. Cordero et al., Dalton Trans. (2008) 2832; C as sp3, Mn, Fe and Co of low spin. From Bk
--- on there are none: `covalent` is 1.7.
+-- Colours: the CPK-derived scheme of Jmol (Jmol's documentation, "Jmol colors"), sRGB; none from 110 on.
+-- Radii, angstroms: A. Bondi, J. Phys. Chem. 68 (1964) 441, and for the main-group elements missing there M. Mantina et
+-- al., J. Phys. Chem. A 113 (2009) 5806. Elements in neither have `radius` = 2 and `guessed` = true. Covalent radii,
+-- angstroms: B. Cordero et al., Dalton Trans. (2008) 2832; C is sp3; Mn, Fe and Co are low spin. From Bk on there are
+-- none: `covalent` is 1.7.
 local elements = {}
 
 local SYMBOLS = [[
@@ -59,8 +59,8 @@ for symbol in SYMBOLS:gmatch "%a+" do
   }
 end
 
---- The symbol as it is written ("Cl") for a symbol in any case or an atomic number; D and T are hydrogen. Nil when
---- there is no such element.
+--- Returns the symbol as usually written ("Cl") for a symbol in any case or an atomic number; D and T are hydrogen. nil
+--- if there is no such element.
 ---@param label string
 function elements.symbol(label)
   local number = math.tointeger(tonumber(label))
@@ -70,15 +70,15 @@ function elements.symbol(label)
   return type(elements[symbol]) == "table" and symbol or nil
 end
 
--- Symbols that are the names of other atoms far more often, where more stands after them: CD1 is a carbon.
+-- Symbols that usually belong to other atoms when more characters follow: CD1 is a carbon.
 local NAMES = { CA = "C", CD = "C", CE = "C", CF = "C", CM = "C", HE = "H", HF = "H", HG = "H", HO = "H", HS = "H",
   NB = "N", ND = "N", NE = "N", NO = "N", NP = "N", OS = "O", PA = "P", SG = "S" }
 
--- Labels of sites without an atom that would otherwise be read as elements.
+-- Labels of sites without an atom, which would otherwise be read as elements.
 local SITES = { BQ = true, DA = true, DU = true, DUM = true, TV = true, VC = true, VS = true, VAC = true }
 
---- The symbol that a label begins with: of an atom with a number or charge (C13, Fe+3, O2-, 13C), of a place (CB, HG11,
---- OW) or of a force field (C_R, C.ar). Nil when it is not the label of an element, such as a ghost atom (Xx, Bq, EP).
+--- Returns the symbol at the beginning of a label: of an atom with a number or charge (C13, Fe+3, O2-, 13C), a position
+--- (CB, HG11, OW) or a force-field type (C_R, C.ar). nil for labels of no element, such as ghost atoms (Xx, Bq, EP).
 ---@param label string
 function elements.of_label(label)
   local symbol = elements.symbol(label)

@@ -1,6 +1,6 @@
--- Finds the numbers of a scene from a picture of it, by Gauss-Newton: the passes d:NAME say how fast every pixel
--- changes with each number, and the next step goes where the picture would then be nearest to the target. Damping by
--- Levenberg and Marquardt shortens steps that lead astray.
+-- Finds numbers of a scene from a picture of it, by Gauss-Newton. The passes d:NAME are the derivatives of every pixel
+-- by each number, and each step goes to the predicted minimum of the difference. Damping by Levenberg and Marquardt
+-- shortens steps that would increase the difference.
 --     local fit = require "glint.fit"
 --     local found = fit.run {
 --       target = "photo.png",                              -- or a .pfm, a picture of glint.read_image, an image
@@ -11,13 +11,13 @@
 --       end,
 --     }
 --     print(found.values.lamp_x, found.uncertainty.lamp_x, found.converged)
--- The uncertainty of a number is its standard deviation, as far as the differences that are left are independent noise:
--- how well the picture determines the number. Values of a .png at full white are clipped, and left out.
+-- The uncertainty of a number is its standard deviation, if the remaining differences are independent noise: it shows
+-- how well the picture determines the number. Values of a .png at full white are clipped and ignored.
 local glint = require "glint"
 local fit = {}
 
 local FIELDS = { target = true, start = true, render = true, steps = true, tolerance = true, report = true }
-local DAMPING_MAX = 1e12 -- no step leads further
+local DAMPING_MAX = 1e12 -- more damping means that no step helps
 local BATCH = 60 -- numbers unpacked at once
 
 local function fail(...) error("fit: " .. string.format(...), 0) end
@@ -33,7 +33,7 @@ local function numbers_of(picture, pass)
   return list
 end
 
--- Returns the target's numbers, and flags for those that count because they are not clipped.
+-- Returns the target's numbers, and flags for those that are not clipped.
 local function read_target(target)
   local is_png = type(target) == "string" and target:lower():match "%.png$"
   local picture = type(target) == "string" and glint.read_image(target) or target
@@ -42,7 +42,7 @@ local function read_target(target)
   return { list = list, counts = counts, width = picture.width, height = picture.height }
 end
 
--- The inverse of a symmetric matrix; nil where it has none.
+-- Returns the inverse of a symmetric matrix; nil if it is singular.
 local function inverse(a)
   local n, m, out = #a, {}, {}
   for i = 1, n do
@@ -65,7 +65,7 @@ local function inverse(a)
   return out
 end
 
--- The differences between a picture and the target, squared and summed, and the normal equations of its slopes.
+-- Returns the sum of the squared differences between a picture and the target, and the normal equations.
 local function equations(image, target, names)
   if image.width ~= target.width or image.height ~= target.height then
     fail("the target is %d x %d, the picture %d x %d", target.width, target.height, image.width, image.height)
@@ -94,7 +94,7 @@ local function equations(image, target, names)
   return { a = a, b = b, sum = sum, used = used, error = math.sqrt(sum / math.max(used, 1)) }
 end
 
--- The next numbers by a damped step: within their limits, and no positive number falls to less than a quarter at once.
+-- Returns the numbers after a damped step: within their limits; a positive number falls at most to a quarter.
 local function step(v, e, damping, entries)
   local a, next = {}, {}
   for i = 1, #v do
@@ -136,7 +136,7 @@ local function by_name(names, v)
   return out
 end
 
--- Standard deviations: the variance of the residual, times the inverse of the normal equations.
+-- Returns standard deviations: the variance of the residual times the inverse of the normal equations.
 local function uncertainties(e, count)
   local inverted, out = inverse(e.a), {}
   local variance = e.sum / math.max(e.used - count, 1)

@@ -1,23 +1,23 @@
 -- Shared by the readers of atoms and points: files of one or several frames, read one atom at a time.
 --     for frame in xyz.frames(path) do for label, x, y, z, radius in frame:atoms() do ... end end
--- A frame has number (from 1), count (nil if the format does not give it first), and the data of its format. Atoms
--- that a script does not read are skipped, but checked all the same. Nothing is stored: a file of any size takes
--- the memory of a line. Columns by name come after the radius, numbers where they are numbers, else text:
+-- A frame has number (from 1), count (nil unless the format states it first), and the data of its format. Atoms that a
+-- script does not read are skipped, but still checked. Nothing is stored, so a file of any size takes the memory of a
+-- line. Named columns come after the radius, as numbers if possible, otherwise as text:
 --     for label, x, y, z, radius, charge, speed in frame:atoms("q", "speed") do ... end
--- frame.columns lists the names. A film has the frames of a file in any order, as the pictures call for them:
+-- frame.columns lists the names. A film provides the frames of a file in any order:
 --     local film = xyz.film "melt.xyz"
 --     set:add_frame(film:frame(n))
--- It remembers where each frame that it has passed begins, and goes on from there.
+-- It remembers where each frame begins that it has passed, and continues from there.
 local lines = require "glint.lines"
 
 local frames = {}
 
-frames.WORDS = 90 -- of a line, that a pattern of Lua's can tell apart
+frames.WORDS = 90 -- words of a line that a Lua pattern can capture
 
 local frame = {}
 frame.__index = frame
 
---- Iterates over the atoms: label, x, y, z, radius (nil where the file has none), and the columns named. Once a frame.
+--- Iterates once over a frame's atoms: label, x, y, z, radius (nil if the file has none), and the named columns.
 ---@param ... string  names among frame.columns
 function frame:atoms(...)
   if self.is_taken then error(("%s: the atoms of frame %d have been read"):format(self.source.path, self.number), 0) end
@@ -35,7 +35,7 @@ function frame:atoms(...)
   end
 end
 
--- Passes an atom on, and remembers when there was none.
+-- Returns an atom, and remembers the end of the frame.
 function frame:take(label, x, y, z, radius)
   if label == nil then
     self.is_done = true
@@ -45,7 +45,7 @@ function frame:take(label, x, y, z, radius)
   return label, x, y, z, radius, self.named(self.line)
 end
 
---- Raises an error at the file and line that the last atom came from.
+--- Raises an error at the file and line of the last atom.
 function frame:fail(expected, got)
   self.source:fail(expected, got)
 end
@@ -57,7 +57,7 @@ local function values(...)
   return table.unpack(list, 1, select("#", ...))
 end
 
---- For frames whose lines are words: a function (names) that gives a function of a line, the words of these columns.
+--- For frames whose lines are words: a function (names) that returns a function of a line: these columns' words.
 ---@param places table<string, integer>  the number of the word of each name, from 1
 function frames.words(places)
   return function(names)
@@ -86,7 +86,7 @@ function frames.words(places)
   end
 end
 
---- Gives a frame's fields its columns: names in their order, where each is, and how they are taken out of fields.line.
+--- Adds columns to a frame's fields: their names in order, their positions, and how to extract them from fields.line.
 function frames.name_columns(fields, names, pick)
   fields.columns, fields.places = names, {}
   for i, name in ipairs(names) do fields.places[name] = fields.places[name] or i end
@@ -127,7 +127,7 @@ end
 local film = {}
 film.__index = film
 
---- The frames of a file in any order; film:frame(n) ends the reading of the frame that was given before.
+--- Returns the frames of a file in any order. film:frame(n) ends the reading of the previous frame.
 ---@param path string
 ---@param start function  as of frames.each
 function frames.film(path, start)
@@ -135,7 +135,7 @@ function frames.film(path, start)
   return setmetatable({ path = path, source = source, start = start, places = { { 0, 0 } } }, film)
 end
 
--- Begins frame `number`, whose place is known; nil where the file ends.
+-- Begins frame `number`, whose position is known; nil at the end of the file.
 local function film_begin(self, number)
   local source, place = self.source, self.places[number]
   local at = source:tell()
@@ -144,7 +144,7 @@ local function film_begin(self, number)
   return self.last
 end
 
--- Finds the place of the frame after the last one that is known. False: there is none.
+-- Finds the position of the frame after the last known one. False: there is none.
 local function film_step(self)
   local known = #self.places
   if self.count and known > self.count then return false end
@@ -160,7 +160,7 @@ local function film_step(self)
   return true
 end
 
---- The frame `number`, from 1; its atoms are there until the next call. Raises when the file has fewer.
+--- Returns frame `number`, from 1. Its atoms are valid until the next call. Raises if the file has fewer frames.
 ---@param number integer
 function film:frame(number)
   local whole = math.tointeger(number)
@@ -174,7 +174,7 @@ function film:frame(number)
   error(("%s: frame %d expected, got a file of %d"):format(self.path, whole, self.count), 2)
 end
 
---- How many frames the file has; reads it to its end, once.
+--- Returns how many frames the file has; reads it to its end, once.
 ---@return integer
 function film:length()
   while film_step(self) do end
@@ -187,7 +187,7 @@ function film:close()
   self.source:close()
 end
 
---- Returns one frame of a reader's frames(). Raises when there are fewer.
+--- Returns one frame of a reader's frames(). Raises if there are fewer.
 ---@param path string
 ---@param each function
 ---@param number integer  from 1. Default 1

@@ -1,11 +1,11 @@
--- Alpha helices of polyalanine, standing side by side along z: a chain of any size to try things on.
+-- Alpha helices of polyalanine, side by side along z: a molecule of any size for experiments.
 --     helix.each(4, 60, function(atom, x, y, z, residue, chain) ... end)     -- 4 * 60 * 5 heavy atoms, angstroms
--- Pauling's helix: 100 degrees and 1.5 angstroms a residue. CB is placed by the tetrahedron of its neighbours.
+-- Pauling's helix: 100 degrees and 1.5 angstroms per residue. CB completes the tetrahedron of CA's neighbours.
 local glint = require "glint"
 
 local helix = {}
 
-local RISE, TURN = 1.5, 100 -- angstroms and degrees a residue
+local RISE, TURN = 1.5, 100 -- angstroms and degrees per residue
 local SPACING = 9.6 -- angstroms between the axes
 -- Distance from the axis, angle in degrees, height: fitted to a peptide's bond lengths and angles.
 local BACKBONE = {

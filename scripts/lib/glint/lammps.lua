@@ -3,11 +3,11 @@
 --       print(frame.step, frame.count, frame.box.size[1])
 --       for label, x, y, z, radius in frame:atoms() do ... end
 --     end
--- Columns are found by their names, in any order: x y z or xu yu zu (lengths), xs ys zs or xsu ysu zsu (shares of the
--- box); `radius` or `diameter` where it is given. A label is the column `element` or `typelabel`, or a word in `type`,
--- or `types[type]` of the options, or "type1", "type2" ..., or "point" where no column has kinds. All columns are there
--- by name: frame:atoms("vx", "c_pe"). The u columns lie outside a periodic box where an atom has left it: wrap = true
--- brings it back.
+-- Columns are found by their names, in any order: x y z or xu yu zu (lengths), xs ys zs or xsu ysu zsu (fractions
+-- of the box); `radius` or `diameter` if present. The label is the column `element` or `typelabel`, a word in
+-- `type`, `types[type]` of the options, "type1", "type2" ..., or "point" if no column has kinds. All columns are
+-- available by name: frame:atoms("vx", "c_pe"). The u columns may lie outside a periodic box; wrap = true wraps
+-- them.
 local frames, boxes = require "glint.frames", require "glint.box"
 
 local lammps = {}
@@ -31,7 +31,7 @@ local function bounds(source, what, count)
   return list
 end
 
--- A cell with sides in any direction (abc origin), and its box if the sides are aligned like a box.
+-- Reads a cell with sides in any direction (abc origin), and its box if the sides are aligned like a box.
 local function read_cell(source, kinds, frame)
   local rows, origin = {}, {}
   for i, side in ipairs { "a", "b", "c" } do
@@ -45,8 +45,8 @@ local function read_cell(source, kinds, frame)
   frame.box = boxes.of_cell(frame.cell, kinds)
 end
 
--- The box from the three lines of its bounds. What LAMMPS writes for a tilted box is the box around it. Boundaries
--- without kinds, as old versions write them, are periodic, as LAMMPS's are by default.
+-- Reads the box from the three lines of its bounds. For a tilted box LAMMPS writes its bounding box. Boundaries without
+-- kinds, as in old versions, are periodic, which is LAMMPS's default.
 local function read_box(source, header, frame)
   local names = words(header)
   local tilted, general = names[1] == "xy", names[1] == "abc"
@@ -71,8 +71,8 @@ local function read_box(source, header, frame)
   frame.box = box
 end
 
--- Which columns hold what. One pattern takes the at most five that matter out of a line: columns.x and the others say
--- which of its captures is x ...
+-- Finds the meaning of the columns. One pattern captures the columns needed, at most five, of a line: columns.x and so
+-- on are the numbers of the captures.
 local function find_columns(source, header)
   local names, place, used = words(header), {}, {}
   for i, name in ipairs(names) do place[name] = i end
@@ -103,7 +103,7 @@ end
 local function label_of(source, columns, list, options)
   if columns.label then return list[columns.label] end
   if not columns.type then return "point" end
-  if list[columns.type]:find "^%a" then return list[columns.type] end -- of dump_modify types labels
+  if list[columns.type]:find "^%a" then return list[columns.type] end -- type labels from dump_modify
   local number = source:whole(list[columns.type], "the type of an atom", 1)
   if not options.types then return "type" .. number end
   return options.types[number] or source:fail(("a type among the %d of the option types"):format(#options.types),
@@ -159,7 +159,7 @@ local function read_header(source, line, frame)
     elseif item:find "^ENTRIES" then
       source:fail("ITEM: ATOMS, as dump atom and dump custom write it,", line)
     else
-      repeat line = source:next() until not line or line:find "^ITEM:" -- nothing that is needed
+      repeat line = source:next() until not line or line:find "^ITEM:" -- skips unused items
       if line then source:back(line) end
     end
     line = source:next()
@@ -188,7 +188,7 @@ local function start(source, number, options)
   end
 end
 
---- Iterates over the frames of a file: number, step, count, box { low, high, size, periodic, xy, xz, yz } or, of abc
+--- Iterates over the frames of a file: number, step, count, box { low, high, size, periodic, xy, xz, yz } or, for abc
 --- origin, cell { origin, a, b, c }, and frame:atoms() -> label, x, y, z, radius or nil.
 ---@param path string
 ---@param options? { types: string[], wrap: boolean }
@@ -204,7 +204,7 @@ function lammps.frame(path, number, options)
   return frames.pick(path, lammps.frames(path, options), number)
 end
 
---- The frames of a file in any order: film:frame(n), film:length().
+--- Returns the frames of a file in any order: film:frame(n), film:length().
 ---@param path string
 ---@param options? { types: string[], wrap: boolean }
 function lammps.film(path, options)

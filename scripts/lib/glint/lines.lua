@@ -1,18 +1,18 @@
--- The lines of a text file one at a time, and errors that say where: every reader of scripts/lib/glint stands on it.
+-- The lines of a text file one at a time, with errors that name the place: all readers of scripts/lib/glint use it.
 --     local source = require "glint.lines".open(path)
 --     for line in function() return source:next() end do ... end
--- An error reads FILE:LINE: WHAT expected, got WHAT. Memory: the line at hand and 64 KiB.
+-- An error reads FILE:LINE: WHAT expected, got WHAT. Memory: the current line and 64 KiB.
 local glint = require "glint"
 local lines = {}
 
 local source = {}
 source.__index = source
 
-local LONGEST = 40 -- characters of a line that an error shows
+local LONGEST = 40 -- characters of a line shown in an error
 local LINE_MAX = 1 << 20 -- bytes
-local BLOCK = 1 << 16 -- bytes that are read at once
+local BLOCK = 1 << 16 -- bytes read at once
 
--- Formats of other programs that no reader here takes: by the ending of a file's name, and by its first bytes.
+-- Formats of other programs that no reader here accepts: by a file's extension, and by its first bytes.
 local ENDINGS = {
   cif = "CIF", mmcif = "mmCIF", bcif = "BinaryCIF", mmtf = "MMTF", mol2 = "Tripos MOL2", sdf = "SDF",
   mol = "an MDL molfile", gro = "a GROMACS structure", g96 = "a GROMOS structure", cube = "a Gaussian cube",
@@ -38,13 +38,13 @@ local function shown(text)
   return #text > LONGEST and ("%q..."):format(text:sub(1, LONGEST)) or ("%q"):format(text)
 end
 
--- Raises where a path is a device, a pipe or a folder, which may have no end.
+-- Raises if a path is a device, a pipe or a folder, which may have no end.
 local function check_kind(path)
   local kind = path ~= "-" and glint._other_kind(path)
   if kind then error(("%s: a file expected, got a %s"):format(path, kind), 0) end
 end
 
--- Opens a file; one that is not there is looked for beside the script. Gives the path as well.
+-- Opens a file; looks next to the script if it does not exist. Also returns the path.
 local function open_file(path)
   local file, message = io.open(path, "rb")
   local folder = type(arg) == "table" and type(arg[0]) == "string" and arg[0]:match "^.*/"
@@ -54,8 +54,8 @@ local function open_file(path)
   return other, other and folder .. path or message
 end
 
---- Opens a file, or standard input where the path is "-". Raises when it cannot be read, at once where it is a
---- device, a pipe or a folder.
+--- Opens a file, or standard input if the path is "-". Raises if it cannot be read, immediately for a device, a pipe or
+--- a folder.
 ---@param path string
 function lines.open(path)
   local foreign = ENDINGS[(path:match "%.(%w+)$" or ""):lower()]
@@ -77,7 +77,7 @@ local function end_lines(block)
   end))
 end
 
--- The next block; nil after the last. It does not end in a carriage return unless the file does.
+-- Returns the next block; nil after the last. It ends in a carriage return only at the end of the file.
 local function read_block(self)
   local block
   repeat
@@ -88,7 +88,7 @@ local function read_block(self)
   return block and end_lines(block)
 end
 
--- Steps over a byte order mark at the beginning of the file, and refuses what is not text or not ours.
+-- Skips a byte order mark at the beginning of the file, and refuses files that are not text or have another format.
 local function begin_file(self)
   if self.block:sub(1, 3) == "\xef\xbb\xbf" then self.at = 4 end
   for _, beginning in ipairs(BEGINNINGS) do
@@ -96,7 +96,7 @@ local function begin_file(self)
   end
 end
 
--- Where the line at hand ends, once the block has grown until it holds that. After the last block: its end.
+-- Returns the end of the current line, after extending the block to contain it. At the end of the file: its end.
 local function line_end(self)
   while self.file do
     local rest = self.block:sub(self.at)
@@ -115,7 +115,7 @@ local function line_end(self)
   return #self.block + 1
 end
 
---- The next line without its end (LF, CRLF or CR), nil after the last.
+--- Returns the next line without its end (LF, CRLF or CR), nil after the last.
 function source:next()
   if self.held ~= nil then
     local line = self.held
@@ -131,14 +131,14 @@ function source:next()
   return line:byte(-1) == 13 and line:sub(1, -2) or line
 end
 
---- The next line with something in it that is no comment (#), nil after the last.
+--- Returns the next line that is neither blank nor a comment (#), nil after the last.
 function source:next_full()
   for line in function() return self:next() end do
     if line:find "%S" and not line:find "^%s*#" then return line end
   end
 end
 
---- Takes one line back: the next call of next() returns it again.
+--- Puts one line back: the next call of next() returns it again.
 function source:back(line)
   self.held = line
   self.number = self.number - 1
@@ -151,7 +151,7 @@ function source:fail(expected, got)
   error(("%s:%d: %s expected, got %s"):format(self.path, self.number + (got and 0 or 1), expected, shown(got)), 0)
 end
 
---- The number that a text stands for, in decimal, its exponent as Fortran writes it, too: 1.5D+03, 1.5-103. Nil: none.
+--- Returns the number that a text spells in decimal, also with Fortran's exponents: 1.5D+03, 1.5-103. nil: none.
 ---@param text string
 function lines.number(text)
   if text:find "[xX]" then return nil end
@@ -164,7 +164,7 @@ function lines.value(text)
   return tonumber(text) or text:find(".", 1, true) and lines.number(text) or text
 end
 
---- The finite number that a text stands for, in decimal; else an error that names `what` it was to be.
+--- Returns the finite decimal number that a text spells. Otherwise raises an error that names `what` was expected.
 ---@param text string?
 ---@param what string
 ---@return number
@@ -176,7 +176,7 @@ function source:number_of(text, what)
   return value
 end
 
---- The whole number >= `least` that a text stands for; else an error that names `what` it was to be.
+--- Returns the whole number >= `least` that a text spells. Otherwise raises an error that names `what` was expected.
 ---@param text string?
 ---@param what string
 ---@param least integer
@@ -189,14 +189,14 @@ function source:whole(text, what, least)
   return value
 end
 
---- Where the next line begins: its place in the file, bytes, and how many lines stand before it.
+--- Returns the position of the next line: its offset in the file, bytes, and the number of lines before it.
 ---@return integer place
 ---@return integer number
 function source:tell()
   return self.held ~= nil and self.line_at or self.base + self.at - 1, self.number
 end
 
---- Goes on from where tell() was; the file may have been read to its end, but not be standard input.
+--- Continues from a position of tell(). The file may have been read to its end, but cannot be standard input.
 ---@param place integer
 ---@param number integer
 function source:go(place, number)

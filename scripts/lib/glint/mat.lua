@@ -1,11 +1,11 @@
--- Writes arrays as MATLAB's .mat of level 5, which SciPy reads too, without a date in it.
+-- Writes arrays as MATLAB's .mat of level 5, which SciPy also reads, without a date.
 --     require("glint.mat").write("Normal_gt.mat", "Normal_gt", { height, width, 3 }, function(y, x, c) return ... end)
 local mat = {}
 
 local INT8, INT32, UINT32, DOUBLE, MATRIX = 1, 5, 6, 9, 14
 local DOUBLE_CLASS = 6
 
--- A data element: its type, its size, its bytes, filled up to a multiple of eight.
+-- Returns a data element: its type, its size, its bytes, padded to a multiple of eight.
 local function element(kind, bytes)
   return ("<I4I4"):pack(kind, #bytes) .. bytes .. ("\0"):rep(-#bytes % 8)
 end

@@ -1,8 +1,8 @@
--- Models of reflection as shaders: each gives what one light leaves, the diffuse part and the specular one.
+-- Reflection models as shaders: each returns the light reflected from one lamp, the diffuse and the specular part.
 --     local models = require "glint.models"
 --     glint.material { diffuse = 0.6, specular = 0.4, model = models.ward { along = 0.1, across = 0.4 } }
--- As in the built-in models a light of strength 1 that falls in along the normal leaves kd of a matt surface: a BRDF f
--- of the literature counts as pi f (n.l). Shadows and ambient light are the engine's.
+-- As in the built-in models, a light of strength 1 along the normal leaves kd of a matt surface: a BRDF f from the
+-- literature becomes pi f (n.l). Shadows and ambient light are the engine's.
 local glint = require "glint"
 
 local models = {}
@@ -24,9 +24,9 @@ function models.blinn_phong()
   end)
 end
 
---- M. Oren and S. K. Nayar, "Generalization of Lambert's Reflectance Model", SIGGRAPH 1994, their qualitative model:
---- A + B max(0, cos(phi)) sin(alpha) tan(beta), for matt surfaces of facets whose slopes are `roughness` radians wide.
---- Clay and the moon, flat towards their edges.
+--- M. Oren and S. K. Nayar, "Generalization of Lambert's Reflectance Model", SIGGRAPH 1994, their qualitative model: A
+--- + B max(0, cos(phi)) sin(alpha) tan(beta), for matt surfaces with facets whose slopes have a deviation of
+--- `roughness` radians. Clay and the moon look flat towards their edges.
 function models.oren_nayar(options)
   local variance = (options and options.roughness or 0.5) ^ 2
   local a, b = 1 - 0.5 * variance / (variance + 0.33), 0.45 * variance / (variance + 0.09)
@@ -38,7 +38,7 @@ function models.oren_nayar(options)
 end
 
 --- G. J. Ward, "Measuring and Modeling Anisotropic Reflection", SIGGRAPH 1992: a Gaussian of slopes, `along` and
---- `across` brushed lines that run around the axis.
+--- `across` brushed lines that run around the axis:
 --- exp(-tan^2(delta) (cos^2/along^2 + sin^2/across^2)) / (4 pi along across sqrt((n.l) (n.v))).
 function models.ward(options)
   local along, across = options and options.along or 0.15, options and options.across or 0.5
@@ -53,8 +53,8 @@ function models.ward(options)
   end)
 end
 
---- Bands of light, as cartoons are painted: A. Lake et al., "Stylized Rendering Techniques for Scalable Real-Time 3D
---- Animation", NPAR 2000. The edges of the bands are as soft as `edge`.
+--- Bands of light as in cartoons: A. Lake et al., "Stylized Rendering Techniques for Scalable Real-Time 3D Animation",
+--- NPAR 2000. `edge` is the softness of the bands' edges.
 function models.toon(options)
   local edge = options and options.edge or 0.01
   local function band(x, from) return glint.smoothstep(from - edge, from + edge, x) end
@@ -67,8 +67,8 @@ function models.toon(options)
 end
 
 --- A. Gooch et al., "A Non-Photorealistic Lighting Model for Automatic Technical Illustration", SIGGRAPH 1998: from
---- cool to warm tones, here by n.l. The cool one, kd/4 + cool, is the material's ambient light, which the warm one,
---- kd/2 + warm, takes over from; no component of `warm` is below that of `cool`.
+--- cool to warm tones, here by n.l. The cool tone, kd/4 + cool, is the material's ambient light; it blends into the
+--- warm one, kd/2 + warm. No component of `warm` may be below that of `cool`.
 function models.gooch(options)
   local cool, warm = options and options.cool or { 0, 0, 0.25 }, options and options.warm or { 0.4, 0.4, 0.25 }
   return glint.shader(function(s)

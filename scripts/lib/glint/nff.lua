@@ -1,23 +1,23 @@
 -- NFF, the Neutral File Format of Eric Haines' Standard Procedural Databases (SPD): v, b, l, f, s, p, pp, c.
 --     local picture = nff.load "balls.nff"
 --     return glint.animation { scene = picture.scene, width = picture.width, height = picture.height, ... }
--- Its entries: `angle` is the vertical field of view, `hither` is not needed; the colour of `f` times Kd is diffuse,
--- Ks is the strength of a white highlight, with the exponent Shine, and of the mirror; T, with the index of
--- refraction, is transmission; options.mirrors = false leaves mirror and transmission out. A light without a colour has
--- the intensity 1 / sqrt(number of lights). All spheres become one glint.spheres; the polygons of a material become one
--- glint.mesh, its patches (polygons with a normal a corner) another. Cones and cylinders are open at their ends; one
--- whose radii differ and are both above 0 is a mesh of 128 sides with smooth normals.
+-- The entries: `angle` is the vertical field of view, `hither` is ignored; the colour of `f` times Kd is diffuse, Ks is
+-- the strength of a white highlight with the exponent Shine, and of the mirror; T, with the index of refraction, is
+-- transmission; options.mirrors = false omits mirror and transmission. A light without a colour has the intensity 1 /
+-- sqrt(number of lights). All spheres become one glint.spheres. The polygons of each material become one glint.mesh,
+-- its patches (polygons with normals) another. Cones and cylinders are open; a truncated cone is a mesh of 128 sides
+-- with smooth normals.
 local glint = require "glint"
 local lines = require "glint.lines"
 local particles = require "glint.particles"
 
 local nff = {}
 
-local SIDES = 128 -- of a cut cone
+local SIDES = 128 -- of a truncated cone
 
 local VIEW = { { "from", 3 }, { "at", 3 }, { "up", 3 }, { "angle", 1 }, { "hither", 1 }, { "resolution", 2 } }
 
--- The numbers of a text, between `least` and `most` of them.
+-- Reads the numbers of a text, between `least` and `most` of them.
 local function numbers(source, text, what, least, most)
   local list = {}
   for word in text:gmatch "%S+" do list[#list + 1] = source:number_of(word, what) end
@@ -27,7 +27,7 @@ local function numbers(source, text, what, least, most)
   return list
 end
 
-local read = {} -- by the first word of a line: (picture, source, the rest of the line)
+local read = {} -- by the first word of a line: function(picture, source, the rest of the line)
 
 function read.v(picture, source, rest)
   if rest:find "%S" then source:fail("nothing after v in its line", rest) end
@@ -78,7 +78,7 @@ function read.s(picture, source, rest)
   picture.set:add(picture.material, source:number_of(x, "x"), source:number_of(y, "y"), source:number_of(z, "z"), size)
 end
 
--- The polygons of the material at hand: `numbers` a corner, 3 without and 6 with a normal.
+-- Returns the polygons of the current material: `numbers` for each corner, 3 without and 6 with a normal.
 local function bunch_of(picture, name)
   local key = name .. picture.material
   local bunch = picture.bunches[key]
@@ -123,7 +123,7 @@ local function cross(a, b)
   return unit(a[2] * b[3] - a[3] * b[2], a[3] * b[1] - a[1] * b[3], a[1] * b[2] - a[2] * b[1])
 end
 
--- The side of a cut cone, from ring a to ring b, each { x, y, z, radius }: quads with the normals of the cone.
+-- Makes the side of a truncated cone, from ring a to ring b, each { x, y, z, radius }: quads with the cone's normals.
 local function cut_cone(a, b, material)
   local w, length = unit(b[1] - a[1], b[2] - a[2], b[3] - a[3])
   local u = cross(w, math.abs(w[1]) < 0.6 and { 1, 0, 0 } or { 0, 1, 0 })
@@ -175,7 +175,7 @@ function read.c(picture, source, rest)
   picture.cones[#picture.cones + 1] = shape
 end
 
--- The engine looks at the shapes of polygons when it has all of them: its message names the face, ours the line.
+-- Adds the meshes. The engine checks polygons when it has all of them: its message names the face, ours the line.
 local function add_meshes(picture, source)
   for _, bunch in ipairs(picture.bunches) do
     local ok, mesh = pcall(glint.mesh, {

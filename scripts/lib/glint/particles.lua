@@ -1,35 +1,35 @@
--- Builds one glint.spheres of any number of atoms or points, with one material for each kind of them.
+-- Builds one glint.spheres for any number of atoms or points, with one material for each kind.
 --     local set = particles.new()
 --     set:add_frame(xyz.frame "caffeine.xyz")        -- or set:add("C", x, y, z) by hand
 --     scene:add(set:spheres())
--- A label is a kind of options.kinds, an element (color and radius from glint.elements; C13, Fe+3 and CB begin with
--- one), "type1" ... "type999" (a palette, radius 0.5: LAMMPS's reduced units) or "point" (grey, radius 0.5). Other
--- labels in a file, as of ghost atoms, are one kind, "ghost" (pink, radius 0.5), with a warning a file.
--- Colours by a column of the file, instead of by kind:
+-- A label is a kind in options.kinds, an element (color and radius from glint.elements; C13, Fe+3 and CB begin
+-- with one), "type1" ... "type999" (a palette, radius 0.5: LAMMPS's reduced units) or "point" (grey, radius 0.5).
+-- Other labels in a file, such as ghost atoms, form one kind, "ghost" (pink, radius 0.5), with one warning per
+-- file.
 --     local set = particles.new { color_by = { column = "speed", map = "viridis" } }     -- also low, high: its range
--- Memory: numbers are packed in chunks, there is no table for each sphere. A sphere takes 36 bytes (20 as "f32"), twice
--- that for the moment in which spheres() puts the chunks together. Then the engine has it: some 260 bytes a sphere from
--- the first picture on, 380 while the index is built.
+-- Memory: numbers are packed in chunks, without a table for each sphere. A sphere takes 36 bytes (20 as "f32"), and
+-- twice as much while spheres() joins the chunks. The engine then takes some 260 bytes per sphere from the first
+-- picture on, and 380 while the index is built.
 local glint = require "glint"
 local boxes, elements = require "glint.box", require "glint.elements"
 
 local particles = {}
 
-local CHUNK = 256 -- spheres packed at a time
-local LARGE = 100000 -- spheres: their strings are collected once the engine has its copy, of which Lua knows nothing
+local CHUNK = 256 -- spheres packed at once
+local LARGE = 100000 -- spheres; larger strings are collected once the engine has its copy, which Lua does not count
 local PALETTE = { "#4e79a7", "#f28e2b", "#59a14f", "#e15759", "#b07aa1", "#edc948", "#76b7b2", "#9c755f" }
 local POINT, GHOST = { color = "#b8b8b8", radius = 0.5 }, { color = "#ff1493", radius = 0.5 }
 
 local OPTIONS = { kinds = true, scale = true, radius = true, material = true, format = true, color_by = true }
-local EXACT = 4096 -- colours of points, each a material; further ones are rounded to 5 bits of red, green and blue
-local STEPS = 256 -- of colours by a column, each a material
+local EXACT = 4096 -- colours of points, each with a material; more are rounded to 5 bits of red, green and blue
+local STEPS = 256 -- colours for a column, each with a material
 
-local warned = {} -- files with labels that are nothing known
+local warned = {} -- files with unknown labels
 
 local set = {}
 set.__index = set
 
--- The option color_by; raises where something is wrong with it.
+-- Checks the option color_by; raises if something is wrong with it.
 local function check_colors(given)
   local names = { column = "string", map = "string", low = "number", high = "number", missing = "string" }
   if type(given) ~= "table" then error("particles.color_by: { column = ... } expected, got " .. tostring(given), 3) end
@@ -45,11 +45,11 @@ local function check_colors(given)
   if given.low and given.high and given.low >= given.high then
     error(("particles.color_by.high: a number above low (%.14g) expected, got %.14g"):format(given.low, given.high), 3)
   end
-  glint.colormap(given.map or "viridis") -- the name, at once
+  glint.colormap(given.map or "viridis") -- checks the name at once
   return given
 end
 
---- An empty set.
+--- Makes an empty set.
 --- The options: kinds, { [label] = { color, radius } } before the known ones (radius 0.5 by default; `material` may
 --- replace color); scale, a factor for the kinds' radii (default 1); radius, for every kind instead;
 --- material, fields for each material such as { specular = 0.3 }; format, "f64" (default) or "f32" for half the memory;
@@ -79,17 +79,17 @@ function particles.new(options)
   }, set)
 end
 
--- The words of files for a missing value, in small letters. NA has capitals: Na is an element.
+-- Texts for a missing value in files, in small letters. NA is in capitals because Na is an element.
 local MISSING = { nan = true, ["-nan"] = true, ["+nan"] = true, ["-1.#ind"] = true, ["1.#qnan"] = true, NA = true,
   ["n/a"] = true, null = true, [""] = true }
 
--- NaN for a missing value.
+-- Returns NaN for a missing value.
 local function value_of(value)
   return type(value) == "string" and (MISSING[value] or MISSING[value:lower()]) and 0 / 0 or value
 end
 
---- The lowest and the highest value of a column in all frames, for one range of colours over a film:
---- low, high = particles.range(xyz.frames "melt.xyz", "c_pe").
+--- Returns the lowest and the highest value of a column in all frames, for one range of colours over a film: low, high
+--- = particles.range(xyz.frames "melt.xyz", "c_pe").
 ---@param list function  iterates over frames, as a reader's frames(path) does
 ---@param column string
 function particles.range(list, column)
@@ -115,7 +115,7 @@ local function known(label)
   if symbol then return symbol, elements[symbol] end
 end
 
--- Labels of a file that are nothing known: one kind. Warns once a file.
+-- Returns the kind of a file's unknown labels. Warns once per file.
 local function ghost_of(self, frame, label)
   local path = frame.source.path
   if not warned[path] then
@@ -127,8 +127,8 @@ local function ghost_of(self, frame, label)
   return "ghost", GHOST
 end
 
--- Finds or makes the kind of a label: its place among the materials and its radius. Nil when there is none, except in
--- a frame of a file.
+-- Finds or makes the kind of a label, with its radius. nil if the label is unknown, except in a frame of a
+-- file.
 local function kind_of(self, label, frame)
   local options = self.options
   local name, found = label, (options.kinds or {})[label]
@@ -149,7 +149,7 @@ local function kind_of(self, label, frame)
   return kind
 end
 
--- The place of a kind's material, which is made when it is needed.
+-- Returns the index of a kind's material, which is made when first needed.
 local function place_of(self, kind)
   if not kind.place then
     self.materials[#self.materials + 1] = kind.material or glint.material(kind.fields)
@@ -158,7 +158,7 @@ local function place_of(self, kind)
   return kind.place
 end
 
--- The place of the material of a colour, 0xrrggbb.
+-- Returns the index of the material of a colour, 0xrrggbb.
 local function place_of_color(self, kind, code)
   local colors = self.colors
   if colors.count >= EXACT and not colors[code] then
@@ -177,7 +177,7 @@ local function place_of_color(self, kind, code)
   return colors[code]
 end
 
--- Packs what is pending into one string.
+-- Packs the pending spheres into one string.
 local function pack(self)
   local n = self.pending
   if n == 0 then return end
@@ -199,7 +199,7 @@ local function stretch(self, x, y, z, radius)
   if z + radius > high[3] then high[3] = z + radius end
 end
 
--- Notes the value that the sphere's colour stands for; NaN is a missing one.
+-- Stores the value for the sphere's colour; NaN is a missing value.
 local function put_value(self, value)
   self.pending_values[self.pending] = value
   if value ~= value then
@@ -243,7 +243,7 @@ function set:add(label, x, y, z, radius, value)
   if not done then error(("%s expected, got %q"):format(expected, got), 2) end
 end
 
--- The box of all frames added; false when they have different ones.
+-- Stores the box of all frames added; false if they have different boxes.
 local function keep_box(self, box)
   local kept = self.box
   if kept == nil then self.box = box end
@@ -286,8 +286,8 @@ function set:add_frame(frame)
   return self
 end
 
---- Where all spheres are, and which of set.materials each has: four lists, in the order they were added. Not after
---- spheres().
+--- Returns the positions of all spheres, and the index of each in set.materials: four lists, in the order of addition.
+--- Not after spheres().
 function set:places_of_all()
   if not self.data then error("particles: the spheres of this set have been taken", 2) end
   pack(self)
@@ -304,7 +304,7 @@ function set:places_of_all()
   return x, y, z, place
 end
 
---- The range of color_by: the numbers that the ends of its map stand for.
+--- Returns the range of color_by: the numbers at the ends of its map.
 ---@return number low
 ---@return number high
 function set:range()
@@ -313,10 +313,10 @@ function set:range()
   local low, high = by.low or self.lowest, by.high or self.highest
   if low > high then low, high = by.low or 0, by.high or 1 end -- no values
   if low < high then return low, high end
-  return low, low + 1 -- all values are one
+  return low, low + 1 -- all values are equal
 end
 
--- Materials and, packed, one of them for each sphere, by the values.
+-- Makes the materials for the values and, packed, their index for each sphere.
 local function color(self, all)
   local low, high = self:range()
   local map, scale, index = glint.colormap(self.color_by.map or "viridis"), STEPS / (high - low), {}
@@ -331,7 +331,7 @@ local function color(self, all)
   all.materials[STEPS + 1] = self.has_missing and glint.material(fields) or nil
   for n, chunk in ipairs(self.values) do
     local list = { (("d"):rep(#chunk // 8)):unpack(chunk) }
-    list[#list] = nil -- where it ends
+    list[#list] = nil -- the list's terminator
     for i, value in ipairs(list) do
       local is_missing = value ~= value
       list[i] = is_missing and STEPS + 1 or math.floor(math.max(0, math.min((value - low) * scale, STEPS - 1))) + 1
@@ -341,8 +341,8 @@ local function color(self, all)
   all.index, self.values = table.concat(index), nil
 end
 
---- The spheres, as one shape; an empty group where there are none, as in the first frame of some films. The set's own
---- copy of them goes: to be called once.
+--- Returns the spheres as one shape; an empty group if there are none, as in the first frame of some films. The set
+--- gives up its own copy: call it once.
 ---@param fields? table  further fields of the shape, such as { name = "melt" }
 function set:spheres(fields)
   if not self.data then error("particles: the spheres of this set have been taken", 2) end
@@ -364,8 +364,8 @@ function set:spheres(fields)
   return shape
 end
 
---- The centre of the box around all spheres, and half its diagonal. Without spheres: of the box of the frames, and
---- without that the origin and 1.
+--- Returns the centre of the box around all spheres, and half its diagonal. Without spheres: of the frames' box;
+--- without a box the origin and 1.
 ---@return number[] center
 ---@return number radius
 function set:extent()
@@ -401,7 +401,7 @@ local function check_camera(fields)
   end
 end
 
---- A camera that has all spheres in view in a picture at least as wide as high.
+--- Returns a camera that has all spheres in view in a picture at least as wide as high.
 ---@param fields table  from: the direction from the centre to the eye, {x, y, z}; margin: distance in place of the one
 --- that fits, as a factor (default 1); and a camera's fov (default 30), up, name,
 --- projection ("orthographic": the margin is a factor of its height)
@@ -419,8 +419,8 @@ function set:camera(fields)
     height = is_flat and 2 * margin * radius or nil, up = fields.up, name = fields.name }
 end
 
---- A depth cue for a camera that looks at the spheres: full light at the nearest, `lost` (0 .. 1, default 0.7) of it
---- gone at the farthest.
+--- Makes a depth cue for a camera that looks at the spheres: full light at the nearest; the share `lost` (0 .. 1,
+--- default 0.7) is gone at the farthest.
 ---@param camera table
 ---@param lost? number
 function set:depth_cue(camera, lost)
@@ -430,7 +430,7 @@ function set:depth_cue(camera, lost)
     square = square + way[i] ^ 2
   end
   local distance = math.sqrt(square)
-  for i = 1, 3 do -- half the depth of the box around them
+  for i = 1, 3 do -- half the depth of the box around the spheres
     deep = deep + math.abs(way[i]) / distance * (self.high[i] - self.low[i]) / 2
   end
   local near = math.max(distance - deep, 0)

@@ -1,10 +1,10 @@
 -- PDB: the ATOM and HETATM records of the Protein Data Bank's format 3.3, by columns. Each MODEL is a frame.
 --     for label, x, y, z in pdb.frame "1crn.pdb":atoms() do ... end
--- The element comes from columns 77-78, or if these are empty from the atom's name (columns 13-16) and residue.
--- If an atom has alternate locations, the first one is taken, whatever column 17 calls it. Massless sites of water
--- (EPW, MW) are skipped. CRYST1 gives frame.cell = { origin, a, b, c } and frame.box (glint.box). Other records are
--- skipped. The other fields are there by name, frame:atoms("chain", "bfactor"): serial, name, resname, chain,
--- resseq, occupancy, bfactor, element, charge.
+-- The element comes from columns 77-78 or, if these are empty, from the atom's name (columns 13-16) and residue. Of an
+-- atom's alternate locations the first one is read, whatever its code in column 17. Massless sites of water (EPW, MW)
+-- are skipped. CRYST1 gives frame.cell = { origin, a, b, c } and frame.box (glint.box). Other records are skipped. The
+-- other fields are available by name, frame:atoms("chain", "bfactor"): serial, name, resname, chain, resseq, occupancy,
+-- bfactor, element, charge.
 local glint = require "glint"
 local elements = require "glint.elements"
 local frames, lines = require "glint.frames", require "glint.lines"
@@ -20,23 +20,23 @@ local function set_of(words)
   return set
 end
 
--- Residues whose atoms are H, C, N, O, P, S and Se only, so that the first letter of a name tells.
+-- Residues that contain only H, C, N, O, P, S and Se, so that the first letter of a name is enough.
 local BIOMOLECULES = set_of [[
 ALA ARG ASN ASP CYS GLN GLU GLY HIS ILE LEU LYS MET PHE PRO SER THR TRP TYR VAL ASX GLX SEC PYL MSE SEP TPO PTR HYP
 HID HIE HIP HSD HSE HSP CYX CYM ASH GLH LYN ACE NME NMA NH2
 A C G U I T N DA DC DG DT DU DI RA RC RG RU A3 A5 C3 C5 G3 G5 U3 U5 RA3 RA5 RC3 RC5 RG3 RG5 RU3 RU5
 DA3 DA5 DC3 DC5 DG3 DG5 DT3 DT5 ADE CYT GUA THY URA AMP ADP ATP GMP GDP GTP]]
 local WATERS = set_of "HOH WAT DOD H2O SOL SPC TIP TIP3 TIP4 TIP5 TP3 TP4 TP5 T3P T4P T4E T5P TI3 TI4 OPC SWM"
--- Residues around a metal, whose NA and NB are nitrogens and whose CA is a carbon wherever the names stand.
+-- Residues around a metal, where NA and NB are nitrogens and CA is a carbon, in any columns.
 local PORPHYRINS = set_of "HEM HEA HEB HEC HDD HEME CLA CHL BCL SRM PP9"
--- Ions as CHARMM names them.
+-- CHARMM's names of ions.
 local IONS = { SOD = "Na", CLA = "Cl", POT = "K", CAL = "Ca", CES = "Cs", LIT = "Li", RUB = "Rb", BAR = "Ba",
   CAD = "Cd" }
--- Symbols that begin the name of no atom of another element, wherever they stand.
+-- Symbols that never begin the name of an atom of another element, in any columns.
 local SURE = set_of [[FE CL BR ZN MG MN SI AL LI SE NI CU MO RU RH PT AU AG IR AS GA GE TI ZR]]
 
--- The element that a name stands for where no column gives it; nil: none, as of a water's massless places. In format
--- 3.3 a symbol ends in column 14: " CA " is a carbon, "CA  " calcium. is_left: this file has all names from column 13.
+-- Returns the element for a name, if no column gives it; nil: none, as for a water's massless sites. In format 3.3 a
+-- symbol ends in column 14: " CA " is a carbon, "CA  " calcium. is_left: all names in this file begin in column 13.
 local function element_of(name, residue, is_left)
   local text = name:match "^%s*%d*(.-)%s*$"
   local letters = (text:match "^%a+" or ""):upper()
@@ -55,7 +55,7 @@ local COLUMNS = { "serial", "name", "resname", "chain", "resseq", "occupancy", "
 local WHERE = { serial = { 7, 11 }, name = { 13, 16 }, resname = { 18, 20 }, chain = { 22, 22 }, resseq = { 23, 26 },
   occupancy = { 55, 60 }, bfactor = { 61, 66 }, element = { 77, 78 }, charge = { 79, 80 } }
 
--- A function that takes the wanted fields out of a record, without the blanks around them.
+-- Returns a function that extracts the wanted fields of a record, without the spaces around them.
 local function pick(wanted)
   return function(line)
     local found = {}
@@ -67,7 +67,7 @@ local function pick(wanted)
   end
 end
 
--- An atom; nil for a place that is none.
+-- Reads an atom; nil for a massless site.
 local function read_atom(source, fields, line)
   fields.line = line
   if #line < LAST_COLUMN then source:fail("a record of at least 54 columns (z is in 47-54)", line) end
@@ -82,8 +82,8 @@ local function read_atom(source, fields, line)
     source:number_of(line:sub(39, 46), "y, columns 39-46,"), source:number_of(line:sub(47, 54), "z, columns 47-54,")
 end
 
--- Whether an atom is to be taken: of an atom at alternate locations the first, and of a residue that is one of several
--- kinds the atoms of the first kind. Only the current residue, and all atoms with alternate locations, are stored.
+-- Returns whether to read an atom: of alternate locations the first; of a residue with several kinds, the atoms of the
+-- first kind. Only the current residue, and all atoms with alternate locations, are stored.
 local function is_first(fields, line)
   local name, alternate, kind = line:sub(13, 16), line:sub(17, 17), line:sub(18, 20)
   local place = line:sub(22, 27) .. line:sub(73, 76)
@@ -99,7 +99,7 @@ local function is_first(fields, line)
   return chosen[atom] == alternate
 end
 
--- The next record that counts: its name and line.
+-- Returns the name and line of the next record that is needed.
 local function next_record(source)
   for line in function() return source:next() end do
     local name = line:sub(1, 6):match "^%u+"
@@ -111,7 +111,7 @@ local function cosine(degrees)
   return ({ [60] = 0.5, [90] = 0, [120] = -0.5 })[degrees] or glint.cos(math.rad(degrees))
 end
 
--- The cell and box of a CRYST1 record; nil where it has none: 1 1 1 stands in files that are no crystal.
+-- Returns the cell and box of a CRYST1 record; nil for 1 1 1, as in files that are no crystal.
 local function cell_of(source, line)
   local v, is_whole, is_read = {}, true, true
   for i, columns in ipairs { { 7, 15 }, { 16, 24 }, { 25, 33 }, { 34, 40 }, { 41, 47 }, { 48, 54 } } do
@@ -137,8 +137,8 @@ local function cell_of(source, line)
   return { origin = box.low, a = sides[1], b = sides[2], c = sides[3] }, box
 end
 
--- Records before a frame's atoms: its model and its cell, or the cell of the frame before. The first record that is
--- neither is given back.
+-- Reads the records before a frame's atoms: its model, and its cell or the previous frame's. Puts back the first record
+-- that is neither.
 local function read_head(source, number, fields)
   local cells = source.cells or {}
   source.cells = cells
@@ -198,7 +198,7 @@ function pdb.frame(path, number, options)
   return frames.pick(path, pdb.frames(path, options), number)
 end
 
---- The frames of a file in any order: film:frame(n), film:length().
+--- Returns the frames of a file in any order: film:frame(n), film:length().
 ---@param path string
 ---@param options? { hetatm: boolean }
 function pdb.film(path, options)

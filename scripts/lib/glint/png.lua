@@ -11,24 +11,24 @@ local png = {}
 local picture = {}
 picture.__index = picture
 
---- A black picture.
+--- Makes a black picture.
 function png.new(width, height)
   return setmetatable({ width = width, height = height, rows = {} }, picture)
 end
 
---- A black picture of one channel, such as a mask.
+--- Makes a black picture of one channel, such as a mask.
 function png.grey(width, height)
   return setmetatable({ width = width, height = height, rows = {}, is_grey = true }, picture)
 end
 
--- The code of sRGB, IEC 61966-2-1.
+-- Returns the sRGB value, IEC 61966-2-1.
 local function encode(x)
   x = math.min(math.max(x, 0), 1)
   x = x <= 0.0031308 and 12.92 * x or 1.055 * x ^ (1 / 2.4) - 0.055
   return math.floor(255 * x + 0.5)
 end
 
---- Sets a pixel to a linear colour: a list of three, or what has x, y and z; of one channel to a number.
+--- Sets a pixel to a linear colour: a list of three, or a value with x, y and z; in one channel to a number.
 function picture:set(x, y, color)
   local row = self.rows[y] or {}
   self.rows[y] = row
@@ -52,7 +52,7 @@ local function chunk(kind, data)
   return string.pack(">I4", #data) .. text .. string.pack(">I4", crc ~ 0xffffffff)
 end
 
--- A zlib stream of stored blocks.
+-- Returns a zlib stream of stored blocks.
 local function store(data)
   local parts, a, b = { "\x78\x01" }, 1, 0
   for at = 1, #data, 65535 do
@@ -66,7 +66,7 @@ local function store(data)
   return table.concat(parts) .. string.pack(">I2I2", b, a)
 end
 
---- Writes the picture to a file; raises when that fails.
+--- Writes the picture to a file; raises on failure.
 function picture:save(path)
   local lines, black = {}, self.is_grey and "\0" or "\0\0\0"
   for y = 0, self.height - 1 do
@@ -81,7 +81,7 @@ function picture:save(path)
   assert(file:close())
 end
 
---- The picture as a texture, by way of a file that is gone afterwards.
+--- Returns the picture as a texture, through a temporary file.
 function picture:texture()
   local name = os.tmpname()
   self:save(name .. ".png")

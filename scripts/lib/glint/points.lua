@@ -1,19 +1,19 @@
--- Points from columns of text, CSV, TSV, or numbers with blanks between them (.xyz, .pts), and clouds .ply and .pcd.
+-- Points from columns of text, CSV, TSV, or numbers separated by spaces (.xyz, .pts), and clouds .ply and .pcd.
 --     for label, x, y, z, radius in points.frame "stars.csv":atoms() do ... end
--- The first line may name the columns: x, y, z, and where they are there radius and label, in any order and case;
--- others are there by name: frame:atoms("mass"). Points with red, green and blue (or r, g, b; 0 .. 1, or 0 .. 255) have
--- frame.color, and spheres of glint.particles their colour. Without names the columns are x, y, z, radius. Of six, the
--- last three are a colour, or a normal where all are of length 1; seven are x, y, z, intensity and a colour;
--- options.columns = { "label", "x", ... } says otherwise. The separator is the first of tab, semicolon and comma in
--- that line, else blanks. A field may stand "in quotes", with "" for a quote. Lines that are empty or begin with # are
--- ignored.
+-- The first line may name the columns: x, y, z, and optionally radius and label, in any order and case. Others are
+-- available by name: frame:atoms("mass"). Points with red, green and blue (or r, g, b; 0 .. 1, or 0 .. 255) have
+-- frame.color, and spheres of glint.particles get their colour. Without names the columns are x, y, z, radius. Of six
+-- columns the last three are a colour, or a normal if all have length 1; seven are x, y, z, intensity and a colour;
+-- options.columns = { "label", "x", ... } overrides this. The separator is the first of tab, semicolon and comma in
+-- that line, otherwise spaces. A field may be "in quotes", with "" for a quote. Empty lines and lines that begin with #
+-- are ignored.
 local clouds, frames, lines = require "glint.clouds", require "glint.frames", require "glint.lines"
 
 local points = {}
 
 local DEFAULT_LABEL = "point"
 
--- The field of a line that begins at `from`, and where the next one begins or nil.
+-- Returns the field of a line that begins at `from`, and the start of the next one or nil.
 local function next_field(source, line, separator, from)
   if not line:find("^%s*\"", from) then
     local at = line:find(separator, from, true)
@@ -46,7 +46,7 @@ local function split(source, line, separator)
   return list
 end
 
--- Where the columns are, from their names.
+-- Finds the columns from their names.
 local function places(source, names, line)
   local place = {}
   for i, name in ipairs(names) do place[name:lower()] = i end
@@ -68,7 +68,7 @@ local function read_point(source, fields, line, place, separator, count)
     place.radius and number "radius" or nil
 end
 
--- A function that takes the wanted columns out of the fields of a line.
+-- Returns a function that extracts the wanted columns from the fields of a line.
 local function pick(columns, wanted)
   return function(list)
     local found = {}
@@ -82,9 +82,9 @@ end
 
 -- ---- Columns without names ----
 
-local PROBED = 50 -- lines that say what columns without names are
+local PROBED = 50 -- lines that are examined for the meaning of unnamed columns
 
--- The first lines of a file, as lists of numbers; those that are none are left out.
+-- Returns the first lines of a file as lists of numbers, without lines that contain other text.
 local function probe(source, line, separator)
   local list, other = {}, source.path ~= "-" and lines.open(source.path)
   local text = other and other:next_full() or line
@@ -98,7 +98,7 @@ local function probe(source, line, separator)
   return list
 end
 
--- The largest number that a colour may have: 255, or 1. A colour 0 .. 1 that is a little too bright has fractions.
+-- Returns the value of full colour: 255, or 1. Colours 0 .. 1 that are slightly too bright have fractions.
 local function most_of_color(most, is_whole)
   return most > (is_whole and 1 or 16) and 255 or 1
 end
@@ -128,8 +128,8 @@ local function is_constant(rows, column)
   return true
 end
 
--- The names of columns that have none, and the largest number of a colour where they have one. Files .xyzn have
--- normals, and .xyzrgb colours; of others the numbers tell.
+-- Returns the names for unnamed columns, and the value of full colour if they have one. Files .xyzn have normals, and
+-- .xyzrgb colours; in others the numbers decide.
 local function guess_columns(source, line, separator, count)
   local ending = (source.path:match "%.(%w+)$" or ""):lower()
   local names, rows, most = { "x", "y", "z" }, probe(source, line, separator), nil
@@ -158,7 +158,7 @@ local function guess_columns(source, line, separator, count)
   return table.move(names, 1, math.min(#names, count), 1, {}), most
 end
 
--- The largest number of a colour whose columns have names.
+-- Returns the value of full colour for named colour columns.
 local function most_of(source, line, separator, place)
   local rows, most, is_whole = probe(source, line, separator), 0, true
   for _, row in ipairs(rows) do
@@ -172,7 +172,7 @@ end
 
 local LONG = { r = "red", g = "green", b = "blue" }
 
--- The names of a first line, as CloudCompare writes it, too: //X Y Z R G B.
+-- Returns the names in a first line, also in CloudCompare's form: //X Y Z R G B.
 local function clean_names(first)
   local names = {}
   for i, name in ipairs(first) do
@@ -189,7 +189,7 @@ local function start(source, number, options)
   if fields then return fields, next_atom end
   if line then source:back(line) end
   line = source:next_full()
-  local expected = line and math.tointeger(tonumber(line:match "^%s*%d+%s*$")) -- how many points there are, as of .pts
+  local expected = line and math.tointeger(tonumber(line:match "^%s*%d+%s*$")) -- the number of points, as in .pts
   if expected then line = source:next_full() end
   if not line then source:fail("a line of points", nil) end
   local separator = options.separator or line:match "[\t;,]" or " "
@@ -212,7 +212,7 @@ local function start(source, number, options)
   local done = 0
   return fields, function()
     local text = source:next_full()
-    if expected and done == expected and text and text:find "^%s*%d+%s*$" then -- one more scan
+    if expected and done == expected and text and text:find "^%s*%d+%s*$" then -- another scan follows
       expected, done, text = math.tointeger(tonumber(text)), 0, source:next_full()
     end
     done = done + 1
@@ -221,7 +221,7 @@ local function start(source, number, options)
   end
 end
 
---- The points of a file, as a frame: frame:atoms() -> label, x, y, z, radius or nil.
+--- Returns the points of a file, as a frame: frame:atoms() -> label, x, y, z, radius or nil.
 ---@param path string
 ---@param options? { columns: string[], separator: string }
 function points.frame(path, options)

@@ -1,15 +1,15 @@
 -- The sphereflake of Eric Haines' Standard Procedural Databases (SPD, "balls"; IEEE Computer Graphics and Applications
 -- 7(11), 1987): a sphere of radius 1/2 with nine spheres of a third of its radius on it, and so on, `size` times.
 --     sphereflake.each(4, function(x, y, z, radius) ... end)     -- 1 + 9 + ... + 9^4 = 7381 spheres
--- The nine stand where the directions (1,1,0), (1,0,-1) and (0,1,-1) come to lie when they are turned about (1,-1,0) by
--- asin(2 / sqrt 6), and when these are turned by 0, 120 and 240 degrees about z; +z is then turned to where the parent
--- points. That needs roots only, so that the same spheres come out on every machine.
+-- The nine stand in the directions (1,1,0), (1,0,-1) and (0,1,-1), turned about (1,-1,0) by asin(2 / sqrt 6), and each
+-- of these turned by 0, 120 and 240 degrees about z; +z is then turned to the parent's direction. This needs only
+-- roots, so that the spheres are the same on every machine.
 local sphereflake = {}
 
 local SHARE = 1 / 3 -- of the parent's radius
 local HALF = math.sqrt(2) / 2
 
--- v turned about a unit axis by the angle whose cosine and sine are given (Rodrigues).
+-- Turns v about a unit axis by the angle with this cosine and sine (Rodrigues).
 local function turn(v, axis, cosine, sine)
   local ax, ay, az = axis[1], axis[2], axis[3]
   local x, y, z = v[1], v[2], v[3]
@@ -21,7 +21,7 @@ local function turn(v, axis, cosine, sine)
   }
 end
 
--- The nine directions around +z.
+-- Returns the nine directions around +z.
 local function make_directions()
   local list = {}
   local axis, up = { HALF, -HALF, 0 }, { 0, 0, 1 }
@@ -35,7 +35,7 @@ local function make_directions()
   return list
 end
 
--- v as it stands around `to` instead of +z; `to` is unit.
+-- Turns v from +z to the unit vector `to`.
 local function tilt(v, to)
   local sine = math.sqrt(to[1] ^ 2 + to[2] ^ 2)
   if sine == 0 then return to[3] > 0 and v or { -v[1], v[2], -v[3] } end -- half a turn about y
@@ -61,7 +61,7 @@ function sphereflake.each(size, f)
   visit(size, 0, 0, 0, 0.5, { 0, 0, 1 }, f)
 end
 
---- The published view, background and lights, and the two materials as "f" lines have them.
+--- The published view, background and lights, and the two materials as "f" lines.
 sphereflake.NFF_HEADER = [[
 v
 from 2.1 1.3 1.7
@@ -85,7 +85,7 @@ p 4
 ]]
 sphereflake.NFF_SPHERES = "f 1 0.9 0.7 0.5 0.5 5 0 0\n"
 
---- Writes an NFF file. Raises when that fails.
+--- Writes an NFF file. Raises on failure.
 ---@param path string
 ---@param size integer  0 .. 8
 ---@param with_floor boolean  the polygon under the spheres

@@ -1,15 +1,15 @@
--- XYZ: a number of atoms, a line of comment, then a line an atom: element (or its number), x, y, z. One frame or more.
+-- XYZ: a number of atoms, a comment line, then a line per atom: element (or its number), x, y, z. One or more frames.
 --     for frame in xyz.frames "water.xyz" do
 --       print(frame.comment, frame.count)
 --       for label, x, y, z in frame:atoms() do ... end
 --     end
--- Extended XYZ says in its comment what the columns are and where the periodic cell is:
+-- Extended XYZ describes the columns and the periodic cell in its comment:
 --     Lattice="10 0 0 0 10 0 0 0 10" Properties=species:S:1:pos:R:3:vel:R:3:charge:R:1 pbc="T T F"
--- frame.keys has the values of all keys as texts, under their names in small letters.
--- frame.columns are then species, x, y, z, vel_x, vel_y, vel_z, charge (of a property of 2 or of more than 3 numbers
--- name_1 ...); frame.cell = { origin, a, b, c } has the cell's corner and sides, and frame.box is the same as a box
--- (glint.box) where a lies along x and b in the plane of x and y. Without Properties the columns after the fourth are
--- "5", "6" ...
+-- frame.keys has the values of all keys as texts, by their names in small letters. frame.columns are then
+-- species, x, y, z, vel_x, vel_y, vel_z, charge (name_1 ... for a property of 2 or of more than 3 numbers);
+-- frame.cell = { origin, a, b, c } has the cell's corner and sides; frame.box is the same as a box (glint.box),
+-- if a lies along x and b in the plane of x and y. Without Properties the columns after the fourth are "5", "6"
+-- ...
 local boxes, frames = require "glint.box", require "glint.frames"
 
 local xyz = {}
@@ -27,7 +27,7 @@ local function read_atom(source, frame, index)
   return label, source:number_of(x, "x"), source:number_of(y, "y"), source:number_of(z, "z")
 end
 
--- Returns the text between quotation marks or brackets at `from`, and the position after them. Nil: they do not end.
+-- Returns the text between quotation marks or brackets at `from`, and the position after them. nil: they do not end.
 local function enclosed(text, from)
   local mark = text:sub(from, from)
   if mark == '"' or mark == "'" then
@@ -43,8 +43,8 @@ local function enclosed(text, from)
   if inside then return inside:gsub("[][{},]", " "), from + #inside end
 end
 
--- The keys of a comment, in small letters, and their values, as texts: key=word, key="words" or 'words', and arrays
--- [a, b] and {a b}. Quoted text is one value, whatever stands in it.
+-- Returns the keys of a comment, in small letters, and their values, as texts: key=word, key="words" or 'words', and
+-- arrays [a, b] and {a b}. Quoted text is one value, whatever it contains.
 local function read_keys(comment)
   local keys, at = {}, 1
   while at <= #comment do
@@ -62,7 +62,7 @@ local function read_keys(comment)
   return keys
 end
 
--- The names of the columns, from name:type:count:name:type:count ...
+-- Returns the names of the columns, from name:type:count:name:type:count ...
 local function property_names(source, text, comment)
   local names, is_good = {}, true
   for name, kind, count in (text .. ":"):gmatch "([^:]+):([^:]+):(%d+):" do
@@ -77,7 +77,7 @@ local function property_names(source, text, comment)
   return names
 end
 
--- How a line is read: one pattern for the four columns that every frame has.
+-- Chooses how a line is read: one pattern for the four columns that every frame has.
 local function find_columns(source, fields)
   local text = fields.keys.properties
   local names, place = text and property_names(source, text, fields.comment) or { "element", "x", "y", "z" }, {}
@@ -113,7 +113,7 @@ end
 
 local TRUTHS = { t = true, ["true"] = true, ["1"] = true, f = false, ["false"] = false, ["0"] = false }
 
--- Along which sides a frame repeats: pbc="T T F" or TTF, or one word for all; all where it is not said.
+-- Returns the sides along which a frame repeats: pbc="T T F" or TTF, or one word for all. Default: all.
 local function periodic_of(source, fields)
   local list, text = {}, (fields.keys.pbc or "T"):lower()
   text = text:gsub("^%s*([tf01])([tf01])([tf01])%s*$", "%1 %2 %3")
@@ -137,7 +137,7 @@ local function find_cell(source, fields)
   fields.box = boxes.of_cell(fields.cell, periodic)
 end
 
--- Blank lines may stand before a count, and nowhere else.
+-- Begins a frame. Blank lines may precede a count, but appear nowhere else.
 local function start(source, number)
   local line = source:next()
   while line and not line:find "%S" do line = source:next() end
@@ -169,7 +169,7 @@ function xyz.frame(path, number)
   return frames.pick(path, xyz.frames(path), number)
 end
 
---- The frames of a file in any order: film:frame(n), film:length().
+--- Returns the frames of a file in any order: film:frame(n), film:length().
 ---@param path string
 function xyz.film(path)
   return frames.film(path, start)

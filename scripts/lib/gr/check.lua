@@ -1,6 +1,6 @@
--- The arguments of the dialect's calls, as the course's glue code takes them: numeric strings pass for numbers, vectors
--- have exactly n entries, arguments too many are ignored. Errors name the function, the argument and the value, and
--- stand at the scene's line. The libraries' functions are stored here, because a scene may overwrite the globals.
+-- Checks the arguments of the dialect's calls as the course's glue code does: numeric strings count as numbers, vectors
+-- have exactly n entries, extra arguments are ignored. Errors name the function, the argument and the value, at the
+-- scene's line. The libraries' functions are saved here, because a scene may overwrite the globals.
 local glint = require "glint"
 local check = {}
 
@@ -8,13 +8,13 @@ local error, pairs, rawget, rawlen, tonumber, tostring, type = error, pairs, raw
 local format, getinfo, huge, mathtype = string.format, debug.getinfo, math.huge, math.type
 local abs, concat, max, select = math.abs, table.concat, math.max, select
 
-local own = {} -- sources of the dialect's modules: errors are not theirs
+local own = {} -- sources of the dialect's modules, where errors are not reported
 
 --- Called by each module of the dialect as it loads.
 function check.own_source() own[getinfo(2, "S").source] = true end
 check.own_source()
 
--- A message with the nearest line that is the scene's.
+-- Returns a message with the nearest line of the scene.
 local function placed(text, ...)
   local message = format(text, ...)
   for level = 3, huge do
@@ -27,7 +27,7 @@ local function placed(text, ...)
   return message
 end
 
---- Raises at the nearest line that is the scene's.
+--- Raises an error at the nearest line of the scene.
 function check.raise(text, ...) error(placed(text, ...), 0) end
 
 local told = {}
@@ -39,7 +39,7 @@ function check.tell(key, text, ...)
   glint._warn(placed(text, ...))
 end
 
---- Tells once of arguments beyond those that a call reads; what says nothing (0, false, "") is ignored in silence.
+--- Warns once about arguments beyond those that a call reads; ignores those without effect (0, false, "").
 function check.left_out(call, ...)
   local texts, says = {}, false
   for i = 1, select("#", ...) do
@@ -50,7 +50,7 @@ function check.left_out(call, ...)
   if says then check.tell(call .. " left out", "gr.%s: left out: %s", call, concat(texts, ", ")) end
 end
 
---- The file whose code calls the dialect, or nil where it is no file.
+--- Returns the file whose code calls the dialect, or nil if it is not a file.
 function check.caller()
   for level = 2, huge do
     local at = getinfo(level, "Sl")
@@ -59,12 +59,12 @@ function check.caller()
   end
 end
 
-local spelt = setmetatable({}, { __mode = "k" }) -- what nodes, materials and lights are called in messages
+local spelt = setmetatable({}, { __mode = "k" }) -- names of nodes, materials and lights in messages
 
---- Says what a table of the dialect's is called in messages.
+--- Sets the name of an object of the dialect for messages.
 function check.name_object(object, name) spelt[object] = name end
 
---- A value as messages show it.
+--- Returns a value as messages show it.
 function check.spelling(value)
   local kind = type(value)
   if kind == "string" then
@@ -83,7 +83,7 @@ function check.refuse(call, argument, expected, value)
   check.raise("gr.%s: %s: %s expected, got %s", call, argument, expected, check.spelling(value))
 end
 
---- A finite number, or a string that spells one.
+--- Returns a finite number, also from a string that spells one.
 function check.number(call, argument, value)
   local number = tonumber(value)
   if not number then check.refuse(call, argument, "number", value) end
@@ -93,27 +93,27 @@ function check.number(call, argument, value)
   return number
 end
 
---- A number from `least` on.
+--- Returns a number of at least `least`.
 function check.at_least(call, argument, value, least)
   local number = check.number(call, argument, value)
   if number < least then check.refuse(call, argument, "number >= " .. least, value) end
   return number
 end
 
---- A number above `limit`.
+--- Returns a number above `limit`.
 function check.above(call, argument, value, limit)
   local number = check.number(call, argument, value)
   if number <= limit then check.refuse(call, argument, "number above " .. limit, value) end
   return number
 end
 
---- A table that is nothing of the dialect's.
+--- Checks that a value is a table but no object of the dialect.
 function check.list(call, argument, value)
   if type(value) ~= "table" or spelt[value] then check.refuse(call, argument, "table", value) end
   return value
 end
 
---- A new table of exactly n numbers, each at least `least` where that is given.
+--- Returns a new table of exactly n numbers, each at least `least` if that is given.
 function check.vector(call, argument, value, n, least)
   check.list(call, argument, value)
   if rawlen(value) ~= n then check.refuse(call, argument, "table of " .. n .. " numbers", value) end
@@ -136,13 +136,13 @@ function check.direction(call, argument, value)
   return { x / length, y / length, z / length }
 end
 
---- A string; a number counts as one.
+--- Returns a string; a number counts as one.
 function check.text(call, argument, value)
   if type(value) ~= "string" and type(value) ~= "number" then check.refuse(call, argument, "string", value) end
   return tostring(value)
 end
 
---- Options: one of the choices, or an error that lists them.
+--- For options: returns one of the choices, or raises an error that lists them.
 function check.choice(name, choices, value)
   for _, choice in pairs(choices) do
     if value == choice then return value end

@@ -1,6 +1,6 @@
--- Where a scene's files are. Some scenes expect the working directory to be their own folder, others its parent: what
--- a scene requires, runs or loads as a model is looked for in its folder, the folder above, and the working directory;
--- what it reads through io, in the working directory first.
+-- Finds a scene's files. Some scenes expect the working directory to be their own folder, others its parent. Files that
+-- a scene requires, runs or loads as a model are searched in its folder, the folder above, and the working directory;
+-- files that it reads through io, in the working directory first.
 local check = require "gr.check"
 local glint = require "glint"
 check.own_source()
@@ -10,8 +10,8 @@ local pairs, rawget, type = pairs, rawget, type
 local open, concat, insert, remove = io.open, table.concat, table.insert, table.remove
 local dofile, loadfile, raise = dofile, loadfile, check.raise
 
-local running = {} -- paths of the scene and of the files it runs by dofile, innermost last
-local folders = {} -- of those: "" or ending in a slash
+local running = {} -- paths of the scene and of files that it runs by dofile, innermost last
+local folders = {} -- their folders: "" or ending in a slash
 
 local function folder_of(path) return path:match "^(.*/)" or "" end
 
@@ -25,24 +25,24 @@ local function add_folder(folder)
   end
 end
 
---- The script at `path` is the scene.
+--- Makes the script at `path` the scene.
 function files.begin(path)
   insert(running, path)
   add_folder(folder_of(path))
 end
 
---- The scene's paths, outermost first.
+--- Returns the scene's paths, outermost first.
 function files.running() return running end
 
 local function can_read(path)
-  if glint._other_kind(path) then return false end -- a pipe would wait
+  if glint._other_kind(path) then return false end -- opening a pipe would block
   local file = open(path, "rb")
-  local readable = file and file:read(0) ~= nil or file and file:seek "end" == 0 -- a folder opens, too
+  local readable = file and file:read(0) ~= nil or file and file:seek "end" == 0 -- a folder can also be opened
   if file then file:close() end
   return readable
 end
 
---- Where the file is, or nil and the places that were searched. here_first: the working directory before the others.
+--- Returns the file's path, or nil and the places searched. here_first: the working directory first.
 function files.find(path, here_first)
   local places = {}
   if here_first or path:sub(1, 1) == "/" then insert(places, path) end
@@ -59,7 +59,7 @@ function files.find(path, here_first)
   return nil, concat(places, ", ")
 end
 
---- The whole text of a file, or nil.
+--- Returns the whole text of a file, or nil.
 function files.text(path)
   local file = open(path, "rb")
   local text = file and file:read "a"
@@ -81,7 +81,7 @@ local function run(path)
   return leave(chunk())
 end
 
--- Reading through io falls back on the scene's folders.
+-- Searches the scene's folders when a file is not found for reading.
 local function found_for_reading(path)
   return type(path) == "string" and files.find(path, true) or path
 end
@@ -95,7 +95,7 @@ local function search_file(name)
   return chunk, found
 end
 
---- Puts the search into the functions that take the names of files.
+--- Adds the search to the functions that take file names.
 function files.install()
   local io, lines, input = io, io.lines, io.input
   -- luacheck: push ignore 122

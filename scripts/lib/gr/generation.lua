@@ -1,17 +1,17 @@
--- Which of the course's two generations a scene is from, by its text. In the first (Lua 5.0 and 5.1) transforms were
--- multiplied on the right, "post", in the second (from about 2015) on the left, "pre".
+-- Detects from a scene's text to which of the course's two generations it belongs. In the first (Lua 5.0 and 5.1)
+-- transforms were multiplied on the right, "post"; in the second (from about 2015) on the left, "pre".
 --
--- The arguments of gr.mesh decide first: tables mean the first, the name of a file means the second. Then table.unpack,
--- which the first did not have; then a bare `unpack(` or a `require`, which the second did not need. Else the second.
+-- The arguments of gr.mesh decide first: tables mean the first, a file name the second. Then table.unpack, which only
+-- the second has; then a bare `unpack(` or a `require`, which only the first needed. Otherwise it is the second.
 local check = require "gr.check"
 local files = require "gr.files"
 check.own_source()
 local generation = {}
 
 local ipairs, concat, pack = ipairs, table.concat, table.pack
-local opinions = {} -- of texts by path
+local opinions = {} -- results by path
 
--- The text with blanks for comments and "" for strings, save the names of our own modules.
+-- Returns the text with comments replaced by spaces and strings by "", except the names of our own modules.
 local function bare(text)
   local out, at = {}, 1
   while at <= #text do
@@ -44,7 +44,7 @@ local function bare(text)
   return concat(out)
 end
 
--- Returns the beginning of the second argument of the call whose parenthesis opens before `at`.
+-- Returns the start of the second argument of the call whose parenthesis opens before `at`.
 local function second_argument(text, at)
   local depth = 0
   while at <= #text do
@@ -88,8 +88,8 @@ end
 local function by_words(whole)
   local text = whole:gsub("unpack%s*or%s*table%s*%.%s*unpack", ""):gsub("table%s*%.%s*unpack%s*or%s*unpack", "")
   if text:find "table%s*%.%s*unpack" then return 2 end
-  local serves_both = text ~= whole -- then a bare `unpack(` is not the old one
-  local modern = text:find "require%s*%(?%s*\"gr\"" -- written for this module: its own `require`s say nothing
+  local serves_both = text ~= whole -- then a bare `unpack(` does not mean the first
+  local modern = text:find "require%s*%(?%s*\"gr\"" -- written for this module, so its `require`s mean nothing
   return (not serves_both and says_unpack(text) or not modern and requires(text)) and 1 or nil
 end
 
@@ -107,7 +107,7 @@ local function of_file(path)
   return opinions[path]
 end
 
--- 1 or 2, by the text of the file that calls and those it is run by, and by the meshes of the picture.
+-- Returns 1 or 2, from the text of the calling file and of the files that run it, and from the picture's meshes.
 local function of_caller(meshes)
   local paths, running = { check.caller() }, files.running()
   for i = #running, 1, -1 do paths[#paths + 1] = running[i] end
@@ -120,7 +120,7 @@ local function of_caller(meshes)
   return meshes or words or 2
 end
 
---- "post" or "pre". meshes: what the meshes of the picture say: 1, 2 or nil.
+--- Returns "post" or "pre". meshes: the generation by the picture's meshes: 1, 2 or nil.
 function generation.order(meshes) return of_caller(meshes) == 1 and "post" or "pre" end
 
 return generation

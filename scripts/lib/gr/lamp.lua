@@ -1,5 +1,5 @@
--- Lights: the course's point lights, and its variants' lamps with a surface. Each point of a surface shines as a
--- point light does, to all sides, and the lamp is their mean.
+-- Lights: the course's point lights, and its variants' area lights. Each point of an area light shines like a point
+-- light, in all directions, and the lamp is their mean.
 local check = require "gr.check"
 check.own_source()
 local lamp = {}
@@ -7,12 +7,12 @@ local lamp = {}
 local floor, max, min = math.floor, math.max, math.min
 local ipairs, type = ipairs, type
 
-local SAMPLES_LEAST, SAMPLES_MOST = 16, 65536 -- fewer, as some scenes have them, show as dots
+local SAMPLES_LEAST, SAMPLES_MOST = 16, 65536 -- fewer, as in some scenes, would show as dots
 
--- A fall-off of 0 everywhere divides by 0 in the course; this is as good as that once cut to codes.
+-- In the course a falloff of 0 divides by 0; after clipping this looks the same.
 local NO_FALLOFF = { 1e-30, 0, 0 }
 
---- Puts colour and fall-off into the fields of a light.
+--- Sets colour and falloff in the fields of a light.
 function lamp.shine(call, fields, colour, falloff)
   fields.color = check.vector(call, "colour", colour, 3, 0)
   if falloff == nil then return end
@@ -35,7 +35,7 @@ local function ball(call, position, colour, falloff, radius, samples, ...)
   return "sphere_light", fields
 end
 
--- The fields of a parallelogram.
+-- Returns the fields of a parallelogram.
 local function polygon(corner, a, b, samples)
   local corners = {}
   for i, at in ipairs { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } } do

@@ -1,4 +1,4 @@
--- Layers on shapes that few variants have: pictures of normals, and noise.
+-- Layers on shapes that only few variants have: normal maps, and noise.
 local check = require "gr.check"
 local normal_map = require "gr.normal_map"
 local surface = require "gr.surface"
@@ -38,7 +38,7 @@ return function(gr, shape_of, methods)
     return object
   end
 
-  -- Each variant uses its own numbers for it.
+  -- Each variant uses its own kinds of noise.
   function gr.set_perlin(self, kind)
     local node = shape_of("set_perlin", self)
     if not grains[kind] then check.number("set_perlin", "kind", kind) end

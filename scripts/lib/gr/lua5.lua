@@ -1,4 +1,4 @@
--- What Lua 5.0 to 5.3 had and the scenes of those years use. A name is only given where there is none.
+-- Functions of Lua 5.0 to 5.3 that scenes of those years use. A name is only defined if it does not exist.
 local check = require "gr.check"
 check.own_source()
 
@@ -37,7 +37,7 @@ local function frexp(x)
   return m, e
 end
 
--- As in Lua 5.1: definitions of the calling file from here on go into a table of this name.
+-- As in Lua 5.1: from here on the calling file's definitions go into a table of this name.
 local function module(name, ...)
   local space = package.loaded[name]
   if type(space) ~= "table" then
@@ -91,14 +91,14 @@ local ALIASES = {
   [package] = { seeall = seeall },
 }
 
--- Numbers where whole ones are wanted were cut to them.
+-- Numbers were truncated where whole numbers are expected.
 local function whole(value)
   local number = tonumber(value)
   if not number or mathtype(number) == "integer" or number ~= number then return value end
   return tointeger(number < 0 and -floor(-number) or floor(number)) or value
 end
 
--- "%d" takes any number, and "%u" is there.
+-- "%d" accepts any number, and "%u" exists.
 local function lenient_format(pattern, ...)
   if type(pattern) ~= "string" or not pattern:find "%%[^%a%%]*[dicuoxX]" then return format(pattern, ...) end
   local values, place = { n = select("#", ...), ... }, 0
@@ -125,7 +125,7 @@ local function install_numbers()
   -- luacheck: pop
 end
 
---- Puts all of it into the globals and the libraries.
+--- Adds all of it to the globals and the libraries.
 return function()
   for library, names in next, ALIASES do
     for name, value in pairs(names) do

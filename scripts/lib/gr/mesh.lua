@@ -1,5 +1,5 @@
--- Meshes: the numbers as the scene gives them, and the glint.mesh made of them. Faces without an area are never hit and
--- left out; a face that crosses itself becomes the fan from its first corner.
+-- Meshes: the numbers from the scene, and the glint.mesh made from them. Faces without an area are never hit and are
+-- dropped. A face that crosses itself becomes a fan from its first corner.
 local check = require "gr.check"
 local glint = require "glint"
 local obj = require "gr.obj"
@@ -9,10 +9,10 @@ local mesh = {}
 local ipairs, pcall, rawget, rawlen, setmetatable, tonumber, type =
   ipairs, pcall, rawget, rawlen, setmetatable, tonumber, type
 local floor = math.floor
-local loaded = {} -- models by the name the scene gives
-local uv_of = setmetatable({}, { __mode = "k" }) -- of faces of corners: the coordinates of these
+local loaded = {} -- models by their names in the scene
+local uv_of = setmetatable({}, { __mode = "k" }) -- of faces: the texture coordinates of their corners
 
--- Twice the area's vector of a polygon; corners are places in the flat list of coordinates.
+-- Returns twice the area vector of a polygon; corners are indices in the flat list of coordinates.
 local function area(numbers, corners)
   local a = corners[1]
   local ax, ay, az = numbers[a], numbers[a + 1], numbers[a + 2]
@@ -33,8 +33,8 @@ local function has_area(numbers, corners)
   return x ~= 0 or y ~= 0 or z ~= 0
 end
 
--- The model of the flat list of coordinates and the faces, lists of numbers from 0: faces that count from 1, flat when
--- all are triangles.
+-- Makes the model from the flat list of coordinates and the faces, lists of numbers from 0. Its faces count from 1, in
+-- a flat list if all are triangles.
 local function new_model(numbers, faces, generation)
   local model = { vertices = numbers, generation = generation, faces = {}, polygons = {}, uv = {} }
   local triangles, polygons = model.faces, model.polygons
@@ -90,8 +90,8 @@ local function read_face(face, i, count)
   return out
 end
 
---- A parallelogram with a picture's coordinates, lit on both sides; nil where it has no area. It says nothing about the
---- scene's generation.
+--- Returns a parallelogram with texture coordinates, lit on both sides; nil if it has no area. It does not affect the
+--- detection of the scene's generation.
 function mesh.square(corner, u, v)
   local numbers = {}
   for i = 1, 3 do
@@ -105,7 +105,7 @@ function mesh.square(corner, u, v)
   return #model.faces == 6 and model or nil
 end
 
---- A model of tables, the first generation's.
+--- Returns a model from tables, as in the first generation.
 function mesh.of_tables(vertices, faces)
   check.list("mesh", "vertices", vertices)
   check.list("mesh", "faces", faces)
@@ -119,7 +119,7 @@ function mesh.of_tables(vertices, faces)
   return new_model(numbers, read, 1)
 end
 
---- A model of a file, the second generation's; read once.
+--- Returns a model from a file, as in the second generation; reads it only once.
 function mesh.of_file(path)
   if not loaded[path] then
     local numbers = {}
@@ -148,7 +148,7 @@ local function add_fan(faces, corners, numbers)
   end
 end
 
--- Whether the polygon crosses itself, by the engine's own judgement.
+-- Returns whether the polygon crosses itself, by the engine's own test.
 local function is_crossed(numbers, corners)
   local own, face = {}, {}
   for i, corner in ipairs(corners) do
@@ -158,7 +158,7 @@ local function is_crossed(numbers, corners)
   return not try(own, { face }, "")
 end
 
--- Triangles and polygons in one list, the crossed ones among these as fans where `fans` is true.
+-- Returns triangles and polygons in one list; with `fans`, self-crossing ones become fans.
 local function all_faces(model, fans)
   local faces, flat, uv = {}, model.faces, model.uv
   for i = 1, #flat, 3 do
@@ -176,7 +176,7 @@ local function all_faces(model, fans)
   return faces
 end
 
--- Coordinates on the surface, one pair a corner in the order of the faces; nil where some face has none.
+-- Returns texture coordinates, a pair for each corner in the order of the faces; nil if a face has none.
 local function coordinates_of(model, faces)
   local uv = {}
   if not model.uv then return nil end
@@ -187,10 +187,10 @@ local function coordinates_of(model, faces)
   return uv
 end
 
---- Whether a picture may lie on it.
+--- Returns whether the mesh can have a texture.
 function mesh.has_coordinates(model) return model.uv ~= nil end
 
---- A new glint.mesh, or nil where no face has an area.
+--- Returns a new glint.mesh, or nil if no face has an area.
 function mesh.shape(model, name)
   local flat = #model.polygons == 0
   local faces = flat and model.faces or all_faces(model, false)

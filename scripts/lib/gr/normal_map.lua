@@ -1,7 +1,7 @@
--- Pictures of normals: red along u, green along v, blue outward, -1 .. 1 as codes from 0 to the last.
+-- Normal maps: red along u, green along v, blue outward, -1 .. 1 over the range of pixel values.
 --
--- A bump's normal follows from the slopes of a height. One whose slopes are what the picture says is made of constants
--- at each point: floor has no slope, so that of floor(a) x is floor(a). Heights are the world's: so are directions.
+-- A bump's normal follows from the slopes of a height. The slopes of the map come from a height with constants at each
+-- point: floor has slope 0, so the slope of floor(a) x is floor(a). Heights and directions are in world space.
 local check = require "gr.check"
 local glint = require "glint"
 check.own_source()
@@ -9,13 +9,13 @@ local normal_map = {}
 
 local tonumber, tostring = tonumber, tostring
 
-local STEPS = 1 << 20 -- of a constant, from one whole number to the next
-local FLAT = 0.02 -- the least that a normal points outward
+local STEPS = 1 << 20 -- steps of a constant between whole numbers
+local FLAT = 0.02 -- least outward component of a normal
 local AXES = { x = { 1, 0, 0 }, y = { 0, 1, 0 }, z = { 0, 0, 1 } }
 
 local function constant(a) return glint.floor(a * STEPS) / STEPS end
 
--- The direction of u at a point of a shape, in its own space; of any length.
+-- The direction of u at a point of a shape, in the shape's space; of any length.
 local along_u = {
   sphere = function(p, node) return glint.vector(AXES.y):cross(p - node.center) end,
   cylinder = function(p, node) return glint.vector(AXES[node.axis]):cross(p) end,
@@ -28,7 +28,7 @@ local along_u = {
 }
 along_u.cone = along_u.cylinder
 
--- A place within a shape, in its own space.
+-- A point inside a shape, in the shape's space.
 local inside = {
   sphere = function(node) return node.center end,
   cylinder = function(node)
@@ -42,7 +42,7 @@ local inside = {
 }
 inside.cone = inside.cylinder
 
---- Whether shapes of that kind have such directions.
+--- Returns whether shapes of that kind have such directions.
 function normal_map.lies_on(node) return along_u[node.kind] ~= nil end
 
 local function numbers_of(map)
@@ -51,7 +51,7 @@ local function numbers_of(map)
   return m
 end
 
--- A direction in the world: of length 1, or 0 where it was.
+-- Transforms a direction to the world: its length is 1, or 0 if it was 0.
 local function to_world(m, d)
   local w = glint.vector(m[1] * d.x + m[2] * d.y + m[3] * d.z, m[5] * d.x + m[6] * d.y + m[7] * d.z,
     m[9] * d.x + m[10] * d.y + m[11] * d.z)
@@ -68,7 +68,7 @@ local function is_mirrored(m)
     + m[3] * (m[5] * m[10] - m[6] * m[9]) < 0
 end
 
---- The bump of a picture of normals on a node's shape, where the map has put it.
+--- Returns the bump of a normal map on a node's shape, placed by `map`.
 function normal_map.bump(normals, node, map)
   local m, photo, picture = numbers_of(map), normals.photo, normals.picture
   local side, middle = is_mirrored(m) and -1 or 1, place_in_world(m, inside[node.kind](node))

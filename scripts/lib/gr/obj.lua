@@ -1,5 +1,5 @@
--- Models: the `v`, `vt` and `f` lines of .obj files, as the course's programs read them, with textures. Normals are
--- dropped, and so is every other line. `require "readobj"` gives the course's function where the scene has no such
+-- Models: reads the `v`, `vt` and `f` lines of .obj files, as the course's programs do, with textures. Normals
+-- and all other lines are ignored. `require "readobj"` provides the course's function if the scene has no such
 -- file.
 local check = require "gr.check"
 local files = require "gr.files"
@@ -37,8 +37,8 @@ local function read_coordinates(text, place)
   return { u, v }
 end
 
--- Numbers count from 1, or from the last vertex where negative; in the list from 0. face.uv has the coordinates of each
--- corner, where all have any.
+-- Reads a face. Its numbers count from 1, or backwards from the last vertex if negative; in the list from 0. face.uv
+-- has the texture coordinates of each corner, if all have some.
 local function read_face(text, count, coordinates, place)
   local face, n, uv = {}, 0, #coordinates > 0 and {} or nil
   for word in text:gmatch "%S+" do
@@ -93,7 +93,7 @@ function obj.read(call, path, vertex)
   return faces
 end
 
---- The course's readobj(file): a list of vertices and one of faces, for gr.mesh.
+--- The course's readobj(file): returns a list of vertices and a list of faces, for gr.mesh.
 function obj.readobj(path)
   local vertices = {}
   local faces = obj.read("readobj", check.text("readobj", "file", path), function(i, x, y, z)

@@ -14,13 +14,13 @@ for operation, words in pairs {
   for _, word in pairs(words) do NAMES[word] = operation end
 end
 
---- "union", "intersection" or "difference", by one of the words, in letters of either kind.
+--- Returns "union", "intersection" or "difference" for one of the words, in any case.
 function operations.of(call, word)
   return type(word) == "string" and NAMES[lower(word)]
     or check.refuse(call, "operation", '"+", "*", "-", "union", "intersection" or "difference"', word)
 end
 
--- Names of functions, and the operations that they stand for.
+-- Names of functions, and the operations that they mean.
 operations.calls = {}
 for word, operation in pairs(NAMES) do
   if #word > 1 then

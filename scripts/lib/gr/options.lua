@@ -1,12 +1,12 @@
--- Choices that the course left open, as fields of gr.options, which are checked when they are set.
+-- Choices that the course left open, as fields of gr.options. They are checked when they are set.
 --
---   order       "pre" or "post": how transforms are multiplied; nil, the default: as the scene's generation does
---   pixel       where in its pixel a ray passes, 0 (the corner) or 0.5
+--   order       "pre" or "post": how transforms are multiplied; nil, the default: by the scene's generation
+--   pixel       the ray's position in its pixel, 0 (the corner) or 0.5
 --   specular    "phong" or "blinn"
 --   plane       the square of gr.plane(name): "xz" or "xy" of edge 1 around the origin, "xz-2" or "xy-2" of edge 2,
 --               "xz-corner" or "xy-corner" of edge 1 from the origin on; nil, the default: "xz", with a warning
---   axis        "x", "y" or "z": of gr.cylinder and gr.cone
---   background  {r, g, b} from 0 on, "r,g,b", or "#rrggbb", the codes of the picture
+--   axis        "x", "y" or "z": for gr.cylinder and gr.cone
+--   background  {r, g, b} from 0 on, "r,g,b", or "#rrggbb", the pixel values of the picture
 local check = require "gr.check"
 check.own_source()
 
@@ -20,7 +20,7 @@ local function read_background(value)
   if type(value) == "table" then return check.vector("options.background", "colour", value, 3, 0) end
   local text = type(value) == "string" and value or ""
   local r, g, b = text:match "^#(%x%x)(%x%x)(%x%x)$"
-  if r then -- the middle of a step: codes are truncated
+  if r then -- the middle of a step, because values are truncated
     return { (tonumber(r, 16) + 0.5) / 255, (tonumber(g, 16) + 0.5) / 255, (tonumber(b, 16) + 0.5) / 255 }
   end
   local parts = { text:match "^([^,]+),([^,]+),([^,]+)$" }

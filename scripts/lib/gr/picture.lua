@@ -1,8 +1,8 @@
--- gr.render: from the graph of nodes to a glint scene and its picture.
+-- gr.render: makes a glint scene and its picture from the graph of nodes.
 --
--- The graph is walked at every call, so that what was called on a shared node shows under all its parents. Each place
--- where a shape shows is a glint shape of its own that lives as long as the node: a picture of the same places as the
--- last one is the same glint scene, with the changes applied.
+-- The graph is traversed at every call, so that changes to a shared node appear under all its parents. Each place where
+-- a shape appears is a separate glint shape that lives as long as the node. A picture with the same places as the
+-- previous one uses the same glint scene, with the changes applied.
 local check = require "gr.check"
 local generation = require "gr.generation"
 local glint = require "glint"
@@ -21,7 +21,7 @@ local MOST_SHAPES = 1 << 22
 
 local OPEN = -1
 
--- A combined solid is one shape; what it is made of is looked at for cycles and meshes.
+-- A combined solid is one shape; its parts are only checked for cycles and meshes.
 local function below(node)
   if not node.parts then return node.children end
   local list = {}
@@ -30,7 +30,7 @@ local function below(node)
   return list
 end
 
--- How often a shape shows under each node. Raises when a node is within itself.
+-- Counts how often a shape appears under each node. Raises if a node contains itself.
 local function count_shapes(root)
   local count, stack = {}, { root }
   while #stack > 0 do
@@ -68,7 +68,7 @@ local function generation_of_meshes(count)
   return found
 end
 
--- Calls visit(node, map) for each place of a shape, in the order in which a walk from the root meets them.
+-- Calls visit(node, map) for each place of a shape, in the order of a traversal from the root.
 local function walk(root, order, count, visit)
   local nodes, maps, top = { root }, { false }, 1
   while top > 0 do
@@ -95,7 +95,7 @@ end
 
 local AXES = { x = { 1, 0, 0 }, y = { 0, 1, 0 }, z = { 0, 0, 1 } }
 
--- Shapes that are a glint shape under a transform of its own.
+-- Shapes that become a glint shape with its own transform.
 local makers = {
   sphere = function(fields, node)
     fields.center, fields.radius = node.center, node.radius
@@ -119,7 +119,7 @@ local makers = {
   end,
 }
 
--- Errors of the engine as the scene's own.
+-- Raises errors of the engine as errors of the scene.
 local function fail(message)
   if type(message) ~= "string" then error(message, 0) end
   check.raise("gr.render: %s", (message:gsub("^[^:]*:%d+: ", "")))
@@ -130,7 +130,7 @@ local function engine(call, ...)
   return good and result or good or fail(result)
 end
 
--- Makes or changes a shape; nil where the map flattens space: what is flat is not hit.
+-- Makes or changes a shape; nil if the map flattens space: flat shapes cannot be hit.
 local function try(change, ...)
   local good, result = pcall(change, ...)
   if good then return result end
@@ -154,10 +154,10 @@ local function make_shape(node, map)
   return makers[node.kind](fields, node)
 end
 
--- Meshes are shared by their places: a group for each has the transform.
+-- Makes a group with the transform, because all places of a mesh share its shape.
 local function make_mesh_place(node, map) return glint.group { node.mesh_shape, transform = map } end
 
--- Whether the mesh has anything to hit.
+-- Returns whether the mesh has anything to hit.
 local function has_mesh(node)
   if node.mesh_shape == nil then node.mesh_shape = mesh.shape(node.model, cut_name(node.name)) or false end
   return node.mesh_shape ~= false
@@ -168,7 +168,7 @@ local function set_map(shape, map)
   return shape
 end
 
--- The shape of the n-th place of the node; nil where there is nothing to hit.
+-- Returns the shape of the n-th place of the node; nil if there is nothing to hit.
 local function place_of(node, n, map)
   local is_mesh = node.kind == "mesh"
   if node.is_nothing or is_mesh and not has_mesh(node) then return nil end
@@ -195,7 +195,7 @@ end
 
 local combine
 
--- A shape in a combined solid; nil where there is nothing in it. dressed: the solid has a material.
+-- Returns a shape in a combined solid; nil if it is empty. dressed: the solid has a material.
 local function part_of(node, order, count, map, dressed)
   if node.kind == "combined" then return combine(node, order, count, map, dressed) end
   if node.is_nothing then return nil end
@@ -239,7 +239,7 @@ end
 
 -- ---- The scene ----
 
-local last = { members = {} } -- the scene of the last picture, and its objects
+local last = { members = {} } -- the scene of the previous picture, and its objects
 
 local function has_members(members)
   if not last.scene or #members ~= #last.members then return false end
@@ -252,7 +252,7 @@ end
 local function members_of(root, order, count, lights)
   local members, seen = {}, {}
   walk(root, order, count, function(node, map)
-    if node.kind == "combined" then -- made anew for each picture
+    if node.kind == "combined" then -- made again for each picture
       members[#members + 1] = combine(node, order, count, map)
       return
     end
@@ -302,7 +302,7 @@ local function read_fov(value)
   return fov
 end
 
--- The name stands for itself: what would be a place for a number is escaped.
+-- Reads the name of the file, and escapes what would be a place for a number.
 local function read_file(value)
   local name = check.text("render", "file", value)
   if name == "" or name:find "/$" then check.refuse("render", "file", "name of a file", value) end
@@ -320,7 +320,7 @@ local function read_lights(lights, value, to_light)
   end
 end
 
--- Variants have their area lights in a list of their own, and numbers that are theirs.
+-- In variants area lights have a separate list, and further numbers.
 local function read_more(lights, to_light, ...)
   local others, count = {}, 0
   for i = 1, select("#", ...) do
@@ -335,7 +335,7 @@ local function read_more(lights, to_light, ...)
   check.left_out("render", unpack(others, 1, count))
 end
 
---- gr.render. to_light: what was made by gr.light, of a value, or nil.
+--- gr.render. to_light: returns the light made by gr.light for a value, or nil.
 function picture.render(root, to_light, file, width, height, eye, view, up, fov, ambient, lights, ...)
   local options_of_picture = { transfer = "none", rounding = "truncate" }
   options_of_picture.output = read_file(file)

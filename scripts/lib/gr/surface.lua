@@ -1,5 +1,5 @@
--- Surfaces: materials with the additions of the dialect's variants, and pictures and reliefs on them. A
--- record says it in plain fields; surface.shade makes the glint.material of a record at one place of a shape.
+-- Surfaces: materials with the additions of the dialect's variants, and pictures and reliefs on them. A record stores
+-- them in plain fields; surface.shade makes the glint.material of a record at one place of a shape.
 local check = require "gr.check"
 local files = require "gr.files"
 local glint = require "glint"
@@ -11,14 +11,14 @@ local surface = {}
 local pcall, select, setmetatable, tonumber, tostring, type = pcall, select, setmetatable, tonumber, tostring, type
 local abs, concat, max, min, unpack = math.abs, table.concat, math.max, math.min, table.unpack
 
-local INDEX_MAX = 4 -- a number beyond is no index of refraction: variants use large ones for what is opaque
-local HEIGHT = 0.05 -- of a relief's white above its black, over the shape's size before its transforms
+local INDEX_MAX = 4 -- larger numbers are no index of refraction: variants use them for opaque materials
+local HEIGHT = 0.05 -- height of a relief's white above its black, relative to the shape's size before its transforms
 
 -- ---- Pictures ----
 
-local photos = {} -- by the name that the scene gives
+local photos = {} -- by their names in the scene
 
--- Pixel values are linear colours, as in the dialect's own pictures.
+-- Reads a picture whose pixel values are linear colours, as in the dialect's own pictures.
 local function read_photo(call, name)
   name = check.text(call, "file", name)
   if photos[name] then return photos[name] end
@@ -30,7 +30,7 @@ local function read_photo(call, name)
   return photo
 end
 
---- A picture on a surface, `across` and `down` times.
+--- Makes a picture on a surface, repeated `across` and `down`.
 function surface.picture(call, name, across, down)
   local photo = read_photo(call, name)
   across = check.number(call, "across", across == nil and 1 or across)
@@ -42,14 +42,14 @@ function surface.picture(call, name, across, down)
   return { photo = photo, across = across, down = down, most = most, pattern = pattern }
 end
 
---- The normals that a picture has, which lean `strength` times as far, `across` and `down` times.
+--- Makes a normal map whose normals lean `strength` times as far, repeated `across` and `down`.
 function surface.normals(call, name, strength, across, down)
   strength = check.above(call, "strength", strength == nil and 1 or strength, 0)
   local picture = surface.picture(call, name, across, down)
   return { photo = picture.photo, picture = picture, strength = strength }
 end
 
---- A relief by the brightness of a picture.
+--- Makes a relief from the brightness of a picture.
 function surface.relief(call, name, height)
   return { photo = read_photo(call, name), height = check.number(call, "height", height == nil and HEIGHT or height) }
 end
@@ -65,10 +65,10 @@ end
 local function is_share(x) return x >= 0 and x <= 1 end
 local function is_index(x) return x > 1 and x <= INDEX_MAX end
 
--- Glass given only by its index, from which its reflectance follows.
+-- Makes glass from only its index, which determines its reflectance.
 local function make_glass(record, index) record.transmission, record.ior, record.fresnel = 1, index, true end
 
--- One number: a reflectivity or an index. A plain 1 is in some scenes what makes every material opaque.
+-- One number: a reflectivity or an index. In some scenes every opaque material has a plain 1.
 local readers = {
   function(record, a)
     local kd = record.kd
@@ -97,14 +97,14 @@ local readers = {
     end
     record.mirror, record.transmission, record.ior = a, b, c == 0 and 1 or c
   end,
-  function(record, gloss, a, b, c) -- how blurred the mirror is comes first
+  function(record, gloss, a, b, c) -- the blur of the mirror comes first
     record.mirror, record.transmission, record.ior = a, b, c
     if gloss ~= 0 then return "mirrors are sharp", { gloss } end
   end,
 }
 
 local function read_numbers(record, call, numbers)
-  while numbers[#numbers] == 0 do numbers[#numbers] = nil end -- what is 0 adds nothing
+  while numbers[#numbers] == 0 do numbers[#numbers] = nil end -- trailing zeros add nothing
   if #numbers == 0 then return end
   local has_gloss = #numbers == 4 and is_share(numbers[2]) and is_share(numbers[3]) and is_index(numbers[4])
   local count = has_gloss and 4 or min(#numbers, 3)
@@ -113,7 +113,7 @@ local function read_numbers(record, call, numbers)
   if #numbers > count then leave_out(call, { unpack(numbers, count + 1) }, "three numbers are read") end
 end
 
--- Numbers, and names of pictures: the first that is not "" lies on the surface.
+-- Reads numbers and names of pictures: the first name that is not "" is the picture on the surface.
 local function read_more(record, call, ...)
   local numbers, others = {}, {}
   for i = 1, select("#", ...) do
@@ -137,13 +137,13 @@ local function read_more(record, call, ...)
   if #others > 0 then leave_out(call, others, "numbers, and the name of a picture, expected") end
 end
 
--- The model of the highlight. An exponent of 0 makes it 1 wherever a light reaches, as n.h > 0 has it; r.v is not
--- above 0 everywhere.
+-- Returns the model of the highlight. An exponent of 0 makes it 1 wherever light arrives, as n.h > 0 there, while r.v
+-- is not above 0 everywhere.
 local function model_of(shininess)
   return (options.specular == "blinn" or shininess == 0) and "blinn_phong" or "phong"
 end
 
---- A record of the course's three arguments, and of those after them.
+--- Makes a record from the course's three arguments, and those after them.
 function surface.record(call, kd, ks, shininess, ...)
   local record = { kd = check.vector(call, "kd", kd, 3, 0), ks = check.vector(call, "ks", ks, 3, 0) }
   record.shininess = check.at_least(call, "shininess", shininess, 0)
@@ -152,14 +152,14 @@ function surface.record(call, kd, ks, shininess, ...)
   return record
 end
 
---- The same with a picture in the place of kd.
+--- The same with a picture instead of kd.
 function surface.pictured(call, file, ks, shininess, ...)
   local record = surface.record(call, { 1, 1, 1 }, ks, shininess, ...)
   record.picture = surface.picture(call, file)
   return record
 end
 
---- A picture and nothing else.
+--- Makes a surface with only a picture.
 function surface.plain(picture) return { kd = { 1, 1, 1 }, ks = { 0, 0, 0 }, shininess = 0, picture = picture } end
 
 function surface.mirror(record, call, share) record.mirror = check.at_least(call, "reflectivity", share, 0) end
@@ -170,7 +170,7 @@ function surface.glass(record, call, index)
   make_glass(record, index)
 end
 
---- A surface hides that share of the light behind it, and has as much of its own light; index: of refraction.
+--- Sets the opacity: the share of the light behind that the surface hides, and of its own light; index: of refraction.
 function surface.hide(record, call, share, index)
   record.opacity = check.at_least(call, "opacity", share, 0)
   if record.opacity > 1 then check.refuse(call, "opacity", "number 0 .. 1", share) end
@@ -178,7 +178,7 @@ function surface.hide(record, call, share, index)
   record.transmission, record.fresnel = 1 - record.opacity, nil
 end
 
---- Two colours, mixed by noise.
+--- Makes two colours, mixed by noise.
 function surface.noisy(call, a, b, ks, shininess, ...)
   local record = surface.record(call, a, ks, shininess)
   local other = check.vector(call, "the other colour", b, 3, 0)
@@ -207,7 +207,7 @@ local function is_above_0(share)
   return (share or 0) > 0
 end
 
--- Grains darken by up to the whole, in the mean by half of it.
+-- Darkens by grains: at most to 0, on average by half.
 local function diffuse_of(record, picture, grain)
   local color, share = picture and picture.pattern or record.kd, record.opacity or 1
   if not grain and share == 1 then return color end
@@ -230,7 +230,7 @@ local function make(record, picture, grain, bump)
   return glint.material(fields)
 end
 
--- By how much a map makes lengths longer, in the mean.
+-- Returns by how much a map lengthens vectors, on average.
 local function scale_of(map)
   local m, n = {}, 0
   for number in tostring(map):gmatch "[-+%w.]+" do
@@ -273,7 +273,7 @@ function surface.shade(record, node, map, bare)
   return made[key]
 end
 
---- After a record's fields were changed.
+--- Call it after changing a record's fields.
 function surface.changed(record) kept[record] = nil end
 
 return surface
