@@ -1,7 +1,7 @@
--- A room of the gr dialect's variants: planes, a lamp with a surface, a column that stands: glint --dialect gr scripts/gr_room.lua
+-- A room of the gr dialect's variants: planes, an area light and a column: glint --dialect gr scripts/gr_room.lua
 
 gr.options.plane = 'xz' -- of edge 1 around the origin; other variants have other squares
-gr.options.axis = 'y'   -- theirs is z, as the course's is
+gr.options.axis = 'y'   -- in the variants z, as in the course
 
 white = gr.material({0.7, 0.7, 0.68}, {0, 0, 0}, 0)
 red = gr.material({0.65, 0.15, 0.12}, {0, 0, 0}, 0)
@@ -11,7 +11,7 @@ mirror = gr.material({0.05, 0.05, 0.05}, {0.6, 0.6, 0.6}, 200, 0.7)
 
 room = gr.node('room')
 
--- A wall is the plane turned, then scaled, then put in its place: transforms act in the order of their calls.
+-- A wall is the plane, turned, scaled and moved: transforms act in the order of their calls.
 function wall(name, material, axis, degrees, x, y, z)
   local plane = gr.plane(name)
   plane:set_material(material)

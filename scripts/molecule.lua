@@ -2,7 +2,7 @@
 --     glint scripts/molecule.lua                                   caffeine: molecule.png
 --     glint scripts/molecule.lua --set style=sticks                small balls, joined by bonds
 --     glint scripts/molecule.lua --set file=1abc.pdb --set scale=0.5 --outline black
--- Where the module is: scripts/lib is searched for scripts in scripts/; after `make install` for every script; else set
+-- Scripts in scripts/ find the module in scripts/lib; after `make install` every script does; otherwise set
 -- LUA_PATH='.../scripts/lib/?.lua;;'.
 local glint = require "glint"
 local particles, bonds = require "glint.particles", require "glint.bonds"

@@ -3,7 +3,7 @@
 -- Files, all linear, in the folder `photometric` (--set folder=...):
 --     light_001.png ...    the scene under light 1, 2 ...: 16 bits, code = light * 65535; .pfm with --set exact=true
 --     lights.csv           file, x, y, z (unit, from the scene to the light; x right, y up, z to the camera), intensity
---                          (the light's times 2^exposure, as the codes have it)
+--                          (the light's intensity times 2^exposure, as in the pixel values)
 --     mask.png             1 where an object is, 0 elsewhere (16 bits)
 --     normal.png           normal * 0.5 + 0.5 in the same axes (16 bits), and normal.pfm: exact, else 0
 --     depth.png            nearest / distance (16 bits), and depth.pfm: the distance from the eye, else inf
@@ -14,12 +14,12 @@
 -- --set layout=diligent writes what programs for the DiLiGenT benchmark read (B. Shi et al., "A Benchmark Dataset and
 -- Evaluation for Non-Lambertian and Uncalibrated Photometric Stereo", PAMI 2019), a folder for each object in each
 -- material:
---     001.png 002.png ...       16 bits, linear; filenames.txt has their names, a line each
---     light_directions.txt      x y z, a light a line, in the axes above
+--     001.png 002.png ...       16 bits, linear; filenames.txt has their names, one per line
+--     light_directions.txt      x y z, one light per line, in the axes above
 --     light_intensities.txt     its red, green and blue, times 2^exposure
 --     Normal_gt.mat, .npy, .png the true normals, 0 in the background; depth_gt.npy
 --     mask.png                  255 where the object is, 0 elsewhere; one channel
--- and objects.txt beside them, with the folders' names.
+-- and objects.txt next to the folders, with their names.
 --     glint scripts/photometric.lua --set layout=diligent --set objects=balls,solids --set materials=matt,gold
 -- --size sets the size of the pictures. -o 'set/%03d.png' names them, and the other files go into the same folder. The
 -- last picture, after the last light, is the scene in white ambient light.

@@ -7,7 +7,7 @@
 --     glint scripts/soft_shadows.lua                       12 pictures: radius 0 0.6 1.8 across, samples 1 4 16 64 down
 --     glint scripts/soft_shadows.lua --set lamp=disk       a disk that faces the floor
 --     glint scripts/soft_shadows.lua --set lamp=window     a square of the same area
--- Only the penumbra costs rays: what sees all of the lamp, or nothing, is settled by one test. `--json` counts them.
+-- Only the penumbra costs rays: one test settles points that see all of the lamp, or nothing. `--json` counts them.
 local glint = require "glint"
 
 local P = glint.params {

@@ -246,7 +246,8 @@ void cli_set_state(lua_State *L);
 
 /// Makes the run render and measure every frame but write none. *request receives the original request.
 void cli_begin_measuring(const cli_options *options, cli_output *output, glintL_run *run, glintL_request *request);
-/// Ends measuring, after a script that ended well if `good`: restores the run, and applies the results. Returns false if the run failed.
+/// Ends measuring: restores the run and applies the results. good: the script ended well. Returns false if the run
+/// failed.
 bool cli_end_measuring(cli_options *options, cli_output *output, glintL_run *run, const glintL_request *request, bool good);
 /// Stops the script in `L` from printing anything.
 void cli_hush_script(lua_State *L);

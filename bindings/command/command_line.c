@@ -136,7 +136,7 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
     }
 }
 
-// ---- What the words and the options say together ----
+// ---- Checks of words and options together ----
 
 const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
     { "render", CLI_RENDER, CLI_SCRIPT, "SCRIPT [options]", "render the frames of a script; the word may be left out" },

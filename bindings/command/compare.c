@@ -1,4 +1,4 @@
-// glint compare A B: how much two pictures differ. The exit codes are those of idiff.
+// glint compare A B: how much two pictures differ. It uses idiff's exit codes.
 #include <inttypes.h>
 #include <math.h>
 

@@ -1,4 +1,4 @@
-// glint explain SCRIPT: the plan of one frame: its effects and what requires them, its stages, the expected rays.
+// glint explain SCRIPT: the plan of one frame: its effects and their origins, its stages, the expected rays.
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>

@@ -15,7 +15,7 @@ typedef struct join {
     char *message;
 } join;
 
-// ---- What a part says of itself ----
+// ---- The texts of a part ----
 
 static bool take_region(const char *options, double region[4])
 {

@@ -37,7 +37,7 @@ typedef struct points {
     int64_t count;
 } points;
 
-// ---- The point at hand ----
+// ---- The current point ----
 
 static void exchange_text(points *p)
 {
@@ -287,7 +287,7 @@ static int add_sweeps(points *p)
         glintL_order_axis *axis = glintL_order_add(&p->order, p->options->sweeps[i].count);
         axis->may_fail = true;
         snprintf(axis->name, sizeof axis->name, "%s", p->options->sweeps[i].name);
-        axis->middle = 0; // its states are the fewest
+        axis->middle = 0; // keeps the fewest states open
     }
     return own;
 }

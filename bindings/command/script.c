@@ -47,8 +47,8 @@ static void add_path(lua_State *L, const char *folder, const char *templates, bo
     lua_pop(L, 2);
 }
 
-// Adds the modules that were installed with this command (PREFIX/share next to PREFIX/bin). The order is: LUA_PATH, these
-// modules, then modules installed elsewhere. A build that is not installed uses the modules of its source tree.
+// Adds the modules that were installed with this command (PREFIX/share next to PREFIX/bin). The order is: LUA_PATH,
+// these modules, then modules installed elsewhere. A build that is not installed uses the modules of its source tree.
 static void add_own_modules(lua_State *L, const char *program)
 {
     char folder[GLINTL_PATH_SIZE], probe[GLINTL_PATH_SIZE + 64];

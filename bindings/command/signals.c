@@ -49,7 +49,7 @@ static void handle(int number, void (*handler)(int))
     sigaction(number, &action, NULL);
 }
 
-// If SIGHUP was ignored, as under nohup, it stays ignored.
+// Installs the handler. SIGHUP stays ignored if it was ignored before, as under nohup.
 static void handle_all(void (*handler)(int))
 {
     handle(SIGINT, handler);

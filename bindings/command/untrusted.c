@@ -153,7 +153,7 @@ static int judge(int status, const watched *child, const cli_options *options, c
     return GLINTL_EXIT_USAGE;
 }
 
-// The parent's part. Removes the incomplete files of a killed child.
+// Waits for the child, in the parent. Removes the incomplete files of a killed child.
 static int await_child(pid_t process, const sigset_t *signals, const cli_options *options, cli_output *output,
                        int *signal_number)
 {
@@ -168,7 +168,7 @@ static int await_child(pid_t process, const sigset_t *signals, const cli_options
     return judge(status, &child, options, output, signal_number);
 }
 
-// The child's part. False: the message says why.
+// Enters the sandbox, in the child. False: the message says why.
 static bool enter(cli_options *options, const cli_output *output, char *message)
 {
     options->request.folder = folder_of(options);

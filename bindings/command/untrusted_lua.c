@@ -40,8 +40,8 @@ lua_State *cli_untrusted_state(cli_lua_memory *memory)
 
 // ---- Time ----
 
-// The interrupt hook, which new coroutines inherit. Once it has raised, each further instruction raises again, so that
-// no pcall can continue.
+// Raises after an interrupt. New coroutines inherit this hook. Once it has raised, each further instruction raises
+// again, so that no pcall can continue.
 static void look(lua_State *L, lua_Debug *where)
 {
     (void)where;
@@ -51,7 +51,7 @@ static void look(lua_State *L, lua_Debug *where)
     luaL_error(L, "interrupted");
 }
 
-// ---- The functions that are not Lua's own ----
+// ---- Replacements of Lua's functions ----
 
 // load(chunk, name, mode, env): accepts only text, whatever the mode. Lua's `load` is the upvalue.
 static int load_text(lua_State *L)
@@ -174,7 +174,7 @@ void cli_open_untrusted(lua_State *L, glintL_run *run)
     lua_setfield(L, 1, "setmetatable");
     lua_pushvalue(L, 1);
     lua_setfield(L, 1, LUA_GNAME);
-    // The string methods are those of the reduced library, and their metatable cannot be reached.
+    // Strings have the methods of the reduced library, and their metatable cannot be reached.
     lua_pushliteral(L, "");
     lua_getmetatable(L, -1);
     lua_getfield(L, 1, LUA_STRLIBNAME);

@@ -17,7 +17,7 @@ static double range_of(const cost_case *a, const cost_case *b)
     return fmax(cost_quartile_range(a), cost_quartile_range(b));
 }
 
-// ---- Combinations of settings that are good on their own ----
+// ---- Combinations of good settings ----
 
 typedef struct candidate {
     int choice[COST_KNOBS_MAX];
@@ -115,7 +115,7 @@ bool cost_add_combinations(cost_study *study)
     return good;
 }
 
-// ---- Rows against each other ----
+// ---- Comparing rows ----
 
 static bool is_point(const cost_study *study, const cost_row *row)
 {
@@ -248,8 +248,8 @@ static void advise_step(cost_study *study, const cost_row *row)
              row->is_resolved ? "" : " or less (the reference does not resolve it)");
 }
 
-// For scripts whose setting is already the most accurate: returns the least loss of accuracy among rows that save much
-// time.
+// Returns the row with the least error among those that save much time. Used when no setting is more accurate than the
+// script's.
 static const cost_row *find_cheaper(const cost_study *study)
 {
     const cost_row *best = NULL;

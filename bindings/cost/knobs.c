@@ -27,7 +27,7 @@ static bool has_effect(const glint_plan *plan, const char *name)
     return false;
 }
 
-// ---- samples: rays a pixel ----
+// ---- samples: rays per pixel ----
 
 static void list_samples(const cost_subject *subject, cost_values *out)
 {
@@ -43,7 +43,7 @@ static glint_status apply_samples(cost_draft *draft, cost_value value, glint_err
     return GLINT_OK;
 }
 
-// ---- adaptive: how much neighbours differ where all samples are taken ----
+// ---- adaptive: the difference between neighbours from which all samples are taken ----
 
 static void list_adaptive(const cost_subject *subject, cost_values *out)
 {
@@ -59,9 +59,9 @@ static glint_status apply_adaptive(cost_draft *draft, cost_value value, glint_er
     return GLINT_OK;
 }
 
-// ---- shutter_times: how often an open shutter looks ----
+// ---- shutter_times: the moments of an open shutter ----
 
-// The truth is the largest number of times. Fewer times lack the light in between.
+// Lists the numbers of moments. The truth is the largest: fewer moments lack the light in between.
 static void list_shutter_times(const cost_subject *subject, cost_values *out)
 {
     double counts[COST_VALUES_MAX];
@@ -174,7 +174,7 @@ static glint_status apply_light_samples(cost_draft *draft, cost_value value, gli
     return status;
 }
 
-// ---- precision: what decides hits and shadows ----
+// ---- precision: the numbers that decide hits and shadows ----
 
 static const char *const PRECISIONS[] = { [GLINT_DOUBLE] = "double", [GLINT_FLOAT] = "float" };
 
@@ -191,12 +191,12 @@ static glint_status apply_precision(cost_draft *draft, cost_value value, glint_e
     return GLINT_OK;
 }
 
-// ---- model: what a highlight looks like ----
+// ---- model: the model of highlights ----
 
 static const char *const MODELS[] = { "phong", "blinn_phong", "matched_blinn_phong" };
 
-// Matched: replaces every Phong highlight by a Blinn-Phong one with four times the exponent, which is as wide. A scene
-// with highlights of both models has its own setting "mixed".
+// Lists the models. matched_blinn_phong replaces every Phong highlight by a Blinn-Phong one with four times the
+// exponent, which is as wide. A scene with highlights of both models has its own setting "mixed".
 static void list_model(const cost_subject *subject, cost_values *out)
 {
     const bool phong = has_effect(subject->plan, "Phong highlight");
@@ -228,11 +228,11 @@ static glint_status apply_model(cost_draft *draft, cost_value value, glint_error
     return status;
 }
 
-// ---- segments: spheres of triangles against the sphere ----
+// ---- segments: spheres of triangles, compared with the exact sphere ----
 
 #define TRIANGLES_MAX 0x1p21 // of all spheres together; no setting exceeds it
 
-// The truth is the exact sphere, which the triangles approximate.
+// Lists the segments. The truth is the exact sphere, which the triangles approximate.
 static void list_segments(const cost_subject *subject, cost_values *out)
 {
     static const double counts[] = { 16, 64, 256, 1024 };
@@ -305,7 +305,7 @@ static bool has_bounce(const cost_scene *scene)
     return has;
 }
 
-// The truth is the largest depth. Smaller depths lack light.
+// Lists the depths. The truth is the largest: smaller depths lack light.
 static void list_max_depth(const cost_subject *subject, cost_values *out)
 {
     static const double depths[] = { 0, 1, 2, 5, 10 };
@@ -341,7 +341,8 @@ static glint_status apply_indirect_samples(cost_draft *draft, cost_value value, 
     return cost_scene_set(draft->scene, &desc, error);
 }
 
-// 0 replaces indirect light by the ambient light. The truth is the largest number of bounces; fewer bounces lack light.
+// Lists the numbers of bounces. 0 replaces indirect light by the ambient light. The truth is the largest: fewer bounces
+// lack light.
 static void list_indirect_bounces(const cost_subject *subject, cost_values *out)
 {
     static const double counts[] = { 0, 1, 2, 4, 8 };
@@ -359,7 +360,7 @@ static glint_status apply_indirect_bounces(cost_draft *draft, cost_value value, 
     return cost_scene_set(draft->scene, &desc, error);
 }
 
-// ---- ambient_occlusion_samples: rays that look for open sky ----
+// ---- ambient_occlusion_samples: rays towards the sky ----
 
 static void list_occlusion_samples(const cost_subject *subject, cost_values *out)
 {

@@ -204,7 +204,7 @@ static glint_status encode(cost_study *study, const glintL_render *render, glint
     return result.status;
 }
 
-// If the case is measured after its neighbour, renders the neighbouring frame first.
+// Renders the neighbouring frame first, if the case is measured after it.
 static glint_status prepare(cost_study *study, const cost_draft *draft, bool counts, glint_error *error)
 {
     glint_image *before = NULL;

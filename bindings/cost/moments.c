@@ -29,7 +29,7 @@ struct cost_moments {
     bool is_large;
 };
 
-// ---- Noting ----
+// ---- Recording ----
 
 static size_t gather_shapes(glint_shape *shape, glint_shape **out)
 {
@@ -160,7 +160,7 @@ void cost_moments_close(cost_moments *moments)
     free(moments);
 }
 
-// ---- What a study reads ----
+// ---- Reading ----
 
 const char *cost_moments_lack(const cost_moments *moments)
 {

@@ -6,7 +6,7 @@
 
 #include "bindings/cost/cost.h"
 
-// SplitMix64: good enough for the order of runs, and the same with every C library.
+// Returns the next number of SplitMix64: good enough for the order of runs, and the same with every C library.
 static uint64_t next_random(cost_study *study)
 {
     uint64_t z = study->random += 0x9e3779b97f4a7c15u;
@@ -26,7 +26,7 @@ void cost_show(const cost_study *study, const char *what, double step_ms, double
         cli_progress_step(study->output->progress, what, glintL_now_ms() - study->start_ms, step_ms, left_ms);
 }
 
-// ---- What fits ----
+// ---- The budget ----
 
 double cost_round_ms(const cost_study *study)
 {
@@ -100,7 +100,8 @@ static bool run_round(cost_study *study, int *order, int count, double left)
 
 static bool is_timed(const cost_case *c) { return !c->is_left_out && c->run_count > 0; }
 
-// Lists the timed cases; with `more`, only those too close to a neighbour that may run again. *ms: the time of one round.
+// Lists the timed cases; with `more`, only those too close to a neighbour that may run again. *ms: the time of one
+// round.
 static int list_cases(cost_study *study, bool more, int *order, double *ms)
 {
     int count = 0;

@@ -20,7 +20,7 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 static const char *const PROJECTIONS[] = { "perspective", "orthographic", NULL };
 
-// ---- The matrix: of a point of the world the coordinates x to the right, y down, z away from the eye ----
+// ---- The matrix: maps a point of the world to x right, y down, z away from the eye ----
 
 static double dot(const double a[3], const double b[3]) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
 
@@ -186,7 +186,7 @@ static void *retain(void *object) { return glint_camera_retain(object); }
 
 static void release(void *object) { glint_camera_release(object); }
 
-// The last assignment decides between at and direction, and between fov and fx.
+// Lets the last assignment decide between at and direction, and between fov and fx.
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
     desc_type *d = desc;
@@ -208,7 +208,7 @@ static double read_side(lua_State *L, int index, const char *path)
     return side;
 }
 
-// camera:project(point, width, height): x, y and depth, or nil.
+// camera:project(point, width, height): returns x, y and depth, or nil.
 static int project(lua_State *L)
 {
     double point[3], pixel[2], depth;

@@ -40,7 +40,7 @@ static bool is_first(lua_State *L)
     return first;
 }
 
-// kd should be within 0 .. 1. Larger values are allowed, with one warning.
+// Warns once about kd above 1, which is allowed.
 static void accepted(lua_State *L, const glintL_field *field, const void *desc)
 {
     if (field->offset == AT(specular))

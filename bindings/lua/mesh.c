@@ -325,7 +325,7 @@ static void read_faces(lua_State *L, arguments *a)
         read_polygons(L, a, entries);
 }
 
-// ---- Normals and coordinates: one a vertex, or one a corner in the order of the faces ----
+// ---- Normals and coordinates: one per vertex, or one per corner in the order of the faces ----
 
 // Returns the numbers 0, 1, 2 ... if entries belong to corners; NULL: they belong to vertices.
 static const uint32_t *number_corners(lua_State *L, const arguments *a, const char *name, size_t count, int buffer)

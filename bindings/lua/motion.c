@@ -42,9 +42,9 @@ static double key_time(const track *k, uint32_t i) { return k->numbers[i]; }
 
 static double key_value(const track *k, uint32_t i, uint32_t c) { return k->numbers[k->count + i * k->size + c]; }
 
-/// Returns the slope at a key: that between its neighbours (E. Catmull, R. Rom, "A Class of Local Interpolating
-/// Splines", 1974, for times that are not evenly spaced). At the ends, that of the first or last segment, or around the
-/// cycle.
+/// Returns the slope at a key: the slope between its neighbours (E. Catmull, R. Rom, "A Class of Local Interpolating
+/// Splines", 1974, for times that are not evenly spaced). At the ends, the slope of the first or last segment, or
+/// around the cycle.
 static double slope(const track *k, uint32_t i, uint32_t c)
 {
     const uint32_t last = k->count - 1;

@@ -7,7 +7,7 @@ typedef glint_overlay_desc desc_type;
 
 #define AT(member) offsetof(desc_type, member)
 
-// ---- Fields of their own sort ----
+// ---- Special fields ----
 
 static const char *const PLACES[3][3] = {
     { "top left", "top", "top right" }, { "left", "center", "right" }, { "bottom left", "bottom", "bottom right" }
@@ -380,7 +380,7 @@ static const glintL_variant *variant(const void *object) { return &VARIANTS[glin
 
 GLINTL_FUNCTIONS(overlay);
 
-// The last assignment decides between at and position.
+// Lets the last assignment decide between at and position.
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
     desc_type *d = desc;

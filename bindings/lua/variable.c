@@ -107,9 +107,9 @@ static int apply_one(lua_State *L)
     return push_result(L, glintL_dual_apply(x, f->slope(x->value, y), NULL, 0, y));
 }
 
-// ---- Of several ----
+// ---- Functions of several numbers ----
 
-// min and max. Upvalues: Lua's own function; whether it is max.
+// Computes min or max. Upvalues: Lua's own function; whether it is max.
 static int apply_extreme(lua_State *L)
 {
     const bool most = lua_toboolean(L, lua_upvalueindex(2));

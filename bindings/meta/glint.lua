@@ -474,7 +474,7 @@ function glint.torus(fields) end
 ---@field count integer  how many shapes and groups are in it; only read
 local group = {}
 
---- Adds a shape or group; returns it.
+--- Adds a shape or group and returns it.
 ---@param shape glint.shape
 ---@return glint.shape
 function group:add(shape) end
@@ -1325,7 +1325,7 @@ function glint.stripe(x, footprint) end
 ---@return number
 function glint.brick(p, mortar, footprint) end
 
--- ---- Numbers alone ----
+-- ---- Only for numbers ----
 
 ---@param radians glint.values
 ---@return any
@@ -1340,7 +1340,7 @@ function glint.exp(x) end
 ---@return any
 function glint.log(x) end
 
--- ---- Pictures that are there ----
+-- ---- Existing pictures ----
 
 --- A finished picture or a photo. Its numbers are linear light, whatever the file stores.
 ---@class glint.picture

@@ -49,7 +49,7 @@ static void push_texture(lua_State *L, glint_colormap which)
     lua_remove(L, -2);
 }
 
-// ---- Maps of a script's own ----
+// ---- Maps from a script ----
 
 // Reads the colour on top as sRGB, 0 .. 1 each; pops it.
 static void take_color(lua_State *L, const char *path, double out[3])
@@ -133,9 +133,9 @@ static bool is_missing(lua_State *L)
     return lua_gettop(L) == 1 && lua_type(L, 1) == LUA_TNUMBER && isnan(lua_tonumber(L, 1));
 }
 
-// The map's function. Upvalues: the texture, the ends of its range, whether it is logarithmic, and the colour of
-// missing values. The ends of the range are at the centres of the first and last texel. Values beyond them get the
-// colour of the nearer end.
+// Returns the colour of a number. Upvalues: the texture, the ends of its range, whether it is logarithmic, and the
+// colour of missing values. The ends of the range are at the centres of the first and last texel. Values beyond them
+// get the colour of the nearer end.
 static int color_of(lua_State *L)
 {
     glint_texture *const *texture = lua_touserdata(L, lua_upvalueindex(1));

@@ -80,7 +80,7 @@ static bool is_of_places(glint_op op)
            op == GLINT_OP_PARITY;
 }
 
-// min and max of more than two arguments: combines the first two, then the result with the next.
+// Computes min and max of more than two arguments: of the first two, then of the result and the next.
 static int apply_fold(lua_State *L)
 {
     if (lua_gettop(L) <= 2)
@@ -98,7 +98,7 @@ static int apply_fold(lua_State *L)
     return 1;
 }
 
-// ---- exp, log and tan: of plain numbers by the functions of math.c, within a pattern by operations ----
+// ---- exp, log and tan: for plain numbers the functions of math.c, inside a pattern operations ----
 
 static glintL_term exp_term(lua_State *L, glintL_term x)
 {
@@ -122,7 +122,7 @@ static const struct {
 
 #define COMPOSED_COUNT (sizeof COMPOSED / sizeof *COMPOSED)
 
-// Upvalues: the function for plain numbers, the index in COMPOSED.
+// Computes exp, log or tan. Upvalues: the function for plain numbers, the index in COMPOSED.
 static int apply_composed(lua_State *L)
 {
     const lua_Integer place = lua_tointeger(L, lua_upvalueindex(2));

@@ -154,7 +154,7 @@ int glintL_pattern_evaluate(lua_State *L); ///< the method `evaluate`
 /// Computes red, green, blue and alpha of a texture at u, v with a footprint. Numbers give numbers.
 void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[3], glintL_term out[4]);
 
-// ---- What patterns.c opens ----
+// ---- Opened by patterns.c ----
 
 void glintL_open_symbol(lua_State *L);
 void glintL_open_triple(lua_State *L);

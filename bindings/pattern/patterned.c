@@ -14,7 +14,7 @@ void glintL_refuse_within_trace(lua_State *L, const char *what)
         glintL_error(L, "%s: the function of a pattern changes no objects; it may be called any number of times", what);
 }
 
-// ---- Keeping ----
+// ---- Storing ----
 
 static void note_patterned(lua_State *L, int index)
 {

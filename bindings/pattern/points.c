@@ -12,7 +12,8 @@
 #define POINTS 64
 #define POWER_TOLERANCE 1e-6 // relative; for functions with `^`, which plain Lua computes with C's pow
 
-// SplitMix64: G. Steele et al., "Fast splittable pseudorandom number generators", OOPSLA 2014. Returns 0 .. 1.
+// Returns the next number, 0 .. 1, of SplitMix64: G. Steele et al., "Fast splittable pseudorandom number generators",
+// OOPSLA 2014.
 static double next_number(uint64_t *state)
 {
     uint64_t z = *state += 0x9e3779b97f4a7c15u;
@@ -32,7 +33,7 @@ static void make_direction(uint64_t *state, double v[3])
     v[2] = z;
 }
 
-// Most points are anywhere in -20 .. 20. Some are near the origin, at whole numbers, and at 0.
+// Chooses a point, usually anywhere in -20 .. 20. Some points are near the origin, at whole numbers, and at 0.
 static void make_place(uint64_t *state, int number, double p[3])
 {
     for (int i = 0; i < 3; i++) {

@@ -22,7 +22,8 @@ static glintL_term whole_power(lua_State *L, glintL_term base, int exponent)
     return power;
 }
 
-// In Lua x ^ 2 is x * x, too. Other powers use C's pow there, so their last bits may differ from the program's.
+// Computes a power. In Lua x ^ 2 is x * x, too. Other powers use C's pow there, so their last bits may differ from the
+// program's.
 static glintL_term power_of(lua_State *L, glintL_term base, glintL_term exponent)
 {
     const double e = exponent.number;
@@ -94,7 +95,7 @@ static int negate(lua_State *L)
     return 1;
 }
 
-// ---- What a function that is traced cannot do ----
+// ---- Operations that cannot be traced ----
 
 // Refuses math.min and math.max, which compare their arguments.
 static void refuse_least(lua_State *L)

@@ -111,7 +111,7 @@ static glint_status apply(glint_builder *builder, const glint_texture *texture, 
     return status;
 }
 
-// With only plain numbers there may be no builder; then the call makes one.
+// Looks up a texel. With only plain numbers there may be no builder; then the call makes one.
 void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[3], glintL_term out[4])
 {
     const glintL_trace *trace = glintL_current_trace(L);

@@ -59,7 +59,7 @@ static glintL_term sign_of(lua_State *L, glintL_term x, glintL_term width)
     return choose(L, width, mean, sharp);
 }
 
-// The parity of the unit cube: 0 or 1. Its mean is (1 - product of the signs' means) / 2.
+// Returns the parity of the unit cube: 0 or 1. Its mean is (1 - product of the signs' means) / 2.
 static int checker(lua_State *L)
 {
     glintL_term p[3];
@@ -79,7 +79,7 @@ static int checker(lua_State *L)
     return 1;
 }
 
-// The parity of floor(x): 0 or 1.
+// Returns the parity of floor(x): 0 or 1.
 static int stripe(lua_State *L)
 {
     const glintL_term x = glintL_read_term(L, 1, "stripe");
@@ -101,8 +101,8 @@ static glintL_term band(lua_State *L, glintL_term x, glintL_term share)
     return glintL_apply2(L, GLINT_OP_LESS, glintL_apply1(L, GLINT_OP_FRACT, x), share);
 }
 
-// Bricks of one by one unit in x and y, with every other row shifted by half a brick. Returns 1 on a brick and 0 on
-// mortar, which is `mortar` wide along the left and lower side of each brick.
+// Returns 1 on a brick and 0 on mortar. Bricks are one by one unit in x and y, with every other row shifted by half a
+// brick. Mortar is `mortar` wide along the left and lower side of each brick.
 static int brick(lua_State *L)
 {
     glintL_term p[3], mortar = number(0.1);

@@ -172,7 +172,7 @@ static session *push_session(lua_State *L, int index)
     return s;
 }
 
-// ---- A loop without an end ----
+// ---- Endless loops ----
 
 #define STEPS_MAX 200000000 // Lua instructions in one call: some seconds
 #define STEPS_BETWEEN 1000000
@@ -216,7 +216,7 @@ static void end_steps(lua_State *L, const glintL_trace *trace)
         lua_sethook(L, trace->hook, trace->hook_mask, trace->hook_count);
 }
 
-// ---- Prints ----
+// ---- Output of the function ----
 
 static int print_nothing(lua_State *L)
 {
@@ -297,7 +297,7 @@ static glint_status finish(session *s, glint_program **out, glint_error *error)
     return status ? status : glint_builder_finish(s->trace.builder, values, s->count, out, error);
 }
 
-// A texture used directly, at s.uv.
+// Makes the program of a texture used directly, at s.uv.
 static glint_status finish_picture(glint_builder *builder, const glint_texture *texture, glint_program **out,
                                    glint_error *error)
 {

@@ -113,7 +113,7 @@ int glintL_unit(lua_State *L)
     return 1;
 }
 
-// As in GLSL: d - 2 (n.d) n, for an incident direction and a unit normal.
+// Returns d - 2 (n.d) n, as in GLSL, for an incident direction and a unit normal.
 int glintL_reflect(lua_State *L)
 {
     glintL_term d[3], n[3];
@@ -134,7 +134,7 @@ static int unpack(lua_State *L)
     return 3;
 }
 
-// glint.vector(x, y, z), or from a list, a vector or one number.
+// glint.vector: makes a vector from x, y, z, or from a list, a vector or one number.
 static int new_vector(lua_State *L)
 {
     glintL_operand operand;

@@ -41,7 +41,7 @@ typedef struct publication {
     size_t poster_size, wasm_size, engine_size;
 } publication;
 
-// ---- What the script reads ----
+// ---- The files of the script ----
 
 static void add_file(publication *p, const char *path, const char *name)
 {

@@ -11,7 +11,7 @@ static const char PAGE[] = {
 
 static const char *const CURVES[] = { "clamp", "reinhard", "filmic" };
 
-// ---- What the page says ----
+// ---- The values of the page ----
 
 // Prints the least light for each pixel value 1 .. 255, as the bits of a float, for each tone curve.
 static void print_steps(FILE *out)

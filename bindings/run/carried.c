@@ -5,7 +5,7 @@
 
 #include "bindings/run/carried.h"
 
-// ---- What the modules are given ----
+// ---- Functions for the modules ----
 
 size_t glintL_base64(const uint8_t *from, size_t size, char *out)
 {
@@ -63,7 +63,7 @@ static int json(lua_State *L)
     return 1;
 }
 
-// ---- Running them ----
+// ---- Running the modules ----
 
 typedef struct task {
     const glintL_carried *modules;

@@ -28,7 +28,8 @@ bool glintL_make_text(const glintL_carried *modules, size_t count, const char *f
 void glintL_drop_text(glintL_made_text *text);
 /// Writes a file that appears whole or not at all.
 glint_status glintL_write_text(const char *path, const void *text, size_t size, glint_error *error);
-/// Pushes on `to` a copy of the value at `index` of `from`, including tables and their contents; other objects become nil.
+/// Pushes on `to` a copy of the value at `index` of `from`, including tables and their contents; other objects become
+/// nil.
 void glintL_copy_value(lua_State *from, int index, lua_State *to);
 /// Writes base64 to `out`, which needs 4 bytes for every 3 of `size`, rounded up. Returns how many were written.
 size_t glintL_base64(const uint8_t *from, size_t size, char *out);

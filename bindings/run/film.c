@@ -179,7 +179,7 @@ static bool match_first(const glintL_film *film, size_t i, const glint_picture *
     return false;
 }
 
-// Only an APNG can store transparency.
+// Refuses transparency except in an APNG, the only film that can store it.
 static bool check_channels(const glintL_film *film, const glint_picture *first, char *message)
 {
     const int channels = glint_picture_channels(first);

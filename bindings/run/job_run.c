@@ -1,4 +1,5 @@
-// animation:run{...} and sweep:run{...}: renders the frames of one job from a script. The command line still takes precedence.
+// animation:run{...} and sweep:run{...}: render the frames of one job from a script. The command line still takes
+// precedence.
 #include <stdio.h>
 #include <string.h>
 
@@ -127,7 +128,7 @@ static int push_summary(lua_State *L, const glintL_run *run, double start_ms)
     return 1;
 }
 
-// In plain Lua, without a command line, each run numbers its frames from 1.
+// Begins a run in plain Lua. Without a command line, each run numbers its frames from 1.
 static void begin_plain(glintL_run *run)
 {
     glintL_films_destroy(run->films);

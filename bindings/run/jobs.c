@@ -10,9 +10,9 @@
 #include "bindings/run/system.h"
 #include "bindings/run/walk.h"
 
-#define WAITING_MAX 4096 // frames that are planned before they are rendered
+#define WAITING_MAX 4096 // frames that may be planned before they are rendered
 
-// ---- What a script returned ----
+// ---- The results of a script ----
 
 static bool push_expected(lua_State *L, int index)
 {
@@ -297,7 +297,7 @@ static bool show_times(glintL_walk *walk, int64_t n, double share, int times)
     return true;
 }
 
-// The same for every number of moments that the run asks for, if the shutter is open. False: the run has failed.
+// Shows the scene for every number of moments that the run asks for, if the shutter is open. False: the run has failed.
 static bool show_moments(glintL_walk *walk, int64_t n)
 {
     glintL_run *run = walk->run;

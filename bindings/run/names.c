@@ -11,7 +11,7 @@
 
 #define DIGITS_MAX 18 // digits of a number, at most
 
-// Parses the placeholder in a pattern at `text`, which begins with '%' or '#'.
+// A place for the number in a pattern, which begins with '%' or '#'.
 typedef struct place {
     size_t length; // in the pattern; 0: invalid
     int digits; // -1: an escaped '%' or '#'

@@ -61,7 +61,7 @@ int64_t glintL_order_frame(const glintL_order *order, int64_t place)
     return n;
 }
 
-// ---- What each axis costs ----
+// ---- The cost of each axis ----
 
 static bool has_word(const char *list, const char *word)
 {

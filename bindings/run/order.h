@@ -32,7 +32,7 @@ void glintL_order_init(glintL_order *order);
 glintL_order_axis *glintL_order_add(glintL_order *order, int64_t count);
 /// Returns whether several axes have several values.
 bool glintL_order_is_grid(const glintL_order *order);
-/// Plans frame n. The caller destroys the plan. NULL: the frame cannot be planned.
+/// A callback that plans frame n. The caller destroys the plan. NULL: the frame cannot be planned.
 typedef glint_plan *glintL_plan_frame(void *context, int64_t n);
 /// Compares the costs of the axes and finds the cheapest order. False: a frame cannot be planned, and the order is
 /// unchanged.

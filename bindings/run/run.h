@@ -10,7 +10,7 @@
 ///   work.c            one frame: plan, names, keys, render, hand to the writer
 ///   provenance.c      the text entries of files, and whether files belong together; source.c the script's text
 ///   film.c            films: their frames, stored in a folder until the film is made; film_pipe.c through ffmpeg
-///   sheet.c           contact sheets of files; sheet_axes.c their axes, sheet_page.c as an HTML page, sweep_sheet.c of sweeps
+///   sheet.c           contact sheets; sheet_axes.c their axes, sheet_page.c as an HTML page, sweep_sheet.c of sweeps
 ///   state.c           the run of a Lua state, and its failure; records.c its frames in order
 ///   order.c           the order in which a sweep's frames are rendered
 ///   walk.c            one frame of a list of jobs; job_frames.c a list frame by frame
@@ -81,7 +81,8 @@ glintL_render glintL_render_default(void);
 int glintL_render_find(const char *name);
 /// Returns the words that a field accepts, ended by NULL; NULL: it takes no word, or `field` is -1.
 const char *const *glintL_render_choices(int field);
-/// Sets a field from text as on the command line. Returns false on failure; `message` has the expectation and the actual text.
+/// Sets a field from text as on the command line. Returns false on failure, when `message` has the expected and the
+/// actual text.
 bool glintL_render_set_text(glintL_render *render, int field, const char *text, char message[GLINTL_MESSAGE_SIZE]);
 /// Sets a field from the Lua value at `index`; raises "<path><name>: ... expected, got ...".
 void glintL_render_read(lua_State *L, int index, const char *path, int field, glintL_render *render);
@@ -244,8 +245,8 @@ typedef struct glintL_reporter {
     void (*reads)(void *context, const char *path);
 } glintL_reporter;
 
-/// Receives a frame's scene while the shutter is open: at each of the camera's own moments, then with each number of
-/// moments in `counts`, and last at the frame's own instant, with times 0.
+/// A callback that receives a frame's scene while the shutter is open: at each of the camera's own moments, then with
+/// each number of moments in `counts`, and last at the frame's own instant, with times 0.
 typedef struct glintL_moments {
     const int *counts;
     size_t count;
@@ -263,7 +264,7 @@ typedef struct glintL_place {
 struct glintL_run {
     bool times_stages, counts_work;
     bool keeps_images; ///< every picture includes its linear beauty pass
-    int preview_side; ///< > 0: the longest side of pictures, which have one sample per pixel
+    int preview_side; ///< > 0: limit of the longer side of pictures, which have one sample per pixel
     bool was_shrunk; ///< preview_side made the picture smaller
     bool is_dialect; ///< the script is in a dialect, where the functions that warnings name have other names
     bool is_command; ///< run by the command: its options override the script's; files are written in the background

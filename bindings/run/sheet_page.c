@@ -13,7 +13,7 @@ static const unsigned char SHEET_LUA[] = {
 };
 static const glintL_carried MODULE = { "@sheet.lua", SHEET_LUA, sizeof SHEET_LUA };
 
-// ---- What the page says, for the module in Lua ----
+// ---- The data of the page, for the Lua module ----
 
 typedef struct content {
     const glintL_sheet *sheet;

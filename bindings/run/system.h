@@ -14,7 +14,7 @@
 #define MSG_NOSIGNAL 0 // the sockets made here have SO_NOSIGPIPE instead
 #endif
 
-/// Wakes a thread that polls. {0} is not open.
+/// A descriptor that wakes a polling thread. {0} is not open.
 typedef struct glintL_wake {
     int from; ///< poll it for POLLIN
     int to;

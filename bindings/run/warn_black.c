@@ -27,7 +27,7 @@ static bool any_light(const glint_scene *scene)
     return !is_dark(glint_scene_get(scene)->ambient);
 }
 
-// ---- What the camera looks at ----
+// ---- The camera's view ----
 
 static void cross(const double a[3], const double b[3], double out[3])
 {

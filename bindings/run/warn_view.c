@@ -109,7 +109,7 @@ static bool is_outside(const view *v, const ball *all, const glint_light_desc *l
     return false;
 }
 
-// ---- What is in the scene ----
+// ---- The scene ----
 
 // Returns whether the object has a field of this name with a value other than 0, black, false or nil.
 static bool has(lua_State *L, const char *type, const void *object, const void *desc, int index, const char *name)

@@ -21,7 +21,7 @@
 // the number of materials made there that have a shininess and never had a specular.
 static const char MADE, DULL;
 
-// ---- Said once ----
+// ---- Each warning once ----
 
 // Returns the part of a message that identifies it, without the frame at its beginning.
 static const char *gist_of(const char *message)

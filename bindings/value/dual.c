@@ -176,7 +176,7 @@ static int divide(lua_State *L)
     return push_result(L, glintL_dual_apply(&a, 1 / b.value, &b, -q / b.value, q));
 }
 
-// As in Lua: a - floor(a / b) b.
+// Computes a % b as Lua does: a - floor(a / b) b.
 static int modulo(lua_State *L)
 {
     glintL_dual a, b;

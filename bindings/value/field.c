@@ -188,8 +188,8 @@ static void refuse_source(lua_State *L, int index, const char *path, bool is_sha
     glintL_error(L, "%s: a value or a pattern expected, got %s; write glint.pattern(function(p, s) ... end)", path, got);
 }
 
-// Only read_points may allocate here (and errors), so that no finalizer of the script can run and close an object whose
-// pointer was read.
+// Reads a field. Only read_points may allocate here (and errors), so that no finalizer of the script can run and close
+// an object whose pointer was read.
 void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
 {
     char full[PATH_SIZE];

@@ -11,7 +11,7 @@
 
 #include "engine/glint.h"
 
-// ---- check.c: arguments and tables in ----
+// ---- check.c: reading arguments and tables ----
 
 /// One field of a description, and its form in Lua: for objects a row of glint_object_fields, for other tables the
 /// binding's own.
@@ -78,7 +78,7 @@ const char *glintL_push_spelling(lua_State *L, int index);
 /// Returns n.
 size_t glintL_check_list(lua_State *L, int index, const char *path, bool allow_fields);
 
-// ---- cure.c: what messages add to common mistakes ----
+// ---- cure.c: hints for common mistakes ----
 
 bool glintL_is_module(lua_State *L, int index); ///< whether the value is the table that require "glint" returns
 bool glintL_makes(lua_State *L, const char *name); ///< whether glint has a function of that name
@@ -102,7 +102,7 @@ void glintL_push_texel(lua_State *L, const double v[4]);
 const double *glintL_to_vector(lua_State *L, int index);
 int glintL_unpack(lua_State *L); ///< the method `unpack`
 
-// ---- dual.c: numbers that know how fast they change with variables ----
+// ---- dual.c: numbers with their derivatives by variables ----
 
 #define GLINTL_VARIABLES_MAX 32 ///< in one script
 #define GLINTL_DUAL "glint.dual"
@@ -157,7 +157,7 @@ void glintL_push_transform(lua_State *L, const glint_transform *t);
 /// Returns NULL if the value at index is not a transform.
 const glint_transform *glintL_to_transform(lua_State *L, int index);
 
-// ---- What patterns do where values are read: bindings/pattern is above, and says it when the module opens ----
+// ---- Patterns as values: bindings/pattern is a layer above, and registers its functions when the module opens ----
 
 typedef struct glintL_tracing {
     const char *(*place)(lua_State *L, lua_CFunction reached); ///< glintL_traced_place; the others likewise, see below

@@ -39,7 +39,7 @@ struct watch_files {
     char path[GLINTL_PATH_SIZE]; // the file that changed
 };
 
-// ---- The list; the lock is held ----
+// ---- The list; the caller holds the lock ----
 
 static void free_watched(watched *file)
 {
@@ -104,7 +104,7 @@ static void add_path(watch_files *files, const char *path, bool optional, bool s
     }
 }
 
-// Also watches the file that a symbolic link leads to.
+// Watches the file that a symbolic link leads to as well.
 static void add_target(watch_files *files, const char *path, bool skipped)
 {
     struct stat info;
@@ -160,7 +160,7 @@ size_t watch_files_count(watch_files *files)
     return count;
 }
 
-// ---- The thread; the lock is held but in wait_for_changes ----
+// ---- The thread; it holds the lock except in wait_for_changes ----
 
 static void tell_later(watch_files *files, const watched *file, double delay_ms)
 {
@@ -168,7 +168,7 @@ static void tell_later(watch_files *files, const watched *file, double delay_ms)
     files->due_ms = glintL_now_ms() + delay_ms;
 }
 
-// A new link is reported at once, a new file only when it has been written.
+// Returns whether a file is a symbolic link. A new link is reported at once, a new file only when it has been written.
 static bool is_link(const watched *file)
 {
     char path[GLINTL_PATH_SIZE];

@@ -5,7 +5,7 @@
 //   GET  /TOKEN/picture     the last good picture, PNG; the text after '?' only distinguishes pictures
 //   POST /TOKEN/frame       body: the number of the frame to show
 //   POST /TOKEN/set         body: name=value, in the syntax of --set, for a parameter of the script
-//   POST /TOKEN/reset       resets the parameters to those of the command line
+//   POST /TOKEN/reset       resets the parameters to their values on the command line
 //
 // Anything else is 404. The token is random, so that other users and pages of other sites cannot guess it.
 #include <arpa/inet.h>
@@ -187,7 +187,7 @@ static bool take_request(watch_server *server, watch_client *c)
     return answer(server, c, body);
 }
 
-// ---- Sockets; each returns false when the client is to be let go ----
+// ---- Sockets; false: close the client ----
 
 static bool read_client(watch_server *server, watch_client *c)
 {

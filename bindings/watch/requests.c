@@ -36,8 +36,8 @@ void watch_requests_close(watch_requests *requests)
     pthread_mutex_destroy(&requests->lock);
 }
 
-// The caller holds the lock. A preview is usually not cancelled, because it ends soon: otherwise no preview would
-// appear while a slider moves.
+// Notes a request and wakes the loop. The caller holds the lock. A preview is usually not cancelled, because it ends
+// soon: otherwise no preview would appear while a slider moves.
 static void post(watch_requests *requests, bool cancels_preview)
 {
     if (requests->since_ms == 0)

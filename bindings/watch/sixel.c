@@ -6,7 +6,7 @@
 
 #define SIXEL_SIDE 6 // levels of each primary
 
-// ---- By our own hand: a cube of colours; six rows at a time, for each colour the dots it has ----
+// ---- Without libsixel: a cube of colours; in bands of six rows, the dots of each colour ----
 
 // Returns the cube's colour for a pixel, with ordered dithering by Bayer's 4 x 4 matrix.
 static int sixel_color(const unsigned char *rgb, int x, int y)
@@ -79,7 +79,7 @@ static void put_cube(const watch_small *small)
     free(colors);
 }
 
-// ---- By libsixel ----
+// ---- With libsixel ----
 
 #ifdef GLINT_HAVE_SIXEL
 

@@ -11,7 +11,7 @@
 
 #define ANSWER_MS 150 // a terminal that has not answered by then does not support the query
 
-// ---- What the terminal says ----
+// ---- Queries to the terminal ----
 
 // Queries support of the kitty protocol, then the terminal's type, which every terminal answers.
 static size_t query(int terminal, char *answer, size_t room)

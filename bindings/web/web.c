@@ -51,7 +51,7 @@ static const unsigned char PRELUDE[] = {
 #include "bindings/web/prelude.lua.h"
 };
 
-// ---- What the command has, and this has not ----
+// ---- Parts of the command that are missing here ----
 
 bool glintL_has_ffmpeg(void) { return false; }
 
@@ -84,7 +84,8 @@ void cli_hush_script(lua_State *L) { (void)L; } // there is no --exposure auto, 
 
 // ---- The script's Lua ----
 
-// Once this hook has raised, each further instruction raises again, so that no pcall can continue.
+// Raises when the script's time is over. Once this hook has raised, each further instruction raises again, so that no
+// pcall can continue.
 static void look(lua_State *L, lua_Debug *where)
 {
     (void)where;
@@ -256,7 +257,7 @@ static bool keep_params(void)
     return (good && job.params) || glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "out of memory");
 }
 
-// ---- What worker.mjs calls; each returns whether all is well, or NULL or 0 otherwise ----
+// ---- Functions for worker.mjs. They return true on success; on failure false, NULL or 0 ----
 
 /// Begins the job of a script in the file system. seconds: time limit of the script in one call.
 EMSCRIPTEN_KEEPALIVE bool web_open(const char *path, double seconds)

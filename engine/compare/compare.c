@@ -65,7 +65,8 @@ static double value_at(const picture *p, size_t i)
     return p->bits == 16 ? ((const uint16_t *)p->codes)[i] / 65535.0 : ((const uint8_t *)p->codes)[i] / 255.0;
 }
 
-/// Equal NaNs and equal infinities differ by 0; any other value that is not finite differs by infinity.
+/// Returns the difference of two values. Two NaNs or equal infinities differ by 0; any other value that is not finite
+/// differs by infinity.
 static double difference(double a, double b)
 {
     if (a == b || (isnan(a) && isnan(b)))

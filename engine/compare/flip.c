@@ -73,7 +73,7 @@ static void ycxcz_to_rgb(const double ycxcz[3], double out[3])
         out[i] = out[i] > 0 ? out[i] < 1 ? out[i] : 1 : 0;
 }
 
-/// Cube root of x > 0, with the same bits on every machine: a third of the exponent, then Newton's method.
+/// Returns the cube root of x > 0, with the same bits on every machine: a third of the exponent, then Newton's method.
 static double cube_root(double x)
 {
     uint64_t bits;
@@ -86,7 +86,7 @@ static double cube_root(double x)
     return y;
 }
 
-/// CIELAB of linear light, with a* and b* times 0.01 L* (Hunt: brighter light makes colours look stronger).
+/// Converts linear light to CIELAB, with a* and b* times 0.01 L* (Hunt: brighter light makes colours look stronger).
 static void hunt_lab(const double rgb[3], double out[3])
 {
     static const double knee = 6.0 / 29;
@@ -234,7 +234,7 @@ static void keep_length(const float *x, const float *y, size_t pixels, float *ou
         out[i] = sqrtf(x[i] * x[i] + y[i] * y[i]);
 }
 
-/// Derivatives of the lightness along both axes: the first finds edges, the second points.
+/// Computes the derivatives of the lightness along both axes: the first finds edges, the second points.
 static void find_features(glint_flip *flip, workshop *w, size_t pixels)
 {
     const kernel smooth = blur(FEATURE_RADIUS, FEATURE_SD);

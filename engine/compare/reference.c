@@ -76,7 +76,7 @@ static float *scene_light(const glint_tone_desc *tone, int bits)
     return table;
 }
 
-// ---- What the eye is shown ----------------------------------------------------------------------------------------
+// ---- Pictures for the eye -----------------------------------------------------------------------------------------
 
 /// Converts the pixel values of a picture to linear light. The caller frees planes[0]; NULL: out of memory.
 static void decode(const codes *c, const float *table, size_t pixels, float *planes[3])
@@ -182,7 +182,8 @@ const glint_image *glint_reference_image(const glint_reference *reference)
 
 // ---- Measuring ----------------------------------------------------------------------------------------------------
 
-/// kept: the light for each pixel value, to compare the light stored in a file; NULL: compares the image's light.
+/// Measures errors in linear light. kept: the light for each pixel value, to compare the light stored in a file; NULL:
+/// compares the image's light.
 static void compare_light(const glint_reference *reference, const glint_image *image, const codes *c, const float *kept,
                           glint_picture_error *out)
 {

@@ -1,7 +1,7 @@
-/// glint_apng: an animated PNG (acTL, fcTL, fdAT), its chunks through libpng, straight to a draft.
+/// glint_apng: an animated PNG (acTL, fcTL, fdAT), whose chunks libpng writes directly to a draft.
 ///
-/// Format: Animated PNG Specification, third edition of PNG. Each frame after the first holds the rectangle that differs
-/// from the one before, laid over it without blending.
+/// Format: Animated PNG Specification, third edition of PNG. Each frame after the first holds the rectangle that
+/// differs from the previous frame, and replaces the pixels there.
 #include "engine/base/status.h"
 #include "engine/file/bands.h"
 #include "engine/file/libpng.h"

@@ -57,7 +57,7 @@ struct glint_bands {
 
 // ---- Rows ---------------------------------------------------------------------------------------------------------
 
-/// Filter SUB: subtracts from each byte the one `step` bytes before it.
+/// Applies the filter SUB: subtracts from each byte the one `step` bytes before it.
 static void filter_sub(const uint8_t *row, size_t bytes, size_t step, uint8_t *out)
 {
     *out++ = FILTER_SUB;
@@ -317,7 +317,7 @@ void glint_bands_destroy(glint_bands *bands)
 glint_status glint_bands_deflate(glint_bands *bands, const glint_png_source *source, glint_encode encode,
                                  const glint_bytes **stream, double *reused, glint_error *error)
 {
-    picture passing = { 0 }; // without stamps, a picture is not worth caching, nor dropping the cached one
+    picture passing = { 0 }; // a picture without stamps is not cached, and does not replace the cached one
     picture *p = source->stamp ? &bands->last : &passing;
     const layout l = layout_of(source, encode);
     const bool done = lay_out(p, &l) && deflate_picture(bands, p, source, reused);

@@ -20,7 +20,8 @@
 #define FAST_LEVEL_ZLIB 1
 #define SMALL_LEVEL_ZLIB 6
 
-/// Returns a buffer size that is enough for every encoder. It depends only on the size of the data, because some encoders look at the space.
+/// Returns a buffer size that is enough for every encoder. It depends only on the size of the data, because some
+/// encoders look at the space.
 static size_t room_for(size_t size) { return size + size / 8 + 4096; }
 
 // ---- zlib ---------------------------------------------------------------------------------------------------------
@@ -81,8 +82,8 @@ static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool las
 #define PLACES_TRIED 64 // each thread of each writer needs one place for each of its buckets
 #define STREAMS 256 // cached for each thread
 
-/// CRC-32C of four bytes from 0, as the crc32 instruction computes it: linear over the bits. The bucket is its low
-/// bits.
+/// Returns the CRC-32C of four bytes from 0, as the crc32 instruction computes it: linear over the bits. The bucket is
+/// its low bits.
 static uint32_t bucket_of(uint32_t bytes)
 {
     for (int i = 0; i < 32; i++)

@@ -1,4 +1,4 @@
-/// JPEG pictures, decoded by libjpeg where the build has it. Internal.
+/// JPEG pictures, decoded by libjpeg if the build has it. Internal.
 #ifndef GLINT_FILE_JPEG_H
 #define GLINT_FILE_JPEG_H
 

@@ -35,7 +35,7 @@ void glint_host_name(char out[GLINT_HOST_SIZE])
             *c = '-';
 }
 
-// ---- Whose a file is ----
+// ---- Owners of files ----
 
 /// Removes ".DIGITS" from the end of name[0 .. *length) and returns the number. -1: there is none.
 static long take_number(const char *name, size_t *length)
@@ -105,7 +105,7 @@ void glint_drafts_collect(const char *path)
         closedir(folder);
 }
 
-/// glint_drafts_collect, unless this process searched the folder recently.
+/// Calls glint_drafts_collect, unless this process searched the folder recently.
 static void collect_once(const char *path)
 {
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;

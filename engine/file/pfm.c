@@ -16,7 +16,7 @@ static void put_little_endian(float value, uint8_t *out)
         out[i] = (uint8_t)(bits >> (8 * i));
 }
 
-/// Many programs that read pictures fail on infinite or NaN colours.
+/// Makes colours finite, because many programs that read pictures fail on infinity and NaN.
 float glint_pfm_value(int channels, float value)
 {
     if (channels == 1)

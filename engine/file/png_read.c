@@ -100,7 +100,7 @@ glint_status glint_png_decode(const uint8_t *data, size_t size, glint_png *out, 
         *out = r->out;
     } else {
         free(r->out.codes);
-        bool memory = strstr(r->message, "emory") != NULL; // libpng has several wordings
+        bool memory = strstr(r->message, "emory") != NULL; // libpng has several messages
         status =
             memory ? glint_fail_nomem(error) : glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: %s", r->message);
     }
@@ -200,7 +200,7 @@ static glint_status refuse_ihdr(const chunk *c, glint_error *error)
                       GLINT_SIDE_MAX, width, height);
 }
 
-/// Reads transparency from the chunks before the pixels.
+/// Facts from earlier chunks that decide whether a tRNS chunk counts.
 typedef struct seen_chunks {
     int color; ///< of IHDR: 0 grey, 2 RGB, 3 palette
     uint32_t palette; ///< entries

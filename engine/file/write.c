@@ -92,7 +92,7 @@ static const void *row_of_color(const void *user, int y, void *scratch)
     return scratch;
 }
 
-/// A row of beauty with alpha.
+/// Makes a row of beauty with alpha.
 static const void *row_of_covered(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -112,7 +112,7 @@ static void put_linear(const picture *p, void *codes, size_t at, double value)
         ((uint8_t *)codes)[at] = (uint8_t)(x * 255 + 0.5);
 }
 
-/// A row of beauty with its outlines, which are opaque.
+/// Makes a row of beauty with its outlines, which are opaque.
 static const void *row_of_outlined(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -133,7 +133,7 @@ static const void *row_of_outlined(const void *user, int y, void *scratch)
     return scratch;
 }
 
-/// A row of beauty with its overlays.
+/// Makes a row of beauty with its overlays.
 static const void *row_of_covered_up(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -146,7 +146,7 @@ static const void *row_of_covered_up(const void *user, int y, void *scratch)
     return scratch;
 }
 
-/// A row of shares, 0 .. 1.
+/// Makes a row of shares, 0 .. 1.
 static const void *row_of_shares(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -170,9 +170,9 @@ static bool has_range(const picture *p) { return p->range[0] != p->range[1]; }
 
 static double share_of(const picture *p, double value) { return (value - p->range[0]) / (p->range[1] - p->range[0]); }
 
-/// Without a range, brightness is the nearest distance over the distance: white at the nearest point, half as bright at
-/// twice its distance. A far horizon then leaves contrast to the objects in front. The background, at infinity, is
-/// black.
+/// Makes a row of depth. Without a range, brightness is the nearest distance over the distance: white at the nearest
+/// point, half as bright at twice its distance. A far horizon then leaves contrast to the objects in front. The
+/// background, at infinity, is black.
 static const void *row_of_depth(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -224,7 +224,7 @@ static const void *row_of_ids(const void *user, int y, void *scratch)
     return scratch;
 }
 
-/// Signed values. Without a range: grey at 0, black and white at the largest slope of either sign.
+/// Makes a row of signed values. Without a range: grey at 0, black and white at the largest slope of either sign.
 static const void *row_of_slopes(const void *user, int y, void *scratch)
 {
     const picture *p = user;
@@ -242,7 +242,7 @@ static const void *row_of_slopes(const void *user, int y, void *scratch)
     return scratch;
 }
 
-// ---- Which rows ---------------------------------------------------------------------------------------------------
+// ---- Sources of rows ----------------------------------------------------------------------------------------------
 
 static void find_nearest(picture *p)
 {

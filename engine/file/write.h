@@ -8,7 +8,8 @@
 
 typedef enum glint_file_kind { GLINT_FILE_PNG, GLINT_FILE_PFM, GLINT_FILE_NPY, GLINT_FILE_EXR } glint_file_kind;
 
-/// Finds the format from the ending of `path`, in upper or lower case; GLINT_ERR_INVALID names the path and the allowed endings.
+/// Finds the format from the extension of `path`, in upper or lower case; GLINT_ERR_INVALID names the path and the
+/// allowed extensions.
 glint_status glint_file_kind_of(const char *path, glint_file_kind *kind, glint_error *error);
 
 /// The same for a file to read: .png and .pfm are allowed.

@@ -34,7 +34,7 @@ struct glint_writer {
     int filer_count;
     glint_bands *bands; ///< the encoder's
     pthread_mutex_t
-        lock; ///< protects all fields below; an entry being encoded or written belongs to its thread, except for `next`, `state`
+        lock; ///< protects all fields below; a job in progress belongs to its thread, except `next` and `state`
     pthread_cond_t to_encode, to_file; ///< there may be work for the encoder; for a filer
     pthread_cond_t moved; ///< a job has left a queue, or is done
     job *first, **end; ///< submitted and not yet collected

@@ -23,7 +23,7 @@ typedef struct glint_film_stamp {
 struct glint_image {
     atomic_int references;
     int width, height;
-    float *plane[GLINT_PLANE_COUNT][3]; ///< width * height values, top row first, 64-byte aligned; NULL: not kept.
+    float *plane[GLINT_PLANE_COUNT][3]; ///< width * height values, top row first, 64-byte aligned; NULL: not stored.
         ///< Passes of one channel have only [0]
     void *codes; ///< channels * width * height codes, uint8_t or uint16_t (native order), interleaved; NULL: none
     bool alpha; ///< beauty is light times coverage, and wherever there is beauty there is the pass `alpha`
@@ -32,9 +32,9 @@ struct glint_image {
     float *(*light)[3]; ///< planes of the light passes, `light_count` of them; NULL: none. Owned, with their names
     char (*light_name)[GLINT_NAME_SIZE];
     size_t light_count;
-    uint32_t *shadows; ///< for derivatives that move shadows, a number a pixel: pixels with equal numbers have the
-        ///< same lights occluded in all samples, and, if shapes or the eye move, the same surface; 0: the samples
-        ///< differ. Owned
+    uint32_t *shadows; ///< for derivatives that move shadows, a number a pixel: in pixels with equal numbers
+        ///< the same lights are occluded in all samples, the others in none, and, if shapes or the eye move, the same
+        ///< surface is visible; 0: the samples differ. NULL: none. Owned
     int channels; ///< of codes: 3: RGB; 4: RGBA
     glint_tone_desc code_tone; ///< the tone that made the codes
     double exposure; ///< of the frame's tone, with or without codes

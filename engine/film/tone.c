@@ -161,9 +161,9 @@ static bool fill_lut(glint_tone_table *table)
     return true;
 }
 
-/// The tone stage's estimate of the transfer function: m^(1 / 2.4) by Remez's exchange, relative error 1.2e-6, which is
-/// 3.2e-4 codes at 1. Float rounding, at most 2^-24 of 512 at the end and of the terms before, adds less than 0.7e-4.
-/// So 16 / 2^15 codes (4.9e-4) on either side of a step are enough.
+/// Makes the tone stage's estimate of the transfer function: m^(1 / 2.4) by Remez's exchange, relative error 1.2e-6,
+/// which is 3.2e-4 codes at 1. Float rounding, at most 2^-24 of 512 at the end and of the terms before, adds less than
+/// 0.7e-4. So 16 / 2^15 codes (4.9e-4) on either side of a step are enough.
 static void make_fit(glint_tone_table *table)
 {
     static const float power[6] = { 0x1.815cbcp-2f, 0x1.e7d75cp-1f,  -0x1.f7881ep-2f,

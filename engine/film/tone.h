@@ -55,7 +55,7 @@ void glint_tone_row8(const glint_tone_table *table, float gain, const float *r, 
 void glint_tone_row16(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
                       size_t count, uint16_t *rgb, uint64_t *clipped, uint64_t *nonfinite);
 
-/// The same with alpha. `rgb` is light times coverage; its codes are those of the light without coverage. Where
+/// The same with alpha. `rgb` is light times coverage; the light is divided by the coverage before conversion. Where
 /// `alpha`, 0 .. 1, is 0, all four codes are 0. Alpha is linear and rounded to nearest. For 8 and 16 bits.
 void glint_tone_row_alpha(const glint_tone_table *table, float gain, const float *const rgb[3], const float *alpha,
                           size_t count, void *rgba, uint64_t *clipped, uint64_t *nonfinite);

@@ -31,8 +31,8 @@ static axis find_axis(const glint_layout *layout, int i)
     return a;
 }
 
-/// Half the side of the square that contains all axes in every view. The other overlays do not move when the view
-/// turns.
+/// Returns half the side of the square that contains all axes in every view. The other overlays do not move when the
+/// view turns.
 static int reach(const glint_layout *layout)
 {
     int widest = 0;

@@ -1,8 +1,8 @@
 /// Overlays, drawn over a finished picture: labels, colour bars, axes. Internal.
 ///
 ///     overlay.c    the described objects, checked
-///     overlays.c   all of one frame, as a plan and its image hold them; their key
-///     layout.c     where each one lies, in stamps; colorbar.c, axes.c, box_axes.c: what they are made of
+///     overlays.c   all overlays of one frame, for a plan and its image; their key
+///     layout.c     the position of each, in stamps; colorbar.c, axes.c, box_axes.c: their parts
 ///     marks.c      the round numbers beside colour bars and axes
 ///     stamp.c      stamps on rows of codes
 ///     faults.c     warnings about overlays that the picture cannot show
@@ -15,8 +15,8 @@
 
 #include <stdatomic.h>
 
-/// The camera of one frame: a sample at x, y of the picture has sx = 2 x - span[0], sy = span[1] - 2 y and sees
-/// eye + t (view[2] + sx view[0] + sy view[1]), or where it is orthographic eye + sx view[0] + sy view[1] + t view[2].
+/// The camera of one frame. A sample at x, y of the picture has sx = 2 x - span[0], sy = span[1] - 2 y and the ray eye
+/// + t (view[2] + sx view[0] + sy view[1]), for an orthographic camera eye + sx view[0] + sy view[1] + t view[2].
 typedef struct glint_overlays_camera {
     bool orthographic;
     double eye[3];

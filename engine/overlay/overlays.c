@@ -18,7 +18,7 @@ double glint_overlays_project(const glint_overlays_camera *camera, const double 
     return depth;
 }
 
-/// A label without text shows nothing.
+/// Returns whether an overlay shows anything; a label without text does not.
 static bool shows(const glint_overlay_desc *desc) { return desc->kind != GLINT_OVERLAY_LABEL || desc->text[0]; }
 
 glint_status glint_overlays_take(const glint_scene *scene, int width, int height, const glint_overlays_camera *camera,

@@ -36,7 +36,7 @@ void glint_builder_destroy(glint_builder *builder)
     free(builder);
 }
 
-// ---- Values that are there already --------------------------------------------------------------------------------
+// ---- Existing values ----------------------------------------------------------------------------------------------
 
 static uint64_t hash_node(const glint_ssa_node *node)
 {

@@ -84,7 +84,7 @@ static void become(maker *m, uint32_t i, glint_op op, glint_value a, glint_value
     m->needed[gone] = false;
 }
 
-/// x y + a with x = b - a is mix(a, b, y).
+/// Turns x y + a with x = b - a into mix(a, b, y).
 static void make_mix(maker *m, uint32_t i)
 {
     for (int k = 0; k < 2; k++) {
@@ -128,7 +128,7 @@ static void make_products(maker *m)
         }
 }
 
-/// e f + (c d + a b) is dot(a, b, c, d, e, f).
+/// Turns e f + (c d + a b) into dot(a, b, c, d, e, f).
 static void make_dots(maker *m)
 {
     for (uint32_t i = 0; i < m->count; i++) {

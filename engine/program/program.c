@@ -64,7 +64,7 @@ bool glint_program_constant(const glint_program *program, double *outputs)
     return true;
 }
 
-// ---- May it be run? -----------------------------------------------------------------------------------------------
+// ---- Checking the code --------------------------------------------------------------------------------------------
 
 typedef struct known {
     uint64_t written[GLINT_PROGRAM_ROWS_MAX / 64];

@@ -87,7 +87,7 @@ glint_status glint_program_slope(const glint_program *program, const glint_input
     return end(&s);
 }
 
-// ---- Of shaders ---------------------------------------------------------------------------------------------------
+// ---- Shaders ------------------------------------------------------------------------------------------------------
 
 /// Returns 1 where an output is used as it is, and 0 where it is clamped to the range from the smallest to the largest
 /// number.
@@ -152,7 +152,7 @@ void glint_gradient_release(glint_gradient *gradient)
         glint_program_release(gradient->programs[k]);
 }
 
-// ---- Of shaders, forward ------------------------------------------------------------------------------------------
+// ---- Shaders, forward ---------------------------------------------------------------------------------------------
 
 /// Adds a share of a slope to a sum. GLINT_SLOPE_NOTHING stands for an empty sum.
 static glint_value add_share(glint_slope_maker *s, glint_value sum, glint_value share, glint_value slope)
@@ -236,7 +236,7 @@ glint_status glint_shader_forward(const glint_program *shader, uint32_t inputs, 
     return status == GLINT_ERR_INVALID ? GLINT_OK : status;
 }
 
-// ---- By parameters ------------------------------------------------------------------------------------------------
+// ---- Derivatives by parameters ------------------------------------------------------------------------------------
 
 /// Marks the values that depend on parameter number `parameter`. Parameters have the same numbers in the copy as in the
 /// builder.

@@ -55,7 +55,7 @@ void glint_slope_give(glint_slope_maker *s, glint_value to, glint_value what)
     s->given[to] = s->given[to] == GLINT_SLOPE_NOTHING ? what : two(s, GLINT_OP_ADD, s->given[to], what);
 }
 
-// ---- Rules: g is what result r was given, a, b, c are its operands ------------------------------------------------
+// ---- Rules: g is the adjoint of the result r; a, b, c are its operands --------------------------------------------
 
 typedef struct rule_case {
     glint_op op;
@@ -132,7 +132,7 @@ static void pass_pairs(glint_slope_maker *s, const rule_case *x)
     }
 }
 
-/// Derivative of t t (3 - 2 t) with t = (x - a) / (b - a): 6 t (1 - t), and 0 where t is clamped.
+/// Passes on the derivative of t t (3 - 2 t) with t = (x - a) / (b - a): 6 t (1 - t), and 0 where t is clamped.
 static void pass_smoothstep(glint_slope_maker *s, const rule_case *x)
 {
     const glint_value way = two(s, GLINT_OP_SUB, x->b, x->a);
@@ -217,7 +217,7 @@ static void pass_on(glint_slope_maker *s, const rule_case *x)
         pass_elementary(s, x);
 }
 
-// ---- Operations whose slopes have kernels of their own ------------------------------------------------------------
+// ---- Operations with kernels for their slopes ---------------------------------------------------------------------
 
 /// Passes on the adjoint of one result of such an operation. The derivatives by `count` operands start at `slope`,
 /// `apart` values from one to the next.

@@ -150,7 +150,8 @@ static bool is_dynamic(const values *v, uint32_t value)
     return v->maker[value] != NO_VALUE && v->dynamic[v->maker[value]];
 }
 
-/// A reader gets a value from the cache, or from the second part, which then needs the value's operands as well.
+/// Adds a reader of a value. The reader gets the value from the cache, or from the second part, which then needs the
+/// value's operands as well.
 static void add_reader(values *v, uint32_t value, uint32_t reader)
 {
     if (value != NO_VALUE && !is_dynamic(v, value))

@@ -52,7 +52,8 @@ glint_status glint_share_color(const glint_share *share, const double color[3], 
     return finish(&m, outputs, grey ? 1 : 3, out);
 }
 
-/// Fills `instead` with the values that replace the reflectances among the inputs of a shader; 0: the input is not replaced.
+/// Fills `instead` with the values that replace the reflectances among the inputs of a shader; 0: the input is not
+/// replaced.
 static void divide_inputs(glint_maker *m, uint32_t inputs, glint_value share, glint_value instead[GLINT_INPUT_COUNT])
 {
     const glint_value divisor = glint_maker_with(m, GLINT_OP_MAX, share, LEAST_SHARE);

@@ -471,7 +471,7 @@ local function to_light(value) return lights[value] end
 
 function gr.render(root, ...) picture.render(node_of("render", "root", root), to_light, ...) end
 
--- ---- What is too much ----
+-- ---- Extra arguments ----
 
 -- The number of arguments that each call reads.
 local READ = {
@@ -486,7 +486,7 @@ for call, count in pairs(READ) do
   end
 end
 
--- ---- What is not there ----
+-- ---- Unknown names ----
 
 -- Returns a function that raises an error when called, for names outside the dialect.
 local function missing(_, name)

@@ -165,7 +165,7 @@ for (const id of ["pass", "width"]) get(id).addEventListener("change", () => job
 const PASSES = ["beauty", "ambient", "diffuse", "specular", "indirect", "mirror", "transmission", "depth", "normal", "object_id", "albedo", "outline"]
 for (const pass of PASSES) get("pass").add(new Option(pass))
 
-// ---- What the scene calls for ----
+// ---- The scene's needs ----
 
 const element = (tag, ...children) => {
   const made = document.createElement(tag)

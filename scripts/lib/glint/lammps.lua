@@ -196,7 +196,7 @@ function lammps.frames(path, options)
   return frames.each(path, function(source, number) return start(source, number, options or {}) end)
 end
 
---- One frame, from 1. Default 1.
+--- Returns one frame, from 1. Default 1.
 ---@param path string
 ---@param number? integer
 ---@param options? { types: string[], wrap: boolean }

@@ -1,9 +1,9 @@
 -- PDB: the ATOM and HETATM records of the Protein Data Bank's format 3.3, by columns. Each MODEL is a frame.
 --     for label, x, y, z in pdb.frame "1crn.pdb":atoms() do ... end
--- The element comes from columns 77-78 or, if these are empty, from the atom's name (columns 13-16) and residue. Of an
--- atom's alternate locations the first one is read, whatever its code in column 17. Massless sites of water (EPW, MW)
--- are skipped. CRYST1 gives frame.cell = { origin, a, b, c } and frame.box (glint.box). Other records are skipped. The
--- other fields are available by name, frame:atoms("chain", "bfactor"): serial, name, resname, chain, resseq, occupancy,
+-- The element comes from columns 77-78 or, if these are empty, from the atom's name (columns 13-16) and residue. If an
+-- atom has alternate locations, the first one is read, whatever its code in column 17. Massless sites of water (EPW,
+-- MW) are skipped. CRYST1 gives frame.cell = { origin, a, b, c } and frame.box (glint.box). Other records are skipped.
+-- The other fields have names, frame:atoms("chain", "bfactor"): serial, name, resname, chain, resseq, occupancy,
 -- bfactor, element, charge.
 local glint = require "glint"
 local elements = require "glint.elements"
@@ -190,7 +190,7 @@ function pdb.frames(path, options)
   return frames.each(path, function(source, number) return start(source, number, options or {}) end)
 end
 
---- One frame, from 1. Default 1.
+--- Returns one frame, from 1. Default 1.
 ---@param path string
 ---@param number? integer
 ---@param options? { hetatm: boolean }

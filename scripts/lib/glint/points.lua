@@ -2,7 +2,7 @@
 --     for label, x, y, z, radius in points.frame "stars.csv":atoms() do ... end
 -- The first line may name the columns: x, y, z, and optionally radius and label, in any order and case. Others are
 -- available by name: frame:atoms("mass"). Points with red, green and blue (or r, g, b; 0 .. 1, or 0 .. 255) have
--- frame.color, and spheres of glint.particles get their colour. Without names the columns are x, y, z, radius. Of six
+-- frame.color, and spheres of glint.particles get their colour. Without names the columns are x, y, z, radius. In six
 -- columns the last three are a colour, or a normal if all have length 1; seven are x, y, z, intensity and a colour;
 -- options.columns = { "label", "x", ... } overrides this. The separator is the first of tab, semicolon and comma in
 -- that line, otherwise spaces. A field may be "in quotes", with "" for a quote. Empty lines and lines that begin with #

@@ -162,7 +162,7 @@ function xyz.frames(path)
   return frames.each(path, start)
 end
 
---- One frame, from 1. Default 1.
+--- Returns one frame, from 1. Default 1.
 ---@param path string
 ---@param number? integer
 function xyz.frame(path, number)

@@ -17,7 +17,7 @@ local floor, unpack = math.floor, table.unpack
 
 local MOST_SHAPES = 1 << 22
 
--- ---- The places where shapes show ----
+-- ---- The places of shapes ----
 
 local OPEN = -1
 

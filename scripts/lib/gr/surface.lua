@@ -54,7 +54,7 @@ function surface.relief(call, name, height)
   return { photo = read_photo(call, name), height = check.number(call, "height", height == nil and HEIGHT or height) }
 end
 
--- ---- What a material is given beyond the course's ----
+-- ---- Additions to the course's materials ----
 
 local function leave_out(call, values, why)
   local texts = {}
@@ -207,7 +207,7 @@ local function is_above_0(share)
   return (share or 0) > 0
 end
 
--- Darkens by grains: at most to 0, on average by half.
+-- Returns the diffuse reflectance. Grains darken it: at most to 0, on average by half.
 local function diffuse_of(record, picture, grain)
   local color, share = picture and picture.pattern or record.kd, record.opacity or 1
   if not grain and share == 1 then return color end
