@@ -14,7 +14,7 @@ local P = glint.params { visible = { true, doc = "whether the lamps are seen" } 
 local scene = glint.scene {
   camera = glint.camera { eye = { 0, 2.6, 11 }, at = { 0, 1.75, 0 }, fov = 33 },
   ambient = 0.12, background = "#0b0d12",
-  -- A ball of radiance 0.4: it shows 0.4 pi = 1.26, brighter than white.
+  -- A ball of radiance 0.4: it shows 0.4 pi = 1.26 times its colour.
   glint.sphere_light { position = { -2.3, 2.6, 1.2 }, radius = 0.35, radiance = 0.4, color = { 1, 0.85, 0.6 },
     samples = 9, visible = P.visible, name = "ball" },
   -- A panel that shines to one side. It is equally bright from all directions there, and invisible from behind.

@@ -15,7 +15,7 @@ typedef struct point {
     int64_t number; // 1 ..; 0: this slot is free
     cli_script script;
     glintL_jobs_state jobs;
-    char *params_text; // owned; exchanged with the run's text while the point is at hand
+    char *params_text; // owned; exchanged with the run's text while the point is current
     bool has_frames; // it has rendered frames
 } point;
 
@@ -30,9 +30,9 @@ typedef struct points {
     unsigned char *failed; // owned; by number
     bool has_failed; // any point has failed
     bool together, in_order; // some job's runs advance together; some frames go to a pipe in order
-    int64_t job, frame; // at hand: position in the list, 1 ..
-    glint_plan *plan; // of the frame at hand
-    glintL_order order; // of the job at hand
+    int64_t job, frame; // current ones: position in the list, 1 ..
+    glint_plan *plan; // of the current frame
+    glintL_order order; // of the current job
     int64_t *list; // owned; numbers of the frames to render, in order
     int64_t count;
 } points;
@@ -88,7 +88,7 @@ static void set_aside(points *p, int64_t number)
     p->run->failed_index = 0;
 }
 
-// Returns whether the run goes on after the last call of a point's script.
+// Returns whether the run continues after the last call of a point's script.
 static bool goes_on(points *p, int64_t number)
 {
     if (!is_own(p->run))
@@ -115,7 +115,7 @@ static int end_protected(lua_State *L)
     return 0;
 }
 
-// Calls a function in the state at hand. False: it raised, or the run has failed.
+// Calls a function in the current state. False: it raised, or the run has failed.
 static bool call(points *p, lua_CFunction function)
 {
     lua_State *L = p->at_hand->script.state;
@@ -316,7 +316,7 @@ static void list_job(points *p, const job *of)
     }
 }
 
-// Finds the order of the job at hand. False: the run has failed.
+// Finds the order of the current job. False: the run has failed.
 static bool order_job(points *p, point *first, job *of)
 {
     glintL_order *order = &p->order;

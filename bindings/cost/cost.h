@@ -13,7 +13,7 @@
 ///   cost/timing.c   runs in random order, quartiles, the time left
 ///   cost/front.c    the Pareto front, combinations worth measuring, the advice
 ///   cost/present.c  the study as data; cost/lines.lua the table for people, and lines for programs
-///   cost/report.c   the page and the pictures; cost/page.lua, page.html, plot.lua, plot.css what is in them
+///   cost/report.c   the page and the pictures; their contents are cost/page.lua, page.html, plot.lua, plot.css
 #ifndef GLINT_COST_H
 #define GLINT_COST_H
 

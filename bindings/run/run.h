@@ -257,7 +257,7 @@ typedef struct glintL_moments {
 /// A file that the run has written, an entry of a hash table.
 typedef struct glintL_place {
     uint64_t path; ///< hash; 0: a free entry
-    uint64_t picture; ///< hash of the file's content
+    uint64_t picture; ///< hash of the picture's key, or of the frame if it has none
     int64_t index; ///< number of the first frame that it was written for
 } glintL_place;
 

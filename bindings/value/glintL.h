@@ -223,7 +223,7 @@ void glintL_open_patterns(lua_State *L);
 #define GLINTL_SCENE "glint.scene"
 #define GLINTL_IMAGE "glint.image"
 #define GLINTL_PARAMS "glint.params"
-#define GLINTL_ANIMATION "glint.animation" ///< job.c: animations and sweeps are one type
+#define GLINTL_ANIMATION "glint.animation" ///< animations and sweeps are one type
 
 typedef struct glintL_box {
     void *object; ///< owns a reference; NULL before the object is made and after close

@@ -1,10 +1,10 @@
 /// glint watch: renders a script again at every save. Private to bindings/.
 ///
 ///   watch.c           the loop: runs the script, renders a preview and then the full picture
-///   watch/requests.c      requests from the other threads to the loop, and overrides of parameters
-///   watch/files.c     a thread that waits for changes of files, which watch_track.lua reports to it
+///   watch/requests.c  requests from the other threads to the loop, and overrides of parameters
+///   watch/files.c     a thread that waits for changes of files, which watch/track.lua reports to it
 ///   watch/client.c    one connection to the server: its request and its output buffer
-///   watch/http.c      the server of the page, a thread with a poll loop; watch_page.html is the page
+///   watch/http.c      the server of the page, a thread with a poll loop; watch/page.html is the page
 ///   watch/picture.c   pictures as PNG in memory, and reduced for a terminal
 ///   watch/terminal.c  pictures in a terminal
 ///

@@ -3,7 +3,7 @@
 ///     overlay.c    the described objects, checked
 ///     overlays.c   all overlays of one frame, for a plan and its image; their key
 ///     layout.c     the position of each, in stamps; colorbar.c, axes.c, box_axes.c: their parts
-///     marks.c      the round numbers beside colour bars and axes
+///     marks.c      the round numbers along colour bars and axes
 ///     stamp.c      stamps on rows of codes
 ///     faults.c     warnings about overlays that the picture cannot show
 #ifndef GLINT_OVERLAY_H

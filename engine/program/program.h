@@ -47,7 +47,7 @@ typedef struct glint_gradient {
     uint32_t count;
     glint_gradient_place of[GLINT_GRADIENT_MAX];
     uint32_t each; ///< slopes for each program: all of them, or GLINT_GRADIENT_PART if one program cannot hold all
-    glint_program *programs[(GLINT_GRADIENT_MAX + GLINT_GRADIENT_PART - 1) / GLINT_GRADIENT_PART];
+    glint_program *programs[(GLINT_GRADIENT_MAX + GLINT_GRADIENT_PART - 1) / GLINT_GRADIENT_PART]; ///< owned, or NULL
     /// Owned: one program for each derivative, see glint_shader_forward; NULL: use the gradient. Set for each frame,
     /// not by glint_shader_gradient
     glint_program *forward[GLINT_FORWARD_MAX];

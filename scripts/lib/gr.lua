@@ -38,9 +38,9 @@
 --   node:add_child(n)  :set_material(m)  :scale(x, y, z)  :rotate("x"|"y"|"z", degrees)  :translate(x, y, z)
 --
 -- `gr` is the nodes' metatable: gr.scale(n, ...) is n:scale(...), and functions a scene adds to it are methods.
--- gr.options has what the course left open (scripts/lib/gr/options.lua); cylinder and cone stand as OpenGL's
--- gluCylinder does, where it says nothing else, a torus as glutSolidTorus. A shape of radius or edge 0 and one that a
--- scale of 0 flattens have nothing to hit and do not show.
+-- gr.options has the choices that the course left open (scripts/lib/gr/options.lua). By default cylinder and cone are
+-- placed as in OpenGL's gluCylinder, a torus as in glutSolidTorus. A shape of radius or edge 0, or flattened by a scale
+-- of 0, is never hit and does not show.
 local check = require "gr.check"
 check.own_source()
 require "gr.lua5"()
