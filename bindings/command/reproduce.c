@@ -54,8 +54,7 @@ static bool cut_lines(char *lines, bool (*take)(void *user, char *name, char *va
     return true;
 }
 
-// Adds a parameter. Its line breaks are stored as "
-// ".
+// Adds a parameter. Its line breaks are stored as a backslash and an n.
 static bool take_param(void *user, char *name, char *value)
 {
     char *out = value;

@@ -15,7 +15,7 @@ local bonds = {}
 local CLOSEST = 0.4 -- angstroms: closer atoms are one atom in alternate positions
 local NEVER = 0 / 0 -- a reach that no distance is below
 local SIDE = 1 << 20 -- cells along each axis, at most
-local IMAGES = 8 -- longest bond, in sides of the periodic box
+local IMAGES = 8 -- limit of the longest bond, in sides of the periodic box
 
 -- Returns the options with their defaults; refuses unknown ones.
 local function settings(options)

@@ -9,7 +9,7 @@
 -- species, x, y, z, vel_x, vel_y, vel_z, charge (name_1 ... for a property of 2 or of more than 3 numbers);
 -- frame.cell = { origin, a, b, c } has the cell's corner and sides; frame.box is the same as a box (glint.box),
 -- if a lies along x and b in the plane of x and y. Without Properties the columns after the fourth are "5", "6"
--- ...
+-- and so on.
 local boxes, frames = require "glint.box", require "glint.frames"
 
 local xyz = {}
