@@ -10,15 +10,15 @@
 #define GLINTL_RENDER_LIST(FIELD, OPTION)                                                                               \
     FIELD(width, NUMBER, WHOLE, desc.width, 1, GLINT_SIDE_MAX, NULL)                                                    \
     FIELD(height, NUMBER, WHOLE, desc.height, 1, GLINT_SIDE_MAX, NULL)                                                  \
-    OPTION(samples, NUMBER, WHOLE, desc.samples, 1, SAMPLES_MAX, NULL, "N", "samples a pixel")                          \
-    OPTION(seed, NUMBER, WHOLE, desc.seed, 0, SEED_MAX, NULL, "N", "another sample pattern")                            \
+    OPTION(samples, NUMBER, WHOLE, desc.samples, 1, SAMPLES_MAX, NULL, "N", "samples per pixel")                       \
+    OPTION(seed, NUMBER, WHOLE, desc.seed, 0, SEED_MAX, NULL, "N", "chooses another sample pattern")                   \
     FIELD(max_depth, NUMBER, WHOLE, desc.max_depth, 0, DEPTH_MAX, NULL)                                                 \
-    OPTION(bits, NUMBER, BITS, desc.tone.bits, 0, 0, NULL, "8|16", "of a channel")                                      \
-    OPTION(precision, CHOICE, CHOICE, desc.precision, 0, 0, precisions, "", "what decides hits and shadows")              \
-    OPTION(transfer, CHOICE, CHOICE, desc.tone.transfer, 0, 0, transfers, "", "from light to codes")                      \
-    OPTION(rounding, CHOICE, CHOICE, desc.tone.rounding, 0, 0, roundings, "", "of codes")                                 \
-    OPTION(tone, CHOICE, CHOICE, desc.tone.curve, 0, 0, glintL_tone_curves, "", "curve of bright light")                  \
-    OPTION(encode, CHOICE, CHOICE, encode, 0, 0, encodes, "", "fast to write or small on disk")                           \
+    OPTION(bits, NUMBER, BITS, desc.tone.bits, 0, 0, NULL, "8|16", "bits of a colour channel")                         \
+    OPTION(precision, CHOICE, CHOICE, desc.precision, 0, 0, precisions, "", "precision of hits and shadows")           \
+    OPTION(transfer, CHOICE, CHOICE, desc.tone.transfer, 0, 0, transfers, "", "encoding of linear light in pixels")    \
+    OPTION(rounding, CHOICE, CHOICE, desc.tone.rounding, 0, 0, roundings, "", "rounding to pixel values")              \
+    OPTION(tone, CHOICE, CHOICE, desc.tone.curve, 0, 0, glintL_tone_curves, "", "tone curve for bright light")         \
+    OPTION(encode, CHOICE, CHOICE, encode, 0, 0, encodes, "", "compression: fast to write or small on disk")           \
     FIELD(colormap, CHOICE, COLORS, colormap, 0, 0, glintL_pass_colormaps)                                                \
     FIELD(dpi, NUMBER, REAL, dpi, 0, 1e6, NULL)                                                                         \
     FIELD(output, TEXT, OUTPUT, output, 0, 0, NULL)                                                                   \
@@ -27,7 +27,7 @@
     OPTION(alpha, FLAG, FLAG, desc.alpha, 0, 0, NULL, NULL, "transparent background")                                \
     OPTION(outline, CHOICE, CHOICE, desc.outline, 0, 0, outlines, "", "lines where objects end or have an edge")          \
     OPTION(visibility, CHOICE, CHOICE, desc.visibility, 0, 0, visibilities, "",                                           \
-           "how it is found what the eye sees; same pictures")                                                          \
+           "how visible surfaces are found; the pictures are the same")                                                \
     FIELD(adaptive, NUMBER, REAL, desc.adaptive, 0, 3, NULL)                                                            \
     FIELD(region, TEXT, REGION, desc.region, 0, 0, NULL)
 
