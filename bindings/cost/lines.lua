@@ -14,10 +14,9 @@ end
 local function head_of(study)
   local reference = study.reference
   return study.machine .. "\n"
-    .. (reference and format("reference: the mean of %d pictures of %.0f samples a pixel, decided in double, "
-      .. "seeds %s%s; its own error, by how they differ, %.2g RMSE\n", #reference.seeds, reference.samples,
-        the.seeds_of(reference), study.truth,
-      reference.rmse) or "")
+    .. (reference and format("reference: the mean of %d pictures of %.0f samples a pixel, decided in double "
+      .. "precision, seeds %s%s; its own error, estimated from their difference, %.2g RMSE\n", #reference.seeds,
+      reference.samples, the.seeds_of(reference), study.truth, reference.rmse) or "")
     .. format("\n%-24s %8s %8s %7s %6s %8s %8s %6s %6s %6s %7s %6s %6s %6s\n", "", "wall ms", "CPU ms", "+-", "x",
       "rmse",
       "relmse", "codes", ">1", ">8", "FLIP", "object", "shadow", "Mrays")
@@ -63,12 +62,11 @@ function the.table(study)
     knob = heading
     out[#out + 1] = row_for_people(row)
   end
-  out[#out + 1] = format("\n* the script's own setting. ms: medians of %d runs or more, rendering, codes and "
-    .. "encoding of a whole "
-    .. "frame: by the\nclock, and on all processors, which other programs change little; +- half the latter's "
-    .. "quartile range; "
-    .. "x: times the\nfastest, by processor time, as all that compares. codes: steps of 8 bits, >1 and >8 the share of "
-    .. "pixels. object, shadow:\npixels that see or shade the wrong thing.\n", study.runs)
+  out[#out + 1] = format("\n* the script's own setting. wall ms, CPU ms: medians of at least %d runs of rendering, "
+    .. "tone mapping and encoding a\nwhole frame, by the clock and on all processors. +-: half the quartile range of the "
+    .. "CPU time. x: the CPU time divided\nby that of the fastest setting; all comparisons use CPU time. codes: the largest "
+    .. "error, in 8-bit steps. >1, >8: the\nfraction of pixels with a larger error. object, shadow: the number of "
+    .. "pixels with a wrong object or a wrong shadow.\n", study.runs)
   out[#out + 1] = rows_together(study)
   if #study.left_out > 0 then out[#out + 1] = "left out:\n" end
   for _, line in ipairs(study.left_out) do out[#out + 1] = "  " .. line .. "\n" end

@@ -27,7 +27,7 @@ local function text_of(row)
     the.html(row.own and "the script's own setting" or row.name), row.case.wall.median, time.median, time.q1, time.q3,
       row.x_fastest)
   if error then
-    text = text .. format("; RMSE %.2g, FLIP %.2g, %.2g %% of the pixels off by more than a code", error.rmse,
+    text = text .. format("; RMSE %.2g, FLIP %.2g, %.2g %% of the pixels off by more than one 8-bit step", error.rmse,
       error.flip, 100 * error.over1)
   end
   return text .. the.html(remarks_of(row))
@@ -74,7 +74,7 @@ local function pictures_of(study)
 end
 
 local function lead_of(study)
-  return format("Frame %d, %.0f &times; %.0f pixels, %.0f sample%s a pixel, each setting timed %d times in random "
+  return format("Frame %d, %.0f &times; %.0f pixels, %.0f sample%s per pixel, each setting timed %d times in random "
     .. "order",
       study.frame, study.width, study.height, study.samples, study.samples == 1 and "" or "s", study.runs)
     .. (study.complete and " on " or " (interrupted: part of the study only) on ") .. the.html(study.machine) .. "."
@@ -83,10 +83,10 @@ end
 local function reference_of(study)
   local reference = study.reference
   if not reference then return "No reference was rendered, so no error is known." end
-  return format("Errors are against the mean of %d pictures of %.0f samples a pixel, decided in double, of seeds "
-    .. "%s%s. Their spread says that this mean is itself %.2g RMSE from the truth; an error below ten times "
-    .. "that is marked as not resolved.", #reference.seeds, reference.samples, the.seeds_of(reference), study.truth,
-    reference.rmse)
+  return format("Errors are against the mean of %d pictures of %.0f samples a pixel, decided in double "
+    .. "precision, with seeds %s%s. Their difference shows that this mean itself has an error of about %.2g RMSE; "
+    .. "errors below ten times that value are marked as not resolved.", #reference.seeds, reference.samples,
+    the.seeds_of(reference), study.truth, reference.rmse)
 end
 
 local function left_out_of(study)
