@@ -122,7 +122,7 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
             return complain(code, argv[optind > at ? optind - 1 : at], optopt, message);
         const cli_option *option = find_option(code);
         if (used[option - cli_option_list] && is_given_once(option)) {
-            snprintf(message, MESSAGE, "--%s: it is given twice, and the first value would be lost; one value expected",
+            snprintf(message, MESSAGE, "--%s: given twice, so the first value would be lost; expected one value",
                      option->name);
             return false;
         }
@@ -139,26 +139,30 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
 // ---- Checks of words and options together ----
 
 const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
-    { "render", CLI_RENDER, CLI_SCRIPT, "SCRIPT [options]", "render the frames of a script; the word may be left out" },
-    { "explain", CLI_EXPLAIN, CLI_SCRIPT, "SCRIPT [--frame N] [--programs] [--json]", "run the script, and say what a frame needs and who called for it" },
-    { "describe", CLI_DESCRIBE, CLI_SCRIPT, "SCRIPT --json", "the parameters of a script, for programs" },
+    { "render", CLI_RENDER, CLI_SCRIPT, "SCRIPT [options]", "render the frames of a script; the word render is "
+                                                            "optional" },
+    { "explain", CLI_EXPLAIN, CLI_SCRIPT, "SCRIPT [--frame N] [--programs] [--json]", "run the script and show what "
+                                                                                      "a frame needs, and which "
+                                                                                      "object needs it" },
+    { "describe", CLI_DESCRIBE, CLI_SCRIPT, "SCRIPT --json", "list the parameters of a script, for programs" },
     { "compare", CLI_COMPARE, CLI_FILES, "A B [--fail X] [--warn X]",
-      "compare pictures: 0 same, 1 warn, 2 differ, 3 size, 4 file" },
-    { "sheet", CLI_SHEET, CLI_FILES, "FILES -o SHEET", "a contact sheet, .png or .html, of finished frames" },
-    { "assemble", CLI_ASSEMBLE, CLI_FILES, "FILES -o FILM", "a film of finished frames" },
-    { "join", CLI_JOIN, CLI_FILES, "PARTS -o PICTURE", "one picture of the parts that --region has rendered" },
+      "compare two pictures; exit 0 same, 1 warning, 2 different, 3 other size, 4 unreadable file" },
+    { "sheet", CLI_SHEET, CLI_FILES, "FILES -o SHEET", "make a contact sheet, .png or .html, of finished frames" },
+    { "assemble", CLI_ASSEMBLE, CLI_FILES, "FILES -o FILM", "make a film of finished frames" },
+    { "join", CLI_JOIN, CLI_FILES, "PARTS -o PICTURE", "join the parts that --region has rendered into one picture" },
     { "relight", CLI_RELIGHT, CLI_FILES, "FILE.exr -o PICTURE [--light NAME=VALUE]",
-      "other strengths and colours of lights, from light passes; NAME.html is a mixer" },
+      "change the strength and colour of lights, using light passes; -o NAME.html makes a mixer page" },
     { "reproduce", CLI_REPRODUCE, CLI_FILE_SCRIPT, "FILE SCRIPT",
-      "render a finished frame again: 0 same bytes, 3 same pixels, 4 another picture, 5 file" },
-    { "new", CLI_NEW, CLI_FILES, "NAME", "write a folder with a scene to begin with" },
-    { "cost", CLI_COST, CLI_SCRIPT, "SCRIPT [--report DIR]", "what accuracy costs in time" },
-    { "watch", CLI_WATCH, CLI_SCRIPT, "SCRIPT [--http [PORT]]", "render at every save, in the terminal and on a page" },
+      "render a finished frame again; exit 0 same bytes, 3 same pixels, 4 another picture, 5 unusable file" },
+    { "new", CLI_NEW, CLI_FILES, "NAME", "make a folder with a scene to start from" },
+    { "cost", CLI_COST, CLI_SCRIPT, "SCRIPT [--report DIR]", "measure what each setting costs in time, and its error" },
+    { "watch", CLI_WATCH, CLI_SCRIPT, "SCRIPT [--http [PORT]]", "render after every save; show the picture in the "
+                                                                "terminal or on a page" },
     { "publish", CLI_PUBLISH, CLI_SCRIPT, "SCRIPT -o PAGE.html",
-      "a page of one file with the engine, the script and its controls" },
-    { "help", CLI_HELP, CLI_FILES, "[COMMAND]", "what a command does, and its options" },
+      "write a one-file page with the engine, the script and its controls" },
+    { "help", CLI_HELP, CLI_FILES, "[COMMAND]", "show what a command does, and its options" },
     { "completion", CLI_COMPLETION, CLI_SCRIPT, "bash|zsh|fish",
-      "what a shell completes; make install puts it in place" },
+      "print the completion script of a shell; make install installs it" },
 };
 
 const cli_command_name *cli_find_command(const char *word, const char **near)
@@ -227,13 +231,15 @@ static bool check_untrusted(const cli_options *options, char *message)
         return true;
     const char *slash = strrchr(output, '/');
     if (glintL_film_kind_of(output, options->request.apng) != GLINTL_FILM_NONE)
-        snprintf(message, MESSAGE, "--untrusted: pictures expected, got '%.200s'; glint assemble makes a film of them",
+        snprintf(message, MESSAGE, "--untrusted: only pictures can be written; expected a picture's name, got "
+                                   "'%.200s'; glint assemble makes a film of pictures",
                  output);
     else if (slash && memchr(output, '%', (size_t)(slash - output)))
-        snprintf(message, MESSAGE, "--untrusted: a folder without a place for the number expected, got '%.200s'",
+        snprintf(message, MESSAGE, "--untrusted: expected a folder without a frame number, got '%.200s'; put the "
+                                   "number into the file's name",
                  output);
     else if (glintL_name_is_special(output))
-        snprintf(message, MESSAGE, "--untrusted: a file expected, got '%.200s'", output);
+        snprintf(message, MESSAGE, "--untrusted: expected a regular file, got '%.200s'", output);
     else
         return true;
     return false;
@@ -247,8 +253,8 @@ static bool check_input(const cli_options *options, char *message)
          !options->untrusted_s && !options->finds_exposure && !options->finds_range))
         return true;
     snprintf(message, MESSAGE,
-             "-: a file expected; a script from standard input is for render and explain, without --sweep, --dialect, "
-             "--untrusted and auto");
+             "-: expected a file; only render and explain read a script from standard input, and not with --sweep, "
+             "--dialect, --untrusted or auto");
     return false;
 }
 
@@ -257,7 +263,8 @@ static bool check_auto(const cli_options *options, char *message)
 {
     if ((!options->finds_exposure && !options->finds_range) || options->command == CLI_RENDER || options->help)
         return true;
-    snprintf(message, MESSAGE, "--%s: auto is for glint render, which looks at all pictures first; %s expected",
+    snprintf(message, MESSAGE, "--%s: auto works only with glint render, which measures all pictures first; expected "
+                               "%s",
              options->finds_exposure ? "exposure" : "colormap", options->finds_exposure ? "a number of stops" : "NAME:LOW:HIGH");
     return false;
 }
@@ -266,20 +273,20 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
 {
     for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
         if (used[i] && !options->help && !(cli_option_list[i].commands & options->command)) {
-            snprintf(message, MESSAGE, "--%s: this command does not have this option; --help lists those it has", cli_option_list[i].name);
+            snprintf(message, MESSAGE, "--%s: this command does not have this option; --help lists its options", cli_option_list[i].name);
             return false;
         }
     }
     if (options->verbose && !options->version) {
-        snprintf(message, MESSAGE, "--verbose: --version expected with it");
+        snprintf(message, MESSAGE, "--verbose: expected together with --version");
         return false;
     }
     if (options->has_frames && options->command == CLI_RENDER && (options->start || options->end || options->jump)) {
-        snprintf(message, MESSAGE, "--frames: either it or --start, --end and --jump, not both");
+        snprintf(message, MESSAGE, "--frames: use either --frames or --start, --end and --jump, not both");
         return false;
     }
     if (options->end && options->end < (options->start ? options->start : 1)) {
-        snprintf(message, MESSAGE, "--end: a frame from %" PRId64 " on expected, got '%" PRId64 "'", options->start,
+        snprintf(message, MESSAGE, "--end: expected a frame >= %" PRId64 ", got '%" PRId64 "'", options->start,
                  options->end);
         return false;
     }
@@ -290,12 +297,12 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
         for (size_t j = 0; j < i; j++)
             twice = twice || strcmp(options->sweeps[j].name, options->sweeps[i].name) == 0;
         if (twice) {
-            snprintf(message, MESSAGE, "--sweep %.200s: the parameter is set twice", options->sweeps[i].name);
+            snprintf(message, MESSAGE, "--sweep %.200s: the parameter is set twice; set it only once", options->sweeps[i].name);
             return false;
         }
     }
     if (cli_sweep_points(options) > GLINTL_FRAMES_MAX) {
-        snprintf(message, MESSAGE, "--sweep: at most %d points together expected", GLINTL_FRAMES_MAX);
+        snprintf(message, MESSAGE, "--sweep: expected at most %d points in total", GLINTL_FRAMES_MAX);
         return false;
     }
     return check_auto(options, message) && cli_check_dialect(options, message);

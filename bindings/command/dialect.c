@@ -162,13 +162,14 @@ bool cli_check_dialect(const cli_options *options, char message[GLINTL_MESSAGE_S
 {
     for (int i = 0; i < CLI_DIALECT_OPTIONS && !options->dialect; i++)
         if (options->dialect_text[i]) {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "--gr-%s: --dialect gr expected with it",
+            snprintf(message, GLINTL_MESSAGE_SIZE, "--gr-%s: expected together with --dialect gr",
                      cli_dialect_options[i]);
             return false;
         }
     if (options->dialect && options->untrusted_s > 0) {
         snprintf(message, GLINTL_MESSAGE_SIZE,
-                 "--dialect: not with --untrusted; scenes of the dialect have the files, modules and libraries of Lua");
+                 "--dialect: cannot be combined with --untrusted, because scenes of the dialect use files, modules "
+                 "and libraries of Lua");
         return false;
     }
     return true;

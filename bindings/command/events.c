@@ -120,9 +120,9 @@ static void print_kept(cli_output *output)
     if (output->kept_first == 0)
         return;
     if (output->kept_first == output->kept_last)
-        fprintf(stderr, "frame %" PRId64 ": kept\n", output->kept_first);
+        fprintf(stderr, "frame %" PRId64 ": kept, already finished\n", output->kept_first);
     else
-        fprintf(stderr, "frames %" PRId64 "-%" PRId64 ": kept\n", output->kept_first, output->kept_last);
+        fprintf(stderr, "frames %" PRId64 "-%" PRId64 ": kept, already finished\n", output->kept_first, output->kept_last);
     output->kept_first = 0;
 }
 
@@ -148,8 +148,8 @@ static void warn_odd(const cli_output *output, int64_t index, const glint_odd *o
 {
     static const char *const is[] = { "NaN", "below 0", "above 2^100" };
     static const char *const cures[] = {
-        "it is taken as 0 there; look for 0 / 0, or the root or logarithm of a number below 0",
-        "it is taken as 0 there; glint.max(0, x) says so", "it is taken as 2^100 there; look for a division by 0"
+        "glint uses 0 there; look for 0 / 0, or the square root or logarithm of a negative number",
+        "glint uses 0 there; write glint.max(0, x) to make this explicit", "glint uses 2^100 there; look for a division by 0"
     };
     const bool background = strcmp(odd->field, "background") == 0, named = odd->material[0];
     glintL_run_warn(output->run, "frame %" PRId64 ": %s%s%s%s.%s: the pattern is %s at %" PRIu64 " %s, such as (%.6g, %.6g, %.6g); %s",
@@ -260,8 +260,8 @@ void cli_warn_clipped(glintL_run *run)
     double clipped = run->pixels ? (double)run->clipped / (double)run->pixels : 0;
     if (clipped > CLIPPED_HINT && run->brightness.clipped == 0)
         glintL_run_warn(run,
-                        "%.0f %% of the pixels are brighter than white; dimmer lights, --exposure -1 or --tone filmic "
-                        "keep what is lost there",
+                        "%.0f %% of the pixels are brighter than white and lose detail; use dimmer lights, "
+                        "--exposure -1 or --tone filmic",
                         100 * clipped);
 }
 
@@ -275,8 +275,8 @@ static void print_numbering(const glintL_run *run)
         return;
     const int stem = (int)(dot - name);
     fprintf(stderr,
-            "-o %s names %" PRId64 " frames, so each has its number in its name: %.*s_####%s; -o %.*s.mp4, .webm, .gif "
-            "or .apng makes a film\n",
+            "-o %s: writing %" PRId64 " numbered files, %.*s_####%s; to make a film, use -o %.*s.mp4, .webm, .gif or "
+            ".apng\n",
             name, run->count, stem, name, dot, stem, name);
 }
 

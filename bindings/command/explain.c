@@ -8,7 +8,7 @@
 
 static void print_frame(FILE *out, const glintL_run *run, const glint_render_desc *desc)
 {
-    fprintf(out, "%s, frame %" PRId64 ": %.0f x %.0f, %.0f sample%s a pixel, decided in %s\n", run->script,
+    fprintf(out, "%s, frame %" PRId64 ": %.0f x %.0f, %.0f sample%s a pixel, decided in %s precision\n", run->script,
             run->explain_frame, desc->width, desc->height, desc->samples, desc->samples == 1 ? "" : "s",
             desc->precision == GLINT_FLOAT ? "float" : "double");
 }
@@ -196,7 +196,7 @@ int cli_explain(cli_options *options, cli_output *output, glintL_run *run)
     }
     if (!run->exit_code && !run->interrupted && !run->explain_plan)
         glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
-                        "--frame: a frame of the script, 1 .. %" PRId64 ", expected, got '%" PRId64 "'", run->count,
+                        "--frame: expected a frame of the script, 1 .. %" PRId64 ", got '%" PRId64 "'", run->count,
                         options->frame);
     if (run->interrupted)
         return GLINTL_EXIT_FAILED;

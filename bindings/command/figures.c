@@ -59,7 +59,7 @@ static bool read_colorbar(const char *text, glint_overlay_desc *bar, char messag
     if (!find_map(map, &bar->map, message))
         return false;
     if (strlen(high) > GLINT_OVERLAY_TEXT_SIZE) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "--colorbar: a title of at most %d bytes expected", GLINT_OVERLAY_TEXT_SIZE - 1);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "--colorbar: expected a title of at most %d bytes", GLINT_OVERLAY_TEXT_SIZE - 1);
         return false;
     }
     snprintf(bar->text, sizeof bar->text, "%s", *high ? high + 1 : "");
@@ -74,9 +74,9 @@ int cli_sheet(const cli_options *options, cli_output *output)
     int code = GLINTL_EXIT_USAGE;
     char *live = NULL;
     if (!options->output)
-        return refuse(output, code, "sheet", "-o NAME.png or -o NAME.html expected");
+        return refuse(output, code, "sheet", "expected -o NAME.png or -o NAME.html");
     if (options->is_live && !options->live_script)
-        return refuse(output, code, "sheet", "--live=SCRIPT expected, the script of the pictures");
+        return refuse(output, code, "sheet", "expected --live=SCRIPT with the script of the pictures");
     if (options->colorbar && !read_colorbar(options->colorbar, &bar, message))
         return refuse(output, code, "sheet", message);
     if (cli_list_files(options, &options->request.selection, &list, message)) {
@@ -108,9 +108,9 @@ int cli_sheet(const cli_options *options, cli_output *output)
 static const char *check_film(const cli_options *options, const glintL_film *film)
 {
     if (!options->output || film->kind == GLINTL_FILM_NONE)
-        return "-o with a film's name in .mp4, .webm, .gif, .png or .apng expected";
+        return "-o: expected the name of a film, ending in .mp4, .webm, .gif, .png or .apng";
     if (options->request.apng && film->kind != GLINTL_FILM_APNG)
-        return "--apng: -o with a name in .png expected";
+        return "--apng: expected -o with a name ending in .png";
     if (film->kind == GLINTL_FILM_GIF && film->fps > 50)
         return "a GIF has at most 50 frames a second; --fps 50 or less expected";
     return NULL;

@@ -137,7 +137,7 @@ static bool is_quoted_wildcard(const char *word, char *message)
     if (!word[strcspn(word, "*?")] || stat(word, &info) == 0)
         return false;
     snprintf(message, GLINTL_MESSAGE_SIZE,
-             "%.200s: no such file; give it without quotes, or a pattern such as 'frame_%%04d.png'", word);
+             "%.200s: no such file; give the names without quotes, or a pattern such as 'frame_%%04d.png'", word);
     return true;
 }
 
@@ -149,7 +149,7 @@ static bool is_among(const cli_file_list *list, const char *output, char *messag
         return false;
     for (size_t i = 0; i < list->count; i++)
         if (stat(list->files[i], &file) == 0 && file.st_dev == out.st_dev && file.st_ino == out.st_ino) {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "-o: '%.200s' is one of the pictures; give another file",
+            snprintf(message, GLINTL_MESSAGE_SIZE, "-o: '%.200s' is one of the input pictures; give another file",
                      output);
             return true;
         }
@@ -163,7 +163,7 @@ static bool add_words(const cli_options *options, cli_file_list *out, char *mess
             !add_file(out, options->arguments[i], number_of(options->arguments[i]), message))
             return false;
     if (out->count == 0)
-        snprintf(message, GLINTL_MESSAGE_SIZE, "finished pictures expected, or a pattern such as 'frame_%%04d.png'");
+        snprintf(message, GLINTL_MESSAGE_SIZE, "expected finished pictures, or a pattern such as 'frame_%%04d.png'");
     return out->count > 0;
 }
 
@@ -211,7 +211,7 @@ bool cli_list_files(const cli_options *options, const glintL_selection *selectio
         !glintL_name_is_special(options->arguments[0]) && glintL_name_has_number(options->arguments[0]))
         good = add_pattern(options->arguments[0], selection, out, message);
     else if (selection->range_count)
-        snprintf(message, GLINTL_MESSAGE_SIZE, "--frames: a pattern such as 'frame_%%04d.png' expected with it");
+        snprintf(message, GLINTL_MESSAGE_SIZE, "--frames: expected together with a pattern such as 'frame_%%04d.png'");
     else
         good = add_words(options, out, message);
     return good && !is_among(out, options->output, message);

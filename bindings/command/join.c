@@ -77,7 +77,7 @@ static bool read_part(join *j, size_t i)
     const char *options = glint_picture_text(picture, "glint:options"),
                *whole = glint_picture_text(picture, "glint:whole");
     if (!whole || !options || !take_region(options, region))
-        return complain(j, path, "a .png that --region has rendered expected");
+        return complain(j, path, "expected a .png rendered with --region");
     if (strcmp(whole, glint_picture_text(j->pictures[0], "glint:whole")) != 0) {
         snprintf(j->message, GLINTL_MESSAGE_SIZE,
                  "%.300s and %.300s are parts of different frames: scene, frame, options, version or encoder differ",
@@ -85,7 +85,7 @@ static bool read_part(join *j, size_t i)
         return false;
     }
     if (glint_picture_width(picture) != (int)region[2] || glint_picture_height(picture) != (int)region[3])
-        return complain(j, path, "it has another size than the region that it says it is");
+        return complain(j, path, "its size differs from the region that is recorded in it");
     j->parts[i] = (glint_picture_part) { picture, (int)region[0], (int)region[1] };
     return true;
 }

@@ -58,7 +58,7 @@ void cli_begin_measuring(const cli_options *options, cli_output *output, glintL_
     run->request.repeat = 1;
     run->request.warnings = GLINTL_WARNINGS_NONE;
     if (output->progress)
-        cli_progress_step(output->progress, "looking at all pictures", 0, 0, 0);
+        cli_progress_step(output->progress, "measuring all pictures", 0, 0, 0);
 }
 
 static void take_exposure(cli_options *options, cli_output *output, glintL_run *run, const glint_brightness *seen)

@@ -150,7 +150,7 @@ int cli_new(const cli_options *options, cli_output *output)
     if (code == EEXIST)
         return refuse(output, GLINTL_EXIT_USAGE, path, "it exists already and was not changed");
     if (code == ENOENT)
-        return refuse(output, GLINTL_EXIT_FAILED, path, "its folder is not there; mkdir makes it");
+        return refuse(output, GLINTL_EXIT_FAILED, path, "its folder does not exist; create it with mkdir");
     if (code)
         return refuse(output, code == ENOSPC || code == EDQUOT ? GLINTL_EXIT_LATER : GLINTL_EXIT_FAILED, path,
                       strerror(code));
@@ -159,7 +159,7 @@ int cli_new(const cli_options *options, cli_output *output)
         glintL_json_string(output->data, path);
         fputs("}\n", output->data);
     } else if (!output->quiet) {
-        fprintf(stderr, "%s: a scene to begin with; render it with:  glint %s\n", path, path);
+        fprintf(stderr, "%s: a scene to start from; render it with:  glint %s\n", path, path);
     }
     return GLINTL_EXIT_DONE;
 }

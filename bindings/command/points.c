@@ -156,9 +156,10 @@ static bool check_jobs(points *p, const point *which)
     const int64_t frames = which->script.frames;
     if (run->count > run->point_first)
         return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
-                               "--sweep: the script both calls scene:render and returns frames; one of them expected");
+                               "--sweep: the script both calls scene:render and returns frames; expected only one of "
+                               "the two");
     if (frames > GLINTL_FRAMES_MAX / run->point_count)
-        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--sweep: at most %d frames together expected", GLINTL_FRAMES_MAX);
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--sweep: expected at most %d frames in total", GLINTL_FRAMES_MAX);
     if (!which->script.has_jobs || (p->frames && frames != p->frames))
         return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--sweep: the script must have the same number of frames at every value");
     return true;

@@ -150,7 +150,7 @@ static int make_request(reproduction *r, glintL_run *run, char *message)
     const char *frame = text_of(r, "glint:frame"), *temporary = getenv("TMPDIR");
     glintL_request *request = &run->request;
     if (!*text_of(r, "glint:key") || !*frame) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%.300s: it has no key and frame number by which glint could render it again", r->file);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%.300s: has no key and frame number, so glint cannot render it again", r->file);
         return UNREADABLE;
     }
     r->params = strdup(text_of(r, "glint:params"));
@@ -169,7 +169,7 @@ static int make_request(reproduction *r, glintL_run *run, char *message)
     collect_folders(temporary);
     snprintf(r->folder, sizeof r->folder, "%.180s/glint.%s.%ld.XXXXXX", temporary, host_name(), (long)getpid());
     if (!mkdtemp(r->folder)) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: this folder cannot be made", r->folder);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: cannot create this folder", r->folder);
         r->folder[0] = '\0';
         return GLINTL_EXIT_FAILED;
     }
@@ -205,7 +205,7 @@ static int render(reproduction *r, cli_options *options, glintL_run *run, char *
     good = glintL_run_collect(run, true) && good;
     for (size_t i = 0; i < run->request.set_count; i++)
         if (!good && !run->request.sets[i].is_known && strstr(run->message, "--set ")) {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: it has no parameter '%.100s', which %.200s was made with",
+            snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: has no parameter '%.100s', but %.200s was rendered with it",
                      run->script, run->request.sets[i].name, r->file);
             return GLINTL_EXIT_USAGE;
         }
@@ -225,7 +225,7 @@ static int render(reproduction *r, cli_options *options, glintL_run *run, char *
         snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
         return GLINTL_EXIT_FAILED;
     }
-    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: it has no frame %s", run->script, text_of(r, "glint:frame"));
+    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: has no frame %s", run->script, text_of(r, "glint:frame"));
     return GLINTL_EXIT_USAGE;
 }
 
@@ -276,10 +276,10 @@ static void find_reason(reproduction *r, const glint_picture *made)
         snprintf(r->reason, sizeof r->reason, "%s",
                  same_source
                      ? "the frame has the same key: the file was changed, or compressed on another kind of processor"
-                     : "another script: its text has changed, though not in what this frame reads");
+                     : "another script: its text has changed, but not the parts that this frame depends on");
     else
         snprintf(r->reason, sizeof r->reason, "%s",
-                 same_source ? "what the script reads describes another frame"
+                 same_source ? "the script or a file that it reads has changed, and now describes another frame"
                              : "another script: its text has changed");
 }
 

@@ -103,12 +103,12 @@ static int refuse_results(lua_State *L, int count)
 static int refuse_silence(lua_State *L, const cli_options *options)
 {
     if (options->dialect)
-        lua_pushfstring(L, "%s rendered nothing; calls of %s.render expected", cli_base_name(options->script),
+        lua_pushfstring(L, "%s rendered nothing; expected it to call %s.render", cli_base_name(options->script),
                         options->dialect);
     else
         lua_pushfstring(L,
-                        "%s returned nothing and rendered nothing; an animation, a sweep, a scene or a list of them is "
-                        "expected, or calls of scene:render",
+                        "%s returned nothing and rendered nothing; expected it to return an animation, a sweep, a "
+                        "scene or a list of them, or to call scene:render",
                         cli_base_name(options->script));
     return lua_error(L);
 }
@@ -145,7 +145,8 @@ static bool check_sweep(const task *work)
     glintL_run *run = work->run;
     return run->point_count == 0 || run->mode != GLINTL_MODE_RENDER ||
            glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
-                           "--sweep: the script both calls scene:render and returns frames; one of them expected");
+                           "--sweep: the script both calls scene:render and returns frames; expected only one of the "
+                           "two");
 }
 
 // Runs the jobs in the list at 1.
@@ -228,7 +229,7 @@ static const char *missing_hint(const cli_options *options, char out[GLINTL_PATH
     if (access(path, F_OK) == 0)
         snprintf(out, GLINTL_PATH_SIZE + 32, "; did you mean %s?", path);
     else if (options->command == CLI_RENDER && !strpbrk(word, "./"))
-        return "; and no command has this name; glint --help lists them";
+        return "; there is no command of this name either; glint --help lists the commands";
     else
         return "";
     return out;

@@ -77,7 +77,8 @@ static bool make_room(cli_sweep *sweep, int64_t count, size_t bytes, char *messa
 static bool list_range(cli_sweep *sweep, const range *r, char *message)
 {
     if (r->has_factor && !(r->to / r->from > 0 && isfinite(r->to / r->from))) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%s: two ends of the same sign, neither of them 0, expected with a factor",
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s: expected two ends of the same sign, neither of them 0, for steps "
+                                               "of equal factors",
                  sweep->name);
         return false;
     }
@@ -124,8 +125,8 @@ bool cli_read_sweep(char *text, cli_sweep *sweep, char message[GLINTL_MESSAGE_SI
     const bool is_list = equals && strchr(equals, ',');
     if (!equals || equals == text || (!is_list && !read_range(equals + 1, &r))) {
         snprintf(message, GLINTL_MESSAGE_SIZE,
-                 "name=from:to:count with count 1 .. %d, such as radius=1:5:9, name=from:to:*count for equal factors, or a list, "
-                 "name=1,5,9, expected, got '%.200s'",
+                 "expected name=from:to:count with count 1 .. %d, such as radius=1:5:9, name=from:to:*count for "
+                 "equal factors, or a list, name=1,5,9; got '%.200s'",
                  POINTS_MAX, text);
         return false;
     }

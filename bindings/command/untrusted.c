@@ -136,7 +136,8 @@ static int judge(int status, const watched *child, const cli_options *options, c
     if (child->ended_by == LATE || number == SIGXCPU)
         snprintf(message, sizeof message, "--untrusted: the script took longer than %g s", options->untrusted_s);
     else if (child->ended_by == TOO_MUCH)
-        snprintf(message, sizeof message, "--untrusted: the script wrote more than %llu bytes, where each write counts 4096 more",
+        snprintf(message, sizeof message, "--untrusted: the script wrote more than %llu bytes; each write counts as "
+                                          "4096 bytes more than its length",
                  (unsigned long long)child->most);
     else if (child->ended_by == BY_SIGNAL && number)
         *signal_number = child->number; // whether the child handled the signal or was killed
@@ -199,7 +200,7 @@ bool cli_untrusted_begin(cli_options *options, cli_output *output, int *code, in
     if (child == 0) {
         setpgid(0, 0); // so that Ctrl-C reaches it only through its parent
         prctl(PR_SET_PDEATHSIG, SIGKILL);
-        snprintf(message, sizeof message, "--untrusted: its parent is gone");
+        snprintf(message, sizeof message, "--untrusted: the parent process has ended");
         if (getppid() == parent && enter(options, output, message))
             return true;
     }
@@ -213,7 +214,7 @@ bool cli_untrusted_begin(cli_options *options, cli_output *output, int *code, in
 {
     (void)options, (void)signal_number;
     *code = GLINTL_EXIT_USAGE;
-    cli_report_error(output, 0, *code, "--untrusted: this glint was built without libseccomp, which it needs");
+    cli_report_error(output, 0, *code, "--untrusted: this glint was built without libseccomp, which --untrusted needs");
     return false;
 }
 

@@ -77,7 +77,7 @@ static int set_metatable(lua_State *L)
     if (lua_istable(L, 2)) {
         lua_pushliteral(L, "__gc");
         if (lua_rawget(L, 2) != LUA_TNIL)
-            return luaL_error(L, "setmetatable: an untrusted script has no finalizers (__gc)");
+            return luaL_error(L, "setmetatable: an untrusted script cannot have finalizers (__gc)");
         lua_settop(L, 2);
     }
     if (luaL_getmetafield(L, 1, "__metatable") != LUA_TNIL)
@@ -91,7 +91,7 @@ static int require_glint(lua_State *L)
 {
     const char *name = luaL_checkstring(L, 1);
     if (strcmp(name, "glint") != 0)
-        return luaL_error(L, "module '%s' not found: an untrusted script has only the module glint", name);
+        return luaL_error(L, "module '%s' not found: an untrusted script can require only the module glint", name);
     lua_pushvalue(L, lua_upvalueindex(1));
     return 1;
 }

@@ -74,8 +74,8 @@ static void print_usage(FILE *out)
         print_line(out, head, cli_command_list[i].help, false);
     }
     print_options(out, ~0u);
-    fputs("\nWords after -- are the script's `arg`. What the command line says beats what the script says.\n"
-          "Exit: 0 done, 1 a frame failed, 2 usage or script error, 75 disk full (try later), 130 and 143 by signal.\n",
+    fputs("\nArguments after -- become the script's `arg`. The command line overrides the script.\nExit: 0 done, 1 a "
+          "frame failed, 2 usage or script error, 75 disk full (try later), 130 and 143 by signal.\n",
           out);
 }
 
@@ -83,7 +83,7 @@ static void print_command(FILE *out, const cli_command_name *command)
 {
     fprintf(out, "usage: glint %s %s\n\n%s\n", command->name, command->synopsis, command->help);
     print_options(out, command->command);
-    fputs("\nThe manual, man glint, says more.\n", out);
+    fputs("\nSee man glint for the full manual.\n", out);
 }
 
 static int refuse(cli_output *output, const char *format, const char *word, const char *near)
@@ -100,7 +100,7 @@ int cli_help(const cli_options *options, cli_output *output)
     const cli_command_name *command = NULL;
     const bool is_named = options->command == CLI_HELP && options->argument_count > 0;
     if (is_named && options->argument_count > 1)
-        return refuse(output, "help: one command expected, got also '%.200s'%s", options->arguments[1], "");
+        return refuse(output, "help: expected one command, got also '%.200s'%s", options->arguments[1], "");
     if (is_named)
         command = cli_find_command(options->arguments[0], &near);
     if (is_named && !command && near)

@@ -55,7 +55,7 @@ static bool set_limits(double seconds, char *message)
     mallopt(M_MMAP_THRESHOLD, 128 << 10); // so that a large block grows by remapping instead of copying
     mallopt(M_ARENA_MAX, ARENAS);
 #endif
-    return good || fail(message, "the limits of the process");
+    return good || fail(message, "setting the limits of the process");
 }
 
 // ---- Descriptors ----
@@ -124,7 +124,7 @@ static bool close_files(const char *script, const char *folder, char *message)
     const rights handled = all_rights(version > 0 ? version : 1, &size);
     int rules = (int)syscall(SYS_landlock_create_ruleset, &handled, size, 0);
     if (rules < 0)
-        return fail(message, "Landlock, which keeps it to one folder");
+        return fail(message, "Landlock, which restricts the script to one folder");
     bool good = allow_beneath(rules, script, LANDLOCK_ACCESS_FS_READ_FILE, message) &&
                 (!folder || allow_beneath(rules, folder, in_folder, message));
     if (good && syscall(SYS_landlock_restrict_self, rules, 0))

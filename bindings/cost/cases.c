@@ -93,7 +93,7 @@ static bool refuse_knobs(cost_study *study, const cost_subject *subject)
             used += (size_t)snprintf(others + used, sizeof others - used, "%s%s", used ? ", " : "", cost_knobs[i].name);
     }
     return glintL_run_fail(study->run, GLINTL_EXIT_USAGE, 0,
-                           "--knobs: one that the scene responds to (%s) expected, got '%.200s'", others,
+                           "--knobs: expected a knob that changes this scene (%s), got '%.200s'", others,
                            study->options->knobs);
 }
 
@@ -108,7 +108,7 @@ static bool list_values(cost_study *study, const cost_subject *subject)
         knob->list(subject, &study->values[i]);
         found += study->values[i].count > 0;
         if (request && study->values[i].count == 0 &&
-            !cost_leave_out(study, "%s: the scene does not respond to it: it would need %s", knob->name, knob->needs))
+            !cost_leave_out(study, "%s: changes nothing in this scene; it would need %s", knob->name, knob->needs))
             return false;
     }
     return found > 0 || refuse_knobs(study, subject);

@@ -33,7 +33,7 @@ static bool read_scene(cli_options *options, glintL_run *run, cost_moments **mom
     cli_close_script(&script);
     if (!run->exit_code && !run->interrupted && !run->kept_scene)
         glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
-                        "--frame: a frame of the script, 1 .. %" PRId64 ", expected, got '%" PRId64 "'", run->count,
+                        "--frame: expected a frame of the script, 1 .. %" PRId64 ", got '%" PRId64 "'", run->count,
                         options->frame);
     return !run->exit_code && !run->interrupted;
 }
@@ -48,7 +48,7 @@ static void say_frame(const cost_study *study)
     if (study->output->quiet)
         return;
     fprintf(stderr, "%s, frame %" PRId64 "%s%s: %.0f x %.0f, %.0f sample%s a pixel\n", run->script, run->explain_frame,
-            total, run->call_count == 0 && run->count == 1 ? "" : " (--frame N takes another)", desc->width,
+            total, run->call_count == 0 && run->count == 1 ? "" : " (choose another with --frame N)", desc->width,
             desc->height, desc->samples, desc->samples == 1 ? "" : "s");
 }
 
@@ -84,8 +84,8 @@ static void warn_long(const cost_study *study)
     if (progress)
         cli_progress_clear(progress);
     fprintf(stderr,
-            "glint: this will take about %.0f minutes; --quick, --budget SECONDS, --knobs LIST or --size shorten it, "
-            "and Ctrl-C shows what is measured by then\n",
+            "glint: this will take about %.0f minutes; use --quick, --budget SECONDS, --knobs LIST or --size to "
+            "shorten it, or press Ctrl-C to see the results so far\n",
             ceil(ms / 60e3));
 }
 
@@ -150,7 +150,7 @@ static bool name_unmeasured(cost_study *study)
         if (study->cases[study->rows[i].measured].run_count > 0)
             continue;
         cost_row_name(&study->rows[i], name);
-        if (!cost_leave_out(study, "%s: not measured: the budget has no time for it", name))
+        if (!cost_leave_out(study, "%s: not measured: the budget leaves no time for it", name))
             return false;
     }
     return true;
@@ -166,7 +166,8 @@ static bool has_room(const cost_study *study)
 static bool stop_after_first(cost_study *study)
 {
     study->runs = 1;
-    return cost_leave_out(study, "every error, and all but one frame: the budget has no room for more") &&
+    return cost_leave_out(study, "every error, and all runs except the first frame: the budget leaves no time for "
+                                 "more") &&
            name_unmeasured(study);
 }
 
@@ -222,7 +223,8 @@ static void close_study(cost_study *study)
 static bool tell_of_instant(cost_study *study)
 {
     const char *lack = cost_moments_lack(study->moments);
-    return !lack || cost_leave_out(study, "the open shutter: %s; the frame is measured as seen in an instant", lack);
+    return !lack || cost_leave_out(study, "the open shutter: %s; the frame is measured at one instant, without "
+                                          "motion blur", lack);
 }
 
 // Opens a study, which takes over the moments, on failure too.
@@ -286,7 +288,8 @@ static bool check_options(const cli_options *options, glintL_run *run)
     if (options->knobs && !cost_knobs_check(options->knobs, message))
         return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--knobs: %s", message);
     if (options->is_live && !options->report)
-        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--live: --report DIR expected, whose page has the live figure");
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--live: expected together with --report DIR, whose page "
+                                                          "shows the live figure");
     if (options->report && !cost_report_check(options->report, message))
         return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--report: %s", message);
     return true;

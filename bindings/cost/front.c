@@ -245,7 +245,7 @@ static void advise_step(cost_study *study, const cost_row *row)
     if (row->difference == 0)
         snprintf(time, sizeof time, "no difference in the");
     snprintf(study->advice, sizeof study->advice, "%s: %s time, %s error%s", step, time, error,
-             row->is_resolved ? "" : " or less (the reference does not resolve it)");
+             row->is_resolved ? "" : " or less (too small to resolve against the reference)");
 }
 
 // Returns the row with the least error among those that save much time. Used when no setting is more accurate than the
@@ -268,12 +268,13 @@ static void advise(cost_study *study)
     const cost_row *best = study->cases[0].has_error ? find_step(study) : NULL;
     if (!study->cases[0].has_error || study->cases[0].run_count == 0)
         snprintf(study->advice, sizeof study->advice, "no advice: %s",
-                 study->is_complete ? "the budget left nothing to compare with"
+                 study->is_complete ? "the budget left no time for another setting"
                                     : "the study was interrupted too early");
     else if (best || (best = find_cheaper(study)) != NULL)
         advise_step(study, best);
     else
-        snprintf(study->advice, sizeof study->advice, "keep the script's setting: nothing here is faster or nearer");
+        snprintf(study->advice, sizeof study->advice, "keep the script's setting: no setting here is faster or more "
+                                                      "accurate");
 }
 
 void cost_judge(cost_study *study)

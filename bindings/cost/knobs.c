@@ -428,7 +428,7 @@ static glint_status apply_reuse(cost_draft *draft, cost_value value, glint_error
 
 // ---- The table, in the order of the output ----
 
-#define SURFACES "a surface to be seen"
+#define SURFACES "a visible surface"
 #define INDIRECT "indirect light"
 #define PNG "an output in .png"
 
@@ -451,7 +451,7 @@ const cost_knob cost_knobs[] = {
       apply_occlusion_samples },
     { "bits", PNG, COST_ERROR_FILE, false, false, list_bits, apply_bits },
     { "encode", PNG, COST_ERROR_FILM, false, false, list_encode, apply_encode },
-    { "reuse", "a second frame (of a loop of scene:render, name a later one than the first by --frame)",
+    { "reuse", "a second frame (in a loop of scene:render, choose a later frame than the first with --frame)",
       COST_ERROR_FILM, false, true, list_reuse, apply_reuse },
 };
 const int cost_knob_count = COUNT(cost_knobs);

@@ -164,7 +164,7 @@ void cost_moments_close(cost_moments *moments)
 
 const char *cost_moments_lack(const cost_moments *moments)
 {
-    return moments->is_odd ? "the frame function makes objects anew at each time" : moments->is_large ? "the scene is too large" : NULL;
+    return moments->is_odd ? "the frame function creates new objects at each time" : moments->is_large ? "the scene is too large" : NULL;
 }
 
 int cost_moments_counts(const cost_moments *moments, double out[COST_VALUES_MAX])

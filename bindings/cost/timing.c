@@ -57,7 +57,7 @@ static bool drop_slowest(cost_study *study)
         return false;
     study->cases[slowest].is_left_out = true;
     name_case(study, slowest, name);
-    return cost_leave_out(study, "%s: timed once: the budget has no time for %d runs", name, COST_RUNS_LEAST);
+    return cost_leave_out(study, "%s: timed once: the budget leaves no time for %d runs", name, COST_RUNS_LEAST);
 }
 
 static bool fit_budget(cost_study *study)
@@ -127,7 +127,8 @@ static bool tell_apart(cost_study *study, int *order)
     while ((count = list_cases(study, true, order, &ms)) > 0 && ms <= cost_left_ms(study))
         if (!run_round(study, order, count, ms))
             return false;
-    return count == 0 || cost_leave_out(study, "more runs of %d settings whose times do not part: the budget ends", count);
+    return count == 0 || cost_leave_out(study, "more runs of %d settings whose times still overlap: the budget "
+                                               "leaves no time", count);
 }
 
 bool cost_time_cases(cost_study *study)

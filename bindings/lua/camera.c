@@ -51,11 +51,13 @@ static void check_rotation(lua_State *L, const char *path, double row[3][3])
     for (int i = 0; i < 3; i++)
         for (int k = 0; k <= i; k++)
             if (!(fabs(dot(row[i], row[k]) - (i == k)) < SQUARE))
-                glintL_error(L, "%s: a rotation expected, whose rows are unit and at right angles, got %f for row %d by row %d", path,
+                glintL_error(L, "%s: a rotation expected, whose rows have length 1 and are perpendicular, got %f for "
+                                "the product of row %d and row %d", path,
                              dot(row[i], row[k]), i + 1, k + 1);
     cross(row[0], row[1], third);
     if (dot(third, row[2]) < 0)
-        glintL_error(L, "%s: a rotation expected, got one with a mirror; its rows are x to the right, y down, z away from the eye", path);
+        glintL_error(L, "%s: a rotation expected, got one that also mirrors; its rows are x to the right, y down, z "
+                        "away from the eye", path);
 }
 
 static void read_matrix(lua_State *L, int index, const char *path, void *desc)

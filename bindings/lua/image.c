@@ -213,12 +213,12 @@ static const char *check_path(lua_State *L)
         return path;
     if (!request->folder || !glintL_name_is_plain(path, length))
         glintL_refuse(L, 2, "save.path",
-                      request->folder ? GLINTL_PLAIN_NAME : "no file, for nothing is to be written,");
+                      request->folder ? GLINTL_PLAIN_NAME : "no file, because this run writes no pictures,");
     lua_pushfstring(L, "%s/%s", request->folder, path);
     lua_replace(L, 2);
     path = lua_tostring(L, 2);
     if (glintL_name_is_special(path))
-        glintL_refuse(L, 2, "save.path", "file that is no pipe or device");
+        glintL_refuse(L, 2, "save.path", "regular file, not a pipe or device,");
     return path;
 }
 

@@ -48,9 +48,9 @@ static void accepted(lua_State *L, const glintL_field *field, const void *desc)
     const double *kd = ((const desc_type *)desc)->diffuse;
     const double most = fmax(fmax(kd[0], kd[1]), kd[2]);
     if (field->offset == AT(diffuse) && most > 1 && is_first(L))
-        glintL_warn(L, most > 2 ? "material.diffuse above 1: the surface gives off more light than it gets; colours are numbers "
-                                  "from 0 to 1, or \"#rrggbb\""
-                                : "material.diffuse above 1: the surface gives off more light than it gets");
+        glintL_warn(L, most > 2 ? "material.diffuse above 1: the surface reflects more light than it receives; use "
+                                  "numbers from 0 to 1, or \"#rrggbb\""
+                                : "material.diffuse above 1: the surface reflects more light than it receives");
 }
 
 // Returns the name by which the table at 2 gives a direction: the long one, or the short one of shaders.
@@ -62,7 +62,7 @@ static const char *name_in(lua_State *L, const char *long_name, const char *shor
     const bool is_short = lua_rawget(L, 2) != LUA_TNIL;
     lua_pushstring(L, long_name);
     if (lua_rawget(L, 2) != LUA_TNIL && is_short)
-        glintL_error(L, "evaluate: %s and %s are the same direction; give one of them", short_name, long_name);
+        glintL_error(L, "evaluate: %s and %s are the same direction; give only one of them", short_name, long_name);
     lua_pop(L, 2);
     return is_short ? short_name : long_name;
 }

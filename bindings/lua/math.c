@@ -19,7 +19,7 @@ static int math_exp(lua_State *L) { return apply(L, "exp", glint_exp); }
 static int math_log(lua_State *L)
 {
     if (!lua_isnoneornil(L, 2))
-        glintL_error(L, "log: one number expected; for another base divide by glint.log(base)");
+        glintL_error(L, "log: one number expected; for another base, divide by glint.log(base)");
     return apply(L, "log", glint_log);
 }
 

@@ -336,7 +336,7 @@ static const uint32_t *number_corners(lua_State *L, const arguments *a, const ch
     if (count == a->desc.vertex_count)
         return NULL;
     if (count != corners)
-        glintL_error(L, "mesh.%s: one a vertex (%I) or one a corner of a face (%I) expected, got %I", name,
+        glintL_error(L, "mesh.%s: one per vertex (%I) or one per corner of a face (%I) expected, got %I", name,
                      (LUAI_UACINT)a->desc.vertex_count, (LUAI_UACINT)corners, (LUAI_UACINT)count);
     uint32_t *numbers = new_indices(L, corners, buffer);
     for (size_t i = 0; i < corners; i++)

@@ -56,7 +56,7 @@ static int refuse_member(lua_State *L)
         return glintL_bad_key(L, "glint", 2);
     const char *name = lua_tostring(L, 2);
     if (is_module(L, name))
-        return glintL_error(L, "glint.%s: it is a module of its own; local %s = require \"glint.%s\"", name, name, name);
+        return glintL_error(L, "glint.%s: this is a separate module; write local %s = require \"glint.%s\"", name, name, name);
     return glintL_no_such_field(L, "glint", name, nearest_member(L, name));
 }
 

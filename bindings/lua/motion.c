@@ -152,7 +152,7 @@ static void read_value(lua_State *L, const char *path, const track *k, double *o
     bool is_list;
     const double *vector = glintL_to_vector(L, -1);
     if (value_size(L, path, &is_list) != k->size || is_list != k->is_list)
-        glintL_error(L, "%s: a value like that of the first key expected", path);
+        glintL_error(L, "%s: expected a value of the same type and length as the first key's", path);
     for (uint32_t c = 0; c < k->size; c++) {
         if (vector || !is_list) {
             out[c] = vector ? vector[c] : read_finite(L, path);

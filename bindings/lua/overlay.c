@@ -38,8 +38,8 @@ static void push_pair(lua_State *L, const double pair[2], const char *name)
 
 static void read_at(lua_State *L, int index, const char *path, void *desc)
 {
-    static const char expected[] = "\"top left\", \"top\", \"top right\", \"left\", \"center\", \"right\", \"bottom left\", "
-                                   "\"bottom\", \"bottom right\" or {x, y} in shares of the picture";
+    static const char expected[] = "\"top left\", \"top\", \"top right\", \"left\", \"center\", \"right\", \"bottom "
+                                   "left\", \"bottom\", \"bottom right\" or {x, y} as fractions of the picture";
     desc_type *d = desc;
     if (lua_type(L, index) != LUA_TSTRING) {
         read_pair(L, index, path, expected, d->at);
@@ -289,7 +289,8 @@ static void read_map(lua_State *L, int index, const char *path, void *desc)
     unsigned which;
     d->has_colors = lua_istable(L, index) || lua_isfunction(L, index);
     if (lua_isfunction(L, index) && !lua_istable(L, 1))
-        glintL_error(L, "%s: the name of a map or a list of colours expected, got function; give it to glint.colorbar { ... }", path);
+        glintL_error(L, "%s: the name of a map or a list of colours expected, got function; only glint.colorbar { "
+                        "... } takes a function", path);
     if (!d->has_colors) {
         glintL_read_field(L, index, "colorbar", &name, &which);
         d->map = (glint_colormap)which;
@@ -387,7 +388,7 @@ static void assigned(lua_State *L, const glintL_field *field, void *desc)
     if (strcmp(field->name, "at") != 0)
         return;
     if (d->has_box)
-        glintL_error(L, "axes.at: only axes without a box have it; with a box they lie at its edges");
+        glintL_error(L, "axes.at: only for axes without a box; axes with a box lie along its edges");
     d->has_position = false;
 }
 

@@ -194,9 +194,9 @@ static void vary(lua_State *L, const char *name)
     if (!glintL_wants_variable(glintL_get_run(L), name))
         return;
     if (lua_type(L, -1) != LUA_TNUMBER)
-        glintL_error(L, "passes: d:%s: the parameter is a %s; derivatives are by numbers", name, luaL_typename(L, -1));
+        glintL_error(L, "passes: d:%s: the parameter is a %s; only number parameters have derivatives", name, luaL_typename(L, -1));
     if (strlen(name) >= GLINT_DERIVATIVE_NAME_SIZE)
-        glintL_error(L, "passes: d:%s: a name of at most %d bytes expected", name, GLINT_DERIVATIVE_NAME_SIZE - 1);
+        glintL_error(L, "passes: d:%s: expected a name of at most %d bytes", name, GLINT_DERIVATIVE_NAME_SIZE - 1);
     glintL_make_variable(L, name, lua_tonumber(L, -1));
 }
 
@@ -226,7 +226,7 @@ static int read_param(lua_State *L)
 static int write_param(lua_State *L)
 {
     const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "?";
-    return glintL_error(L, "params.%s: a parameter is read-only; --set %s=... sets it", name, name);
+    return glintL_error(L, "params.%s: a parameter is read-only; set it with --set %s=...", name, name);
 }
 
 static int next_param(lua_State *L)

@@ -80,7 +80,7 @@ static void refuse_member(lua_State *L, int value, const char *path)
 {
     const char *expected = "shape, light, label, colorbar or axes";
     if (lua_istable(L, value) && has_object(L, value))
-        glintL_error(L, "%s: %s expected, got a list; its objects stand in the scene itself, or in a glint.group", path, expected);
+        glintL_error(L, "%s: %s expected, got a list; put its objects into the scene directly, or into a glint.group", path, expected);
     if (lua_istable(L, value) && !glintL_is_module(L, value))
         glintL_error(L, "%s: %s expected, got table; write glint.sphere { ... }, glint.point_light { ... } or another", path,
                      expected);
@@ -310,7 +310,8 @@ static void refuse_named(lua_State *L)
     for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1))
         if (lua_type(L, -2) == LUA_TSTRING && !glintL_find_field(glintL_fields_of(&SCENE), lua_tostring(L, -2)) &&
             (has_object(L, -1) || strcmp(lua_tostring(L, -2), "lights") == 0))
-            glintL_error(L, "scene.%s: shapes and lights stand in a scene without a name: glint.scene { camera = ..., lamp, ball }",
+            glintL_error(L, "scene.%s: shapes and lights are listed in a scene without a name: glint.scene { camera "
+                            "= ..., lamp, ball }",
                          lua_tostring(L, -2));
 }
 

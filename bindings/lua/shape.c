@@ -168,7 +168,7 @@ static void assigned(lua_State *L, const glintL_field *field, void *desc)
         return;
     push_kept_list(L);
     if (!lua_isnil(L, -1))
-        glintL_error(L, "%s a list of materials; change the fields of those",
+        glintL_error(L, "%s a list of materials; change the fields of the materials in the list",
                      glint_shape_get(glintL_check_object(L, 1, GLINTL_SHAPE))->kind == GLINT_SHAPE_MESH
                          ? "mesh.material: this mesh has"
                          : "spheres.material: these spheres have");

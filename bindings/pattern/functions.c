@@ -154,7 +154,7 @@ static int read_member(lua_State *L)
 static int write_member(lua_State *L)
 {
     const glintL_pattern *pattern = check_self(L);
-    return glintL_error(L, "%s.%s: a %s cannot be changed; its function sees variables that can", name_of(pattern),
+    return glintL_error(L, "%s.%s: a %s cannot be changed; change the variables that its function reads", name_of(pattern),
                         luaL_tolstring(L, 2, NULL), name_of(pattern));
 }
 

@@ -70,7 +70,7 @@ static int read_surroundings(lua_State *L)
     const char *name = lua_tostring(L, 2), *near = NULL;
     const field *f = find_field(name);
     if (!trace)
-        return glintL_error(L, "s.%s: s lasts for one call of a pattern's function", name);
+        return glintL_error(L, "s.%s: s is valid only during one call of a pattern's function", name);
     if (f && (trace->is_shader || !f->is_of_shaders)) {
         push_field(L, trace, f);
         lua_pushvalue(L, 2);
@@ -79,7 +79,7 @@ static int read_surroundings(lua_State *L)
         return 1;
     }
     if (f)
-        return glintL_error(L, "s.%s: a pattern has no light; glint.shader is called for each light", name);
+        return glintL_error(L, "s.%s: a pattern has no light; use glint.shader, which is evaluated for each light", name);
     for (size_t i = 0; i < FIELD_COUNT; i++)
         if (trace->is_shader || !FIELDS[i].is_of_shaders)
             near = glintL_nearer(name, near, FIELDS[i].name);

@@ -11,7 +11,8 @@ static const char CLOSED; // the same for userdata that a script has closed, who
 void glintL_refuse_within_trace(lua_State *L, const char *what)
 {
     if (glintL_current_trace(L))
-        glintL_error(L, "%s: the function of a pattern changes no objects; it may be called any number of times", what);
+        glintL_error(L, "%s: the function of a pattern must not change objects, because it may be called any number "
+                        "of times", what);
 }
 
 // ---- Storing ----
@@ -166,7 +167,7 @@ static void trace_object(lua_State *L, int index, const char *type, int frame)
             program = traced->program;
         sloped = sloped || (program && changes(program));
         if (program && changes(program) && glint_program_constant(program, outputs)) {
-            lua_pushfstring(L, "%s%s.%s: a pattern that gives one number everywhere has no derivative by it; the number itself has",
+            lua_pushfstring(L, "%s%s.%s: a pattern with the same number everywhere has no derivative; assign the number itself",
                             push_place(L, index, field), type + sizeof "glint." - 1, field->name);
             lua_error(L);
         }

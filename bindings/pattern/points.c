@@ -84,10 +84,11 @@ static void refuse(lua_State *L, int index, const double in[GLINT_INPUT_COUNT], 
     const int digits = fabs(lua - program) > 0.01 * scale ? 3 : 17;
     lua_getiuservalue(L, index, 1);
     lua_getinfo(L, ">S", &where);
-    snprintf(text, sizeof text, "Lua says %.*g, the trace %.*g at %s(%.3g, %.3g, %.3g)", digits, lua, digits, program,
+    snprintf(text, sizeof text, "the Lua function gives %.*g, the compiled program %.*g at %s(%.3g, %.3g, %.3g)", digits, lua, digits, program,
              pattern->kind == GLINT_PROGRAM_SHADER ? "s.l = " : "", at[0], at[1], at[2]);
     lua_pushfstring(L,
-                    "%s:%d: %s: an `if`, `and` or `or` on a value of the point, or something random? use glint.select",
+                    "%s:%d: %s: does the function have an `if`, `and` or `or` on a value of the point, or a random "
+                    "number? use glint.select",
                     where.short_src, where.linedefined, text);
     lua_error(L);
 }

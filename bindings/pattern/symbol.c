@@ -104,32 +104,34 @@ static void refuse_least(lua_State *L)
     if (!lua_getstack(L, 1, &caller) || !lua_getinfo(L, "Sn", &caller) || *caller.what != 'C' || !caller.name)
         return;
     if (strcmp(caller.name, "min") == 0 || strcmp(caller.name, "max") == 0)
-        glintL_error(L, "math.%s of a symbol: the point is not known when the function is called; write glint.%s", caller.name,
+        glintL_error(L, "math.%s of a symbol: its value is not known, because the function runs once for all points; "
+                        "write glint.%s", caller.name,
                      caller.name);
 }
 
 static int refuse_less(lua_State *L)
 {
     refuse_least(L);
-    return glintL_error(L, "a < b or a > b of a symbol: the point is not known when the function is called; write "
-                           "glint.select(glint.less(a, b), x, y)");
+    return glintL_error(L, "a < b or a > b of a symbol: its value is not known, because the function runs once for "
+                           "all points; write glint.select(glint.less(a, b), x, y)");
 }
 
 static int refuse_less_equal(lua_State *L)
 {
-    return glintL_error(L, "a <= b or a >= b of a symbol: the point is not known when the function is called; write "
-                           "glint.select(glint.lesseq(a, b), x, y)");
+    return glintL_error(L, "a <= b or a >= b of a symbol: its value is not known, because the function runs once for "
+                           "all points; write glint.select(glint.lesseq(a, b), x, y)");
 }
 
 static int refuse_concat(lua_State *L)
 {
-    return glintL_error(L, "a .. b of a symbol: its number is not known when the function is called, so that it makes "
-                           "no text");
+    return glintL_error(L, "a .. b of a symbol: it cannot become text, because its value is not known when the "
+                           "function runs");
 }
 
 static int refuse_bits(lua_State *L)
 {
-    return glintL_error(L, "& | ~ << >> of a symbol: it is no integer; write products and glint.floor, or glint.hash");
+    return glintL_error(L, "& | ~ << >> of a symbol: it is not an integer; use products and glint.floor, or "
+                           "glint.hash");
 }
 
 void glintL_set_arithmetic(lua_State *L)
@@ -158,8 +160,8 @@ void glintL_set_operators(lua_State *L)
 
 static int refuse_equal(lua_State *L)
 {
-    return glintL_error(L, "a == b or a ~= b of symbols: the point is not known when the function is called; write "
-                           "glint.select(glint.equal(a, b), x, y)");
+    return glintL_error(L, "a == b or a ~= b of symbols: their values are not known, because the function runs once "
+                           "for all points; write glint.select(glint.equal(a, b), x, y)");
 }
 
 static int refuse_length(lua_State *L)
@@ -175,7 +177,7 @@ static int refuse_index(lua_State *L)
 
 static int refuse_call(lua_State *L)
 {
-    return glintL_error(L, "a symbol is called: it is one number and no function; is a * missing?");
+    return glintL_error(L, "a symbol is called: it is a number, not a function; is a * missing?");
 }
 
 static int to_string(lua_State *L)

@@ -154,8 +154,8 @@ static bool to_term(lua_State *L, int index, glintL_term *out)
     if (!found)
         return false;
     if (!trace || trace->serial != found->serial)
-        glintL_error(L, "a symbol of another call of a pattern's function: what is made of p or s lasts for that call "
-                        "only; keep none of it in variables outside");
+        glintL_error(L, "a symbol of another call of a pattern's function: values computed from p or s are valid "
+                        "only during that call; do not store them in variables outside the function");
     if (found->choice)
         trace->choices.used[(found->choice - 1) / 64] |= (uint64_t)1 << (found->choice - 1) % 64;
     *out = (glintL_term) { .is_symbol = true, .value = found->value };
@@ -234,8 +234,8 @@ void glintL_read_operand(lua_State *L, int index, const char *path, glintL_opera
     if (lua_istable(L, index))
         glintL_error(L, "%s: number, symbol or vector {x, y, z} of three of them expected, got another table", path);
     if (glintL_to_dual(L, index)) // inside a pattern's function it is allowed
-        glintL_error(L, "%s: number or vector expected, got a number made of glint.variable; glint.value(x) is the number "
-                        "alone", path);
+        glintL_error(L, "%s: number or vector expected, got a number made of glint.variable; glint.value(x) is the "
+                        "plain number", path);
     if (lua_isnoneornil(L, index))
         glintL_error(L, "%s: number, symbol or vector expected, got %s: is a variable or a field not set?", path,
                      glintL_push_spelling(L, index));

@@ -108,7 +108,7 @@ static int brick(lua_State *L)
     glintL_term p[3], mortar = number(0.1);
     glintL_read_place(L, 1, "brick", p);
     if (!lua_istable(L, 1) && !glintL_to_vector(L, 1))
-        return glintL_error(L, "brick: a vector first expected: brick(p, mortar, footprint)");
+        return glintL_error(L, "brick: a vector expected as the first argument: brick(p, mortar, footprint)");
     if (lua_gettop(L) > 3)
         return glintL_error(L, "brick: a vector, the mortar's width and a footprint expected, got more");
     if (!lua_isnoneornil(L, 2))

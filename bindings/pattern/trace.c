@@ -67,10 +67,11 @@ static const char *push_own_function(lua_State *L, const char *text)
 {
     const char *name = glintL_push_name_after(L, text, "bad argument #1 to '");
     if (name && strcmp(name, "fmod") == 0)
-        return lua_pushliteral(L, "a symbol has no number yet; write a % b");
+        return lua_pushliteral(L, "a symbol has no value yet; write a % b");
     if (name && glintL_makes(L, name))
-        return lua_pushfstring(L, "a symbol has no number yet; write glint.%s", name);
-    return lua_pushliteral(L, "a symbol has no number yet; write glint's own function, glint.sin(x) for math.sin(x)");
+        return lua_pushfstring(L, "a symbol has no value yet; write glint.%s", name);
+    return lua_pushliteral(L, "a symbol has no value yet; use glint's own function, such as glint.sin(x) for "
+                              "math.sin(x)");
 }
 
 // Adds a hint to Lua's own messages about symbols.
@@ -82,15 +83,15 @@ static int explain(lua_State *L)
         return 1;
     luaL_checkstack(L, 8, "message");
     if (strstr(text, "'for' ") && strstr(text, "number"))
-        cure = "a loop runs over numbers, not over values of the point";
+        cure = "a loop needs plain numbers as limits, not values that depend on the point";
     else if (strstr(text, "got " GLINTL_SYMBOL) || strstr(text, "got " GLINTL_TRIPLE))
         cure = push_own_function(L, text);
     else if (strstr(text, "stack overflow"))
-        cure = "functions call each other without an end";
+        cure = "the functions call each other endlessly";
     else if (strstr(text, "a nil value (field '?')"))
-        cure = "a table has nothing at a value of the point; use glint.select";
+        cure = "a table cannot be indexed by a value that depends on the point; use glint.select";
     else if (strstr(text, "values expected, numbers included"))
-        cure = "is it a loop without an end? To Lua a comparison of values of the point is always true";
+        cure = "is a loop endless? In Lua, a comparison of values that depend on the point is always true";
     if (!cure || !trace || strstr(text, cure)) { // an inner pattern has added it
         lua_settop(L, 1);
         return 1;
@@ -105,7 +106,7 @@ static void refuse_result(lua_State *L, const glintL_trace *trace, int index)
 {
     const char *hint = lua_isnoneornil(L, index) ? ": is a return missing, or a table indexed by a value of the point? use glint.select"
                                                  : "";
-    const char *got = lua_istable(L, index) ? "a table that is no vector" : glintL_push_spelling(L, index);
+    const char *got = lua_istable(L, index) ? "a table that is not a vector" : glintL_push_spelling(L, index);
     lua_pushfstring(L, "%s%s: a number, a symbol or a vector of three expected from the function, got %s%s",
                     trace->place, trace->is_shader ? "shader" : "pattern", got, hint);
     lua_error(L);
@@ -121,7 +122,8 @@ static void read_results(lua_State *L, session *s)
         lua_error(L);
     }
     if (count > most) {
-        lua_pushfstring(L, "%sshader: the diffuse part, or it and the specular part expected from the function, got %d values",
+        lua_pushfstring(L, "%sshader: the diffuse part, or the diffuse and the specular part expected from the "
+                           "function, got %d values",
                         s->trace.place, count);
         lua_error(L);
     }
@@ -194,7 +196,7 @@ static void count_steps(lua_State *L, lua_Debug *where)
         trace->hook(L, where);
     trace->steps += STEPS_BETWEEN;
     if (trace->steps > STEPS_MAX)
-        glintL_error(L, "%s: its function has not returned after %d million steps; is it a loop without an end?",
+        glintL_error(L, "%s: its function has not returned after %d million steps; is a loop endless?",
                      trace->is_shader ? "shader" : "pattern", STEPS_MAX / 1000000);
 }
 
@@ -376,8 +378,8 @@ static void refuse_branches(lua_State *L, int index, int held, const glintL_trac
         lua_error(L);
     if (status || !lua_rawequal(L, -1, -2)) {
         lua_pushfstring(L,
-                        "%san `if`, `and` or `or` on what this gives: a symbol is true, even one whose number is 0; use "
-                        "glint.select",
+                        "%san `if`, `and` or `or` on this value: a symbol is always true, even where its value is 0; "
+                        "use glint.select",
                         s->trace.choices.place);
         lua_error(L);
     }

@@ -205,8 +205,8 @@ static int equal(lua_State *L)
     for (int i = 0; i < 3; i++) {
         if (a.at[i].is_symbol || b.at[i].is_symbol)
             return glintL_error(L,
-                                "a == b or a ~= b of vectors of symbols: the point is not known when the function is "
-                                "called; write glint.select(glint.equal(a.x, b.x), x, y)");
+                                "a == b or a ~= b of vectors of symbols: their values are not known, because the "
+                                "function runs once for all points; write glint.select(glint.equal(a.x, b.x), x, y)");
         same = same && a.at[i].number == b.at[i].number;
     }
     lua_pushboolean(L, same);

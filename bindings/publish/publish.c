@@ -176,8 +176,8 @@ static bool read_engine(publication *p)
     p->engine = p->wasm ? read_part(p, "publish.js", &p->engine_size) : NULL;
     return p->engine ||
            glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0,
-                           "%s: the engine for pages is not there (glint.wasm.gz, publish.js). Build it with "
-                           "`make web`, then run build/glint, or install again",
+                           "%s: the engine for pages is missing (glint.wasm.gz, publish.js). Build it with `make "
+                           "web`, then run build/glint, or install glint again",
                            p->who);
 }
 
@@ -290,7 +290,7 @@ int cli_publish(cli_options *options, cli_output *output, glintL_run *run)
     glint_error error;
     const char *ending = options->output ? strrchr(options->output, '.') : NULL;
     if (!ending || strcmp(ending, ".html") != 0) {
-        cli_report_error(output, 0, GLINTL_EXIT_USAGE, "publish: -o PAGE.html expected");
+        cli_report_error(output, 0, GLINTL_EXIT_USAGE, "publish: expected -o PAGE.html");
         return GLINTL_EXIT_USAGE;
     }
     if (make(&p, &page) && glintL_write_text(options->output, page.text.text, page.text.size, &error) != GLINT_OK)

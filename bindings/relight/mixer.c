@@ -150,8 +150,8 @@ int relight_write_page(const cli_options *options, const relight_mix *mix, const
     const glint_tone_desc plain = glint_tone_desc_default();
     if (mix->tone.bits != plain.bits || mix->tone.transfer != plain.transfer || mix->tone.rounding != plain.rounding) {
         snprintf(message, GLINTL_MESSAGE_SIZE,
-                 "-o %.200s: the page shows sRGB codes of 8 bits, rounded to the nearest; without --bits, --transfer "
-                 "and --rounding expected",
+                 "-o %.200s: the page always shows 8-bit sRGB, rounded to the nearest value; expected no --bits, "
+                 "--transfer or --rounding",
                  options->output);
         return GLINTL_EXIT_USAGE;
     }

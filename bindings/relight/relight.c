@@ -29,7 +29,8 @@ static bool take_value(relight_light *light, const char *value, char *message)
     char *end;
     const double strength = strtod(value, &end);
     if (end > value && *end == '\0') {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "--light %.*s: a finite strength >= 0, once, expected, got '%.80s'",
+        snprintf(message, GLINTL_MESSAGE_SIZE, "--light %.*s: expected a finite strength >= 0, given only once, got "
+                                               "'%.80s'",
                  (int)light->length, light->name, value);
         const bool good = !light->has_strength && strength >= 0 && strength < HUGE_VAL;
         light->has_strength = true;
@@ -38,7 +39,8 @@ static bool take_value(relight_light *light, const char *value, char *message)
     }
     snprintf(
         message, GLINTL_MESSAGE_SIZE,
-        "--light %.*s: a strength such as 2 or a colour such as #ffd9a0 or orange, each once, expected, got '%.80s'",
+        "--light %.*s: expected a strength such as 2 or a colour such as #ffd9a0 or orange, each given only once, "
+        "got '%.80s'",
         (int)light->length, light->name, value);
     const bool good = !light->has_color && glintL_find_color(value, strlen(value), &light->color);
     light->has_color = true;
@@ -217,7 +219,7 @@ static int write_page(const job *j, char *message)
 {
     int code = 0;
     if (j->files.count != 1)
-        return fail(message, GLINTL_EXIT_USAGE, "", "a page is of one file");
+        return fail(message, GLINTL_EXIT_USAGE, "", "a page shows one file; expected only one");
     glint_image *image = read_file(j, j->files.files[0], &code, message);
     if (image)
         code = relight_write_page(j->options, &j->mix, j->files.files[0], image, message);
@@ -239,7 +241,7 @@ static bool open_output(job *j, char *message)
     const char *path = j->options->output;
     glintL_render_set_text(&j->render, glintL_render_find("output"), "none", message);
     if (!path || strcmp(path, "none") == 0)
-        return !fail(message, 1, "", "-o with a picture, a film or a page NAME.html expected");
+        return !fail(message, 1, "", "expected -o with a picture, a film or a page NAME.html");
     if (is_page(path))
         return true;
     if (glintL_film_kind_of(path, j->run->request.apng) == GLINTL_FILM_NONE && !glintL_name_check(path, message))

@@ -17,14 +17,14 @@ void glintL_warn_of_clipping(glintL_run *run)
     if (run->is_command)
         glintL_run_warn(
             run,
-            "%.3g %% of the 16-bit linear values are clipped at 65535: the brightest would be %.4g times white; "
-            "--exposure %.2f keeps them all, and --exposure auto finds one exposure for a whole set",
+            "%.3g %% of the 16-bit linear values are clipped at 65535: the brightest would be %.4g times white; use "
+            "--exposure %.2f to keep all values, or --exposure auto for one exposure of a whole set",
             share, seen->most, exposure);
     else
         glintL_run_warn(
             run,
-            "%.3g %% of the 16-bit linear values are clipped at 65535: the brightest would be %.4g times white; "
-            "exposure = %.2f keeps them all",
+            "%.3g %% of the 16-bit linear values are clipped at 65535: the brightest would be %.4g times white; set "
+            "exposure = %.2f to keep all values",
             share, seen->most, exposure);
 }
 

@@ -21,7 +21,8 @@ int glintL_stop_script(lua_State *L)
 void glintL_check_may_render(lua_State *L, const glintL_run *run)
 {
     if (run->mode == GLINTL_MODE_WATCH && run->point > 1)
-        glintL_error(L, "--sweep: the script must return its frames at every value or at none, and the first must not fail");
+        glintL_error(L, "--sweep: the script must return its frames at every value or at none, and must not fail at "
+                        "the first value");
 }
 
 static void read_fields(lua_State *L, int index, glintL_render *render)
@@ -168,7 +169,7 @@ static void open_film(lua_State *L, glintL_run *run, const glintL_render *render
     char message[GLINTL_MESSAGE_SIZE];
     const char *path = *render->output ? render->output : "none";
     if (!run->is_command && glintL_film_kind_of(path, false) != GLINTL_FILM_NONE)
-        glintL_error(L, PATH "output: '%s' is a film; animation:run makes one, or the glint command", path);
+        glintL_error(L, PATH "output: '%s' is a film; to make a film, use animation:run or the glint command", path);
     if (!glintL_film_open(run, path, render, DEFAULT_FPS, message))
         glintL_error(L, PATH "%s", message);
 }

@@ -82,8 +82,8 @@ static void refuse_name(lua_State *L, const char *name)
     if (near)
         luaL_error(L, "passes: d:%s: no variable of that name; did you mean 'd:%s'?", name, near);
     luaL_error(L,
-               "passes: d:%s: no variable of that name; glint.variable(\"%s\", x) makes one, and --passes d:%s makes one "
-               "of a parameter that the script reads",
+               "passes: d:%s: no variable of that name; make one with glint.variable(\"%s\", x), or use --passes "
+               "d:%s with the name of a parameter that the script reads",
                name, name, name);
 }
 
@@ -118,7 +118,7 @@ void glintL_find_derivatives(lua_State *L, const glint_scene *scene, glintL_rend
         const int variable = glintL_find_variable(L, render->derivative[i]);
         gather(L, variable, &g);
         if (g.count > first[i + 1] - first[i])
-            luaL_error(L, "passes: d:%s: a finalizer changed what it depends on", render->derivative[i]);
+            luaL_error(L, "passes: d:%s: a finalizer (__gc) changed values that it depends on", render->derivative[i]);
         g = (gathering) { .scene = scene, .out = list->slopes + first[i] };
         gather(L, variable, &g);
         memcpy(list->names[i], render->derivative[i], sizeof list->names[i]);

@@ -63,7 +63,7 @@ static bool refuse(char *message, const char *path, const char *why)
 static void warn_no_ffmpeg(glintL_run *run, const glintL_film *film)
 {
     if (film->kind != GLINTL_FILM_APNG && !glintL_has_ffmpeg())
-        glintL_run_warn(run, "ffmpeg is not installed: the frames of %s are rendered, and stay in %s.frames",
+        glintL_run_warn(run, "ffmpeg is not installed: the frames of %s are rendered and remain in %s.frames",
                         film->path, film->path);
 }
 
@@ -84,19 +84,18 @@ bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *re
     fps = run->request.fps > 0 ? run->request.fps : fps;
     if (run->request.selection.shard_count > 1)
         return refuse(message, path,
-                      "it takes all frames of one run; give the shards a pattern such as %04d.png, and then "
-                      "make it with glint assemble");
+                      "a film needs all frames of one run; write the shards as pictures, with a pattern such as "
+                      "%04d.png, and then use glint assemble");
     if (render->file_passes || render->derivative_count || *render->light_passes)
         return refuse(message, path,
-                      "it has no room for passes; write frames, and make a film of each pass with glint "
-                      "assemble");
+                      "a film cannot hold passes; write pictures, and make a film of each pass with glint assemble");
     if (render->desc.alpha && kind != GLINTL_FILM_APNG)
-        return refuse(message, path, "it has no room for alpha; an animated PNG does (.apng, or .png with --apng)");
+        return refuse(message, path, "this format cannot hold alpha; an animated PNG can (.apng, or .png with --apng)");
     if (kind == GLINTL_FILM_GIF && fps > 50)
         return refuse(message, path, "a GIF has at most 50 frames a second; --fps 50 or less expected");
     glintL_film *film = find(run, path);
     if (film && film->fps != fps)
-        return refuse(message, path, "the animations that go into it have different fps; --fps expected");
+        return refuse(message, path, "the animations of this film have different fps; expected --fps");
     if (film)
         return true;
     film = add_film(run, path, kind, fps);
@@ -192,7 +191,7 @@ static bool check_channels(const glintL_film *film, const glint_picture *first, 
     if (channels == 1 || channels == 3)
         return true;
     snprintf(message, GLINTL_MESSAGE_SIZE,
-             "%.200s: it has alpha, for which %.200s has no room; an animated PNG does (.apng, or .png with --apng)",
+             "%.200s: has alpha, which %.200s cannot hold; an animated PNG can (.apng, or .png with --apng)",
              film->files[0], film->path);
     return false;
 }
@@ -289,7 +288,7 @@ static void remove_frames(const glintL_run *run, glintL_film *film)
     film->count = 0;
     snprintf(folder, sizeof folder, "%s.frames", film->path);
     if (rmdir(folder) != 0 && errno != ENOENT)
-        glintL_run_note(run, "%s: it was not removed, because it has other files in it", folder);
+        glintL_run_note(run, "%s: not removed, because it contains other files", folder);
 }
 
 bool glintL_films_finish(glintL_run *run)

@@ -270,13 +270,13 @@ static int fail_without(const glintL_run *run, const glintL_film *film, char *me
     if (film->pattern)
         snprintf(
             message, GLINTL_MESSAGE_SIZE,
-            "%.200s: ffmpeg is not installed (Debian: apt-get install ffmpeg). The frames are there; make the film of "
-            "them later with:  glint assemble %s%.200s.frames/%s.png%s -o '%.200s' --fps %.10g",
+            "%.200s: ffmpeg is not installed (Debian: apt-get install ffmpeg). The frames are finished; make the "
+            "film later with:  glint assemble %s%.200s.frames/%s.png%s -o '%.200s' --fps %.10g",
             film->path, gaps ? "" : "'", film->path, gaps ? "*" : "%04d", gaps ? "" : "'", film->path, film->fps);
     else
         snprintf(message, GLINTL_MESSAGE_SIZE,
                  "%.200s: ffmpeg is not installed (Debian: apt-get install ffmpeg); -o NAME.png, an animated PNG, "
-                 "needs none",
+                 "does not need it",
                  film->path);
     return GLINTL_EXIT_FAILED;
 }
@@ -312,7 +312,7 @@ int glintL_film_pipe(glintL_run *run, const glintL_film *film, char message[GLIN
     if (e.said)
         fclose(e.said);
     if (!code && (e.sent_width > e.width || e.sent_height > e.height))
-        glintL_run_warn(run, "%s: %dx%d pixels: the format wants even sides, so the last %s repeated", film->path,
+        glintL_run_warn(run, "%s: %dx%d pixels: the format needs even sides, so the last %s repeated", film->path,
                         e.sent_width, e.sent_height,
                         e.sent_width > e.width && e.sent_height > e.height ? "column and row are"
                         : e.sent_width > e.width                           ? "column is"

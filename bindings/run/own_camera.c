@@ -35,8 +35,8 @@ void glintL_give_camera(lua_State *L, glintL_run *run, int index)
     lua_call(L, 1, 1);
     lua_setfield(L, index, "camera");
     lua_pop(L, 2);
-    glintL_run_warn(run, "the scene has no camera; it gets one that has all of it in view: glint.camera { eye = { %.4g, %.4g, %.4g }, "
-                         "at = { %.4g, %.4g, %.4g }, fov = %g }",
+    glintL_run_warn(run, "the scene has no camera; glint uses one that shows the whole scene: glint.camera { eye = { "
+                         "%.4g, %.4g, %.4g }, at = { %.4g, %.4g, %.4g }, fov = %g }",
                     eye[0], eye[1], eye[2], center[0], center[1], center[2], FOV);
 }
 

@@ -101,7 +101,7 @@ bool glintL_places_note(glintL_run *run, const char *what, const char *path, int
 {
     int64_t first = 0;
     if (replaces(run, path, (uint64_t)number, number, &first))
-        glintL_run_warn(run, "%s: '%.300s' was written before in this run, and that picture is lost; give each file a name of its own", what,
+        glintL_run_warn(run, "%s: '%.300s' was already written in this run, and that picture is lost; give each file a different name", what,
                         path);
     return run->exit_code == 0;
 }

@@ -234,12 +234,14 @@ static void complain_pass(const char *name, size_t length, char message[GLINTL_M
     const char *near = NULL;
     snprintf(copy, sizeof copy, "%.*s", length < sizeof copy ? (int)length : (int)sizeof copy - 1, name);
     if (strncmp(copy, "d:", 2) == 0) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "'%s': a name of 1 .. %d bytes after d: expected, of at most %d derivatives",
+        snprintf(message, GLINTL_MESSAGE_SIZE, "'%s': expected a name of 1 .. %d bytes after d:, and at most %d "
+                                               "derivatives",
                  copy, GLINT_DERIVATIVE_NAME_SIZE - 1, GLINT_DERIVATIVES_MAX);
         return;
     }
     if (strncmp(copy, "light:", 6) == 0) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "'%s': a light's name or group of 1 .. %d bytes after light: expected, of all passes %zu bytes",
+        snprintf(message, GLINTL_MESSAGE_SIZE, "'%s': expected a light's name or group of 1 .. %d bytes after "
+                                               "light:, and at most %zu bytes for all light passes",
                  copy, GLINT_NAME_SIZE - 1, sizeof ((glintL_render *)0)->light_passes - 1);
         return;
     }

@@ -173,7 +173,7 @@ bool glintL_selection_settle(glintL_run *run, int64_t first, int64_t last)
         any = has_any(&selection->ranges[i], first, last);
     if (!any)
         return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
-                               "frames: the selection leaves nothing: the frames of the script are %" PRId64 " .. %" PRId64,
+                               "frames: no frame is selected: the frames of the script are %" PRId64 " .. %" PRId64,
                                first, last);
     if (names_others(selection, first, last, message))
         glintL_run_warn(run, "%s", message);

@@ -31,11 +31,12 @@ bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_S
         snprintf(message, GLINTL_MESSAGE_SIZE, "difference: a picture 1 .. %zu expected, got %lld", sheet->count,
                  (long long)sheet->difference);
     else if (sheet->gain > 0 && !sheet->difference)
-        snprintf(message, GLINTL_MESSAGE_SIZE, "gain: a difference expected with it");
+        snprintf(message, GLINTL_MESSAGE_SIZE, "gain: expected together with difference");
     else if (sheet->columns && ends_in(sheet->path, ".html"))
-        snprintf(message, GLINTL_MESSAGE_SIZE, "columns: a page has those of its first axis instead");
+        snprintf(message, GLINTL_MESSAGE_SIZE, "columns: not for pages; a page has one column for each value of its "
+                                               "first axis");
     else if ((sheet->size > 0 || sheet->transparent || sheet->colorbar) && ends_in(sheet->path, ".html"))
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%s: it has no effect on a page",
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s: has no effect on a page",
                  sheet->colorbar ? "colorbar" : sheet->transparent ? "transparent" : "size");
     else
         return true;
@@ -198,7 +199,7 @@ static bool check_columns(const glintL_sheet *sheet, const glintL_axes *axes, ch
                                  axes->axis[a].name);
     }
     snprintf(message, GLINTL_MESSAGE_SIZE,
-             "columns: %zu or %zu expected, so that a column of the %s pictures has one value of %s, got %lld",
+             "columns: %zu or %zu expected, so that each column of the %s pictures has one value of %s, got %lld",
              axes->axis[0].count, product, counts, axes->axis[0].name, (long long)sheet->columns);
     return false;
 }

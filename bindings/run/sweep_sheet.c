@@ -257,9 +257,9 @@ static void fill_lists(lua_State *L, int job, const glintL_naming *naming, int64
 static void warn_missing(const glintL_run *run, const char *path, int64_t from, int64_t to)
 {
     if (from == to)
-        glintL_run_note(run, "%s: not drawn: frame %" PRId64 " is not there yet", path, from);
+        glintL_run_note(run, "%s: not drawn: frame %" PRId64 " is not rendered yet", path, from);
     else
-        glintL_run_note(run, "%s: not drawn: frames between %" PRId64 " and %" PRId64 " are not there yet", path, from,
+        glintL_run_note(run, "%s: not drawn: frames between %" PRId64 " and %" PRId64 " are not rendered yet", path, from,
                         to);
 }
 

@@ -102,7 +102,7 @@ static void explain(const glint_scene *scene, const glintL_work *work, char *out
     const glint_camera *camera = glint_scene_get(scene)->camera;
     glint_hit hit = { .shape = NULL };
     if (work->stats.nonfinite > 0)
-        snprintf(out, room, "%llu pixels are not finite; lights, reflectances or lengths are too large for that",
+        snprintf(out, room, "%llu pixels are not finite; lights, reflectances or lengths are too large",
                  (unsigned long long)work->stats.nonfinite);
     else if (glint_scene_shape_count(scene) == 0)
         snprintf(out, room,
@@ -115,16 +115,16 @@ static void explain(const glint_scene *scene, const glintL_work *work, char *out
                 : "the scene has no light, and its ambient is 0; add glint.point_light { position = { 5, 9, 5 } }, or "
                   "ambient = 0.1");
     else if (!camera || !find_hit(scene, glint_camera_get(camera), &work->render.desc, &hit))
-        snprintf(out, room, "the camera looks past all shapes; point its `at` to one of them, or move its eye away");
+        snprintf(out, room, "the camera looks past all shapes; point its `at` at one of them, or move its eye back");
     else if (hit.shape && is_inside(glint_camera_get(camera), &hit))
         snprintf(out, room,
-                 "the camera's eye is inside %s%s%s, which no light reaches; move the eye out, or a light in",
+                 "the camera's eye is inside %s%s%s, which no light reaches; move the eye out, or move a light in",
                  *glint_shape_get(hit.shape)->name ? "'" : "a closed shape", glint_shape_get(hit.shape)->name,
                  *glint_shape_get(hit.shape)->name ? "'" : "");
     else
         snprintf(out, room,
-                 "what the camera sees gets no light: lights are behind it, shut in or in shadow, or materials are "
-                 "black; with ambient = 0.1 it shows where things are");
+                 "no light reaches the visible surfaces: the lights are behind them, enclosed or blocked, or the "
+                 "materials are black; set ambient = 0.1 to see the shapes");
 }
 
 void glintL_look_for_black(glintL_run *run, const glint_scene *scene, const glintL_work *work)

@@ -352,8 +352,8 @@ static void look_for_bends(const look *l, const glint_shape *shape, const ball *
         return;
     describe(glint_shape_get(shape), b, name);
     glintL_run_warn(l->run,
-                    "%s: smooth shading bends its faces by up to %.0f degrees, and where a light grazes them they are in "
-                    "their own shadow to the edge; give it more segments, or the lights shadows = false",
+                    "%s: its smooth normals differ from its flat faces by up to %.0f degrees, so its shadow in "
+                    "grazing light follows the flat faces; use more segments, or set shadows = false for the lights",
                     name, bend);
 }
 

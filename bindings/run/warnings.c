@@ -79,7 +79,7 @@ void glintL_run_warn(glintL_run *run, const char *format, ...)
     else
         say(run, message);
     if (run->said_count == SAID_MAX)
-        say(run, "these were many warnings; no more are shown");
+        say(run, "too many warnings; no more are shown");
 }
 
 void glintL_warn(lua_State *L, const char *message)
@@ -92,7 +92,7 @@ void glintL_warn(lua_State *L, const char *message)
 void glintL_warn_of_shutter(glintL_run *run)
 {
     glintL_run_warn(
-        run, "camera.shutter: nothing moves while it is open; the frame function of a glint.animation moves things");
+        run, "camera.shutter: nothing moves while it is open; move objects in the frame function of a glint.animation");
 }
 
 void glintL_run_note(const glintL_run *run, const char *format, ...)
@@ -170,7 +170,8 @@ static void report_dull(lua_State *L, glintL_run *run)
     }
     if (first)
         glintL_run_warn(
-            run, "%smaterial.shininess has no effect while specular is black; set that, too: specular = 0.5", first);
+            run, "%smaterial.shininess has no effect while specular is black; set specular, too, such as specular = "
+                 "0.5", first);
     lua_pop(L, 1);
 }
 
@@ -215,9 +216,10 @@ static void report_params(lua_State *L, glintL_run *run, const char *script)
         const char *name = lua_tostring(L, -1);
         bool is_read = lua_getfield(L, -2, "is_read") != LUA_TNIL;
         if (!is_read && count_word(script, name) == 1)
-            glintL_run_warn(run, "params.%s: the script never reads it; use it, or take it away", name);
+            glintL_run_warn(run, "params.%s: the script never reads this parameter; use it, or remove it", name);
         else if (!is_read && is_set(run, name) && glintL_selection_is_whole(&run->request.selection))
-            glintL_run_warn(run, "--set %s: the script did not read it with these settings; it changes nothing", name);
+            glintL_run_warn(run, "--set %s: the script did not read this parameter with these settings, so it "
+                                 "changes nothing", name);
         lua_pop(L, 3);
     }
     lua_pop(L, 1);

@@ -28,8 +28,8 @@ glint_status glintL_work_create(const glint_scene *scene, const glintL_render *r
     bool is_linear = writes && glintL_name_is_linear(render->output);
     if (writes && is_depth_of_part(render)) {
         free(work);
-        return fail(error, GLINT_ERR_INVALID, "region: depth in a .png is scaled by the whole frame's nearest point, which "
-                    "a part does not know; ", "", ".pfm, .npy or .exr expected");
+        return fail(error, GLINT_ERR_INVALID, "region: depth in a .png is scaled by the nearest point of the whole "
+                                              "frame, which is unknown in a part of it; ", "", ".pfm, .npy or .exr expected");
     }
     work->index = index;
     work->render = *render;
@@ -106,8 +106,9 @@ static glint_status add_file(glintL_work *work, const glintL_naming *naming, gli
         return fail(error, GLINT_ERR_INVALID, "output: the file name '", naming->pattern, "...' is too long");
     for (int i = 0; i < work->file_count && pass >= GLINT_PASS_LIGHT; i++)
         if (strcmp(work->files[i].path, file->path) == 0)
-            return fail(error, GLINT_ERR_INVALID, "passes: ", name, ": another light's file has the same name; set the light's group to a "
-                        "name of other letters and digits");
+            return fail(error, GLINT_ERR_INVALID, "passes: ", name, ": another light's file has the same name; set "
+                                                                    "the light's group to a name with different "
+                                                                    "letters and digits");
     file->key[0] = file->whole[0] = '\0';
     if (!glintL_name_is_linear(file->path) && !glintL_name_is_special(file->path)) {
         glint_write_desc desc = write_desc(work, file);
@@ -177,8 +178,8 @@ static void warn_of_caps(glintL_run *run, const glint_plan *plan)
     for (size_t i = 0; i < count; i++)
         if (strcmp(effects[i].effect, "rays in place of caps") == 0)
             glintL_run_warn(run,
-                            "%s.shadow: only scenes of opaque spheres and planes have shadow caps; this scene's shadows "
-                            "are found by rays; set shadow = \"rays\"",
+                            "%s.shadow: only scenes of opaque spheres and planes have shadow caps; this scene uses "
+                            "shadow rays instead; set shadow = \"rays\"",
                             effects[i].caller);
 }
 
@@ -191,8 +192,8 @@ static void warn_of_lens(glintL_run *run, const glint_plan *plan)
     const bool is_meant = run->preview_side > 0 || run->request.render_text[glintL_render_find("samples")];
     for (size_t i = 0; i < count && !is_meant && glint_plan_render_desc(plan)->samples == 1; i++)
         if (strcmp(effects[i].effect, "lens") == 0)
-            glintL_run_warn(run, "one sample a pixel shows the blur of a lens as a pattern of dots; set samples = 16, or "
-                                 "more, beside width, or give --samples 16");
+            glintL_run_warn(run, "one sample a pixel shows the blur of a lens as a pattern of dots; set samples = "
+                                 "16, or more, next to width, or use --samples 16");
 }
 
 static void warn_of_colormap(glintL_run *run, const glintL_work *work)
@@ -201,11 +202,11 @@ static void warn_of_colormap(glintL_run *run, const glintL_work *work)
     if (!render->colormap)
         return;
     if (!(render->file_passes >> GLINT_PASS_DEPTH & 1) && !render->derivative_count)
-        glintL_run_warn(run, "colormap: it shows the passes depth and d:NAME, and none of them is written; give --passes "
-                             "depth, or passes = \"depth\"");
+        glintL_run_warn(run, "colormap: colours only the passes depth and d:NAME, and none of them is written; use "
+                             "--passes depth, or passes = \"depth\"");
     else if (work->file_count > 0 && glintL_name_is_linear(work->files[0].path))
-        glintL_run_warn(run, "colormap has no effect on .pfm, .npy and .exr, which have numbers; give -o a name in .png, or "
-                             "output = \"name.png\"");
+        glintL_run_warn(run, "colormap has no effect on .pfm, .npy and .exr, which store plain numbers; use -o with "
+                             "a name ending in .png, or output = \"name.png\"");
 }
 
 static void warn_of_overlay(void *run, const char *message) { glintL_run_warn(run, "%s", message); }
@@ -314,7 +315,8 @@ static bool measure_range(glintL_run *run, const glintL_work *work)
     const bool depth = render->file_passes >> GLINT_PASS_DEPTH & 1;
     if (depth + render->derivative_count > 1)
         return glintL_run_fail(run, GLINTL_EXIT_USAGE, work->index,
-                               "--colormap: auto is for one pass of depth and d:NAME, got %d; NAME:LOW:HIGH expected",
+                               "--colormap: auto works for exactly one of the passes depth and d:NAME, got %d; "
+                               "expected NAME:LOW:HIGH",
                                depth + render->derivative_count);
     if (depth + render->derivative_count == 1)
         glint_image_range(work->image, depth ? GLINT_PASS_DEPTH : GLINT_PASS_DERIVATIVE, run->range, &error);

@@ -140,7 +140,7 @@ int glintL_bad_key(lua_State *L, const char *path, int index)
 static void refuse_dual(lua_State *L, int index, const char *path)
 {
     if (glintL_to_dual(L, index))
-        glintL_error(L, "%s%sthis has no derivative; glint.value(x) is the plain number", path, *path ? ": " : "");
+        glintL_error(L, "%s%sthis has no derivative; use the plain number, glint.value(x)", path, *path ? ": " : "");
 }
 
 double glintL_read_number(lua_State *L, int index, const char *path)

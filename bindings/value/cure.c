@@ -69,9 +69,11 @@ const char *glintL_push_lua_cure(lua_State *L, const char *text)
 {
     luaL_checkstack(L, 6, "message");
     if (strstr(text, "attempt to perform arithmetic on a table value"))
-        return lua_pushliteral(L, "; a table is no vector: write glint.vector(0.8, 0.2, 0.2) * 0.5, not { 0.8, 0.2, 0.2 } * 0.5");
+        return lua_pushliteral(L, "; a table is not a vector: write glint.vector(0.8, 0.2, 0.2) * 0.5, not { 0.8, "
+                                  "0.2, 0.2 } * 0.5");
     if (strstr(text, "attempt to perform arithmetic on a glint.pattern value"))
-        return lua_pushliteral(L, "; a pattern's numbers are changed where they are made: glint.pattern(function(p, s) return 0.5 * ... end)");
+        return lua_pushliteral(L, "; a pattern is not a number: compute inside its function, "
+                                  "glint.pattern(function(p, s) return 0.5 * ... end)");
     const char *name = glintL_push_name_after(L, text, "attempt to call a nil value (global '");
     if (!name)
         return NULL;

@@ -32,7 +32,7 @@ static int add_variable(lua_State *L, const char *name)
     glintL_push_table(L, &VARIABLES);
     const lua_Integer count = luaL_len(L, -1);
     if (count == GLINTL_VARIABLES_MAX)
-        glintL_error(L, "variable: at most %d variables of one script expected, got '%s', too", GLINTL_VARIABLES_MAX, name);
+        glintL_error(L, "variable: at most %d variables in a script expected, got '%s', too", GLINTL_VARIABLES_MAX, name);
     lua_pushstring(L, name);
     lua_rawseti(L, -2, count + 1);
     lua_pop(L, 1);

@@ -438,7 +438,7 @@ static void check_keys(lua_State *L, int index, const char *path, const glintL_f
             if (!glintL_find_field(fields, name) || strlen(name) != length)
                 glintL_no_such_field(L, path, name, glintL_nearest(name, fields));
         } else if (!allow_array && lua_isinteger(L, -1)) {
-            glintL_error(L, "%s: a name with each value expected, %s { %s = ... }, got a value without", path, path,
+            glintL_error(L, "%s: a name for each value expected, %s { %s = ... }, got a value without a name", path, path,
                          first_required(fields));
         } else if (!lua_isinteger(L, -1)) {
             glintL_bad_key(L, path, -1);

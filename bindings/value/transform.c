@@ -64,7 +64,7 @@ static int read_field(lua_State *L)
 
 static int write_field(lua_State *L)
 {
-    return glintL_error(L, "transform.%s: a transform cannot be changed; assign another to the object's field",
+    return glintL_error(L, "transform.%s: a transform cannot be changed; assign a new transform to the object's field",
                         luaL_tolstring(L, 2, NULL));
 }
 

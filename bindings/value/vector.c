@@ -98,7 +98,7 @@ static int write_field(lua_State *L)
 {
     const char *name = luaL_tolstring(L, 2, NULL);
     return glintL_error(L,
-                        "vector.%s: a vector cannot be changed; assign a whole one to the object's field: "
+                        "vector.%s: a vector cannot be changed; assign a new vector to the object's field: "
                         "object.field = {x, y, z}",
                         name);
 }

@@ -274,7 +274,7 @@ watch_files *watch_files_create(void (*changed)(void *context, const char *path)
     if (good)
         return files;
     snprintf(message, GLINTL_MESSAGE_SIZE, "watch: folders: %s%s", strerror(errno),
-             errno == EMFILE ? "; fs.inotify.max_user_instances limits it" : "");
+             errno == EMFILE ? "; the system setting fs.inotify.max_user_instances limits them" : "");
     watch_folders_destroy(files->folders);
     glintL_wake_close(&files->wake);
     pthread_mutex_destroy(&files->lock);

@@ -306,7 +306,7 @@ static bool open_listener(watch_server *server, int port, char *message)
         return true;
     }
     snprintf(message, GLINTL_MESSAGE_SIZE, "--http: port %d: %s%s", port, strerror(errno),
-             errno == EADDRINUSE ? "; --http without a number takes any free one" : "");
+             errno == EADDRINUSE ? "; --http without a number takes any free port" : "");
     return false;
 }
 

@@ -316,7 +316,7 @@ static bool run_script(watcher *w, quality now)
     watch_files_begin(w->files);
     watch_files_add(w->files, w->options->script, false);
     if (access(w->options->script, F_OK) != 0 && errno == ENOENT)
-        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%s is missing; it is rendered when it comes back",
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%s is missing; glint renders it again as soon as it exists",
                                w->options->script);
     return cli_run_script(&w->script, w->options, run);
 }

@@ -58,7 +58,7 @@ bool glintL_has_ffmpeg(void) { return false; }
 int glintL_film_pipe(glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE])
 {
     (void)run, (void)film;
-    snprintf(message, GLINTL_MESSAGE_SIZE, "a page makes no films");
+    snprintf(message, GLINTL_MESSAGE_SIZE, "a page cannot make films");
     return GLINTL_EXIT_USAGE;
 }
 
@@ -366,7 +366,7 @@ EMSCRIPTEN_KEEPALIVE bool web_render(double frame, bool keeps)
     if (!(frame >= 1 && frame <= (double)job.frames) || frame != floor(frame)) {
         glintL_run_reset(job.run);
         return glintL_run_fail(job.run, GLINTL_EXIT_USAGE, 0,
-                               "frame: a frame of the script, 1 .. %" PRId64 ", expected, got '%g'", job.frames, frame);
+                               "frame: expected a frame of the script, 1 .. %" PRId64 ", got '%g'", job.frames, frame);
     }
     const bool good = render((int64_t)frame);
     if (!glintL_run_collect(job.run, true) || !good)

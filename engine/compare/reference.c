@@ -117,7 +117,7 @@ static glint_status prepare_flip(const glint_image *image, const glint_tone_desc
 static glint_status check_image(const glint_image *image, int width, int height, glint_error *error)
 {
     if (!glint_image_has_pass(image, GLINT_PASS_BEAUTY))
-        return glint_fail(error, GLINT_ERR_INVALID, "image: a picture with its beauty pass expected");
+        return glint_fail(error, GLINT_ERR_INVALID, "image: expected a picture with its beauty pass");
     if (image->width != width || image->height != height)
         return glint_fail(error, GLINT_ERR_INVALID, "image: %d x %d pixels expected, got %d x %d", width, height,
                           image->width, image->height);

@@ -41,7 +41,7 @@ static glint_status put_part(const glint_picture_part *part, size_t number, canv
             const size_t at = (size_t)(part->y + y) * (size_t)to->width + (size_t)(part->x + x);
             if (to->filled[at] && memcmp(to->codes + at * to->pixel, from, to->pixel) != 0)
                 return glint_fail(error, GLINT_ERR_INVALID,
-                                  "parts[%zu]: it disagrees with a part before it at pixel %d, %d", number, part->x + x,
+                                  "parts[%zu]: it differs from an earlier part at pixel %d, %d", number, part->x + x,
                                   part->y + y);
             memcpy(to->codes + at * to->pixel, from, to->pixel);
             to->filled[at] = 1;
@@ -56,7 +56,7 @@ static glint_status check_whole(const canvas *to, glint_error *error)
     if (!hole)
         return GLINT_OK;
     const size_t at = (size_t)(hole - to->filled);
-    return glint_fail(error, GLINT_ERR_INVALID, "parts: none has pixel %zu, %zu of %d x %d", at % (size_t)to->width,
+    return glint_fail(error, GLINT_ERR_INVALID, "parts: no part has pixel %zu, %zu of %d x %d", at % (size_t)to->width,
                       at / (size_t)to->width, to->width, to->height);
 }
 

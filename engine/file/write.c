@@ -273,7 +273,8 @@ static bool is_color(glint_pass pass)
 static glint_status fail_not_kept(const glint_image *image, glint_pass pass, glint_error *error)
 {
     if (pass == GLINT_PASS_BEAUTY && image->codes)
-        return glint_fail(error, GLINT_ERR_INVALID, "tone: the image holds codes of another tone and no 'beauty' pass");
+        return glint_fail(error, GLINT_ERR_INVALID, "tone: the image holds pixel values of another tone curve, and "
+                                                    "no 'beauty' pass");
     if (pass >= GLINT_PASS_LIGHT)
         return glint_fail(error, GLINT_ERR_INVALID, "pass: this image has no light pass number %d", (int)pass - GLINT_PASS_LIGHT);
     if (pass >= GLINT_PASS_DERIVATIVE)

@@ -30,7 +30,7 @@ glint_status glint_image_brightness(const glint_image *image, double exposure, g
     GLINT_REFUSE_NULL(image, error);
     GLINT_REFUSE_NULL(sum, error);
     if (!image->plane[GLINT_PASS_BEAUTY][0])
-        return glint_fail(error, GLINT_ERR_INVALID, "image: it was made without linear beauty");
+        return glint_fail(error, GLINT_ERR_INVALID, "image: it does not store linear beauty");
     const glint_tone_desc tone = { .exposure = exposure };
     const size_t count = (size_t)image->width * (size_t)image->height;
     sum->pictures++;

@@ -207,7 +207,7 @@ glint_status glint_fill_placing(const glint_filler *f, const glint_shape *shape,
     if (glint_transform_is_identity(map))
         place->map = NULL;
     else if (around)
-        status = glint_check_transform("group.transform: with those around it", map, f->error);
+        status = glint_check_transform("group.transform: combined with the groups around it", map, f->error);
     if (status)
         return status;
     glint_transform_linear(map, linear);

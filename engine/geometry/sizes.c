@@ -97,7 +97,8 @@ glint_status glint_geometry_check_reach(const glint_geometry *geometry, const ch
             continue;
         name_prim(geometry, prim, name, sizeof name);
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "%s: no ray from %s can meet it, at a distance of %.4g with a %s of %.4g; >= %.4g expected",
+                          "%s: too small for rays from %s to hit it, at a distance of %.4g with a %s of %.4g; >= "
+                          "%.4g expected",
                           name, who, vec_max_abs(away), prim->kind == GLINT_PRIM_SPHERE ? "radius" : "half width",
                           e.least, vec_max_abs(away) / AWAY_MOST);
     }

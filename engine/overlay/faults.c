@@ -42,7 +42,7 @@ static void check_letters(const check *c, const char *text)
         if (code == '\n' || glint_typeface_has(&c->layout->typeface, code))
             continue;
         snprintf(message, sizeof message,
-                 "the font has no letter '%.*s' (U+%04X), and a box stands for it; GLINT_FONT names the file of another font",
+                 "the font has no letter '%.*s' (U+%04X), so a box is drawn; set GLINT_FONT to the file of another font",
                  (int)(at - letter), letter, (unsigned)code);
         warn(c, message);
         return;
@@ -75,7 +75,7 @@ static void check_place(const check *c)
     int beyond = 0, length = 0;
     for (int i = 0; i < 2; i++) {
         if (l->corner[i] >= sides[i] || l->corner[i] + l->size[i] <= 0) {
-            warn(c, "it lies outside of the picture");
+            warn(c, "it lies outside the picture");
             return;
         }
         const int before = -l->corner[i], behind = l->corner[i] + l->size[i] - sides[i];
@@ -86,10 +86,11 @@ static void check_place(const check *c)
         return;
     const char *line = find_widest(l, &length);
     if (!l->desc->has_position && l->size[0] > sides[0])
-        snprintf(message, sizeof message, "'%.*s' is %d pixels wide, the picture %d; a smaller size, or a wider picture, shows all of it",
+        snprintf(message, sizeof message, "'%.*s' is %d pixels wide, the picture %d; use a smaller size or a wider "
+                                          "picture to show all of it",
                  length < 100 ? length : 100, line, l->size[0], sides[0]);
     else
-        snprintf(message, sizeof message, "it reaches %d pixels beyond the border of the picture", beyond);
+        snprintf(message, sizeof message, "it extends %d pixels beyond the border of the picture", beyond);
     warn(c, message);
 }
 

@@ -113,7 +113,7 @@ static glint_status check_unplaced(const glint_overlay_desc *desc, glint_error *
                    { "background", desc->has_background } };
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
         if (fields[i].is_set)
-            return glint_fail(error, GLINT_ERR_INVALID, "%s: only axes without a box have it; with a box they lie at its edges", fields[i].name);
+            return glint_fail(error, GLINT_ERR_INVALID, "%s: only for axes without a box; axes with a box lie along its edges", fields[i].name);
     return GLINT_OK;
 }
 
@@ -143,7 +143,7 @@ static glint_status check_cell(const glint_overlay_desc *desc, glint_error *erro
                                 desc->values[0][i]);
     }
     if (!status && !(widest > 0 && isfinite(widest)))
-        status = glint_fail(error, GLINT_ERR_INVALID, "box: sides a, b and c that span a plane at least expected");
+        status = glint_fail(error, GLINT_ERR_INVALID, "box: sides a, b and c that span at least a plane expected");
     return status;
 }
 
@@ -198,7 +198,8 @@ static glint_status check(const glint_overlay_desc *desc, glint_error *error)
     if (!status && desc->kind == GLINT_OVERLAY_COLORBAR)
         status = check_bar(desc, error);
     if (!status && desc->kind == GLINT_OVERLAY_AXES && desc->has_values && !desc->has_box)
-        status = glint_fail(error, GLINT_ERR_INVALID, "values: a box expected, whose corners they are of");
+        status = glint_fail(error, GLINT_ERR_INVALID, "values: expected together with a box, whose corners they "
+                                                      "describe");
     if (!status && desc->kind == GLINT_OVERLAY_AXES && desc->has_box)
         status = check_box(desc, error);
     return status;

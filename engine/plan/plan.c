@@ -262,7 +262,7 @@ static glint_status check_times(glint_plan *const *times, size_t count, const gl
             (d->passes & expected.passes) != expected.passes || memcmp(d->region, expected.region, sizeof d->region))
             return glint_fail(error, GLINT_ERR_INVALID, "times: a plan by glint_shutter_desc of the frame expected");
         if (derives_more(times[k], desc))
-            return glint_fail(error, GLINT_ERR_INVALID, "times: derivatives of the frame expected, and no others");
+            return glint_fail(error, GLINT_ERR_INVALID, "times: expected the derivatives of the frame, and no others");
     }
     return GLINT_OK;
 }

@@ -90,7 +90,7 @@ static glint_status fail_open(const char *who, const glint_shape *shape, glint_e
                       "{%.15g, %.15g, %.15g} has %u triangle%s",
                       who, before, name, after, a[0], a[1], a[2], b[0], b[1], b[2], open->triangles,
                       open->triangles == 1       ? ""
-                      : open->triangles % 2 == 0 ? "s, not as many along it as against it"
+                      : open->triangles % 2 == 0 ? "s, not equally many in each direction along it"
                                                  : "s");
 }
 
@@ -118,9 +118,9 @@ glint_status glint_group_add(glint_shape *group, glint_shape *child, glint_error
     if (!glint_shape_has_children(group))
         return glint_fail(error, GLINT_ERR_INVALID, "group: a group expected");
     if (holds(child, group, ++stamps))
-        return glint_fail(error, GLINT_ERR_INVALID, "%s: a %s cannot be within itself", kind, strcmp(kind, "group") ? "solid" : kind);
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: a %s cannot contain itself", kind, strcmp(kind, "group") ? "solid" : kind);
     if (too_deep(child, group->level + 1, ++stamps))
-        return glint_fail(error, GLINT_ERR_INVALID, "%s: at most %d groups one within the other expected", kind,
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: at most %d nested groups expected", kind,
                           GLINT_GROUP_DEPTH);
     glint_status status = glint_shape_combines(group) ? glint_check_part(kind, child, error) : GLINT_OK;
     if (!status)

@@ -35,48 +35,53 @@ static const char *const shadows[] = { "rays", "hard", "caps", NULL };
       .doc = "{c0, c1, c2} of A = 1 / (c0 + c1 d + c2 d^2), each >= 0, not all 0" }, \
     { GLINT_ROW(shadows, FLAG), .initial = { true }, .doc = "whether it casts shadows" }, \
     { GLINT_ROW(visible, FLAG), \
-      .doc = "whether the eye, mirrors and glass see its surface, from the sides that shine. By `radiance` L it shows pi L color, by " \
-             "`intensity` I color I A(D) with D its radius (of a polygon, the radius of a disk of its area). The surface casts no shadow and is " \
-             "no object: to the passes it is background with a depth and a normal. Does nothing to lights without a surface" }, \
-    { GLINT_ROW(name, TEXT), .doc = "for messages, `glint explain` and its pass \"light:NAME\", at most 63 bytes" }, \
+      .doc = "whether the eye, mirrors and glass see its surface, from the sides that shine. With `radiance` L it " \
+             "shows pi L color; with `intensity` I it shows color I A(D), where D is its radius (for a polygon, " \
+             "the radius of a disk of the same area). The surface casts no shadow and is not an object: the passes " \
+             "treat it as background with a depth and a normal. No effect on lights without a surface" }, \
+    { GLINT_ROW(name, TEXT), .doc = "used in messages, `glint explain` and its pass \"light:NAME\", at most 63 " \
+                                    "bytes" }, \
     { GLINT_ROW(group, TEXT), \
       .doc = "the pass \"light:GROUP\" holds the light of all lights of this group together, at most 63 bytes. Default \"\": by `name`" }
 
 #define EVERY_AREA_LIGHT \
     EVERY_LIGHT(GLINT_TAKES_VARIABLE), \
     { GLINT_ROW(samples, WHOLE), .low = 1, .high = 65536, .initial = { 16 }, \
-      .doc = "points of the surface a sample of a pixel, 1 .. 65536; other ones for each pixel of a 4 x 4 block, so that 16 samples look " \
-             "like 256 from afar" }, \
+      .doc = "points of the surface for each sample of a pixel, 1 .. 65536. The points differ between the pixels " \
+             "of a 4 x 4 block, so that 16 samples look like 256 from a distance" }, \
     { GLINT_ROW(shadow, CHOICE), .names = shadows, \
-      .doc = "rays: by one to each sample. hard: by one to the light's middle, for all samples. caps: sphere lights, in closed form, " \
-             "without noise: the terms of a point at its centre (of `radiance` L, of irradiance pi L r^2/d^2 (n.l)) times the share of the " \
-             "light that is seen, exact past one sphere, past several the product of what each leaves. Scenes with other shapes than " \
-             "spheres and planes, or with transparent ones, have rays all the same; `glint explain` says which. By `radiance` caps are the " \
-             "limit of rays, except for how the cosine changes across the light. By `intensity` they are not: its rays go to all of the " \
-             "surface, the far side as well, since it is a mean over that" }, \
+      .doc = "rays: one shadow ray to each sample. hard: one ray to the light's centre, for all samples. caps: " \
+             "only for sphere lights, in closed form, without noise: the terms of a point light at its centre " \
+             "(with `radiance` L, of irradiance pi L r^2/d^2 (n.l)) times the visible fraction of the light. The " \
+             "fraction is exact for one blocking sphere; for several it is the product of the fractions that each " \
+             "leaves. Scenes with other shapes than spheres and planes, or with transparent shapes, use rays " \
+             "instead; `glint explain` says which. With `radiance`, caps are the limit of rays, except that the " \
+             "cosine is constant across the light. With `intensity` they are not: its rays go to the whole " \
+             "surface, including the far side" }, \
     { GLINT_ROW(radiance, NUMBER), GIVEN(has_radiance), GLINT_AT_LEAST_0, SLOPES, \
-      .doc = ">= 0, beside an intensity of 1. nil: `intensity` counts. Default nil" }
+      .doc = ">= 0, only together with an intensity of 1. nil: `intensity` is used. Default nil" }
 
 static const glint_object_field point_fields[] = {
     EVERY_LIGHT(GLINT_TAKES_VARIABLE),
-    PLACE("where it is"),
+    PLACE("position of the light"),
     { .name = NULL },
 };
 
 static const glint_object_field directional_fields[] = {
     EVERY_LIGHT(0),
-    AIM("in which the light travels; not zero, need not be unit"),
+    AIM("direction in which the light travels; not zero, need not be a unit vector"),
     { .name = NULL },
 };
 
 static const glint_object_field spot_fields[] = {
     EVERY_LIGHT(GLINT_TAKES_VARIABLE),
-    PLACE("where it is"),
-    AIM("in which its axis points; not zero, need not be unit"),
+    PLACE("position of the light"),
+    AIM("direction of the axis; not zero, need not be a unit vector"),
     { GLINT_NAMED("inner", inner_rad, ANGLE), .required = true, .high = PI, .initial = { 20 * PI / 180 }, SLOPES, .unit = "degrees",
-      .doc = "half angle of the full light, 0 <= inner <= outer" },
+      .doc = "half angle of the fully lit cone, 0 <= inner <= outer" },
     { GLINT_NAMED("outer", outer_rad, ANGLE), .required = true, .high = PI, .initial = { 30 * PI / 180 }, SLOPES, .unit = "degrees",
-      .doc = "half angle beyond which there is none, <= 180; between the two a smoothstep of the cosine" },
+      .doc = "half angle beyond which there is no light, <= 180; between the two angles the light follows a "
+             "smoothstep of the cosine" },
     { GLINT_ROW(exponent, NUMBER), GLINT_AT_LEAST_0, SLOPES, .doc = ">= 0: the light also falls off as cos^exponent from the axis" },
     { .name = NULL },
 };
@@ -84,7 +89,7 @@ static const glint_object_field spot_fields[] = {
 static const glint_object_field disk_fields[] = {
     EVERY_AREA_LIGHT,
     PLACE("its centre"),
-    NONZERO(normal, "the side that shines; not zero, need not be unit"),
+    NONZERO(normal, "points to the side that shines; not zero, need not be a unit vector"),
     RADIUS(">= 0; 0 is a point"),
     { .name = NULL },
 };
@@ -92,8 +97,9 @@ static const glint_object_field disk_fields[] = {
 static const glint_object_field polygon_fields[] = {
     EVERY_AREA_LIGHT,
     { GLINT_ROW(vertices, POINTS), .required = true, .unit = "world units",
-      .doc = "3 .. 4096 corners, convex, in one plane; it shines to the side from which they run counter-clockwise" },
-    { GLINT_ROW(two_sided, FLAG), .doc = "shines to both sides" },
+      .doc = "3 .. 4096 corners of a convex polygon in one plane; it shines to the side from which the corners run "
+             "counter-clockwise" },
+    { GLINT_ROW(two_sided, FLAG), .doc = "whether it shines to both sides" },
     { .name = NULL },
 };
 _Static_assert(offsetof(DESC, vertex_count) == offsetof(DESC, vertices) + sizeof(void *), "GLINT_TYPE_POINTS");
@@ -141,19 +147,20 @@ static glint_status check_area(const glint_light_desc *desc, glint_error *error)
     glint_status status = GLINT_OK;
     if (desc->has_radiance && desc->intensity != 1)
         status =
-            glint_fail(error, GLINT_ERR_INVALID, "intensity: 1 expected beside a radiance, got %.15g", desc->intensity);
+            glint_fail(error, GLINT_ERR_INVALID, "intensity: 1 expected together with a radiance, got %.15g", desc->intensity);
     if (!status && desc->shadow == GLINT_SHADOW_CAPS && desc->kind != GLINT_LIGHT_SPHERE)
         status = glint_fail(error, GLINT_ERR_INVALID, "shadow: rays or hard expected; only sphere lights have caps");
     const double *a = desc->attenuation;
     if (!status && desc->shadow == GLINT_SHADOW_CAPS && desc->has_radiance && (a[0] != 1 || a[1] != 0 || a[2] != 0))
         status =
             glint_fail(error, GLINT_ERR_INVALID,
-                       "attenuation: {1, 0, 0} expected beside a radiance and shadow = caps, got {%.9g, %.9g, %.9g}",
+                       "attenuation: {1, 0, 0} expected together with a radiance and shadow = caps, got {%.9g, %.9g, "
+                       "%.9g}",
                        a[0], a[1], a[2]);
     // the radius is squared
     if (!status && desc->kind != GLINT_LIGHT_POLYGON && desc->has_radiance && desc->radius > 0)
         status = glint_check_range("radius", desc->radius, 1e-150, 1e150,
-                                   "0 or a number 1e-150 .. 1e150 beside a radiance", error);
+                                   "0 or a number 1e-150 .. 1e150 together with a radiance", error);
     if (!status && desc->kind == GLINT_LIGHT_POLYGON)
         status = glint_light_sample_check_polygon(desc, error);
     return status;

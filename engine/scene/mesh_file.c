@@ -62,7 +62,8 @@ static void drop_vertices(glint_mesh_reader *r)
             kept_corners += size;
             kept++;
         } else {
-            glint_mesh_note_that(r, GLINT_MESH_NOTE_VERTEX, 0, "face %zu is left out: a vertex of it is not finite",
+            glint_mesh_note_that(r, GLINT_MESH_NOTE_VERTEX, 0, "face %zu is left out: one of its vertices is not "
+                                                               "finite",
                                  i + 1);
         }
         first += size;
@@ -120,7 +121,8 @@ static glint_status make_mesh(glint_mesh_reader *r, glint_shape **out)
         glint_mesh_warn(r->desc, r->text.path, "%zu of %zu faces are left out: they have no area", faults.flat,
                         r->sizes.count);
     if (faults.crossed)
-        glint_mesh_warn(r->desc, r->text.path, "%zu of %zu faces cross themselves: they are cut as fans",
+        glint_mesh_warn(r->desc, r->text.path, "%zu of %zu faces cross themselves: they are split into fans of "
+                                               "triangles",
                         faults.crossed, r->sizes.count);
     return GLINT_OK;
 }
@@ -267,7 +269,7 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
         drop_vertices(&r);
     if (!status && r.sizes.count == 0)
         status = glint_fail(error, GLINT_ERR_FORMAT,
-                            "%s: faces expected, got only such with a vertex that is not finite", path);
+                            "%s: faces expected, got only faces with a vertex that is not finite", path);
     if (!status)
         status = make_mesh(&r, out);
     if (!status)

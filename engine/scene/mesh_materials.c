@@ -206,7 +206,7 @@ static glint_status paint(glint_mesh_library *library, const glint_mesh_reader *
         return GLINT_OK;
     if (e->lacks_uv)
         glint_mesh_warn(reader->desc, reader->text.path,
-                        "material '%s' has %s instead of its %s: faces of it have no coordinates (vt)", e->desc.name,
+                        "material '%s' has %s instead of its %s: some of its faces have no texture coordinates (vt)", e->desc.name,
                         map_instead[kind], glint_mesh_map_words[kind]);
     else
         status = find_picture(library, reader, e, kind, &texture);
@@ -216,8 +216,8 @@ static glint_status paint(glint_mesh_library *library, const glint_mesh_reader *
     if (!status && !grey) {
         glint_mesh_warn(
             reader->desc, reader->text.path,
-            "material '%s' has no relief instead of its map_Bump: heights in grey expected, and the picture "
-            "has colours, as pictures of normals do",
+            "material '%s' has no relief instead of its map_Bump: heights in grey expected, got a picture with "
+            "colours, such as a normal map",
             e->desc.name);
         return status;
     }
@@ -311,7 +311,7 @@ static void tell_flat(const glint_mesh_library *library, const glint_mesh_reader
                         e->desc.name, more, e->bm);
     else
         glint_mesh_warn(reader->desc, reader->text.path,
-                        "material '%s'%s: no relief: map_Bump has no -bm, which says how high it is, in world units",
+                        "material '%s'%s: no relief: map_Bump has no -bm, which gives its height in world units",
                         e->desc.name, more);
 }
 
@@ -331,7 +331,7 @@ static void tell_missing(const glint_mesh_library *library, const glint_mesh_rea
     if (library->missing && !library->told)
         glint_mesh_warn(reader->desc, reader->text.path, "material '%s'%s: %s%.200s", library->first_missing,
                         spell_more(library->missing, more),
-                        library->file ? "not in " : "the mesh names no file of materials (mtllib)",
+                        library->file ? "not in " : "the mesh names no material file (mtllib)",
                         library->file ? library->file : "");
 }
 

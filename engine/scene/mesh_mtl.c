@@ -327,7 +327,7 @@ static glint_status read_file(glint_mesh_library *library, const glint_mesh_read
         return glint_fail_nomem(reader->error);
     library->told = library->told || (status && (*there || last));
     if (status && (*there || last))
-        glint_mesh_warn(reader->desc, reader->text.path, "its materials are not all there: %.300s", inner.message);
+        glint_mesh_warn(reader->desc, reader->text.path, "some of its materials are missing: %.300s", inner.message);
     return GLINT_OK;
 }
 

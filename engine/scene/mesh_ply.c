@@ -354,7 +354,7 @@ static glint_status make_materials(glint_mesh_reader *r, const glint_ply_head *h
     }
     if (h->texture[0] && !has_own)
         glint_mesh_note_that(r, GLINT_MESH_NOTE_PICTURE, 0,
-                             "its picture %.60s is ignored: there are no coordinates (s, t)", h->texture);
+                             "its picture %.60s is ignored: there are no texture coordinates (s, t)", h->texture);
     if (!h->colored || r->notes[GLINT_MESH_NOTE_COLOR].count)
         return GLINT_OK;
     if (h->color_type != GLINT_PLY_UINT8)

@@ -74,7 +74,7 @@ static glint_status read_statement(glint_mesh_reader *r, const char *at, state *
         return GLINT_OK;
     }
     if (s->ended && !glint_mesh_is_word(at, WORDS[0])) {
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, r->text.number, "this line, behind the solid, is ignored");
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, r->text.number, "this line, after the solid, is ignored");
         return GLINT_OK;
     }
     if (place == 0 && (strchr("#;/", *at) || glint_mesh_is_word(at, "color"))) {
@@ -185,11 +185,11 @@ glint_status glint_mesh_read_stl(glint_mesh_reader *r)
         status = text ? read_text(r) : read_binary(r, count);
     if (!status && !text && t->size > needed)
         glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, 0,
-                             "what follows the last triangle is ignored: bytes %llu .. %llu",
+                             "the data after the last triangle is ignored: bytes %llu .. %llu",
                              (unsigned long long)needed, (unsigned long long)t->size - 1);
     if (!status && !text && strstr(bytes, "COLOR="))
         glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0,
-                             "its colours are ignored: those of .stl files are not read");
+                             "its colours are ignored: glint does not read colours of .stl files");
     if (!status && r->sizes.count == 0)
         status = glint_fail(r->error, GLINT_ERR_FORMAT, "%s: triangles expected, got none", t->path);
     return status;

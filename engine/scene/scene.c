@@ -36,21 +36,21 @@ static const glint_object_field ambient_occlusion_parts[] = {
 };
 
 const glint_object_field glint_scene_fields[] = {
-    { GLINT_ROW(camera, OBJECT), .names = cameras, .doc = "needed for a frame; nil: none" },
-    { GLINT_ROW(ambient, COLOR), .takes = GLINT_TAKES_VARIABLE, .doc = "light from everywhere, >= 0" },
+    { GLINT_ROW(camera, OBJECT), .names = cameras, .doc = "required for a frame; nil: no camera" },
+    { GLINT_ROW(ambient, COLOR), .takes = GLINT_TAKES_VARIABLE, .doc = "ambient light, >= 0" },
     { GLINT_ROW(background, COLOR), .program_offset = offsetof(DESC, background_program),
       .takes = GLINT_TAKES_PATTERN | GLINT_TAKES_TEXTURE | GLINT_TAKES_VARIABLE,
-      .doc = "what a ray sees that hits nothing, >= 0; of a pattern p is the unit direction, and a texture is a picture of all "
-             "directions with -z in its middle, +x three quarters from the left, +y above" },
+      .doc = "colour of rays that hit nothing, >= 0. In a pattern, p is the unit direction of the ray; a texture is "
+             "a panorama of all directions with -z in its middle, +x three quarters from the left, +y at the top" },
     { .name = "depth_cue", .type = GLINT_TYPE_TABLE, GIVEN(has_depth_cue), .parts = depth_cue_parts,
-      .doc = "light fades to color (default: the background, if that is a colour) from distance near (default 0) to far. Default "
-             "nil: it does not" },
+      .doc = "light fades to color (default: the background, if it is a plain colour) from distance near (default 0) "
+             "to far. Default nil: no fading" },
     { .name = "indirect", .type = GLINT_TYPE_TABLE, GIVEN(has_indirect), .parts = indirect_parts,
-      .doc = "light from surface to surface instead of `ambient`, by so many samples (16) and bounces (2); what a material's `ambient` "
-             "has beyond its `diffuse` is its own light and stays. Default nil: off" },
+      .doc = "light from surface to surface instead of `ambient`, with a number of samples (16) and bounces (2). The "
+             "excess of a material's `ambient` over its `diffuse` remains as emitted light. Default nil: off" },
     { .name = "ambient_occlusion", .type = GLINT_TYPE_TABLE, GIVEN(has_ambient_occlusion), .parts = ambient_occlusion_parts,
-      .doc = "ambient light as far as the sky is open, by so many samples (16), up to a distance (infinite); not together with "
-             "indirect. Default nil: off" },
+      .doc = "ambient light reduced by nearby surfaces, with a number of samples (16), up to a distance (infinite); "
+             "not together with indirect. Default nil: off" },
     { .name = NULL },
 };
 // clang-format on
@@ -74,13 +74,13 @@ static glint_status check_together(const glint_scene_desc *desc, glint_error *er
         return glint_fail(error, GLINT_ERR_INVALID, "background: a pattern expected, got a shader");
     if (program && desc->has_depth_cue && !desc->has_depth_cue_color)
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "depth_cue.color: a colour expected where the background, which it follows, is a pattern");
+                          "depth_cue.color: a colour expected, because its default, the background, is a pattern");
     if (desc->has_depth_cue && !(desc->depth_cue_far > desc->depth_cue_near && isfinite(desc->depth_cue_far)))
         return glint_fail(error, GLINT_ERR_INVALID, "depth_cue.far: finite number above near, %.10g, expected, got %.10g",
                           desc->depth_cue_near, desc->depth_cue_far);
     if (desc->has_indirect && desc->has_ambient_occlusion)
-        return glint_fail(error, GLINT_ERR_INVALID, "ambient_occlusion: either this or indirect expected: indirect light "
-                                                    "is dim where little of the sky is open by itself");
+        return glint_fail(error, GLINT_ERR_INVALID, "ambient_occlusion: either this or indirect expected, because "
+                                                    "indirect light already includes the occlusion");
     return GLINT_OK;
 }
 

@@ -54,7 +54,7 @@ static glint_status check_ends(const glint_shape_desc *desc, glint_error *error)
         status = check_radius(desc, error);
     if (!status && memcmp(desc->base, desc->top, sizeof desc->base) == 0)
         status =
-            glint_fail(error, GLINT_ERR_INVALID, "top: another place than base expected, got {%.15g, %.15g, %.15g}",
+            glint_fail(error, GLINT_ERR_INVALID, "top: a point other than base expected, got {%.15g, %.15g, %.15g}",
                        desc->top[0], desc->top[1], desc->top[2]);
     return status;
 }

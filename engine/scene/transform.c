@@ -130,7 +130,7 @@ glint_status glint_check_transform(const char *name, const glint_transform *t, g
                               t->m[i / 4][i % 4]);
     if (!(fabs(openness(t)) > 1e-12))
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "%s: a map that can be undone expected, got one that flattens space", name);
+                          "%s: an invertible transform expected, got one that flattens space", name);
     return GLINT_OK;
 }
 

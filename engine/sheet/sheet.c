@@ -405,12 +405,12 @@ static glint_status check_sides(const layout *l, glint_error *error)
     const long long width = l->sheet_width, height = l->sheet_height;
     if (width > GLINT_SIDE_MAX || height > GLINT_SIDE_MAX)
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "sheet: sides of at most %d pixels expected, got %lldx%lld; other columns or smaller pictures "
-                          "make it fit",
+                          "sheet: sides of at most %d pixels expected, got %lldx%lld; use other columns or smaller "
+                          "pictures",
                           GLINT_SIDE_MAX, width, height);
     if (width * height > AREA_MAX)
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "sheet: at most %lld pixels expected, got %lldx%lld; smaller or fewer pictures make it fit",
+                          "sheet: at most %lld pixels expected, got %lldx%lld; use smaller or fewer pictures",
                           (long long)AREA_MAX, width, height);
     return GLINT_OK;
 }

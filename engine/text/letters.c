@@ -270,7 +270,8 @@ glint_status glint_letters_open(glint_letters **out, glint_error *error)
     *out = NULL;
     if (!wanted || !*wanted || strcmp(wanted, "bitmap") == 0)
         return GLINT_OK;
-    return glint_fail(error, GLINT_ERR_UNSUPPORTED, "GLINT_FONT: bitmap expected, as this build has no FreeType, got '%.300s'", wanted);
+    return glint_fail(error, GLINT_ERR_UNSUPPORTED, "GLINT_FONT: bitmap expected, because this build has no "
+                                                    "FreeType, got '%.300s'", wanted);
 }
 
 void glint_letters_close(glint_letters *letters) { (void)letters; }

@@ -159,8 +159,8 @@ local PLANES = {
 
 local function plain_plane()
   if not options.plane then
-    check.tell("plane", "gr.plane: variants have other squares; this is of edge 1, in xz, its middle at the origin. "
-      .. "--gr-plane says which: xz, xz-2, xz-corner, xy, xy-2, xy-corner")
+    check.tell("plane", "gr.plane: other variants of the dialect have other squares; this one has edge 1, in the xz "
+      .. "plane, with its middle at the origin. Choose one with --gr-plane: xz, xz-2, xz-corner, xy, xy-2, xy-corner")
   end
   local square = PLANES[options.plane or "xz"]
   return square[1], square[2], square[3]

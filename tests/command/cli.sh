@@ -235,7 +235,7 @@ left_nothing() {
     local options
     for options in "-f 11" "-s 11" "-f 0" "-f 0-1:5" "-f 11-20,30-" "-j 3 -s 12" "-f 11 --shard 1/2"; do
         TRACE=1 exits 2 "nothing left by $options" ten.lua -o none $options
-        says "nothing left by $options" 'error: frames: the selection leaves nothing: .*1 \.\. 10$'
+        says "nothing left by $options" 'error: frames: no frame is selected: .*1 \.\. 10$'
         check "no frame is built by $options" test -z "$(grep "^frame" err)"
         exits 2 "nothing left of a loop by $options" loop.lua -o none $options
     done
@@ -332,7 +332,7 @@ io.stderr:write(math.type(P.a), " ", math.type(P.b), " ", P.s, "\n") return requ
     run steps.lua --sweep n=-100:-0.01:*5 -o none --size 1x1 -q
     says "--sweep by factors below 1" '^-100 -10 -1 -0\.1 -0\.01 $'
     exits 2 "--sweep by factors from 0" steps.lua --sweep n=0:4:*3 -o none
-    says "--sweep by factors from 0" '^glint: error: --sweep: n: two ends of the same sign'
+    says "--sweep by factors from 0" '^glint: error: --sweep: n: expected two ends of the same sign'
     run steps.lua --sweep n=7,-2,1e3 -o none --size 1x1 -q
     says "--sweep of a list" '^7 -2 1000 $'
     exits 2 "--sweep of a list with a gap" steps.lua --sweep n=7,,3
@@ -404,7 +404,7 @@ options() {
     prints "limits" '^limits: 65535 pixels a side'
     exits 2 "--verbose alone" ten.lua --verbose
     exits 0 "one frame of ten, under a name without a number" ten.lua -f 1 -o terms.png
-    says "says its name" '^-o terms.png names 10 frames, so each has its number in its name: terms_####.png; -o terms.mp4, .* makes a film$'
+    says "says its name" '^-o terms.png: writing 10 numbered files, terms_####.png; to make a film, use -o terms.mp4, .webm, .gif or .apng$'
     check "which is stable" test -e terms_0001.png
     exits 0 "a name with a number" ten.lua -f 1 -o 'terms_%04d.png'
     check "has nothing said of it" eval '! grep -q "names 10" err'
@@ -450,7 +450,7 @@ paint "rde"'
     prints "rendered again" '"status":"rendered"'
     exits 0 "the script's, said by the file" reproduce plain_0001.png ten.lua
     exits 0 "a colour map, and no pass to show" ten.lua --size 20x12 -f 1 -o map.png --colormap viridis
-    check "is told of" grep -q 'colormap: it shows the passes depth and d:NAME, and none of them is written' err
+    check "is told of" grep -q 'colormap: colours only the passes depth and d:NAME, and none of them is written' err
     exits 0 "a colour map, and a file of numbers" ten.lua --size 20x12 -f 1,2 -o map.pfm --passes depth --colormap viridis
     check "is told of once" test "$(grep -c 'colormap has no effect on .pfm, .npy and .exr' err)" -eq 1
     exits 0 "no colour map, and a file of numbers" ten.lua --size 20x12 -f 1 -o map.pfm --passes depth
@@ -619,7 +619,7 @@ errors() {
     exits 2 "no camera" no_camera.lua
     says "no camera" 'camera'
     exits 0 "a camera that frames the scene" own_camera.lua --size 8x8
-    says "a camera that frames the scene" 'the scene has no camera; it gets one that has all of it in view: glint\.camera \{ eye'
+    says "a camera that frames the scene" 'the scene has no camera; glint uses one that shows the whole scene: glint\.camera \{ eye'
     check "it says so once" test "$(grep -c 'has no camera' err)" -eq 1
     clean
     "$LUA" -e 'io.open("code.lua", "wb"):write(string.dump(function() end))'
@@ -891,7 +891,7 @@ local r = a:run { frames = "2-3", output = "p%d.png", threads = 2 }
 assert(r.frames == 2 and r.kept == 0)
 assert(a:run { frames = 2, output = "p%d.png" }.kept == 1)
 assert(not pcall(a.run, a, { frames = "x" }) and not pcall(a.run, a, { thread = 2 }))
-assert(select(2, pcall(a.run, a, { frames = "11-" })):find "frames: the selection leaves nothing")
+assert(select(2, pcall(a.run, a, { frames = "11-" })):find "frames: no frame is selected")
 assert(not pcall(a.run, a, { output = "/proc/nothing/x.png", frames = 1 }))
 local image = a.scene:render { width = 8, height = 8, output = "q.png" }
 assert(image.width == 8 and io.open "q.png")

@@ -35,7 +35,7 @@ lights() {
 # ---- Clipped values are reported ----
 
 exits 0 "clipped" film.lua "${data[@]}" -q
-says "clipped" '^glint: warning: 50 % of the 16-bit linear values are clipped at 65535: the brightest would be 4 times white; --exposure -2.00 keeps them all, and --exposure auto '
+says "clipped" '^glint: warning: 50 % of the 16-bit linear values are clipped at 65535: the brightest would be 4 times white; use --exposure -2.00 to keep all values, or --exposure auto '
 [ "$(wc -l <err)" -eq 1 ]
 result $? "one warning"
 exits 0 "exposed" film.lua "${data[@]}" -q --exposure -2 --force
@@ -51,7 +51,7 @@ local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0,
 scene:render { width = 8, height = 6 }:save("saved.png", { bits = 16, transfer = "linear" })
 E2
 exits 0 "saved by the script" save.lua -q
-says "saved by the script" '100 % of the 16-bit linear values .* 2 times white; --exposure -1.00'
+says "saved by the script" '100 % of the 16-bit linear values .* 2 times white; use --exposure -1.00'
 
 # ---- One exposure for all ----
 
@@ -88,7 +88,7 @@ exits 0 "dark" film.lua "${data[@]}" --exposure auto -o dark.png
 says "dark" '^exposure 2.00: '
 exits 2 "standard input" - --exposure auto
 exits 2 "explain" explain film.lua --exposure auto
-says "explain" '--exposure: auto is for glint render'
+says "explain" '--exposure: auto works only with glint render'
 exits 2 "no number" film.lua --exposure bright
 says "no number" '--exposure: number -32 .. 32 or auto expected'
 cat >swept.lua <<'E2'
@@ -153,6 +153,6 @@ check "a part has the same range" cmp two.png depth_0002.depth.png
 exits 2 "no range" depth.lua --colormap viridis:3
 says "no range" '--colormap: NAME:LOW:HIGH with two numbers that differ expected'
 exits 2 "two passes" depth.lua --colormap viridis:auto --passes depth,d:far
-says "two passes" 'auto is for one pass of depth and d:NAME, got 2'
+says "two passes" 'auto works for exactly one of the passes depth and d:NAME, got 2'
 
 totals

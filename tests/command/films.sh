@@ -93,14 +93,14 @@ check "byte for byte" cmp again.png pattern.png
 exits 0 "chosen frames of a pattern" sheet 'grid/%04d.png' -f 2-3 -o chosen.png --json
 prints "are in it" '"file":"chosen.png","frames":2'
 exits 2 "a pattern in quotes that is a shell's" sheet 'grid/000*.png' -o wrong.png
-says "is told so" 'no such file; give it without quotes'
+says "is told so" 'no such file; give the names without quotes'
 before=$(sha256sum <grid/0002.png)
 exits 2 "a frame's name for the sheet" sheet grid/0001.png grid/0002.png -o grid/../grid/0002.png
-says "is refused" '-o: .* is one of the pictures; give another file'
+says "is refused" '-o: .* is one of the input pictures; give another file'
 [ "$before" = "$(sha256sum <grid/0002.png)" ] && pass || fail "a frame was overwritten"
 for columns in 1 2 4 5; do
     exits 2 "$columns columns of 3 x 2 pictures" sheet grid/000*.png -o wrong.png --columns $columns
-    says "would have no axis" "columns: 3 or 6 expected, so that a column of the 3 .shininess. x 2 .specular. pictures has one value of shininess, got $columns"
+    says "would have no axis" "columns: 3 or 6 expected, so that each column of the 3 .shininess. x 2 .specular. pictures has one value of shininess, got $columns"
 done
 exits 0 "columns" sheet grid/000*.png -o columns.png --columns 6
 exits 3 "make another sheet" compare again.png columns.png
@@ -120,7 +120,7 @@ check "RGBA" eval '[ "$(od -An -tu1 -j25 -N1 clear.png)" -eq 6 ] && [ "$(od -An 
 exits 2 "text of no size" sheet grid/000*.png -o wrong.png --label-size 0
 says "is refused" 'label-size: points 1 .. 10000 expected'
 exits 2 "a page without paper" sheet grid/000*.png -o wrong.html --transparent
-says "has none to leave out" 'transparent: it has no effect on a page'
+says "has none to leave out" 'transparent: has no effect on a page'
 exits 0 "a colour bar of all pictures" sheet grid/000*.png -o bar.png --colorbar 'viridis,0,2.5,T / K'
 exits 3 "at the right of the others" compare bar.png again.png
 exits 2 "of no map" sheet grid/000*.png -o wrong.png --colorbar jet,0,1
@@ -128,13 +128,13 @@ says "is refused" "colorbar: viridis, magma, cividis, turbo or coolwarm expected
 exits 2 "of a misspelt one" sheet grid/000*.png -o wrong.png --colorbar magmo,0,1
 says "is answered" "did you mean 'magma'?"
 exits 2 "of a title without end" sheet grid/000*.png -o wrong.png --colorbar "magma,0,1,$(printf '%0400d' 0)"
-says "is refused" 'colorbar: a title of at most 383 bytes'
+says "is refused" 'colorbar: expected a title of at most 383 bytes'
 exits 2 "without its last number" sheet grid/000*.png -o wrong.png --colorbar magma,0
 says "is refused" 'colorbar: MAP,LOW,HIGH or'
 exits 2 "of one number" sheet grid/000*.png -o wrong.png --colorbar magma,1,1
 says "is refused" 'colorbar.high: another number than low'
 exits 2 "on a page" sheet grid/000*.png -o wrong.html --colorbar magma,0,1
-says "is refused" 'colorbar: it has no effect on a page'
+says "is refused" 'colorbar: has no effect on a page'
 exits 2 "of a cell that is not there" sheet grid/000*.png -o wrong.png --difference 7
 says "is refused by number" 'difference: .*1 \.\. 6'
 exits 2 "no output" sheet grid/0001.png
@@ -162,9 +162,9 @@ SHEET='{ label = function() error "no label today" end }' exits 2 "an error in i
 says "is the script's" 'no label today'
 for wrong in '{ lable = true }:did you mean .label' '{ columns = 0 }:columns: whole number' '{ gain = -1 }:gain: number' \
     '{ output = "x.jpg" }:output: .*\.html' '{ difference = 1.5 }:difference' \
-    '{ difference = 7 }:difference: a picture 1 .. 6 expected, got 7' '{ gain = 2 }:gain: a difference expected' \
-    '{ output = "x.html", columns = 2 }:columns: a page has those of its first axis' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' '{ size = 0 }:size: points' \
-    '{ dpi = -1 }:dpi: number 0' '{ transparent = 1 }:transparent: boolean' '{ transparent = true, output = "x.html" }:transparent: it has no effect' '{ colorbar = 5 }:colorbar: glint.colorbar expected' '5:sheet: table'; do
+    '{ difference = 7 }:difference: a picture 1 .. 6 expected, got 7' '{ gain = 2 }:gain: expected together with difference' \
+    '{ output = "x.html", columns = 2 }:columns: not for pages; a page has one column for each value of its first axis' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' '{ size = 0 }:size: points' \
+    '{ dpi = -1 }:dpi: number 0' '{ transparent = 1 }:transparent: boolean' '{ transparent = true, output = "x.html" }:transparent: has no effect' '{ colorbar = 5 }:colorbar: glint.colorbar expected' '5:sheet: table'; do
     SHEET=${wrong%%:*} exits 2 "sheet = ${wrong%%:*}" grid.lua
     says "sheet = ${wrong%%:*}" "${wrong#*:}"
 done
@@ -220,7 +220,7 @@ exits 0 "the first frame is the picture" compare film.png f/01.png
 exits 0 "assembled from frames" assemble 'f/%02d.png' -o assembled.png --fps 12
 check "it is the same film" cmp film.png assembled.png
 exits 2 "a frame's name for the film" assemble f/01.png f/02.png -o f/02.png
-says "is refused, too" '-o: .* is one of the pictures; give another file'
+says "is refused, too" '-o: .* is one of the input pictures; give another file'
 exits 0 "of one frame" assemble f/01.png -o one.png
 [ "$(chunks one.png)" = "IHDR sRGB acTL fcTL IDAT IEND " ] && pass || fail "chunks of one frame: $(chunks one.png)"
 exits 0 "of 16 bits, linear" turn.lua -f 1-2 --bits 16 --transfer linear -o deep.png --apng
@@ -368,9 +368,9 @@ exits 0 "an animated PNG has alpha" turn.lua --alpha -f 1-3 -o clear.apng
 check "and says so" test "$(head -c 26 clear.apng | tail -c 1 | od -An -tu1 | tr -d ' ')" -eq 6
 exits 0 "assembled as well" assemble 'clear_%04d.png' -o assembled.png --apng
 exits 2 "other films have no room for it" turn.lua --alpha -f 1-3 -o clear.mp4
-says "what has" "it has no room for alpha; an animated PNG does"
+says "what has" "this format cannot hold alpha; an animated PNG can"
 exits 2 "frames that have it" assemble 'clear_%04d.png' -o clear.gif
-says "are named" "clear_0001.png: it has alpha, for which clear.gif has no room"
+says "are named" "clear_0001.png: has alpha, which clear.gif cannot hold"
 absent "nothing was begun" clear.mp4 clear.gif clear.mp4.frames
 
 # ---- Reproduce ----
@@ -394,7 +394,7 @@ prints "is said to be that" 'different, by at most .*another script: its text ha
 cp turn.lua scene.lua edited/
 echo '-- a remark' >>edited/turn.lua
 exits 3 "a remark in the script" reproduce made_0004.png edited/turn.lua
-prints "is told from that" 'same pixels, other bytes: .*though not in what this frame reads'
+prints "is told from that" 'same pixels, other bytes: .*but not the parts that this frame depends on'
 cp turn.lua renamed.lua
 exits 3 "a renamed script" reproduce made_0004.png renamed.lua
 prints "is said to be that" "same pixels, other bytes: another script: 'turn.lua' then, 'renamed.lua' now"
@@ -428,11 +428,11 @@ says "and it says so" 'start.lua: it exists already'
 exits 2 "no name" new
 exits 2 "a name that ends in a slash" new x/
 exits 1 "a folder that is not there" new none/x/y
-says "and what makes it" 'none/x/y/y.lua: its folder is not there'
+says "and what makes it" 'none/x/y/y.lua: its folder does not exist'
 exits 2 "a script without its ending" start
 says "names the file" 'did you mean start.lua'
 exits 2 "a word that is neither command nor script" stort
-says "says both" 'cannot open stort: .*no command has this name'
+says "says both" 'cannot open stort: .*there is no command of this name'
 command -v luacheck >/dev/null && check "and is clean Lua" luacheck -q start.lua
 
 totals

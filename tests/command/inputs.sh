@@ -79,7 +79,7 @@ printf 'mtllib %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n'
 printf 'mtllib good.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n' >painted.obj
 for bad in device.png pipe folder huge.png; do
     sed "s/device.png/$bad/" named.obj >mesh.obj
-    script "a mesh with materials in $bad" "mesh.obj: its materials are not all there: $bad:(1:)? " 'require("glint").mesh { file = "mesh.obj" }' \
+    script "a mesh with materials in $bad" "mesh.obj: some of its materials are missing: $bad:(1:)? " 'require("glint").mesh { file = "mesh.obj" }' \
         'error "read"'
     printf 'newmtl a\nmap_Kd %s\n' "$bad" >good.mtl
     script "a mesh with the picture $bad" "painted.obj: material 'a' has its Kd instead of its map_Kd: $bad: " \
@@ -114,8 +114,8 @@ refused "fit.lua to a device" "read_image: device.pfm" "$root/scripts/fit.lua" -
 refused "fit.lua to a huge file" "read_image: huge.pfm" "$root/scripts/fit.lua" -D file=huge.pfm -o none
 limited timeout $seconds "$glint" - --size 8x8 -o piped.png -q <scene.lua >out 2>err && "$glint" compare piped.png good.png >out
 result $? "a script from standard input"
-refused "which is there once" "standard input is for render and explain" - --sweep a=1:2:2 -o none
-refused "and has no folder" "standard input is for render and explain" describe -
+refused "which is there once" "only render and explain read a script from standard input" - --sweep a=1:2:2 -o none
+refused "and has no folder" "only render and explain read a script from standard input" describe -
 printf '1\nfrom stdin\nH 1 2 3\n' >atom.xyz
 printf '%s\n' 'local frame = require "glint.xyz".frame "-"' 'local label, x = frame:atoms()()' 'assert(label == "H" and x == 1)' \
     'return dofile "scene.lua"' >try.lua

@@ -15,13 +15,13 @@ wrong() {
     says "$1" "$2"
 }
 
-table="; a table is no vector: write glint\.vector"
+table="; a table is not a vector: write glint\.vector"
 wrong table_by_number "table.lua:2: .*$table|$table" 'local red = { 0.8, 0.2, 0.2 } local f = red * 0.5'
 wrong number_by_table "$table" 'local f = function(p) return p.x * { 1, 0, 0 } end'
-check "a cure is given once" test "$(grep -o 'a table is no vector' err | wc -l)" -eq 1
-wrong pattern_by_number "pattern_by_number.lua:2: .*a pattern's numbers are changed where they are made: glint\.pattern\(" \
+check "a cure is given once" test "$(grep -o 'a table is not a vector' err | wc -l)" -eq 1
+wrong pattern_by_number "pattern_by_number.lua:2: .*a pattern is not a number: compute inside its function, glint\.pattern\(" \
     'local red = glint.pattern(function(p) return p end) local f = red * 0.5'
-wrong number_by_pattern "a pattern's numbers are changed where they are made" \
+wrong number_by_pattern "a pattern is not a number: compute inside its function" \
     'local f = 1 - glint.pattern(function(p) return p.x end)'
 wrong a_global_of_glint "is it glint\.sphere\?" 'local f = sphere { radius = 1 }'
 wrong a_global_of_math "is it math\.random\?" 'local f = random()'
@@ -41,17 +41,17 @@ check "print is there again" grep -qx after out
 # Numbers that a pattern must not give: each kind has a message.
 scene odd 'local f = function(p) return { glint.sqrt(p.x), 1, 1 } end'
 exits 0 "NaN" odd.lua --size 16x16 -o none
-says "NaN" "frame 1: material\.ambient: the pattern is NaN at [0-9]+ points, such as .*; it is taken as 0 there; look for 0 / 0"
+says "NaN" "frame 1: material\.ambient: the pattern is NaN at [0-9]+ points, such as .*; glint uses 0 there; look for 0 / 0"
 [ "$(grep -c 'the pattern is' err)" -eq 1 ]
 result $? "one warning"
 scene odd 'local f = function(p) return { 1, 1, p.x } end'
 exits 0 "negative" odd.lua --size 16x16 -o none
-says "negative" "material\.ambient: the pattern is below 0 at .*; it is taken as 0 there; glint\.max\(0, x\) says so"
+says "negative" "material\.ambient: the pattern is below 0 at .*; glint uses 0 there; write glint\.max\(0, x\)"
 [ "$(grep -c 'the pattern is' err)" -eq 1 ]
 result $? "one warning"
 scene odd 'local f = function(p) return 1e300 * (p.x * p.x + 1) end'
 exits 0 "huge" odd.lua --size 16x16 -o none
-says "huge" "material\.ambient: the pattern is above 2\^100 at .*; it is taken as 2\^100 there"
+says "huge" "material\.ambient: the pattern is above 2\^100 at .*; glint uses 2\^100 there"
 scene odd 'local f = function(p) return glint.select(glint.less(p.x, 0), -1, glint.sqrt(-p.x)) end'
 exits 0 "two kinds" odd.lua --size 16x16 -o none
 [ "$(grep -c 'the pattern is' err)" -eq 2 ]

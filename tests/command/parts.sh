@@ -80,10 +80,10 @@ prints "its image" '^7	3$'
 # ---- Wrong input ----
 
 exits 2 "a hole" join parts/[1-4].png -o hole.png
-says "a hole is named" 'join: parts: none has pixel 50, 83 of 201 x 133'
+says "a hole is named" 'join: parts: no part has pixel 50, 83 of 201 x 133'
 check "and nothing is written" test ! -e hole.png
 exits 2 "a whole picture" join parts/1.png whole/a.png -o hole.png
-says "is no part" 'whole/a.png: a .png that --region has rendered expected'
+says "is no part" 'whole/a.png: expected a .png rendered with --region'
 "$glint" "$scene" --size $size -q --region 0,0,9,9 -o stranger.png
 exits 2 "a part of another picture" join parts/1.png stranger.png -o hole.png
 says "is named" 'stranger.png and parts/1.png are parts of different frames'

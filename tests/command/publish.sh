@@ -35,7 +35,7 @@ has far.html 'controls="size"'
 # ---- Refused input ----
 
 exits 2 "no page" publish scene.lua
-says "no page" 'publish: -o PAGE.html expected'
+says "no page" 'publish: expected -o PAGE.html'
 exits 2 "a picture" publish scene.lua -o wrong.png
 exits 2 "an unknown control" publish scene.lua -o wrong.html --controls size,sizes
 says "an unknown control" "the script has no parameter 'sizes'; its parameters are label, size"
@@ -75,11 +75,11 @@ exits 0 "pages without --live" sheet ball_0001.png ball_0002.png -o plain.html
 check "they have no figure" test "$(grep -c glint-figure plain.html)" -eq 0
 
 exits 2 "a sheet without its script" sheet ball_0001.png ball_0002.png -o wrong.html --live
-says "a sheet without its script" '--live=SCRIPT expected'
+says "a sheet without its script" 'expected --live=SCRIPT'
 exits 2 "a script that is not there" sheet ball_0001.png ball_0002.png -o wrong.html --live=missing.lua
 exits 2 "a study without a page" cost scene.lua --live
-says "a study without a page" '--report DIR expected'
+says "a study without a page" 'expected together with --report DIR'
 GLINT_WEB=$work/nowhere exits 2 "no engine for a figure" sweep.lua --live --set size=1.2
-says "no engine for a figure" '--live: the engine for pages is not there'
+says "no engine for a figure" '--live: the engine for pages is missing'
 check "nothing is left of these" test ! -e wrong.html
 totals

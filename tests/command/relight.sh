@@ -156,16 +156,16 @@ wrong "no colour" "such as #ffd9a0" a.exr --light key=redd -o wrong.png
 wrong "twice" "once" a.exr --light key=1 --light key=2 -o wrong.png
 wrong "no output" "-o with a picture, a film or a page" a.exr
 wrong "no file" "cannot be read" none.exr -o wrong.png
-wrong "no files" "finished pictures expected" -o wrong.png
+wrong "no files" "expected finished pictures" -o wrong.png
 wrong "no OpenEXR file" "OpenEXR file expected" plain.png -o wrong.png
 exits 0 "a file without passes" scene.lua -q -o beauty.exr
 wrong "a file without passes" "no light passes" beauty.exr -o wrong.png
 head -c 9000 a.exr >cut.exr
 wrong "a cut file" "whole OpenEXR file" cut.exr -o wrong.png
-wrong "a page of two files" "a page is of one file" a.exr alpha.exr -o wrong.html
-wrong "a page of 16 bits" "codes of 8 bits" a.exr --bits 16 -o wrong.html
+wrong "a page of two files" "a page shows one file" a.exr alpha.exr -o wrong.html
+wrong "a page of 16 bits" "the page always shows 8-bit sRGB" a.exr --bits 16 -o wrong.html
 wrong "another name" "ending in .png" a.exr -o wrong.jpg
-wrong "its own file" "is one of the pictures" a.exr -o a.exr
+wrong "its own file" "is one of the input pictures" a.exr -o a.exr
 check "which is whole" "$GLINT" relight a.exr -q -o after.png
 exits 2 "an option of other commands" relight a.exr -o wrong.png --samples 4
 

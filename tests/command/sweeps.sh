@@ -107,7 +107,7 @@ prints "for programs, too" '"name":"shininess","stages":"shade"\}\],"order":\["s
 "$GLINT" explain grid.lua --sweep unknown=1,2 >out 2>err && fail "an unknown parameter"
 says "an unknown parameter" 'unknown'
 "$GLINT" explain film.lua --sweep shininess=5,50 --frame 7 >out 2>err && fail "a frame after the last"
-says "a frame after the last" 'frame of the script, 1 .. 6, expected, got .7.'
+says "a frame after the last" 'expected a frame of the script, 1 .. 6, got .7.'
 "$GLINT" explain film.lua --sweep shininess=5,-1 --frame 1 >out 2>err && fail "a wrong value"
 says "a wrong value" '--sweep shininess=-1: .*number >= 0 expected'
 

@@ -202,14 +202,14 @@ script 'name = "pipe.png"'
 stopped "a picture into a pipe that is not read"
 seconds=20
 script 'function after() image:save("pipe.png") end'
-refused "image:save into a pipe" "save.path: file that is no pipe or device expected" -o a.png
+refused "image:save into a pipe" "save.path: regular file, not a pipe or device, expected" -o a.png
 timeout 5 "$glint" --untrusted pipe.lua -o none >out 2>err </dev/null
 [ $? -eq 2 ] && grep -q "a script expected, got a pipe" err
 result $? "a script that is a pipe"
 script
-refused "a film" "pictures expected" -o a.mp4
-refused "a device" "a file expected" -o /dev/null
-refused "a folder with a number" "without a place for the number" -o '%d/a.png'
+refused "a film" "only pictures can be written; expected" -o a.mp4
+refused "a device" "expected a regular file" -o /dev/null
+refused "a folder with a number" "expected a folder without a frame number" -o '%d/a.png'
 run -o /proc/nowhere/a.png
 [ $? -eq 1 ] && grep -q '^glint: error: --untrusted: /proc/nowhere: ' err
 result $? "a folder that cannot be made"

@@ -34,7 +34,7 @@ silent() {
 # ---- Shininess without specular ----
 
 scene 'local m = glint.material { shininess = 64 }'
-warns "shininess without specular" 'scene.lua:3: material.shininess has no effect while specular is black; set that, too'
+warns "shininess without specular" 'scene.lua:3: material.shininess has no effect while specular is black; set specular, too'
 scene 'for i = 1, 3 do' 'glint.material { shininess = i } end'
 warns "once for many" 'scene.lua:4: material.shininess'
 scene 'local m = glint.material { shininess = 64, specular = 0 }'
@@ -53,7 +53,7 @@ for job in 'scene' 'glint.sweep { scene = scene, over = { { scene.camera, "fov",
     'scene:render { width = 9, height = 9 }'; do
     printf '%s\n' 'local glint = require "glint"' "$still" "return $job" >scene.lua
     case $job in scene:*) sed -i 's/^return //' scene.lua ;; esac
-    warns "an open shutter: $job" 'camera.shutter: nothing moves while it is open; the frame function of a glint.animation moves things'
+    warns "an open shutter: $job" 'camera.shutter: nothing moves while it is open; move objects in the frame function of a glint.animation'
 done
 
 # ---- Invisible text ----
@@ -63,17 +63,17 @@ label() { scene "objects = { $ball, glint.label { $1 } }"; }
 label 'text = "t", size = 5'
 silent "a label that fits"
 label 'text = "somewhere", position = { 500, 0 }'
-warns "a label outside" "label 'somewhere': it lies outside of the picture$"
+warns "a label outside" "label 'somewhere': it lies outside the picture$"
 label 'text = "gone", position = { 0, -90 }, name = "title"'
-warns "a label by its name" "label 'title': it lies outside of the picture$"
+warns "a label by its name" "label 'title': it lies outside the picture$"
 label 'text = "Donaudampfschifffahrt", size = 10'
-warns "a word that is wider than the picture" "label 'Donaudampfschifffahrt': 'Donaudampfschifffahrt' is [0-9]* pixels wide, the picture 32; a smaller size, or a wider picture, shows all of it$"
+warns "a word that is wider than the picture" "label 'Donaudampfschifffahrt': 'Donaudampfschifffahrt' is [0-9]* pixels wide, the picture 32; use a smaller size or a wider picture to show all of it$"
 label 'text = "ab", position = { 30, 0 }, size = 5'
-warns "a label that is cut" "label 'ab': it reaches [0-9]* pixels beyond the border of the picture$"
+warns "a label that is cut" "label 'ab': it extends [0-9]* pixels beyond the border of the picture$"
 label 'text = "x\u{10ffff}", size = 5'
-warns "a letter that the font lacks" "label 'x.*': the font has no letter '.*' (U+10FFFF), and a box stands for it; GLINT_FONT names the file of another font$"
+warns "a letter that the font lacks" "label 'x.*': the font has no letter '.*' (U+10FFFF), so a box is drawn; set GLINT_FONT to the file of another font$"
 scene 'objects = { glint.sphere { center = { 0, 0, 0 }, radius = 2 }, glint.colorbar { map = "magma", low = 0, high = 1, position = { 900, 0 } } }'
-warns "a bar outside" "colorbar: it lies outside of the picture$"
+warns "a bar outside" "colorbar: it lies outside the picture$"
 
 # ---- A light inside a closed sphere ----
 
@@ -142,9 +142,9 @@ scene 'objects = { glint.mesh { vertices = { { 30, 0, 0 }, { 31, 0, 0 }, { 30, 1
 warns "a mesh" "mesh 'roof' is outside the view"
 coarse='glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, name = "ball", segments ='
 scene "objects = { $coarse 16 } }"
-warns "a smooth mesh of few faces" "mesh 'ball': smooth shading bends its faces by up to 1[0-9] degrees"
+warns "a smooth mesh of few faces" "mesh 'ball': its smooth normals differ from its flat faces by up to 1[0-9] degrees"
 scene "objects = { glint.group { $coarse 16 } } }"
-warns "in a group" "mesh 'ball': smooth shading bends its faces"
+warns "in a group" "mesh 'ball': its smooth normals differ from its flat faces"
 scene "objects = { $coarse 64 } }"
 silent "not one of many faces"
 scene "objects = { $coarse 16, shading = \"faceted\" } }"
@@ -230,14 +230,14 @@ result $? "no warning of an unseen sphere is wrong"
 # ---- Parameters ----
 
 scene 'local P = glint.params { lost = 1 }'
-warns "a parameter that is never read" 'params.lost: the script never reads it'
+warns "a parameter that is never read" 'params.lost: the script never reads this parameter'
 scene 'local P = glint.params { used = 1 }' 'if P.used > 2 then print(P.used) end'
 silent "one that is read"
 scene 'local P = glint.params { a = 1, b = 2 }' 'for name, value in pairs(P) do assert(name and value) end'
 silent "all are read by pairs"
 scene 'local P = glint.params { step = "all", depth = 1 }' 'if P.step == "some" then print(P.depth) end'
 silent "one that is read under a condition"
-warns "unless it is set, and changes nothing" '--set depth: the script did not read it with these settings' --set depth=3
+warns "unless it is set, and changes nothing" '--set depth: the script did not read this parameter with these settings' --set depth=3
 
 # ---- Clipping ----
 
@@ -275,7 +275,7 @@ return glint.sweep { scene = scene, over = { { scene, "ambient", { 0.1, 0.2 } } 
                      output = "sweep_%04d.png" }
 END
 "$glint" sweep.lua --shard 1/2 --warnings=error --quiet 2>err
-test $? -eq 0 && grep -q 'not drawn: frame 2 is not there yet' err
+test $? -eq 0 && grep -q 'not drawn: frame 2 is not rendered yet' err
 result $? "a sheet that waits for other shards is no mistake"
 run scene.lua --warnings=loud
 test $? -eq 2 && grep -q "show, error or none expected, got 'loud'" err
@@ -309,19 +309,19 @@ silent "materials that are there"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\nanything else\n'
 warns "a statement that no material has" "m.obj: m.mtl: anything is ignored: not a field of a material$"
 mesh 'mtllib m.mtl\nusemtl b\n' 'newmtl a\nbump b.png\nnewmtl b\nmap_bump -bm 0.1 b.png\nmap_Bump -bm none b.png\n'
-warns "reliefs without a height" "m.obj: material 'a' and 1 more: no relief: map_Bump has no -bm, which says how high it is, in world units$"
+warns "reliefs without a height" "m.obj: material 'a' and 1 more: no relief: map_Bump has no -bm, which gives its height in world units$"
 for height in x nan 1e400 0; do
     mesh 'mtllib m.mtl\nusemtl a\n' "newmtl a\nmap_Bump -bm $height b.png\n"
     warns "$height for a height" "m.obj: material 'a': no relief: -bm of map_Bump: a height in world units other than 0 expected, got '$height'$"
 done
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nmap_Bump b.png -bm 0.1\n'
-warns "a height after the picture" "m.obj: material 'a' has no relief instead of its map_Bump: faces of it have no coordinates (vt)$"
+warns "a height after the picture" "m.obj: material 'a' has no relief instead of its map_Bump: some of its faces have no texture coordinates (vt)$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nmap_Kd -texture b.png\n'
 warns "an option that no map has" "m.obj: m.mtl:2: an option of a map or the name of a picture expected, got '-texture b.png'; the line is ignored$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\nTf 0.5 0.5 0.5\nKe 1 1 1\n'
 warns "statements that mean nothing here" "m.obj: m.mtl: Tf, Ke are ignored: not a field of a material$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nbump -bm 0.1 b.png\n'
-warns "a relief without coordinates" "m.obj: material 'a' has no relief instead of its map_Bump: faces of it have no coordinates (vt)$"
+warns "a relief without coordinates" "m.obj: material 'a' has no relief instead of its map_Bump: some of its faces have no texture coordinates (vt)$"
 printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nmtllib m.mtl\nusemtl a\nf 1/1 2/2 3/3\n' >m.obj
 warns "a relief that is not there" "m.obj: material 'a' has no relief instead of its map_Bump: .*b.png: No such file or directory$"
 cat >normals.lua <<'END'
@@ -329,17 +329,17 @@ local glint = require "glint"
 glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, background = { 0.5, 0.5, 1 } }:render { width = 8, height = 8, output = "b.png" }
 END
 "$glint" normals.lua --quiet 2>/dev/null
-warns "a picture of normals" "m.obj: material 'a' has no relief instead of its map_Bump: heights in grey expected, and the picture has colours"
+warns "a picture of normals" "m.obj: material 'a' has no relief instead of its map_Bump: heights in grey expected, got a picture with colours"
 mesh 'usemtl a\n' ''
-warns "no file of materials" "m.obj: material 'a': the mesh names no file of materials (mtllib)$"
+warns "no file of materials" "m.obj: material 'a': the mesh names no material file (mtllib)$"
 mesh 'mtllib m.mtl\nusemtl b\n' 'newmtl c\n'
 warns "materials that the file has not" "m.obj: material 'a' and 1 more: not in m.mtl$"
 mesh 'mtllib gone.mtl\nusemtl b\n' ''
-warns "a file of materials that is not there" "m.obj: its materials are not all there: gone.mtl: No such file or directory$"
+warns "a file of materials that is not there" "m.obj: some of its materials are missing: gone.mtl: No such file or directory$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0\nKd 1 0 x\n'
 warns "a colour that is none" "m.obj: m.mtl:3: a number expected, got 'x'; the line is ignored$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nmap_Kd wood.png\n'
-warns "a picture without coordinates" "m.obj: material 'a' has its Kd instead of its map_Kd: faces of it have no coordinates (vt)$"
+warns "a picture without coordinates" "m.obj: material 'a' has its Kd instead of its map_Kd: some of its faces have no texture coordinates (vt)$"
 scene 'objects = { glint.mesh { file = "m.obj", material = glint.material {} } }'
 silent "a material of the script: the file's are not looked at"
 printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n' >m.ply
@@ -396,7 +396,7 @@ warns "black: the eye inside a sphere" "frame 1: the picture is black: the camer
 black 'ball(0, 0, 40, 1), lamp(0, 0, 20, 1)'
 warns "black: the camera looks away" "frame 2: the picture is black: the camera looks past all shapes" -f 2
 black 'ball(0, 0, 0, 1), lamp(0, 0, -9, 1)'
-warns "black: lit from behind" "frame 1: the picture is black: what the camera sees gets no light"
+warns "black: lit from behind" "frame 1: the picture is black: no light reaches the visible surfaces"
 black 'ball(0, 0, 0, 1), lamp(0, 0, 9, 1)'
 silent "not a picture with light"
 sed -i '1i function change(objects, n) objects[2].intensity = n - 1 end' scene.lua

@@ -142,7 +142,7 @@ save 0.7
 check "an endless script gives way" await '"event":"picture"' $((before + 1))
 
 rm scene.lua
-check "a deletion is told" await '"message":"scene.lua is missing; it is rendered when it comes back"' 1
+check "a deletion is told" await '"message":"scene.lua is missing; glint renders it again as soon as it exists"' 1
 before=$(seen picture)
 save 0.5
 check "it comes back" await '"event":"picture"' $((before + 1))
@@ -249,7 +249,7 @@ for fd in {20..119}; do eval "exec $fd<&- $fd>&-"; done
 
 timeout 10 "$glint" watch scene.lua --http "$port" >out2 2>err2 </dev/null
 check "a port in use ends with 2" is 2 $?
-check "and says what to do" grep -q "port $port: Address already in use; --http without a number takes any free one" err2
+check "and says what to do" grep -q "port $port: Address already in use; --http without a number takes any free port" err2
 
 # Two watchers of one script.
 timeout 60 "$glint" watch --http --json scene.lua >events2 2>err2 </dev/null &

@@ -667,7 +667,7 @@ static void groups_hold_together(void **unused)
     assert_int_equal(glint_shape_create(&d, &b, NULL), GLINT_OK);
     assert_int_equal(glint_group_add(a, b, &error), GLINT_OK);
     assert_int_equal(glint_group_add(b, a, &error), GLINT_ERR_INVALID);
-    assert_string_equal(error.message, "group: a group cannot be within itself");
+    assert_string_equal(error.message, "group: a group cannot contain itself");
     assert_int_equal(glint_group_add(a, a, &error), GLINT_ERR_INVALID);
     assert_int_equal(glint_group_add(a, b, &error), GLINT_ERR_INVALID);
     assert_string_equal(error.message, "group: already in the group");
@@ -713,7 +713,7 @@ static void groups_hold_together(void **unused)
     // No flattening transform is accepted.
     d.transform = glint_transform_scale((double[3]) { 1, 0, 1 });
     assert_int_equal(glint_shape_set(ball, &d, &error), GLINT_ERR_INVALID);
-    assert_string_equal(error.message, "transform: a map that can be undone expected, got one that flattens space");
+    assert_string_equal(error.message, "transform: an invertible transform expected, got one that flattens space");
     assert_int_equal(glint_shape_create(&d, &flat, NULL), GLINT_ERR_INVALID);
     glint_shape_release(ball);
     glint_shape_release(b);
@@ -777,7 +777,7 @@ static void bad_files(void **unused)
         { CORNERS "f 1 2 3x", ":5: v, v/vt, v//vn or v/vt/vn expected, got '3x'" },
         { "v 0 0 zero", ":1: a number expected, got 'zero'" },
         { "v 0 0\nv 1 1 1", ":1: a number expected, got the end of the line" },
-        { "v 0 0 inf\nv 1 0 0\nv 0 1 0\nf 1 2 3", "faces expected, got only such with a vertex that is not finite" },
+        { "v 0 0 inf\nv 1 0 0\nv 0 1 0\nf 1 2 3", "faces expected, got only faces with a vertex that is not finite" },
         { "vertex 0 0 0", "faces expected, got 0 vertices and none: is it a Wavefront .obj?" },
         { CORNERS, "faces expected, got 4 vertices and none" },
         { "", "faces expected, got 0 vertices and none" },

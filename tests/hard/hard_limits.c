@@ -345,9 +345,9 @@ static void check_small(void)
         check_size(kind, mapped, 1.1e-150, 5e-150, NULL);
         check_size(kind, mapped, 1, 0.9e150, NULL);
         check_size(kind, mapped, 0.4e150, 5e150, NULL);
-        check_size(kind, mapped, 4e-150, 5, "no ray from");
-        check_size(kind, mapped, 1, 1.1e150, "no ray from");
-        check_size(kind, mapped, 1e-145, 1e10, "no ray from");
+        check_size(kind, mapped, 4e-150, 5, "too small for rays from");
+        check_size(kind, mapped, 1, 1.1e150, "too small for rays from");
+        check_size(kind, mapped, 1e-145, 1e10, "too small for rays from");
         for (double size = 1e-151; size > 1e-200; size /= 1e10)
             check_size(kind, mapped, size, 5, width);
         check_size(kind, mapped, 1.1e150, 5e150, ball || wide ? NULL : "half widths");

@@ -63,7 +63,7 @@ function tests.meshes()
   check(seen:pixel(6, 6) == 1 and select(3, seen:pixel(6, 6)) == 0 and select(3, seen:pixel(1, 1)) == 1, "each has its own")
   local packed = glint.mesh { vertices = corners, faces = { 1, 2, 3, 1, 3, 4 }, materials = { red, blue }, index = ("I4I4"):pack(2, 1) }
   check(packed.materials[2] == blue, "packed numbers")
-  raises("mesh.material: this mesh has a list of materials; change the fields of those", function() pair.material = red end)
+  raises("mesh.material: this mesh has a list of materials; change the fields of the materials in the list", function() pair.material = red end)
   raises("mesh.index: 2 numbers (one a face) expected, got 1", function()
     glint.mesh { vertices = corners, faces = { { 1, 2, 3 }, { 1, 3, 4 } }, materials = { red }, index = { 1 } }
   end)
@@ -110,7 +110,7 @@ function tests.meshes()
     function() square { vertices = { 0, 0, 0, 1, 0, 1 / 0, 0, 1, 0 }, faces = { { 1, 2, 3 } } } end)
   refused("mesh.normals[3]: three finite numbers, not all 0, expected",
     function() square { normals = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 0 }, { 0, 0, 1 } } } end)
-  refused("mesh.normals: one a vertex (4) or one a corner of a face (4) expected, got 1", function() square { normals = { { 0, 0, 1 } } } end)
+  refused("mesh.normals: one per vertex (4) or one per corner of a face (4) expected, got 1", function() square { normals = { { 0, 0, 1 } } } end)
   refused("mesh: file or faces expected, got both", function() glint.mesh { file = "x.obj", faces = {} } end)
   refused("none.obj: No such file or directory", function() glint.mesh { file = "none.obj" } end)
   refused("mesh.vertices: list of {x, y, z}, flat table or packed string expected, got nil", function() glint.mesh {} end)
@@ -141,7 +141,7 @@ function tests.spheres()
     check(s.material == red and #s.materials == 2 and s.materials[2] == blue, "several materials")
   end
   check(glint.spheres { data = rows, materials = { blue } }.material == blue, "one in a list needs no index")
-  raises("spheres.material: these spheres have a list of materials; change the fields of those",
+  raises("spheres.material: these spheres have a list of materials; change the fields of the materials in the list",
     function() s.material = red end)
   raises("spheres.count: this field is read-only", function() s.count = 5 end)
   raises("spheres.data: no such field", function() return s.data end)
@@ -208,7 +208,7 @@ function tests.scene()
   raises("scene.add: shape, light, label, colorbar or axes expected, got material", function() scene:add(red) end)
   raises("scene.remove: shape, light, label, colorbar or axes expected, got 1", function() scene:remove(1) end)
   raises("scene[2]: shape, light, label, colorbar or axes expected, got camera", function() glint.scene { lamp, camera } end)
-  raises("scene[1]: shape, light, label, colorbar or axes expected, got a list; its objects stand in the scene itself, or in a glint.group",
+  raises("scene[1]: shape, light, label, colorbar or axes expected, got a list; put its objects into the scene directly, or into a glint.group",
     function() glint.scene { { lamp } } end)
   raises("scene[2]: a list without holes expected, got nil", function() glint.scene { lamp, nil, far } end)
   raises("scene[1]: a list without holes expected, got nil", function() glint.scene { nil, far } end)
@@ -354,7 +354,7 @@ function tests.functions()
   check(math.abs(glint.log(10) - math.log(10)) < 1e-15 and glint.pow(2, 10) == 1024 and glint.sin(0) == 0, "log, pow")
   check(glint.log(0) == -math.huge and glint.exp(math.huge) == math.huge, "the ends")
   raises("pow: 2 arguments expected, got 1", function() glint.pow(2) end)
-  raises("log: one number expected; for another base divide by glint.log(base)", function() glint.log(8, 2) end)
+  raises("log: one number expected; for another base, divide by glint.log(base)", function() glint.log(8, 2) end)
 end
 
 -- A diffuse above 1 is allowed, with one warning per process.
@@ -375,6 +375,6 @@ function tests.warning()
   local got = pipe:read "a"
   pipe:close()
   os.remove(path)
-  local expected = "glint: warning: " .. path .. ":5: material.diffuse above 1: the surface gives off more light than it gets\n"
+  local expected = "glint: warning: " .. path .. ":5: material.diffuse above 1: the surface reflects more light than it receives\n"
   check(got == expected, "one warning expected, got <%s>", got)
 end

@@ -52,16 +52,16 @@ function tests.vectors()
   check(is(-v, -1, -2.5, 3) and is(v * 2, 2, 5, -6) and is(2 * v, 2, 5, -6) and is(v * v, 1, 6.25, 9), "products")
   check(is(v / 2, 0.5, 1.25, -1.5) and is(v / { 1, 2.5, 3 }, 1, 1, -1), "quotients")
   check(getmetatable(v) == false, "the metatable is out of reach")
-  raises("vector.x: a vector cannot be changed; assign a whole one to the object's field: object.field = {x, y, z}",
+  raises("vector.x: a vector cannot be changed; assign a new vector to the object's field: object.field = {x, y, z}",
     function() v.x = 1 end)
-  raises("vector.1: a vector cannot be changed; assign a whole one to the object's field: object.field = {x, y, z}",
+  raises("vector.1: a vector cannot be changed; assign a new vector to the object's field: object.field = {x, y, z}",
     function() v[1] = 1 end)
   raises("vector.w: no such field", function() return v.w end)
   raises("vector.unpak: no such field; did you mean 'unpack'?", function() return v.unpak end)
   raises("vector: name of a field expected, got true", function() return v[true] end)
   raises('a + b: number, symbol or vector expected, got string "1"', function() return v + "1" end)
   check(v + 1 == glint.vector(v.x + 1, v.y + 1, v.z + 1) and v == glint.vector(v:unpack()) and v ~= glint.vector(0, 0, 0))
-  raises("vector.x: a vector cannot be changed; assign a whole one to the object's field: object.field = {x, y, z}",
+  raises("vector.x: a vector cannot be changed; assign a new vector to the object's field: object.field = {x, y, z}",
     function() glint.vector(1, 2, 3).x = 4 end)
   raises("a * b: number, symbol or vector expected, got nil: is a variable or a field not set?", function() return v * nil end)
   raises("vector expected, got no value; a method takes a colon: object:unpack(...)", function() v.unpack() end)
@@ -187,7 +187,7 @@ function tests.material()
   raises("glint.cube: no such field; did you mean 'box'?", function() glint.cube {} end)
   raises("glint.xyzzy: no such field", function() return glint.xyzzy end)
   raises("glint: name of a field expected, got 1", function() return glint[1] end)
-  raises("glint.particles: it is a module of its own; local particles = require \"glint.particles\"", function()
+  raises("glint.particles: this is a separate module; write local particles = require \"glint.particles\"", function()
     package.path = "scripts/lib/?.lua;" .. package.path
     return glint.particles
   end)
@@ -195,7 +195,7 @@ function tests.material()
   check(m.shininess == 64 and m.model == "phong", "the material is as it was")
   raises("material: table expected, got nil", function() glint.material() end)
   raises("material: table expected, got 5", function() glint.material(5) end)
-  raises("material: a name with each value expected, material { model = ... }, got a value without", function() glint.material { 0.5 } end)
+  raises("material: a name for each value expected, material { model = ... }, got a value without a name", function() glint.material { 0.5 } end)
   raises("material.shinines: no such field; did you mean 'shininess'?", function() glint.material { shinines = 1 } end)
 end
 
@@ -208,7 +208,7 @@ function tests.evaluate()
   raises("evaluate: table expected, got nil", function() m:evaluate(nil) end)
   raises("evaluate.normal: {x, y, z} expected, got nil", function() m:evaluate {} end)
   check(m:evaluate({ n = at.normal, to_light = at.to_light, v = at.to_eye }).specular == reflection.specular, "short names and long ones")
-  raises("evaluate: n and normal are the same direction; give one of them", function() m:evaluate { n = at.normal, normal = at.normal } end)
+  raises("evaluate: n and normal are the same direction; give only one of them", function() m:evaluate { n = at.normal, normal = at.normal } end)
   raises("evaluate.to_light: vector that is not zero expected, got {0, 0, 0}",
     function() m:evaluate(with(at, "to_light", { 0, 0, 0 })) end)
   raises("evaluate.to_eye[1]: finite number expected, got nan",
@@ -282,7 +282,7 @@ function tests.area_lights()
   check(disk.samples == 16 and disk.radiance == nil and is(disk.normal, 0, -2, 0) and disk.radius == 2, "disk")
   disk.radiance, disk.samples = 5, 64
   check(disk.radiance == 5 and disk.samples == 64 and disk.intensity == 1, "radiance")
-  raises("disk_light.intensity: 1 expected beside a radiance, got 2", function() disk.intensity = 2 end)
+  raises("disk_light.intensity: 1 expected together with a radiance, got 2", function() disk.intensity = 2 end)
   disk.radiance = nil
   disk.intensity = 2
   check(disk.radiance == nil and disk.intensity == 2, "back to intensity")

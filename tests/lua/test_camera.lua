@@ -177,8 +177,8 @@ function tests.what_is_no_camera()
   end
   wrong("camera.matrix: 3 or 4 rows of four numbers expected, got table", { matrix = { { 1, 0, 0, 0 } } })
   wrong("camera.matrix[2]: row of four numbers expected", { matrix = { { 1, 0, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1, 0 } } })
-  wrong("camera.matrix: a rotation expected, whose rows are unit", { matrix = { { 2, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } } })
-  wrong("camera.matrix: a rotation expected, got one with a mirror", { matrix = { { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, -1, 0 } } })
+  wrong("camera.matrix: a rotation expected, whose rows have length 1", { matrix = { { 2, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } } })
+  wrong("camera.matrix: a rotation expected, got one that also mirrors", { matrix = { { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, -1, 0 } } })
   wrong("camera.matrix[4]: { 0, 0, 0, 1 } expected",
     { matrix = { { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 }, { 0, 0, 0, 2 } } })
   wrong("camera: matrix or eye expected, got both", { eye = { 0, 0, 1 } })

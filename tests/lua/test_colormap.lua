@@ -221,7 +221,7 @@ function tests.bars_of_ones_own()
     check((glint.colormap(colors)((i - 1) / 255) - made((i - 1) / 255)):length() < 1e-6, "colour %d", i)
   end
   local good, message = pcall(function() bar.map = map end)
-  check(not good and tostring(message):find("give it to glint.colorbar { ... }", 1, true), "a bar that is there: %s", message)
+  check(not good and tostring(message):find("only glint.colorbar { ... } takes a function", 1, true), "a bar that is there: %s", message)
   good, message = pcall(glint.colorbar, { map = function() return 1, 2 end, low = 0, high = 1 })
   check(good, "a grey: %s", message)
   good, message = pcall(glint.colorbar, { map = function() end, low = 0, high = 1 })

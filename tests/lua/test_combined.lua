@@ -271,7 +271,7 @@ function tests.errors()
   refused(closed .. "spheres", glint.difference, { glint.spheres { data = { 0, 0, 0, 1 } } })
   refused(closed .. "group with others", glint.difference, { glint.group { glint.disk { center = { 0, 0, 0 }, normal = { 0, 1, 0 }, radius = 1 } } })
   local whole = glint.union { ball(0, 0, 0, 1) }
-  refused("union: a solid cannot be within itself", whole.add, whole, glint.group { whole })
+  refused("union: a solid cannot contain itself", whole.add, whole, glint.group { whole })
   local part = ball(1, 0, 0, 1)
   whole:add(part)
   refused("union: already in the union", whole.add, whole, part)

@@ -269,7 +269,7 @@ function tests.errors()
   refused("has 1 triangle", glint.difference, { ball(0, 0, 0, 1), glint.group { mesh(open) } })
   local turned = { table.unpack(BOX_FACES) }
   turned[TOP] = { 4, 8, 7, 3 }
-  refused("has 2 triangles, not as many along it as against it", glint.union, { mesh(turned) })
+  refused("has 2 triangles, not equally many in each direction along it", glint.union, { mesh(turned) })
   local fin = { table.unpack(BOX_FACES) }
   fin[7] = { 1, 2, 8 }
   refused("has 3 triangles", glint.union, { mesh(fin) })

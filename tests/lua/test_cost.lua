@@ -195,7 +195,7 @@ end
 local rows, advice = study("film", film .. " --frame 2")
 check_rows("film", rows, advice.reference)
 check(knobs_of(rows) == "samples adaptive shadows precision model bits encode reuse", "film responds to: %s", knobs_of(rows))
-check(says "frame 2 of 3 %(%-%-frame N takes another%)", "which frame is taken: %s", read "err")
+check(says "frame 2 of 3 %(choose another with %-%-frame N%)", "which frame is taken: %s", read "err")
 check(#advice.left_out == 0 and advice.complete and advice.machine:find "thread", "advice: what was measured where")
 
 local own = find(rows, "samples", 4)
@@ -314,7 +314,7 @@ local nine = study("nine", write("nine.lua", (exposed:gsub("TIMES", "9"))) .. " 
 check(find(nine, "shutter_times", 9).default and find(nine, "shutter_times", 16), "the script's own among them")
 local _, anew = study("anew", write("anew.lua", (exposed:gsub("TIMES", "8"):gsub("frame = function%(t%)",
   "%0 scene.camera = glint.camera { eye = { t, 1, 6 }, at = { 0, 1, 0 }, shutter = 1 }"))) .. " --knobs samples")
-check(table.concat(anew.left_out):find("the open shutter: the frame function makes objects anew", 1, true), "said of an instant: %s",
+check(table.concat(anew.left_out):find("the open shutter: the frame function creates new objects", 1, true), "said of an instant: %s",
   table.concat(anew.left_out))
 
 -- Area lights, in their own units and by radiance, which a knob must leave unchanged; and a cone.
@@ -456,11 +456,11 @@ local function refuses(name, arguments, pattern)
 end
 refuses("nothing", write("nothing.lua", "local x = 1"), "rendered nothing")
 refuses("an empty list", write("empty.lua", "return {}"), "renders nothing")
-refuses("a frame beyond the end", film .. " --frame 4", "1 .. 3, expected, got '4'")
+refuses("a frame beyond the end", film .. " --frame 4", "expected a frame of the script, 1 .. 3, got '4'")
 refuses("no such knob", film .. " --knobs sample", "did you mean 'samples'")
 refuses("no knob", film .. " --knobs ''", "samples, adaptive, shutter_times, shadows, light_samples, precision")
 refuses("no knob that the scene has", still("bare.lua", "") .. " --knobs shadows,model",
-  "responds to %(bits, encode%) expected, got 'shadows,model'")
+  "expected a knob that changes this scene %(bits, encode%), got 'shadows,model'")
 refuses("a file for a folder", film .. " --report " .. film .. "/x", "a folder to write to expected")
 refuses("a folder that cannot be", film .. " --report /proc/glint", "/proc/glint")
 refuses("a budget of nothing", film .. " --budget 0", "%-%-budget: seconds")
@@ -478,7 +478,7 @@ check(#short_advice.left_out > 0 and #short > 0 and short_advice.seconds < 10, "
 write("once/plot.svg", "of an earlier study")
 check(run(film .. " --size 640x480 --json --budget 0.001 --report " .. work .. "/once") == 0, "one frame: %s", read "err")
 local once, once_advice = rows_of "one frame"
-check(#once > 0 and once_advice.left_out[1]:find "no room for more", "a frame over the budget: %s", once_advice.left_out[1])
+check(#once > 0 and once_advice.left_out[1]:find "leaves no time for more", "a frame over the budget: %s", once_advice.left_out[1])
 for _, row in ipairs(once) do
   check(row.default == (row.knob ~= "reuse") and row.partial and row.runs == 1 and row.counters.primary == 640 * 480 * 4, "%s: the first frame alone", row.knob)
 end

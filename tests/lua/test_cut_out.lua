@@ -321,7 +321,7 @@ function tests.errors_name_the_field()
     render(scene_of(shapes(glint.material { opacity = glint.pattern(function(p) return p end) }).disk))
   end)
   raises("expected, got shader", glint.material, { opacity = glint.shader(function(s) return s.kd end) })
-  raises("mesh 'bare' has no coordinates", function()
+  raises("mesh 'bare' has no texture coordinates", function()
     local pane = shapes(glint.material { opacity = glint.pattern(function(_, s) return s.uv.u end) }).quad
     pane.name = "bare"
     render(scene_of(pane))

@@ -596,7 +596,7 @@ function tests.periodic_bonds()
   set = load()
   set:add_frame(lammps.frame(write("other.dump", dump(0, 1, "pp pp pp\n0 11\n0 10\n0 10", "element x y z", "C 3 5 5\n"))))
   local ok, message = pcall(bonds.new, set)
-  check(not ok and message:find("different boxes; give box", 1, true), "two boxes: %s", tostring(message))
+  check(not ok and message:find("different boxes; set box", 1, true), "two boxes: %s", tostring(message))
 end
 
 function tests.sphereflake()

@@ -554,7 +554,7 @@ function tests.errors_are_told()
   local lamp = glint.point_light { position = { x, 4, 3 } }
   raises("d:q: no variable of that name", render, scene_of(lamp), "d:q")
   raises("did you mean 'd:strength'", render, scene_of(lamp), "d:strenght")
-  raises("'d:': a name of 1 .. 31 bytes", render, scene_of(lamp), "d:")
+  raises("'d:': expected a name of 1 .. 31 bytes", render, scene_of(lamp), "d:")
   raises("'d:x' is not stored", function() render(scene_of(lamp), "beauty"):pixel(0, 0, "d:x") end)
   raises("box.min: this has no derivative", glint.box, { min = { x, 0, 0 }, max = { 9, 9, 9 } })
   raises("camera.shutter: this has no derivative", glint.camera, { eye = { 3, 0, 0 }, at = { 0, 0, 0 }, shutter = x })
@@ -565,15 +565,15 @@ function tests.errors_are_told()
   moved:add(ball)
   moved.background = glint.pattern(function(d) return d.y end)
   moved.camera.eye = { x, 2, 8 }
-  raises("derivative 'x': background: before one that a program gives a camera has no derivative", render, moved, "d:x")
+  raises("derivative 'x': background: a camera has no derivative with a pattern or texture as the background", render, moved, "d:x")
   moved.camera.eye = { 3, 2, 8 }
   moved:add(glint.sphere { center = { 0, 0, 4 }, radius = 0.2, material = glint.material { mirror = 0.5 } })
-  raises("derivative 'x': background: what moves or bends", render, moved, "d:x")
+  raises("derivative 'x': background: moving objects or bending rays", render, moved, "d:x")
   moved = scene_of(glint.sphere_light { position = { 2, 4, 3 }, radius = 1, radiance = 1 })
   moved.camera.fov = 10 * x
   raises("sphere_light #1: position", render, moved, "d:x")
   raises("scene.depth_cue.far: this has no derivative", function() moved.depth_cue = { far = x } end)
-  raises("a + b: number or vector expected, got a number made of glint.variable; glint.value(x) is the number alone",
+  raises("a + b: number or vector expected, got a number made of glint.variable; glint.value(x) is the plain number",
     function() return x + glint.vector(1, 2, 3) end)
   raises("this has no derivative", glint.translate, { x, 0, 0 })
   raises("variable.name: string", glint.variable, 3, 3)
@@ -581,13 +581,13 @@ function tests.errors_are_told()
   raises("variable.name: name of 1 to 31 bytes", glint.variable, "a,b", 1)
   local none = glint.variable("none", 0)
   local dull = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material { mirror = none } })
-  raises("derivative 'none': material.mirror: 0 sends no ray on", render, dull, "d:none")
+  raises("derivative 'none': material.mirror: 0 has no derivative", render, dull, "d:none")
   dull = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material { transmission = none } })
-  raises("derivative 'none': material.transmission: 0 sends no ray on", render, dull, "d:none")
+  raises("derivative 'none': material.transmission: 0 has no derivative", render, dull, "d:none")
   local bent = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material { mirror = 0.5, ior = x } })
   raises("derivative 'x': nothing in the scene depends on it", render, bent, "d:x")
   bent = scene_of(lamp, { material = glint.material { transmission = 0.5, absorption = 0.1 } })
-  raises("derivative 'x': absorption: light through what absorbs", render, bent, "d:x")
+  raises("derivative 'x': absorption: light through an absorbing material", render, bent, "d:x")
   bent = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material { mirror = 0.5 * x / 3 } })
   raises("derivative 'x': nothing in the scene depends on it", render, bent, "d:x", { max_depth = 0 })
   local lit = scene_of(lamp)
@@ -595,34 +595,34 @@ function tests.errors_are_told()
   raises("derivative 'x': scene.indirect", render, lit, "d:x")
   local shaded = scene_of(lamp, { material = glint.material { model = glint.shader(function(q) return q.light * q.uv.u end) } })
   shaded.camera.eye = { x, 2, 8 }
-  raises("derivative 'x': material: what moves or bends has no derivative where materials have patterns or bumps, or shaders that read uv",
+  raises("derivative 'x': material: moving objects or bending rays has no derivative where materials have patterns or bumps, or shaders that read uv",
     render, shaded, "d:x")
   local long = glint.material { model = glint.shader(function(q)
     local a = q.n
     for i = 1, 200 do a = a + 0.01 * glint.sin(q.l * i + a * q.v) end
     return a * q.light
   end) }
-  raises("derivative 'x': material.model: how fast the shader changes: program: at most 4096 instructions", render,
+  raises("derivative 'x': material.model: the shader's derivative: program: at most 4096 instructions", render,
     scene_of(glint.point_light { position = { x, 4, 3 } }, { material = long }), "d:x")
   local both = scene_of(glint.point_light { position = { x, 4, 3 } }, { material = long })
   both.background = glint.variable("sky", 0.2)
-  raises("derivative 'x': material.model: how fast the shader changes", render, both, "d:sky,d:x")
+  raises("derivative 'x': material.model: the shader's derivative", render, both, "d:sky,d:x")
   local bricks = glint.material { diffuse = glint.pattern(function(p) return p.x end), transmission = glint.pattern(function(p) return p.y end) }
-  raises("derivative 'x': material.transmission: light through what a pattern colours", render, scene_of(lamp, { material = bricks }), "d:x")
+  raises("derivative 'x': material.transmission: light through a patterned material", render, scene_of(lamp, { material = bricks }), "d:x")
   moved = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = bricks })
   moved.camera.eye = { x, 2, 8 }
-  raises("derivative 'x': material: what moves or bends", render, moved, "d:x")
+  raises("derivative 'x': material: moving objects or bending rays", render, moved, "d:x")
   local function patterned(field, f) return scene_of(glint.point_light { position = { 2, 4, 3 } },
     { material = glint.material { [field] = glint.pattern(f) } }) end
-  raises("material.diffuse: a pattern that gives one number everywhere", render, patterned("diffuse", function() return x / 9 end), "d:x")
+  raises("material.diffuse: a pattern with the same number everywhere", render, patterned("diffuse", function() return x / 9 end), "d:x")
   local unread = { model = "cook_torrance", diffuse = x / 9, specular = 0.5, shininess = glint.pattern(function(p) return 9 + x * p.x end) }
   local dull_shine = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material(unread) })
   check(pcall(render, dull_shine, "d:x"), "a pattern that nothing reads is ignored")
   unread.diffuse = 0.5
   dull_shine = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material(unread) })
   raises("derivative 'x': nothing in the scene depends on it", render, dull_shine, "d:x")
-  raises("derivative 'x': material.bump: no derivative", render, patterned("bump", function(p) return x * p.x end), "d:x")
-  raises("derivative 'x': material.transmission: light through what a pattern colours has no derivative by the pattern", render,
+  raises("derivative 'x': material.bump: this field has no derivative", render, patterned("bump", function(p) return x * p.x end), "d:x")
+  raises("derivative 'x': material.transmission: light through a patterned material has no derivative by the pattern", render,
     patterned("transmission", function(p) return x * p.x end), "d:x")
   for _, fields in ipairs { { normalized = true, specular = { none, 1, 1 } }, { specular = none } } do
     fields.shininess = glint.pattern(function(p) return 9 + p.x end)
@@ -638,7 +638,7 @@ function tests.errors_are_told()
   raises("sphere_light #1: position", render, scene_of(cone), "d:x")
   local names = {}
   for i = 1, 9 do names[i] = "d:v" .. i end
-  raises("of at most 8 derivatives", render, scene_of(lamp), table.concat(names, ","))
+  raises("and at most 8 derivatives", render, scene_of(lamp), table.concat(names, ","))
 end
 
 -- A refined pixel has the derivative of all samples, other pixels that of one sample.

@@ -283,7 +283,7 @@ function tests.errors_name_the_field()
     fields.camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }
     return glint.scene(fields):render { width = 2, height = 2, output = "none" }
   end
-  raises("depth_cue.color: a colour expected where the background, which it follows, is a pattern", render, { background = compass, depth_cue = { far = 3 } })
+  raises("depth_cue.color: a colour expected, because its default, the background, is a pattern", render, { background = compass, depth_cue = { far = 3 } })
   raises("scene.background: ", render, { background = glint.shader(function(s) return s.kd end) })
   raises("scene.background: ", render, { background = function() return 1 end })
   raises("scene.ambient: ", render, { ambient = compass })
@@ -387,7 +387,7 @@ function tests.it_is_explained_and_counted()
   check(without:find("background +scene.background") and not without:find "environment", "a plain one has no stage: %s", without)
   write(plain:format "glint.pattern(function(d) return 2 * d.y end)")
   local with = read(command .. " explain --programs " .. script)
-  check(with:find "pattern: background +scene, 1 instruction, 1 row" and with:find "environment +%x+  the background's program"
+  check(with:find "pattern: background +scene, 1 instruction, 1 row" and with:find "environment +%x+  the background pattern"
     and with:find "\nscene.background\n" and with:find "r0 = mul 2 p.y", "explain: %s", with)
   local events = read(command .. " explain --json " .. script)
   check(events:find('"effect":"pattern: background","caller":"scene, 1 instruction', 1, true), "explain --json: %s", events)

@@ -157,9 +157,9 @@ check(code == 0 and said:find "^4\n[45]\n", "any order of words; finished pictur
 said = run(("'%s' explain --dialect gr scene.lua; '%s' reproduce small2.png scene.lua --dialect gr"):format(glint, glint))
 check(said:find "decided in double" and said:find "the same, byte for byte", "explain and reproduce know the dialect: %s", said)
 said, code = scene("x = 1")
-check(code == 2 and said:find "scene.lua rendered nothing; calls of gr.render expected", "no picture: %s", said)
+check(code == 2 and said:find "scene.lua rendered nothing; expected it to call gr.render", "no picture: %s", said)
 said, code = run(("'%s' scene.lua --gr-pixel 0"):format(glint))
-check(code == 2 and said:find "%-%-gr%-pixel: %-%-dialect gr expected with it", "%s", said)
+check(code == 2 and said:find "%-%-gr%-pixel: expected together with %-%-dialect gr", "%s", said)
 for _, wrong in ipairs { "--dialect grr", "--gr-order up", "--gr-pixel 0.25", "--gr-specular none", "--gr-background red",
   "--gr-background 1,2", "--gr-background 1,x,0", "--gr-background=-1,0,0", "--gr-background '#12345'" } do
   said, code = scene(SMALL, wrong)
@@ -355,8 +355,8 @@ for text, message in pairs {
   ["d = gr.difference('d', box, gr.nh_box('bare', {0, 0, 0}, 1))"] = "nh_box 'bare' has no material",
   ["d = gr.union('d', box, dressed(gr.mesh('m', {{0,0,0}, {1,0,0}, {0,1,0}}, {{0,1,2}}), red))"] =
     "a closed mesh, got mesh 'm': its edge from {0, 0, 0} to {1, 0, 0} has 1 triangle",
-  ["d = gr.union('d', box, post) post:add_child(d)"] = "is within itself",
-  ["d = gr.csg('d') d:add_child(d)"] = "is within itself",
+  ["d = gr.union('d', box, post) post:add_child(d)"] = "contains itself",
+  ["d = gr.csg('d') d:add_child(d)"] = "contains itself",
   ["d = gr.csg('d') d:add_child(box)"] = "gr.render: csg 'd' has no operation; setCSGType and set_csg_children give it one",
   ["d = gr.csg('d', 'diff') d:add_child(box)"] = "gr.render: csg 'd' has 1 of its two parts; add_child gives it more",
   ["d = gr.union('d')"] = "gr.render: union 'd' has 0 of its two parts; add_child gives it more",
@@ -443,7 +443,7 @@ end
 refuses("local n, s = gr.node('n'), gr.cube('bare') n:add_child(s) gr.render(n, 'f', " .. VIEW .. ")",
   "gr.render: cube 'bare' has no material; set_material gives it one")
 refuses("local n, m = gr.node('n'), gr.node('m') n:add_child(m) m:add_child(n) gr.render(n, 'f', " .. VIEW .. ")",
-  "gr.render: node 'n' is within itself")
+  "gr.render: node 'n' contains itself")
 refuses("local n = gr.sphere('n') n:set_material(gr.material(kd, ks, 1)) for i = 1, 40 do local m = gr.node('m') m:add_child(n) " ..
   "m:add_child(n) n = m end gr.render(n, 'f', " .. VIEW .. ")", "gr.render: at most 4194304 shapes expected, got 1099511627776")
 refuses("local s = gr.sphere('s') s:set_material(gr.material(kd, ks, 1)) s:scale(1e200, 1, 1) s:scale(1e200, 1, 1) " ..

@@ -149,7 +149,7 @@ function tests.meshes_have_coordinates_of_their_own()
       if i == 2 then break end
     end]]
   local said, code = run(text)
-  local _, count = said:gsub("mesh 'bare' has no coordinates", "")
+  local _, count = said:gsub("mesh 'bare' has no texture coordinates", "")
   check(code == 0 and count == 1, "told of once: %s", said)
   is(look "s = gr.mesh('s', 'bare.obj') m = gr.material({0, 1, 0}, {0, 0, 0}, 0) s:set_texture('four.png')", 8, 8, "0,255,0", "its own colour")
   for text_of, message in pairs { ["vt x 1\n"] = "line 9: two numbers expected, got 'x 1'" } do
@@ -221,14 +221,14 @@ function tests.what_means_nothing_is_told_of_once()
     gr.render(gr.node('n'), 'out', 4, 4, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, 30, {1, 1, 1}, {})]]
   for extra, message in pairs {
     ["10000000"] = "10000000; a reflectivity 0 .. 1 or an index up to 4 expected",
-    ["1"] = "1; a 1 is a mirror where kd is {0, 0, 0}",
-    ["0.3, 1.5"] = "0.3; the index says how much glass mirrors",
+    ["1"] = "1; 1 means a mirror only where kd is {0, 0, 0}",
+    ["0.3, 1.5"] = "0.3; the refractive index determines how much glass reflects",
     ["0.05, 100"] = "0.05, 100; a reflectivity and a transparency 0 .. 1, or an index up to 4, expected",
     ["1.3, 0, 0.6"] = "1.3, 0, 0.6; a reflectivity, a transparency and an index expected",
-    ["0.5, 0.2, 1.33, 0.15"] = "0.15; three numbers are read",
-    ["2, 0.5, 0.2, 1.33"] = "2; mirrors are sharp",
+    ["0.5, 0.2, 1.33, 0.15"] = "0.15; only three numbers are used",
+    ["2, 0.5, 0.2, 1.33"] = "2; glint's mirrors are always sharp",
     ["2, 0.5, 0.2, 9"] = "2, 0.5, 0.2, 9; a reflectivity, a transparency and an index expected",
-    ["0.2, 0.5, 1, 7"] = "7; three numbers are read",
+    ["0.2, 0.5, 1, 7"] = "7; only three numbers are used",
     ["{3, 0, 0}"] = "table of 3; a reflectivity of three numbers 0 .. 1 expected",
     ["{1, 2}"] = "table of 2; numbers, and the name of a picture, expected",
     ["'soft'"] = '"soft"; numbers, and the name of a picture, expected',
@@ -285,8 +285,8 @@ end
 function tests.an_unsaid_plane_is_told_of_once()
   local TEXT <const> = "for i = 1, 2 do gr.plane('p' .. i) end gr.render(gr.node('n'), 'out', 4, 4, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, 30, {1, 1, 1}, {})"
   local said, code = run(TEXT)
-  local _, count = said:gsub("variants have other squares", "")
-  check(code == 0 and count == 1 and said:find "%-%-gr%-plane says which: xz, xz%-2, xz%-corner, xy", "%s", said)
+  local _, count = said:gsub("variants of the dialect have other squares", "")
+  check(code == 0 and count == 1 and said:find "Choose one with %-%-gr%-plane: xz, xz%-2, xz%-corner, xy", "%s", said)
   said, code = run(TEXT, "--gr-plane xz")
   check(code == 0 and said == " exit 0\n", "an option that says it is enough: %s", said)
   said, code = run(TEXT, "--gr-plane yz")

@@ -339,7 +339,7 @@ function tests.extreme_radii()
   end
   for _, radius in ipairs { 1e-160, 1e160 } do
     local ok, message = pcall(glint.sphere_light, { position = { 0, 3, 0 }, radius = radius, radiance = 1 })
-    check(not ok and message:find "radius: 0 or a number 1e%-150 %.%. 1e150 beside a radiance expected", tostring(message))
+    check(not ok and message:find "radius: 0 or a number 1e%-150 %.%. 1e150 together with a radiance expected", tostring(message))
   end
 end
 

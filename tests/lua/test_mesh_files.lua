@@ -281,7 +281,7 @@ function tests.a_material_of_the_script_comes_first()
   check(#mesh.materials == 1 and mesh.materials[1] == own and mesh.material == own, "the script's")
   mesh = load("plates.obj", PLATES)
   local good, message = pcall(function() mesh.material = own end)
-  check(not good and message:find("mesh.material: this mesh has a list of materials; change the fields of those", 1, true),
+  check(not good and message:find("mesh.material: this mesh has a list of materials; change the fields of the materials in the list", 1, true),
     "got %s", message)
   mesh = load("box.obj", obj())
   mesh.material = own
@@ -422,7 +422,7 @@ function tests.refused()
   refuses(": triangles expected, got none", "a.stl", "solid x\nendsolid x\n")
   refuses(":1: solid, as the first word of a text, expected, got '12345'", "a.stl", "12345")
   refuses(": \"solid\" or 84 bytes and 50 for each of its 0 triangles expected, got 5 bytes", "a.stl", "1234\0")
-  refuses(": faces expected, got only such with a vertex that is not finite", "a.stl", ("\0"):rep(80) .. "\1\0\0\0" .. ("<f"):pack(0 / 0):rep(12) .. "\0\0")
+  refuses(": faces expected, got only faces with a vertex that is not finite", "a.stl", ("\0"):rep(80) .. "\1\0\0\0" .. ("<f"):pack(0 / 0):rep(12) .. "\0\0")
 end
 
 -- A mesh or a message, wherever a file is truncated and whatever a byte is changed to.

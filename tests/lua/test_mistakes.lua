@@ -41,17 +41,17 @@ function tests.tables_stand_for_objects()
     "glint.sphere { center = { 0, 0, 0 }, radius = 1, material = 'red' }")
   wrong("scene.camera: camera expected, got table; write glint.camera { ... }", "glint.scene { camera = { eye = { 0, 0, 9 } } }")
   wrong("got table; write glint.sphere { ... }, glint.point_light { ... } or another", "glint.scene { { center = { 0, 0, 0 } } }")
-  wrong("sphere: a name with each value expected, sphere { center = ... }", "glint.sphere({ 0, 0, 0 }, 1)")
-  wrong("point_light: a name with each value expected, point_light { position = ... }", "glint.point_light { { 0, 1, 0 } }")
+  wrong("sphere: a name for each value expected, sphere { center = ... }", "glint.sphere({ 0, 0, 0 }, 1)")
+  wrong("point_light: a name for each value expected, point_light { position = ... }", "glint.point_light { { 0, 1, 0 } }")
 end
 
 function tests.objects_of_a_scene_have_no_names()
-  local cure = ": shapes and lights stand in a scene without a name: glint.scene { camera = ..., lamp, ball }"
+  local cure = ": shapes and lights are listed in a scene without a name: glint.scene { camera = ..., lamp, ball }"
   wrong("scene.lights" .. cure, "glint.scene { lights = { lamp } }")
   wrong("scene.lights" .. cure, "glint.scene { lights = { position = { 0, 5, 0 } } }")
   wrong("scene.objects" .. cure, "glint.scene { objects = { ball } }")
   wrong("scene.ball" .. cure, "glint.scene { ball = ball }")
-  wrong("scene[2]: shape, light, label, colorbar or axes expected, got a list; its objects stand in the scene itself",
+  wrong("scene[2]: shape, light, label, colorbar or axes expected, got a list; put its objects into the scene directly",
     "glint.scene { lamp, { ball } }")
 end
 

@@ -63,7 +63,7 @@ function tests.fields()
   a.values = { { 1, 0, 0 }, { -1, 0, 2 } }
   check(a.box[2].z == 6 and a.values[1][1] == 1 and #a.box == 2, "a box, flat in one direction, and numbers that fall")
   raises("box: assign a whole table; its fields are read-only", function() a.box[1] = 0 end)
-  raises("values: a box expected", function() a.box = nil end)
+  raises("values: expected together with a box", function() a.box = nil end)
   a.values = nil
   a.box = nil
   check(a.box == nil and a.at == "bottom left", "and back")
@@ -104,17 +104,17 @@ function tests.errors()
   raises("axes.box: its lowest and its highest corner expected, got 2 to 1 along y", glint.axes, { box = { { 0, 2, 0 }, { 1, 1, 1 } } })
   raises("axes.box: ends at a finite distance expected, got -1e+308 to 1e+308 along z", glint.axes, { box = { { 0, 0, -1e308 }, { 1, 1, 1e308 } } })
   raises("axes.box: two corners expected, got one point", glint.axes, { box = { { 1, 2, 3 }, { 1, 2, 3 } } })
-  raises("axes.values: a box expected, whose corners they are of", glint.axes, { values = unit })
+  raises("axes.values: expected together with a box, whose corners they describe", glint.axes, { values = unit })
   raises("axes.values: ends at a finite distance expected, got -1e+308 to 1e+308 along y", glint.axes,
     { box = unit, values = { { 0, -1e308, 0 }, { 1, 1e308, 1 } } })
   raises("axes.values: two numbers for the ends of z expected, got 5 twice", glint.axes, { box = unit, values = { { 0, 0, 5 }, { 1, 1, 5 } } })
-  raises("axes.position: only axes without a box have it; with a box they lie at its edges", glint.axes, { box = unit, position = { 1, 1 } })
-  raises("axes.length: only axes without a box have it", glint.axes, { box = unit, length = 10 })
+  raises("axes.position: only for axes without a box; axes with a box lie along its edges", glint.axes, { box = unit, position = { 1, 1 } })
+  raises("axes.length: only for axes without a box", glint.axes, { box = unit, length = 10 })
   raises("axes: at or box expected, got both", glint.axes, { box = unit, at = "top" })
   raises("axes.bxo: no such field; did you mean 'box'?", glint.axes, { bxo = unit })
   raises("label.box: no such field", glint.label, { text = "a", box = unit })
   local boxed = glint.axes { box = unit }
-  raises("axes.at: only axes without a box have it; with a box they lie at its edges", function() boxed.at = "top" end)
+  raises("axes.at: only for axes without a box; axes with a box lie along its edges", function() boxed.at = "top" end)
   local l = glint.label { text = "a" }
   raises("label.size: finite number expected, got inf", function() l.size = math.huge end)
   check(l.size == nil, "it is as it was")
@@ -232,7 +232,7 @@ function tests.axes_of_a_cell()
   check(axes.labels[2] == "b" and axes.box.b[2] == 1.5 and axes.box.origin.x == 0, "it reads as it is")
   axes.box = { { 0, 0, 0 }, { 1, 1, 1 } }
   check(axes.labels[2] == "y" and axes.box[2].y == 1, "and becomes a box")
-  raises("axes.box: sides a, b and c that span a plane at least expected", glint.axes, { box = { a = { 1, 0, 0 }, b = { 2, 0, 0 } } })
+  raises("axes.box: sides a, b and c that span at least a plane expected", glint.axes, { box = { a = { 1, 0, 0 }, b = { 2, 0, 0 } } })
   raises("axes.box.b[2]: number expected, got nil", glint.axes, { box = { a = { 1, 0, 0 }, b = { 2 } } })
 end
 

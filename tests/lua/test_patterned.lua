@@ -192,9 +192,9 @@ function tests.a_frames_functions_change_nothing()
   local ball = glint.sphere { center = { 0, 0, 0 }, radius = 1 }
   local material = glint.material { diffuse = glint.pattern(function() scene:remove(scene:add(ball)) return 1 end) }
   scene = make_scene(material)
-  raises("scene.add: the function of a pattern changes no objects", function() scene:render(SIZE) end)
+  raises("scene.add: the function of a pattern must not change objects", function() scene:render(SIZE) end)
   local renders = glint.material { diffuse = glint.pattern(function() scene:render(SIZE) return 1 end) }
-  raises("scene.render: the function of a pattern changes no objects", function() make_scene(renders):render(SIZE) end)
+  raises("scene.render: the function of a pattern must not change objects", function() make_scene(renders):render(SIZE) end)
 end
 
 function tests.animations_see_each_frame()

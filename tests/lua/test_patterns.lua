@@ -211,13 +211,13 @@ function tests.errors_tell_the_place_and_the_cure()
   raises("glint.select(glint.lesseq(a, b), x, y)", function(p) return 3 >= p.x and 1 or 0 end)
   raises("glint.select(glint.equal(a, b), x, y)", function(p) return p.x == p.y and 1 or 0 end)
   raises("glint.select(glint.equal(a.x, b.x), x, y)", function(p, s) return p == s.n and 1 or 0 end)
-  raises("makes no text", function(p) return p.x .. "" end)
-  raises("makes no text", function(p) return "a" .. p end)
+  raises("it cannot become text", function(p) return p.x .. "" end)
+  raises("it cannot become text", function(p) return "a" .. p end)
   raises("glint.length(v)", function(p) return #p.x end)
-  raises("a symbol has no number yet; write glint.", function(p) local x = math.sin(p.x) return x end)
-  raises("a symbol has no number yet; write glint.", function(p) return math.sin(p.x) end)
-  raises("a symbol has no number yet; write glint.", function(p) return math.abs(p) end)
-  raises("a symbol has no number yet; write glint.", function(p) return math.floor(p.x) + 1 end)
+  raises("a symbol has no value yet; write glint.", function(p) local x = math.sin(p.x) return x end)
+  raises("a symbol has no value yet; write glint.", function(p) return math.sin(p.x) end)
+  raises("a symbol has no value yet; write glint.", function(p) return math.abs(p) end)
+  raises("a symbol has no value yet; write glint.", function(p) return math.floor(p.x) + 1 end)
   raises("vector.w: no such field", function(p) return p.w end)
   raises("vector.lenght: no such field; did you mean 'length'?", function(p) return p:lenght() end)
   raises("s.norml: no such field", function(_, s) return s.norml end)
@@ -225,41 +225,41 @@ function tests.errors_tell_the_place_and_the_cure()
   raises("is a variable or a field not set?", function(p) return p.x + rawget(p, "q") end)
   raises("is a variable or a field not set?", function(p) return glint.mix(p.x, nil, 1) end)
   raises("symbol.x: a symbol is one number", function(p) return p.x.x end)
-  raises("it is one number and no function", function(p) return p.x(3) end)
-  raises("it is no integer", function(p) return p.x & 1 end)
+  raises("it is a number, not a function", function(p) return p.x(3) end)
+  raises("it is not an integer", function(p) return p.x & 1 end)
   local own
   own = glint.pattern(function() return #own end)
   local _, message = pcall(function() return #own end)
-  check(select(2, message:gsub("without an end", "")) == 1, "a pattern of itself has one cure, got %s", message)
-  raises("functions call each other without an end", function(p)
+  check(select(2, message:gsub("endlessly", "")) == 1, "a pattern of itself has one cure, got %s", message)
+  raises("functions call each other endlessly", function(p)
     local round
     round = glint.pattern(function(q) return round(q) end)
     return round(p)
   end)
-  raises("a loop runs over numbers", function(p) local t = 0 for i = 1, p.x do t = t + i end return t end)
+  raises("a loop needs plain numbers", function(p) local t = 0 for i = 1, p.x do t = t + i end return t end)
   raises("a + b: number, symbol or vector expected, got string \"1\"", function(p) return p.x + "1" end)
   raises("noise: a vector, or x, y and z expected", function(p) return glint.noise(p.x) end)
   raises("mix: 3 arguments expected, got 2", function(p) return glint.mix(p.x, 1) end)
   raises("is a return missing,", function(p) local _ = p.x end)
   raises("or \"#rrggbb\" expected, got string \"hello\"", function() return "hello" end)
-  raises("expected from the function, got a table that is no vector", function(p) return { p.x, 2 } end)
+  raises("expected from the function, got a table that is not a vector", function(p) return { p.x, 2 } end)
   raises("pattern: one value expected from the function, got 3; a colour is glint.vector", function(p) return p.x, p.y, p.z end)
-  raises("math.min of a symbol: the point is not known when the function is called; write glint.min", function(p) return math.min(p.x, 1) end)
-  raises("a symbol has no number yet; write glint.exp", function(p) return math.exp(p.x) end)
-  raises("a symbol has no number yet; write a % b", function(p) return math.fmod(p.x, 1) end)
-  raises("a table has nothing at a value of the point; use glint.select", function(p)
+  raises("math.min of a symbol: its value is not known, because the function runs once for all points; write glint.min", function(p) return math.min(p.x, 1) end)
+  raises("a symbol has no value yet; write glint.exp", function(p) return math.exp(p.x) end)
+  raises("a symbol has no value yet; write a % b", function(p) return math.fmod(p.x, 1) end)
+  raises("a table cannot be indexed by a value that depends on the point; use glint.select", function(p)
     local list = { 0.1, 0.2 }
     return list[glint.floor(p.x)] * 2
   end)
   raises("or a table indexed by a value of the point?", function(p) return ({ 1 })[glint.floor(p.x)] end)
   raises("got s, the values of the point", function(x, y) return x + y end)
-  raises("a loop without an end? To Lua a comparison", function(p)
+  raises("is a loop endless? In Lua, a comparison", function(p)
     local x = p.x
     while glint.less(x, 4) do x = x + 1 end
     return x
   end)
   raises("length: a vector expected, got no value; a method takes a colon: v:length()", function(p) return p.length() end)
-  raises("a pattern changes no objects", function(p)
+  raises("a pattern must not change objects", function(p)
     local m = glint.material {}
     m.diffuse = 1
     return p.x
@@ -289,7 +289,7 @@ end
 local function is_found(f)
   local line = debug.getinfo(f, "S").linedefined
   local good, message = pcall(function() return #glint.pattern(f) end)
-  check(not good and tostring(message):find "Lua says [-%d.e+]+, the trace [-%d.e+]+ at %(.*%): an `if`, `and` or `or`", "%s", message)
+  check(not good and tostring(message):find "the Lua function gives [-%d.e+]+, the compiled program [-%d.e+]+ at %(.*%): does the function have an `if`, `and` or `or`", "%s", message)
   check(tostring(message):find(HERE .. ":" .. line .. ": ", 1, true), "line %d: %s", line, message)
 end
 
@@ -306,7 +306,7 @@ end
 
 -- In Lua 0 and symbols are both true, so none of the 64 test points reveals these.
 local function is_refused(f)
-  raises("an `if`, `and` or `or` on what this gives", f)
+  raises("an `if`, `and` or `or` on this value", f)
 end
 
 function tests.branches_on_choices_are_refused()
@@ -327,7 +327,7 @@ function tests.branches_on_choices_are_refused()
   local good, message = pcall(function()
     return #glint.shader(function(s) if less(0.4, s.n:dot(s.l)) then return s.light end return s.light * 0.3 end)
   end)
-  check(not good and tostring(message):find("on what this gives", 1, true), "%s", message)
+  check(not good and tostring(message):find("on this value", 1, true), "%s", message)
 end
 
 function tests.choices_that_nothing_hangs_on_are_let_pass()

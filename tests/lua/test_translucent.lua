@@ -469,10 +469,10 @@ function tests.light_has_derivatives_by_opacity()
     return all
   end)
   for _, opacity in ipairs { 0, 1 } do
-    raises("derivative 'e': material.opacity: 0, 1 and what cuts have no derivative", look,
+    raises("derivative 'e': material.opacity: 0, 1 and cut-outs have no derivative", look,
       { sheet(0, plain({ 1, 0, 0 }, { opacity = glint.variable("e", opacity) })) }, {}, { passes = "d:e" })
   end
-  raises("derivative 'x': material.opacity: 0, 1 and what cuts", look,
+  raises("derivative 'x': material.opacity: 0, 1 and cut-outs", look,
     { sheet(0, plain({ 1, 0, 0 }, { opacity = x, opacity_mode = "cut" })) }, {}, { passes = "d:x" })
   raises("derivative 'x': material.opacity: a material has no derivative where a pattern blends it", look,
     { sheet(0, plain({ x, 0, 0 }, { opacity = glint.pattern(function(p) return p.y end), opacity_mode = "blend" })) }, {}, { passes = "d:x" })

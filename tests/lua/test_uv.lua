@@ -121,7 +121,7 @@ function tests.files_have_vt()
   with_file(head .. "vt a b\nf 1 2 3\n", function(name) raises(":10: a number expected, got 'a b'", glint.mesh, { file = name }) end)
   with_file(head .. "f 1/1 2/2 3/3\nf 1 3/3 4/4\n", function(name)
     local mesh = glint.mesh { file = name, name = "patchy", material = material }
-    raises("s.uv: mesh 'patchy': faces[2] has no coordinates (vt)", function() scene_of(mesh):render(PASSES) end)
+    raises("s.uv: mesh 'patchy': faces[2] has no texture coordinates (vt)", function() scene_of(mesh):render(PASSES) end)
     mesh.material = glint.material {}
     check(scene_of(mesh):render(PASSES), "which is no matter where nothing reads them")
   end)
@@ -131,7 +131,7 @@ function tests.files_have_vt()
 end
 
 function tests.errors_name_the_field()
-  raises("mesh.uv: one a vertex (4) or one a corner of a face (4) expected, got 3", quad, { uv = { { 0, 0 }, { 1, 0 }, { 1, 1 } } })
+  raises("mesh.uv: one per vertex (4) or one per corner of a face (4) expected, got 3", quad, { uv = { { 0, 0 }, { 1, 0 }, { 1, 1 } } })
   raises("mesh.uv[2]: {u, v} expected", quad, { uv = { { 0, 0 }, { 1 }, { 1, 1 }, { 0, 1 } } })
   raises("mesh.uv[2]: {u, v} expected", quad, { uv = { { 0, 0 }, { 1, "0" }, { 1, 1 }, { 0, 1 } } })
   raises("mesh.uv: 2 numbers each expected, got 7 numbers", quad, { uv = { 0, 0, 1, 0, 1, 1, 0 } })
@@ -141,7 +141,7 @@ function tests.errors_name_the_field()
   raises("mesh: file or uv expected, got both", glint.mesh, { file = "x.obj", uv = { 0, 0 } })
   for _, fields in ipairs { { diffuse = UV }, { bump = glint.pattern(function(_, s) return s.uv.u end) } } do
     local mesh = quad { name = "bare", material = glint.material(fields) }
-    raises("s.uv: mesh 'bare' has no coordinates on its surface: uv, or vt in its file, expected",
+    raises("s.uv: mesh 'bare' has no texture coordinates: uv, or vt in its file, expected",
       function() scene_of(mesh):render(PASSES) end)
   end
 end

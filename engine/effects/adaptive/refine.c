@@ -139,7 +139,7 @@ static bool called(const glint_plan *plan) { return plan->desc.adaptive > 0 && p
 /// Runs before all other stages, because it chooses the pixels that they run for.
 const glint_stage glint_stage_refine = {
     .name = "refine",
-    .doc = "which pixels get all samples: edges of objects, normals and contrast",
+    .doc = "which pixels get all samples, by edges of objects, normals and contrast",
     .called = called,
     .own = own_key,
     .reads = GLINT_READS_OWN(REFINE),

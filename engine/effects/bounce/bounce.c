@@ -399,7 +399,7 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
 
 const glint_stage glint_stage_bounce = {
     .name = "bounce",
-    .doc = "mirrored and refracted rays, those that go through translucent surfaces, and what they find",
+    .doc = "mirror and refraction rays, rays through translucent surfaces, and the light of these rays",
     .called = called,
     .own = own_key,
     .reads = GLINT_READS_OWN(BOUNCE),

@@ -30,7 +30,7 @@ static bool varies(const glint_plan *plan, const glint_plan_derivatives *all, co
 static const char *find_obstacle(const glint_plan *plan)
 {
     if (plan->runs[GLINT_STAGE_INDIRECT])
-        return "scene.indirect: indirect light and ambient occlusion have no derivative; leave them out";
+        return "scene.indirect: indirect light and ambient occlusion have no derivative; remove them";
     return NULL;
 }
 
@@ -61,37 +61,37 @@ static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan
     for (size_t i = 0; i < plan->geometry->materials.count; i++) {
         const glint_material_desc *desc = glint_plan_material(plan, i);
         if (glint_any_slope(d->bounces[i].mirror) && !glint_material_mirrors(desc))
-            return "material.mirror: 0 sends no ray on, and has no derivative; above 0 it has";
+            return "material.mirror: 0 has no derivative, because no ray is reflected; use a value above 0";
         if (glint_any_slope(d->bounces[i].transmission) && !glint_material_transmits(desc))
-            return "material.transmission: 0 sends no ray on, and has no derivative; above 0 it has";
+            return "material.transmission: 0 has no derivative, because no ray is transmitted; use a value above 0";
         if (plan->tints && d->programs[i].of[GLINT_FIELD_TRANSMISSION])
-            return "material.transmission: light through what a pattern colours has no derivative by the pattern; lights with "
-                   "shadows = false have";
+            return "material.transmission: light through a patterned material has no derivative by the pattern; set "
+                   "shadows = false for the lights";
         absorbs = absorbs || glint_any_slope(d->bounces[i].absorption);
     }
     if (d->bends && is_any_painted(plan))
-        return "material: what moves or bends has no derivative where materials have patterns or bumps, or shaders that read uv or "
-               "footprint; where all have plain numbers it has";
+        return "material: moving objects or bending rays has no derivative where materials have patterns or bumps, "
+               "or shaders that read uv or footprint; use plain numbers in all materials";
     const int *plane = plan->patterns ? plan->patterns->plane : NULL;
     if (plan->tints && plane && plane[GLINT_FIELD_CLEAR] >= 0 && d->moves)
-        return "material.opacity: light through what a pattern blends has no derivative by what moves; lights with shadows = "
-               "false have";
+        return "material.opacity: light through a material with a pattern of opacity has no derivative by movement; "
+               "set shadows = false for the lights";
     if (plan->tints && plane && plane[GLINT_FIELD_TRANSMISSION] >= 0 && d->moves)
-        return "material.transmission: light through what a pattern colours has no derivative by what moves; lights with shadows "
-               "= false have";
+        return "material.transmission: light through a patterned material has no derivative by movement; set shadows "
+               "= false for the lights";
     if (plan->environment && d->bends && plan->runs[GLINT_STAGE_BOUNCE])
-        return "background: what moves or bends has no derivative before one that a program gives, where mirrors or glass may "
-               "show it; before a colour it has";
+        return "background: moving objects or bending rays has no derivative where mirrors or glass may show a "
+               "pattern or texture as the background; use a plain colour";
     if (plan->dims && (absorbs || d->moves))
-        return "absorption: light through what absorbs has no derivative by it, nor by what moves; lights with shadows = false "
-               "have";
+        return "absorption: light through an absorbing material has no derivative by absorption or movement; set "
+               "shadows = false for the lights";
     const bool thins = plan->veil.on && glint_any_slope(d->bounces[plan->veil.material].absorption);
     if (plan->runs[GLINT_STAGE_DEPTH_CUE] && plan->visible_light_count && (d->bends || d->fades || thins))
-        return "scene.depth_cue, absorption: what moves or fades otherwise has no derivative where visible lights may be seen; visible "
-               "= false has";
+        return "scene.depth_cue, absorption: movement and fading have no derivative where visible lights may be "
+               "seen; set visible = false for the lights";
     if (plan->absorbs && plan->visible_light_count && d->bends)
-        return "absorption: what moves has no derivative where visible lights may be seen through what absorbs; visible = "
-               "false has";
+        return "absorption: movement has no derivative where visible lights may be seen through an absorbing "
+               "material; set visible = false for the lights";
     return NULL;
 }
 
@@ -103,16 +103,17 @@ static glint_status check_light(const glint_plan *plan, const glint_plan_derivat
     double shown[3];
     const char *why = NULL;
     if (d->lights[index].varies && desc->visible && glint_light_shows(desc, shown))
-        why = "visible: what a light itself looks like has no derivative; visible = false has";
+        why = "visible: the appearance of a light itself has no derivative; set visible = false";
     for (uint32_t k = 0; k < plan->light_count; k++) {
         const glint_plan_light *row = &plan->lights[k];
         const bool moves = d->lights[index].moves || d->bends;
         if (row->source != index)
             continue;
         if (row->cap && (moves || glint_has_slope(d->lights[index].coefficients, 3)))
-            why = "position, attenuation: with caps nothing that moves has a derivative; shadow = \"rays\" has";
+            why = "position, attenuation: movement has no derivative with shadow = \"caps\"; set shadow = \"rays\"";
         else if (moves && row->light_samples && row->light_samples->emission == GLINT_EMIT_CONE)
-            why = "position: of a sphere light by radiance nothing that moves has a derivative; one by intensity has";
+            why = "position: movement has no derivative with a sphere light that has a radiance; set its intensity "
+                  "instead";
     }
     if (!why)
         return GLINT_OK;
@@ -130,8 +131,9 @@ glint_status glint_plan_check_derivatives(const glint_plan *plan, const glint_sc
     for (size_t i = 0; all && i < all->count; i++) {
         const glint_plan_derivative *d = &all->of[i];
         if (d->view.moves && plan->environment)
-            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': background: before one that a program gives a camera has no "
-                              "derivative; before a colour it has", d->name);
+            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': background: a camera has no derivative "
+                                                        "with a pattern or texture as the background; use a plain "
+                                                        "colour", d->name);
         if ((why = find_bounce_obstacle(plan, d)))
             return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", d->name, why);
         if (!varies(plan, all, d) && !varies(plan, all, &all->level[i])) // otherwise it is 0 here, but may not be elsewhere

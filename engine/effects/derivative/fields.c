@@ -46,7 +46,8 @@ static glint_status refuse_field(const glint_derivative *d, const char *object, 
     for (; offered->name; offered++)
         if (has_derivative(offered))
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", offered->member);
-    return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s.%s: no derivative goes through this field; of %s: %s",
+    return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s.%s: this field has no derivative; fields of %s "
+                                                "that have one: %s",
                       d->name, object, field ? field : "(null)", object, used ? list : "none");
 }
 
@@ -82,12 +83,12 @@ static glint_status add_program(const glint_plan *plan, const glint_derivative *
         return GLINT_OK;
     if (!own || own->code.output_count != s->program->code.output_count || own->kind != s->program->kind)
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "derivative '%s': material.%s: the slope is a program's, but not of the one that gives the field", d->name,
+                          "derivative '%s': material.%s: the slope has a program, but it is not the program of this field", d->name,
                           s->field);
     if (plan->translucent && plan->translucent[i].blends && field != GLINT_FIELD_SHININESS && field != GLINT_FIELD_ROUGHNESS)
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "derivative '%s': material.%s: a pattern of a translucent material has no derivative; one of an opaque "
-                          "material has", d->name, s->field);
+                          "derivative '%s': material.%s: a pattern of a translucent material has no derivative; use "
+                          "an opaque material", d->name, s->field);
     plan->patterns->of[i].repaints = plan->patterns->of[i].repaints || field < GLINT_FIELD_PLANES;
     if (plan->patterns->row_count < s->program->code.row_count)
         plan->patterns->row_count = s->program->code.row_count;
@@ -125,8 +126,8 @@ static glint_status add_material(const glint_plan *plan, const glint_derivative 
             continue;
         if (is_lost(&s->material->desc, s))
             return glint_fail(error, GLINT_ERR_INVALID,
-                              "derivative '%s': material.specular: 0 has no derivative where a pattern gives the highlight's shape; "
-                              "above 0 it has", d->name);
+                              "derivative '%s': material.specular: 0 has no derivative where a pattern gives the "
+                              "highlight's shape; use a value above 0", d->name);
         add(&out->materials[i], field, s->slope);
     }
     return GLINT_OK;
@@ -181,8 +182,8 @@ glint_status glint_derivative_add(const glint_plan *plan, const glint_scene *sce
             return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: finite slopes expected, got %g", d->name,
                               s->field ? s->field : "(null)", s->slope[c]);
     if (s->program && !s->material)
-        return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: the numbers of its program have no derivative; those of "
-                          "materials have", d->name, s->field ? s->field : "(null)");
+        return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: the numbers of its program have no "
+                                                    "derivative; only the numbers of materials' programs have", d->name, s->field ? s->field : "(null)");
     if (s->material)
         return add_material(plan, d, s, out, error);
     if (s->light)

@@ -41,7 +41,7 @@ static glint_status find_gradient(glint_plan *plan, const glint_program *shader,
     glint_error why;
     const glint_status status = glint_shader_gradient(shader, inputs, out, &why);
     if (status)
-        return glint_fail(error, status, "derivative '%s': material.model: how fast the shader changes: %s",
+        return glint_fail(error, status, "derivative '%s': material.model: the shader's derivative: %s",
                           name, why.message);
     for (uint32_t k = 0; k < out->count; k += out->each) {
         const uint32_t rows = out->programs[k / out->each]->code.row_count;

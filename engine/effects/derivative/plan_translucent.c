@@ -15,12 +15,11 @@ static const char *find_obstacle(const glint_translucent *material, const glint_
 {
     static const glint_material_desc level = { 0 };
     if (desc->program.opacity && memcmp(slopes, &level, sizeof level) != 0)
-        return "a material has no derivative where a pattern blends it; where its opacity is a number it has";
+        return "a material has no derivative where a pattern blends it; use a plain number as opacity";
     if (slopes->opacity != 0 && !material->blends)
-        return "0, 1 and what cuts have no derivative; a number between 0 and 1 that blends has";
+        return "0, 1 and cut-outs have no derivative; use a number between 0 and 1 that blends";
     if (slopes->opacity != 0 && material->made_count > 0)
-        return "it has no derivative where patterns or a shader give the material's colours; where all are numbers it "
-               "has";
+        return "it has no derivative where patterns or a shader give the material's colours; use plain colours";
     return NULL;
 }
 

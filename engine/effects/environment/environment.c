@@ -297,7 +297,7 @@ static void need_directions(glint_tile *tile, const glint_tile_frame *frame, gli
 /// Replaces the plain background that `shade` reads.
 const glint_stage glint_stage_environment = {
     .name = "environment",
-    .doc = "the background's program, for rays that leave the scene",
+    .doc = "the background pattern for rays that leave the scene",
     .called = called,
     .sums = true,
     .remote = true,

@@ -401,7 +401,7 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
 
 const glint_stage glint_stage_indirect = {
     .name = "indirect",
-    .doc = "light that surfaces get from other surfaces and the background",
+    .doc = "light from other surfaces and from the background",
     .called = called,
     .own = own_key,
     .reads = GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE),

@@ -72,9 +72,8 @@ static glint_status add_pass(groups *g, const char *name, glint_error *error)
         return GLINT_OK;
     if (!is_usable(name))
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "light '%s': a group or name without , / \\ * \" and control characters, and no space or '.' "
-                          "first, expected for its "
-                          "light pass",
+                          "light '%s': for its light pass, expected a group or name without , / \\ * \" and control "
+                          "characters, not beginning with a space or '.'",
                           name);
     if (strcmp(name, GLINT_LIGHT_REST) == 0)
         g->rest = g->pass_count;
@@ -98,7 +97,7 @@ static glint_status add_entry(groups *g, const glint_scene *scene, const char *n
         return add_pass(g, name, error);
     list_groups(scene, all);
     return glint_fail(error, GLINT_ERR_INVALID,
-                      "light_passes: no light of the scene has the group or name '%s'; it has %s", name, all);
+                      "light_passes: no light of the scene has the group or name '%s'; the scene has %s", name, all);
 }
 
 static glint_status read_list(groups *g, const glint_scene *scene, const char *list, glint_error *error)
@@ -187,7 +186,8 @@ glint_status glint_plan_find_light_groups(glint_plan *plan, const glint_scene *s
         glint_scene_light_pass(scene, i, own);
         if (strcmp(own, GLINT_LIGHT_REST) == 0)
             return glint_fail(error, GLINT_ERR_INVALID,
-                              "light '%s': another name expected: its light pass is of the light that no lamp sends",
+                              "light '%s': another name expected: the light pass of this name holds the light that "
+                              "comes from no lamp",
                               own);
     }
     glint_status status = read_list(g, scene, list, error);

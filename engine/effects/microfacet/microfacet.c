@@ -136,7 +136,7 @@ static void *create(const glint_plan *plan)
 
 const glint_stage glint_stage_view = {
     .name = "view",
-    .doc = "cosine of the angle each point is seen at, for microfacets",
+    .doc = "cosine of the viewing angle at each point, for microfacets",
     .called = called,
     .reads = GLINT_READS(BUMPS),
     .step[GLINT_AT_LIT] = find_view,

@@ -281,7 +281,7 @@ static bool gives_numbers(const glint_plan *plan)
 
 const glint_stage glint_stage_pattern = {
     .name = "pattern",
-    .doc = "programs of materials at each point that shows them",
+    .doc = "programs of materials at each visible point",
     .called = gives_numbers,
     .reads = GLINT_READS(PATTERNS),
     .step[GLINT_AT_SIGN] = sign,

@@ -294,10 +294,10 @@ static glint_status take_mesh_uv(glint_pattern_place *place, const glint_shape *
     place->mesh = shape->mesh;
     if (!shape->mesh->uv)
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "s.uv: mesh%s%s%s has no coordinates on its surface: uv, or vt in its file, expected", before,
+                          "s.uv: mesh%s%s%s has no texture coordinates: uv, or vt in its file, expected", before,
                           name, after);
     if (shape->mesh->uv_missing[material])
-        return glint_fail(error, GLINT_ERR_INVALID, "s.uv: mesh%s%s%s: faces[%zu] has no coordinates (vt)", before,
+        return glint_fail(error, GLINT_ERR_INVALID, "s.uv: mesh%s%s%s: faces[%zu] has no texture coordinates (vt)", before,
                           name, after, shape->mesh->uv_missing[material]);
     return GLINT_OK;
 }
@@ -419,7 +419,7 @@ static bool shades(const glint_plan *plan) { return glint_plan_is_lit(plan) && p
 
 const glint_stage glint_stage_shader = {
     .name = "shader",
-    .doc = "shaders of materials, once a light",
+    .doc = "shaders of materials, once for each light",
     .called = shades,
     .remote = true,
 };

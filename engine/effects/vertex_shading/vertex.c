@@ -431,7 +431,7 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
 
 const glint_stage glint_stage_vertex = {
     .name = "vertex",
-    .doc = "light computed once for a face or a vertex",
+    .doc = "light computed once for each face or vertex",
     .called = called,
     .reads = GLINT_READS(LIGHT_COLORS) | GLINT_READS(MATERIALS),
     .sums = true,

@@ -24,7 +24,7 @@ local function settings(options)
     if name == "box" then
       known.box = value and boxes.check(value, "bonds.box")
     elseif known[name] == nil then
-      error(("bonds.%s: no such option; radius, tolerance, distance, box are"):format(name), 3)
+      error(("bonds.%s: no such option; the options are radius, tolerance, distance, box"):format(name), 3)
     elseif type(value) ~= "number" or value ~= value or value <= (name == "tolerance" and -1 or 0) then
       error(("bonds.%s: a number above %d expected, got %s"):format(name, name == "tolerance" and -1 or 0, value), 3)
     else
@@ -85,7 +85,7 @@ local function box_of(set, options)
   local box = options.box
   if box == nil then
     if set.box == false then
-      error("bonds: the frames of the set have different boxes; give box, or box = false for bonds inside alone", 3)
+      error("bonds: the frames of the set have different boxes; set box, or box = false for bonds inside only", 3)
     end
     box = set.box
   end

@@ -73,7 +73,7 @@ function box.edges(given, options)
   options = options or {}
   for name in pairs(options) do
     if name ~= "radius" and name ~= "material" then
-      error(("box.%s: no such option; radius, material are"):format(name), 2)
+      error(("box.%s: no such option; the options are radius, material"):format(name), 2)
     end
   end
   local origin, sides = sides_of(given, "box")

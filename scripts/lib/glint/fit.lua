@@ -116,7 +116,9 @@ end
 local function check(options)
   if type(options) ~= "table" then fail("a table { target, start, render } expected, got %s", type(options)) end
   for name in pairs(options) do
-    if not FIELDS[name] then fail("%s: no such option; target, start, render, steps, tolerance, report are", name) end
+    if not FIELDS[name] then
+      fail("%s: no such option; the options are target, start, render, steps, tolerance, report", name)
+    end
   end
   if options.target == nil then fail("target: a file name, a picture or an image expected, got nil") end
   if type(options.render) ~= "function" then
@@ -166,7 +168,9 @@ function fit.run(options)
     local variables = {}
     for i, name in ipairs(names) do variables[name] = glint.variable(name, numbers[i]) end
     local image = options.render(variables, passes)
-    if not image then fail("render: an image expected, got nil; every frame is needed, no --frames or --shard") end
+    if not image then
+      fail("render: an image expected, got nil; do not use --frames or --shard, as all frames are needed")
+    end
     return equations(image, target, names)
   end
   local damping, e, steps, converged = 1e-2, look(v), 0, false

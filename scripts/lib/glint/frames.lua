@@ -20,7 +20,9 @@ frame.__index = frame
 --- Iterates once over a frame's atoms: label, x, y, z, radius (nil if the file has none), and the named columns.
 ---@param ... string  names among frame.columns
 function frame:atoms(...)
-  if self.is_taken then error(("%s: the atoms of frame %d have been read"):format(self.source.path, self.number), 0) end
+  if self.is_taken then
+    error(("%s: the atoms of frame %d have already been read"):format(self.source.path, self.number), 0)
+  end
   local names = { ... }
   for _, name in ipairs(names) do
     if not self.places[name] then

@@ -102,7 +102,7 @@ local function line_end(self)
     local rest = self.block:sub(self.at)
     if #rest > LINE_MAX then
       self.number = self.number + 1
-      self:fail(("a line of at most %d bytes"):format(LINE_MAX), "a longer one")
+      self:fail(("a line of at most %d bytes"):format(LINE_MAX), "a longer line")
     end
     local more = read_block(self)
     if not more then self:close() end
@@ -200,7 +200,7 @@ end
 ---@param place integer
 ---@param number integer
 function source:go(place, number)
-  if self.path == "-" then error("standard input is read once: a file, or a frame further on expected", 0) end
+  if self.path == "-" then error("standard input can be read only once: a file, or a later frame expected", 0) end
   if not self.file then self.file = lines.open(self.path).file end
   self.file:seek("set", place)
   self.base, self.number, self.block, self.at, self.held = place, number, "", 1, nil

@@ -35,7 +35,7 @@ local function check_colors(given)
   if type(given) ~= "table" then error("particles.color_by: { column = ... } expected, got " .. tostring(given), 3) end
   for name, value in pairs(given) do
     if not names[name] then
-      error(("particles.color_by.%s: no such option; column, map, low, high, missing are"):format(name), 3)
+      error(("particles.color_by.%s: no such option; the options are column, map, low, high, missing"):format(name), 3)
     end
     if type(value) ~= names[name] or value ~= value then
       error(("particles.color_by.%s: %s expected, got %s"):format(name, names[name], tostring(value)), 3)
@@ -61,7 +61,8 @@ function particles.new(options)
   options = options or {}
   for name in pairs(options) do
     if not OPTIONS[name] then
-      error(("particles.%s: no such option; kinds, scale, radius, material, format, color_by are"):format(name), 2)
+      error(("particles.%s: no such option; the options are kinds, scale, radius, material, format, color_by")
+        :format(name), 2)
     end
   end
   local format = options.format or "f64"
@@ -289,7 +290,7 @@ end
 --- Returns the positions of all spheres, and the index of each in set.materials: four lists, in the order of addition.
 --- Not after spheres().
 function set:places_of_all()
-  if not self.data then error("particles: the spheres of this set have been taken", 2) end
+  if not self.data then error("particles: the spheres of this set have already been used", 2) end
   pack(self)
   local x, y, z, place = {}, {}, {}, {}
   for n, chunk in ipairs(self.data) do
@@ -345,7 +346,7 @@ end
 --- gives up its own copy: call it once.
 ---@param fields? table  further fields of the shape, such as { name = "melt" }
 function set:spheres(fields)
-  if not self.data then error("particles: the spheres of this set have been taken", 2) end
+  if not self.data then error("particles: the spheres of this set have already been used", 2) end
   if self.count == 0 then
     self.data = nil
     return glint.group {}
@@ -387,7 +388,8 @@ local function check_camera(fields)
   end
   for name in pairs(fields) do
     if not CAMERA[name] then
-      error(("particles.camera.%s: no such option; from, margin, fov, projection, up, name are"):format(name), 3)
+      error(("particles.camera.%s: no such option; the options are from, margin, fov, projection, up, name")
+        :format(name), 3)
     end
   end
   local from, square = fields.from, 0

@@ -42,7 +42,7 @@ return function(gr, shape_of, methods)
   function gr.set_perlin(self, kind)
     local node = shape_of("set_perlin", self)
     if not grains[kind] then check.number("set_perlin", "kind", kind) end
-    check.tell("set_perlin", "gr.set_perlin: the noise is glint's own")
+    check.tell("set_perlin", "gr.set_perlin: glint uses its own noise")
     node.grain = grains
   end
 end

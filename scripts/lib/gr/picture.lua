@@ -38,7 +38,7 @@ local function count_shapes(root)
     if not count[node] then
       count[node] = OPEN
       for _, child in ipairs(below(node)) do
-        if count[child] == OPEN then check.raise("gr.render: node '%s' is within itself", child.name) end
+        if count[child] == OPEN then check.raise("gr.render: node '%s' contains itself", child.name) end
         if not count[child] then stack[#stack + 1] = child end
       end
     else
@@ -143,8 +143,8 @@ local function shade_of(node, map)
   local record = node.material or surface.plain(node.picture)
   node.material = record
   if bare and (node.picture or node.relief or record.relief or record.picture and record.picture.photo) then
-    check.tell(node, "gr.render: mesh '%s' has no coordinates (vt, in all faces of its file): nothing lies on it",
-      node.name)
+    check.tell(node, "gr.render: mesh '%s' has no texture coordinates (vt, in all faces of its file), "
+      .. "so it shows no picture", node.name)
   end
   return surface.shade(record, node, map, bare)
 end

@@ -73,7 +73,7 @@ local readers = {
   function(record, a)
     local kd = record.kd
     if a == 1 and max(kd[1], kd[2], kd[3]) > 0 then
-      return "a 1 is a mirror where kd is {0, 0, 0}, and elsewhere may say that it is opaque"
+      return "1 means a mirror only where kd is {0, 0, 0}; elsewhere it may mean that the material is opaque"
     end
     if is_share(a) then record.mirror = a
     elseif is_index(a) then make_glass(record, a)
@@ -84,7 +84,7 @@ local readers = {
       record.mirror, record.transmission, record.ior = a, b, 1
     elseif is_share(a) and is_index(b) then
       make_glass(record, b)
-      if a > 0 then return "the index says how much glass mirrors", { a } end
+      if a > 0 then return "the refractive index determines how much glass reflects", { a } end
     elseif is_index(a) and is_share(b) then
       record.transmission, record.ior = b, a
     else
@@ -99,7 +99,7 @@ local readers = {
   end,
   function(record, gloss, a, b, c) -- the blur of the mirror comes first
     record.mirror, record.transmission, record.ior = a, b, c
-    if gloss ~= 0 then return "mirrors are sharp", { gloss } end
+    if gloss ~= 0 then return "glint's mirrors are always sharp", { gloss } end
   end,
 }
 
@@ -110,7 +110,7 @@ local function read_numbers(record, call, numbers)
   local count = has_gloss and 4 or min(#numbers, 3)
   local why, which = readers[count](record, unpack(numbers, 1, count))
   if why then return leave_out(call, which or numbers, why) end
-  if #numbers > count then leave_out(call, { unpack(numbers, count + 1) }, "three numbers are read") end
+  if #numbers > count then leave_out(call, { unpack(numbers, count + 1) }, "only three numbers are used") end
 end
 
 -- Reads numbers and names of pictures: the first name that is not "" is the picture on the surface.
@@ -186,7 +186,7 @@ function surface.noisy(call, a, b, ks, shininess, ...)
     local sum = glint.noise(p * 4) + glint.noise(p * 8) / 2 + glint.noise(p * 16) / 4
     return glint.mix(record.kd, other, glint.clamp(0.5 + 0.5 * sum, 0, 1))
   end) }
-  if select("#", ...) > 0 then leave_out(call, { ... }, "the noise is glint's own") end
+  if select("#", ...) > 0 then leave_out(call, { ... }, "glint uses its own noise") end
   return record
 end
 
