@@ -45,7 +45,7 @@ end
 local hidden = {}
 for i, name in ipairs(NAMES) do hidden[name] = HIDDEN[i] end
 local made = render(hidden, "none")
-if not made then error("fit.lua: every frame is needed: no --frames or --shard, please", 0) end
+if not made then error("fit.lua: do not use --frames or --shard, as all frames are needed", 0) end
 local found = fit.run {
   target = P.file ~= "" and P.file or made, start = START, steps = P.steps, render = render, report = report,
 }

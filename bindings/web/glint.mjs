@@ -40,7 +40,7 @@ class Image {
   }
   /** The float32 numbers of a requested pass, row by row from the top, as in a .pfm. */
   plane(name = "beauty") {
-    if (!(name in this.#planes)) throw new GlintError(`plane: '${name}' was not rendered; passes: ["${name}"] asks for it`)
+    if (!(name in this.#planes)) throw new GlintError(`plane: '${name}' was not rendered; request it with passes: ["${name}"]`)
     return this.#planes[name]
   }
   /** The picture as a PNG file, in bytes; without an alpha channel if every pixel is opaque. */

@@ -10,7 +10,7 @@
 set -eu
 part=${PART:-${SLURM_ARRAY_TASK_ID:-${PARALLEL_SEQ:-}}}
 usage() {
-    echo "usage: PART=1 part.sh PARTS WIDTHxHEIGHT FOLDER SCRIPT [options of glint]; PART is that of the array or of parallel" >&2
+    echo "usage: PART=1 part.sh PARTS WIDTHxHEIGHT FOLDER SCRIPT [options of glint]; PART comes from the job array or from parallel" >&2
     exit 2
 }
 [ $# -ge 4 ] && [ -n "$part" ] || usage

@@ -502,7 +502,7 @@ function tests.bonds()
   local _, joined = bonds.new(set, { distance = 1.1 })
   check(joined == 3 * 12 * 13 * 13, "bonds of a grid: %d", joined)
   local ok, message = pcall(bonds.new, set)
-  check(not ok and message:find('"point" is no element and has no covalent radius', 1, true), "%s", message)
+  check(not ok and message:find('"point" is not an element and has no covalent radius', 1, true), "%s", message)
   ok, message = pcall(bonds.new, set, { raduis = 1 })
   check(not ok and message:find("bonds.raduis: no such option", 1, true), "%s", message)
   check(not pcall(bonds.new, set, { radius = 0 }) and not pcall(bonds.new, set, { radius = "1" }), "wrong radius")
@@ -587,7 +587,7 @@ function tests.periodic_bonds()
   for given, message in pairs {
     [3] = "bonds.box: a box expected, got 3", [{}] = "bonds.box.size: three finite numbers expected, got nil",
     [{ size = { 1, 0, 1 } }] = "bonds.box.size: numbers > 0 expected, got 0",
-    [{ size = { 0.1, 1, 1 } }] = "bonds: a periodic box of at least 1/8 of the longest bond expected, got 0.1 for one of 1.1",
+    [{ size = { 0.1, 1, 1 } }] = "bonds: a periodic box of at least 1/8 of the longest bond expected, got 0.1 for a bond of 1.1",
     [{ size = { 1, 1, 1 }, periodic = { 1, 2, 3 } }] = "bonds.box.periodic: three booleans expected, got 1 at 1",
   } do
     local ok, got = pcall(bonds.new, set, { distance = 1.1, box = given })
@@ -665,7 +665,7 @@ function tests.nff()
   refuses(head .. f .. "c\n0 0 0\n0 0 1 1\n", 14, 'the base of c, x y z radius, 4 numbers, expected, got "0 0 0"', nff.load)
   refuses(head .. f .. "c\n0 0 0 -1\n0 0 1 1\n", 14, 'a radius >= 0 expected, got "0 0 0 -1"', nff.load)
   refuses(head .. f .. "c\n0 0 0 0\n0 0 1 0\n", 15, 'a radius > 0 at one of the ends of c expected, got "0"', nff.load)
-  refuses(head .. f .. "c\n0 0 1 1\n0 0 1 2\n", 15, 'another place for the apex of c than for its base expected, got "the same"', nff.load)
+  refuses(head .. f .. "c\n0 0 1 1\n0 0 1 2\n", 15, 'an apex of c that differs from its base expected, got "the same"', nff.load)
   picture = nff.load(write("cone.nff", head .. f .. "c\n0 0 0 1\n0 0 2 1\nc\n5 0 2 0\n5 0 0 1\nc\n9 0 0 2\n9 0 2 1\n"))
   check(#picture.cones == 3, "cones")
   local scene = picture.scene

@@ -119,7 +119,7 @@ async function playground() {
   await ready(page)
   check(await page.locator("#error").isHidden(), "playground: the depth pass")
 
-  await page.getByRole("tab", { name: "What this scene calls for" }).click()
+  await page.getByRole("tab", { name: "What this scene needs" }).click()
   await page.waitForFunction(() => document.getElementById("pane-explain").textContent.includes("hard shadow"))
   await page.getByRole("tab", { name: "Picture" }).click()
   await playgroundErrors(page)

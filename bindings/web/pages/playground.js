@@ -186,9 +186,9 @@ async function explain() {
     for (const { effect, caller } of plan.effects) callers.set(effect, [...callers.get(effect) ?? [], caller])
     pane.replaceChildren(
       element("p", "The renderer computes only what this scene needs."),
-      table(["Effect", "Called for by"], [...callers].map(([effect, by]) => [effect, by.length > 4 ? `${by.slice(0, 3).join(", ")} and ${by.length - 3} more` : by.join(", ")])),
+      table(["Effect", "Needed by"], [...callers].map(([effect, by]) => [effect, by.length > 4 ? `${by.slice(0, 3).join(", ")} and ${by.length - 3} more` : by.join(", ")])),
       table(["Stage", "What it computes"], plan.stages.map(stage => [stage.name, stage.why])),
-      table(["Rays to expect", ""], Object.entries(plan.rays).filter(([, count]) => count > 0).map(([kind, count]) => [kind, count.toLocaleString("en")])))
+      table(["Expected rays", ""], Object.entries(plan.rays).filter(([, count]) => count > 0).map(([kind, count]) => [kind, count.toLocaleString("en")])))
   } catch (error) {
     showError(error)
   }

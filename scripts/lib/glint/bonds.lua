@@ -40,7 +40,7 @@ local function reach_of(name, set)
   if set.distance then return set.distance / 2 end
   local element = elements[elements.symbol(name) or ""]
   if not element then
-    error(("bonds: %q is no element and has no covalent radius; give distance, the longest bond"):format(name), 0)
+    error(("bonds: %q is not an element and has no covalent radius; set distance, the longest bond"):format(name), 0)
   end
   return element.covalent + set.tolerance / 2
 end
@@ -102,7 +102,7 @@ local function each_across(box, x, y, z, reach, closest, found)
   end
   for i = 1, 3 do
     if box.periodic[i] and widest > IMAGES * box.size[i] then
-      local message = "bonds: a periodic box of at least 1/%d of the longest bond expected, got %.6g for one of %.6g"
+      local message = "bonds: a periodic box of at least 1/%d of the longest bond expected, got %.6g for a bond of %.6g"
       error(message:format(IMAGES, box.size[i], widest), 3)
     end
   end

@@ -129,7 +129,7 @@ local function packed_rows(source, layout)
     fail(("%d unpacked bytes expected, got %d"):format(width * layout.count, size))
   end
   data = unpack_lzf(data, size)
-  if not data then fail "bytes that LZF packs expected" end
+  if not data then fail "valid LZF data expected" end
   local done = 0
   return function()
     if done == layout.count then return nil end

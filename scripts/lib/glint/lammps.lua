@@ -128,7 +128,7 @@ local function read_atom(source, frame, columns, options)
       x, y, z = x + share[i] * side[1], y + share[i] * side[2], z + share[i] * side[3]
     end
   elseif columns.scaled or options.wrap then
-    local box = frame.box or source:fail("a box with a along x and b in the plane of x and y, for shares of it,", line)
+    local box = frame.box or source:fail("a box with a along x and b in the xy plane, for scaled coordinates,", line)
     if not columns.scaled then x, y, z = boxes.scale(box, x, y, z) end
     if options.wrap then x, y, z = boxes.wrapped(box, x, y, z) end
     x, y, z = boxes.unscale(box, x, y, z)

@@ -159,7 +159,7 @@ function read.c(picture, source, rest)
   local base, apex = ends[1], ends[2]
   if base[4] == 0 and apex[4] == 0 then source:fail("a radius > 0 at one of the ends of c", "0") end
   if base[1] == apex[1] and base[2] == apex[2] and base[3] == apex[3] then
-    source:fail("another place for the apex of c than for its base", "the same")
+    source:fail("an apex of c that differs from its base", "the same")
   end
   if base[4] < apex[4] then base, apex = apex, base end
   local material, shape = picture.kinds[picture.material].material

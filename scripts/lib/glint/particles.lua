@@ -120,7 +120,7 @@ end
 local function ghost_of(self, frame, label)
   local path = frame.source.path
   if not warned[path] then
-    local message = "%s:%d: %q is no element and none of the option kinds: such atoms have one colour and the radius %g"
+    local message = "%s:%d: %q is neither an element nor in the option kinds; such atoms get one colour and radius %g"
     local radius = self.options.radius or (self.options.scale or 1) * GHOST.radius
     glint._warn(message:format(path, frame.source.number, label, radius))
   end
