@@ -150,7 +150,7 @@ static bool names_others(const glintL_selection *selection, int64_t first, int64
         bool one = range->first == range->last;
         snprintf(message, GLINTL_MESSAGE_SIZE,
                  "%s%" PRId64 "%s%s%s left out: the frames of the script are %" PRId64 " .. %" PRId64,
-                 one ? "frame " : "of frames ", range->first, one ? "" : "-", named, one ? " is" : " some are", first, last);
+                 one ? "frame " : "some of the frames ", range->first, one ? "" : "-", named, one ? " is" : " are", first, last);
         return true;
     }
     return false;

@@ -65,7 +65,7 @@ const glint_stage glint_stage_resolve = {
 
 const glint_stage glint_stage_tone = {
     .name = "tone",
-    .doc = "light to 8 or 16-bit codes",
+    .doc = "light to 8-bit or 16-bit values",
     .called = has_codes,
     .reads = GLINT_READS(TONE),
 };
