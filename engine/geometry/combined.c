@@ -125,11 +125,11 @@ void glint_combined_roles(glint_combined *combined)
 /// same result.
 static bool hull_holds(const glint_geometry *geometry, const glint_prim *part, const double place[3])
 {
-    static const double way[3] = { 0.36, 0.48, 0.8 };
+    static const double direction[3] = { 0.36, 0.48, 0.8 };
     const glint_hull *hull = &geometry->hulls[part->item];
     int exits = 0;
     for (uint32_t i = 0; i < hull->count; i++)
-        exits += glint_prim_crossing(&geometry->members[hull->first + i], place, way);
+        exits += glint_prim_crossing(&geometry->members[hull->first + i], place, direction);
     return part->turned ? exits < 0 : exits > 0;
 }
 

@@ -125,7 +125,7 @@ int glint_prim_crossing(const glint_prim *triangle, const double from[3], const 
     int z = fabs(d[1]) > fabs(d[0]);
     z = fabs(d[2]) > fabs(d[z]) ? 2 : z;
     const int x = (z + 1) % 3, y = (z + 2) % 3;
-    double seen[3][2], depth[3], weight[3], sum = 0, way = 0;
+    double seen[3][2], depth[3], weight[3], sum = 0, weighted_depth = 0;
     int turns = 0;
     for (int j = 0; j < 3; j++) {
         double p[3];
@@ -145,9 +145,9 @@ int glint_prim_crossing(const glint_prim *triangle, const double from[3], const 
         return 0;
     for (int j = 0; j < 3; j++) {
         sum += weight[j];
-        way += weight[j] * depth[j];
+        weighted_depth += weight[j] * depth[j];
     }
-    if (!(way / (sum * d[z]) > 0))
+    if (!(weighted_depth / (sum * d[z]) > 0))
         return 0;
     return d[z] > 0 ? turns : -turns;
 }

@@ -50,18 +50,18 @@ typedef struct grid_maker {
 // ---- The light's view ----
 
 /// Computes the vector from the light to the centre of a bounding sphere in the world, and returns its length.
-static double way_to(const grid_maker *maker, const glint_prim *prim, double way[3])
+static double offset_to(const grid_maker *maker, const glint_prim *prim, double offset[3])
 {
-    vec_sub(way, prim->center, maker->grid->origin);
-    return sqrt(vec_dot(way, way));
+    vec_sub(offset, prim->center, maker->grid->origin);
+    return sqrt(vec_dot(offset, offset));
 }
 
 /// Returns whether a primitive is a sphere that looks small from the light.
-static bool is_small(const grid_maker *maker, const glint_prim *prim, double way[3])
+static bool is_small(const grid_maker *maker, const glint_prim *prim, double offset[3])
 {
     if (prim->kind != GLINT_PRIM_SPHERE)
         return false;
-    const double distance = way_to(maker, prim, way), radius = (double)prim->filter_bound / maker->table->scale;
+    const double distance = offset_to(maker, prim, offset), radius = (double)prim->filter_bound / maker->table->scale;
     return maker->grid->directional || radius < WIDEST * distance;
 }
 
@@ -71,15 +71,15 @@ static bool aim(grid_maker *maker)
 {
     glint_light_grid *grid = maker->grid;
     const double scale = maker->table->scale;
-    double away[3] = { 0, 0, 0 }, way[3];
+    double away[3] = { 0, 0, 0 }, offset[3];
     uint32_t small = 0;
     for (uint32_t i = 0; i < maker->table->prim_count; i++) {
-        if (!is_small(maker, &maker->table->prims[i], way))
+        if (!is_small(maker, &maker->table->prims[i], offset))
             continue;
-        const double length = sqrt(vec_dot(way, way));
+        const double length = sqrt(vec_dot(offset, offset));
         small++;
         for (int c = 0; c < 3; c++)
-            away[c] += way[c] / length;
+            away[c] += offset[c] / length;
     }
     for (int c = 0; grid->directional && c < 3; c++)
         away[c] = -grid->position[c];
@@ -106,15 +106,15 @@ static bool aim(grid_maker *maker)
 /// The squared distance of a segment at (u, v) from the centre is at least w0^2 (du^2 + dv^2) / (1 + u^2 + v^2). A
 /// segment that hits the sphere therefore has du^2 + dv^2 <= (r / w0)^2 (1 + u^2 + v^2). The root of the right side
 /// is at most the root at the centre plus the distance from there, which bounds that distance.
-static bool see(const grid_maker *maker, const glint_prim *prim, uint32_t id, const double way[3], seen_sphere *out)
+static bool see(const grid_maker *maker, const glint_prim *prim, uint32_t id, const double offset[3], seen_sphere *out)
 {
     const glint_light_grid *grid = maker->grid;
-    const double radius = (double)prim->filter_bound, w = vec_dot(grid->axis[2], way);
+    const double radius = (double)prim->filter_bound, w = vec_dot(grid->axis[2], offset);
     const double per_w = grid->directional ? 1 : 1 / w;
-    const double distance = sqrt(vec_dot(way, way)) * maker->table->scale;
+    const double distance = sqrt(vec_dot(offset, offset)) * maker->table->scale;
     if (!grid->directional && !(w > WIDEST * distance && w > 2 * radius))
         return false;
-    const double u = vec_dot(grid->axis[0], way) * per_w, v = vec_dot(grid->axis[1], way) * per_w;
+    const double u = vec_dot(grid->axis[0], offset) * per_w, v = vec_dot(grid->axis[1], offset) * per_w;
     const double wide = sqrt(u * u + v * v), size = grid->directional ? distance : wide;
     const double r = radius * per_w * (1 + 1e-6) + PLACE_SLACK * (1 + size);
     const double reach = grid->directional ? r : r * sqrt(1 + wide * wide) / (1 - r);
@@ -140,12 +140,12 @@ static bool add_other(glint_light_grid *grid, uint32_t id)
 static bool see_all(grid_maker *maker)
 {
     const glint_geometry_table *table = maker->table;
-    double way[3];
+    double offset[3];
     for (uint32_t i = 0; i < table->prim_count; i++) {
         const glint_prim *prim = &table->prims[i];
         if (!glint_prim_bounded(prim))
             continue;
-        if (is_small(maker, prim, way) && see(maker, prim, i, way, &maker->seen[maker->count]))
+        if (is_small(maker, prim, offset) && see(maker, prim, i, offset, &maker->seen[maker->count]))
             maker->count++;
         else if (!add_other(maker->grid, i))
             return false;

@@ -189,8 +189,8 @@ static bool find_edge(const box_axes *axes, int direction, edge *out)
 static bool find_side(const box_axes *axes, edge *e)
 {
     const glint_overlays *o = axes->layout->overlays;
-    const double way[2] = { e->at[1][0] - e->at[0][0], e->at[1][1] - e->at[0][1] };
-    const double length = sqrt(way[0] * way[0] + way[1] * way[1]);
+    const double offset[2] = { e->at[1][0] - e->at[0][0], e->at[1][1] - e->at[0][1] };
+    const double length = sqrt(offset[0] * offset[0] + offset[1] * offset[1]);
     double middle[3], low[3], high[3], at[2];
     corner_of(axes->layout->desc, (const int[3]) { 0, 0, 0 }, low);
     corner_of(axes->layout->desc, (const int[3]) { 1, 1, 1 }, high);
@@ -200,8 +200,8 @@ static bool find_side(const box_axes *axes, edge *e)
         at[0] = o->width / 2.0;
         at[1] = o->height / 2.0;
     }
-    e->out[0] = way[1] / length;
-    e->out[1] = -way[0] / length;
+    e->out[0] = offset[1] / length;
+    e->out[1] = -offset[0] / length;
     if (e->out[0] * (at[0] - e->at[0][0]) + e->out[1] * (at[1] - e->at[0][1]) > 0) {
         e->out[0] = -e->out[0];
         e->out[1] = -e->out[1];
@@ -274,14 +274,14 @@ static void draw_axis(box_axes *axes, int direction, const edge *e)
     const double first = is_measured ? 0 : values[0][direction];
     const double last = is_measured ? length_of(desc, direction) : values[1][direction];
     const double half = fmax(LINE * layout->em / 2, 0.5), tick = TICK * layout->em, room = ROOM * layout->em;
-    const double way[2] = { e->at[1][0] - e->at[0][0], e->at[1][1] - e->at[0][1] };
+    const double offset[2] = { e->at[1][0] - e->at[0][0], e->at[1][1] - e->at[0][1] };
     double at[GLINT_OVERLAY_TICKS_MAX][2], steps = WANTED;
     glint_marks marks = { .count = 0 };
     do {
         glint_marks_round(&marks, &layout->typeface, first, last, steps);
         steps *= 0.8;
     } while (!place_marks(axes, e, &marks, at) && steps > 0.5);
-    glint_layout_line(layout, e->at[0], way, half, desc->color);
+    glint_layout_line(layout, e->at[0], offset, half, desc->color);
     double reach = tick + room; // from the edge to beyond the numbers
     for (int i = 0; i < marks.count; i++) {
         const double mark[2] = { e->out[0] * tick, e->out[1] * tick };

@@ -75,28 +75,30 @@ static double distance_to(const double end[2], double x, double y)
 }
 
 /// Draws the part of a line inside a rectangle.
-static void draw_piece(const glint_layout *layout, const double from[2], const double way[2], double half, const double color[3],
-                       const int corner[2], const int size[2])
+static void draw_piece(const glint_layout *layout, const double from[2], const double offset[2], double half,
+                       const double color[3], const int corner[2], const int size[2])
 {
     glint_stamp stamp;
     if (!glint_layout_mask(layout, corner[0], corner[1], size[0], size[1], &stamp))
         return;
     for (int y = 0; y < stamp.height; y++)
         for (int x = 0; x < stamp.width; x++) {
-            const double d = distance_to(way, stamp.x + x + 0.5 - from[0], stamp.y + y + 0.5 - from[1]);
+            const double d = distance_to(offset, stamp.x + x + 0.5 - from[0], stamp.y + y + 0.5 - from[1]);
             const double covered = fmin(fmax(half + 0.5 - d, 0), 1);
             stamp.coverage[(size_t)y * (size_t)stamp.width + (size_t)x] = (uint8_t)(covered * 255 + 0.5);
         }
     glint_stamps_add(layout->stamps, stamp, color);
 }
 
-void glint_layout_line(const glint_layout *layout, const double from[2], const double way[2], double half, const double color[3])
+void glint_layout_line(const glint_layout *layout, const double from[2], const double offset[2], double half,
+                       const double color[3])
 {
     const int sides[2] = { layout->overlays->width, layout->overlays->height };
-    const int along = fabs(way[0]) < fabs(way[1]), across = !along;
-    const double slope = way[along] != 0 ? way[across] / way[along] : 0, wide = 1.5 * half + 2; // up to 45 degrees
-    const double first = fmin(from[along], from[along] + way[along]) - half - 1;
-    const double last = fmax(from[along], from[along] + way[along]) + half + 1;
+    const int along = fabs(offset[0]) < fabs(offset[1]), across = !along;
+    const double slope = offset[along] != 0 ? offset[across] / offset[along] : 0,
+                 wide = 1.5 * half + 2; // up to 45 degrees
+    const double first = fmin(from[along], from[along] + offset[along]) - half - 1;
+    const double last = fmax(from[along], from[along] + offset[along]) + half + 1;
     const int begin = (int)fmin(fmax(first, 0), sides[along]), end = (int)ceil(fmax(fmin(last, sides[along]), 0));
     for (int k = begin; k < end; k += PIECE) { // in pieces, since a slanted line fills little of its bounding rectangle
         const int length = end - k < PIECE ? end - k : PIECE;
@@ -107,7 +109,7 @@ void glint_layout_line(const glint_layout *layout, const double from[2], const d
         corner[across] = (int)floor(low);
         size[along] = length;
         size[across] = (int)ceil(high) - corner[across];
-        draw_piece(layout, from, way, half, color, corner, size);
+        draw_piece(layout, from, offset, half, color, corner, size);
     }
 }
 

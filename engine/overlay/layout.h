@@ -41,7 +41,8 @@ bool glint_layout_mask(const glint_layout *layout, int x, int y, int width, int 
 /// from   pixels from the picture's upper left corner.
 /// way    vector to the other end; pixels.
 /// half   half the thickness; pixels.
-void glint_layout_line(const glint_layout *layout, const double from[2], const double way[2], double half, const double color[3]);
+void glint_layout_line(const glint_layout *layout, const double from[2], const double offset[2], double half,
+                       const double color[3]);
 
 void glint_colorbar_measure(glint_layout *layout);
 void glint_colorbar_draw(const glint_layout *layout, int x, int y);

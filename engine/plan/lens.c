@@ -51,15 +51,15 @@ void glint_lens_point(const double square[2], uint32_t blades, double rotation, 
 static glint_status find_focus(glint_plan_camera *camera, const glint_camera_desc *desc, glint_error *error)
 {
     const double *point = desc->has_focus_point ? desc->focus_point : desc->at;
-    double way[3];
+    double to_focus[3];
     camera->focus = desc->focus;
     if (desc->focus > 0)
         return GLINT_OK;
     if (!desc->has_focus_point && desc->has_direction)
         return glint_fail(error, GLINT_ERR_INVALID,
                           "camera.focus: number > 0 or {x, y, z} expected where a camera with an aperture has a direction");
-    vec_sub(way, point, camera->eye);
-    camera->focus = vec_dot(way, camera->forward);
+    vec_sub(to_focus, point, camera->eye);
+    camera->focus = vec_dot(to_focus, camera->forward);
     if (camera->focus > 0 && isfinite(camera->focus))
         return GLINT_OK;
     return glint_fail(error, GLINT_ERR_INVALID, "camera.focus: a point in front of the eye expected, got {%.15g, %.15g, %.15g}",

@@ -10,8 +10,8 @@ bool glint_flow_create(glint_flow *flow, size_t node_count, size_t edge_count)
     flow->edges = malloc(2 * edge_count * sizeof *flow->edges);
     flow->from = calloc(node_count, sizeof *flow->from);
     flow->queue = malloc(node_count * sizeof *flow->queue);
-    flow->way = malloc(node_count * sizeof *flow->way);
-    return flow->edges && flow->from && flow->queue && flow->way;
+    flow->next_edge = malloc(node_count * sizeof *flow->next_edge);
+    return flow->edges && flow->from && flow->queue && flow->next_edge;
 }
 
 void glint_flow_destroy(glint_flow *flow)
@@ -19,7 +19,7 @@ void glint_flow_destroy(glint_flow *flow)
     free(flow->edges);
     free(flow->from);
     free(flow->queue);
-    free(flow->way);
+    free(flow->next_edge);
 }
 
 static void add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t room)
@@ -36,31 +36,31 @@ void glint_flow_add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t room)
 
 /// Searches backwards from the sink along edges with capacity left. Stores the first edge of each node's path to the
 /// sink. Returns whether the source has one.
-static bool find_way(glint_flow *flow)
+static bool find_path(glint_flow *flow)
 {
     uint32_t count = 0;
-    memset(flow->way, 0, flow->node_count * sizeof *flow->way);
+    memset(flow->next_edge, 0, flow->node_count * sizeof *flow->next_edge);
     flow->queue[count++] = GLINT_FLOW_SINK;
     for (uint32_t at = 0; at < count; at++)
         for (uint32_t e = flow->from[flow->queue[at]]; e; e = flow->edges[e - 1].next) {
             const uint32_t node = flow->edges[e - 1].to, step = ((e - 1) ^ 1) + 1;
-            if (node == GLINT_FLOW_SINK || flow->way[node] || !flow->edges[step - 1].room)
+            if (node == GLINT_FLOW_SINK || flow->next_edge[node] || !flow->edges[step - 1].room)
                 continue;
-            flow->way[node] = step;
+            flow->next_edge[node] = step;
             flow->queue[count++] = node;
         }
-    return flow->way[GLINT_FLOW_SOURCE];
+    return flow->next_edge[GLINT_FLOW_SOURCE];
 }
 
 /// Fills the augmenting path from the source. Returns the added flow.
-static uint32_t fill_way(glint_flow *flow)
+static uint32_t fill_path(glint_flow *flow)
 {
     uint32_t room = UINT32_MAX, node = GLINT_FLOW_SOURCE;
-    for (; node != GLINT_FLOW_SINK; node = flow->edges[flow->way[node] - 1].to)
-        room = room < flow->edges[flow->way[node] - 1].room ? room : flow->edges[flow->way[node] - 1].room;
-    for (node = GLINT_FLOW_SOURCE; node != GLINT_FLOW_SINK; node = flow->edges[flow->way[node] - 1].to) {
-        flow->edges[flow->way[node] - 1].room -= room;
-        flow->edges[(flow->way[node] - 1) ^ 1].room += room;
+    for (; node != GLINT_FLOW_SINK; node = flow->edges[flow->next_edge[node] - 1].to)
+        room = room < flow->edges[flow->next_edge[node] - 1].room ? room : flow->edges[flow->next_edge[node] - 1].room;
+    for (node = GLINT_FLOW_SOURCE; node != GLINT_FLOW_SINK; node = flow->edges[flow->next_edge[node] - 1].to) {
+        flow->edges[flow->next_edge[node] - 1].room -= room;
+        flow->edges[(flow->next_edge[node] - 1) ^ 1].room += room;
     }
     return room;
 }
@@ -68,12 +68,12 @@ static uint32_t fill_way(glint_flow *flow)
 uint32_t glint_flow_fill(glint_flow *flow, uint32_t limit)
 {
     uint32_t flowing = 0;
-    while (flowing <= limit && find_way(flow))
-        flowing += fill_way(flow);
+    while (flowing <= limit && find_path(flow))
+        flowing += fill_path(flow);
     return flowing;
 }
 
 bool glint_flow_near_sink(const glint_flow *flow, uint32_t node)
 {
-    return node == GLINT_FLOW_SINK || flow->way[node];
+    return node == GLINT_FLOW_SINK || flow->next_edge[node];
 }

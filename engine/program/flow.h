@@ -20,7 +20,7 @@ typedef struct glint_flow {
     uint32_t edge_count;
     uint32_t *from; ///< the first edge from each node, plus 1
     uint32_t *queue;
-    uint32_t *way; ///< the first edge of each node's path to the sink, plus 1; 0: no such path
+    uint32_t *next_edge; ///< the first edge of each node's path to the sink, plus 1; 0: no such path
     uint32_t node_count;
 } glint_flow;
 

@@ -135,11 +135,13 @@ static void pass_pairs(glint_slope_maker *s, const rule_case *x)
 /// Passes on the derivative of t t (3 - 2 t) with t = (x - a) / (b - a): 6 t (1 - t), and 0 where t is clamped.
 static void pass_smoothstep(glint_slope_maker *s, const rule_case *x)
 {
-    const glint_value way = two(s, GLINT_OP_SUB, x->b, x->a);
-    const glint_value t = glint_slope_op(s, GLINT_OP_CLAMP, two(s, GLINT_OP_DIV, two(s, GLINT_OP_SUB, x->c, x->a), way),
-                                glint_slope_number(s, 0), glint_slope_number(s, 1));
+    const glint_value width = two(s, GLINT_OP_SUB, x->b, x->a);
+    const glint_value t =
+        glint_slope_op(s, GLINT_OP_CLAMP, two(s, GLINT_OP_DIV, two(s, GLINT_OP_SUB, x->c, x->a), width),
+                       glint_slope_number(s, 0), glint_slope_number(s, 1));
     const glint_value rest = two(s, GLINT_OP_SUB, glint_slope_number(s, 1), t);
-    const glint_value steep = two(s, GLINT_OP_DIV, times(s, x->g, times(s, times(s, glint_slope_number(s, 6), t), rest)), way);
+    const glint_value steep =
+        two(s, GLINT_OP_DIV, times(s, x->g, times(s, times(s, glint_slope_number(s, 6), t), rest)), width);
     glint_slope_give(s, x->c, steep);
     if (s->varies[x->a])
         glint_slope_give(s, x->a, one(s, GLINT_OP_NEG, times(s, steep, rest)));

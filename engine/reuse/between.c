@@ -67,13 +67,13 @@ bool glint_may_show(const glint_plan *plan, const glint_ball *balls, uint32_t co
     sides s;
     find_sides(plan, column, row, &s);
     for (uint32_t i = 0; i < count; i++) {
-        double way[3];
-        vec_sub(way, balls[i].center, camera->eye);
-        const double own = loosened(balls[i].radius, length_of(way));
-        const double radius = own + beside(plan, vec_dot(way, camera->forward), own);
+        double offset[3];
+        vec_sub(offset, balls[i].center, camera->eye);
+        const double own = loosened(balls[i].radius, length_of(offset));
+        const double radius = own + beside(plan, vec_dot(offset, camera->forward), own);
         bool outside = false;
         for (int side = 0; side < 4; side++)
-            outside = outside || vec_dot(s.inwards[side], way) + s.offset[side] < -radius * s.length[side];
+            outside = outside || vec_dot(s.inwards[side], offset) + s.offset[side] < -radius * s.length[side];
         if (!outside)
             return true;
     }
@@ -101,7 +101,7 @@ static source source_of(const glint_plan_light *light)
 /// radii.
 static bool is_far_off(const source *light, const glint_point_box *box, const glint_ball *ball)
 {
-    double from[3], half[3], line[3], way[3], across[3];
+    double from[3], half[3], line[3], offset[3], across[3];
     for (int k = 0; k < 3; k++) {
         from[k] = 0.5 * box->lower[k] + 0.5 * box->upper[k];
         half[k] = 0.5 * box->upper[k] - 0.5 * box->lower[k];
@@ -111,12 +111,12 @@ static bool is_far_off(const source *light, const glint_point_box *box, const gl
     if (!light->directional)
         vec_sub(line, light->to, from);
     const double length2 = vec_dot(line, line);
-    vec_sub(way, ball->center, from);
-    double along = length2 > 0 ? fmax(vec_dot(way, line) / length2, 0) : 0;
+    vec_sub(offset, ball->center, from);
+    double along = length2 > 0 ? fmax(vec_dot(offset, line) / length2, 0) : 0;
     along = light->directional ? along : fmin(along, 1);
     for (int k = 0; k < 3; k++)
-        across[k] = way[k] - along * line[k];
-    const double far = length_of(way) + sqrt(length2) + length_of(from);
+        across[k] = offset[k] - along * line[k];
+    const double far = length_of(offset) + sqrt(length2) + length_of(from);
     return length_of(across) > loosened(ball->radius + wide, far);
 }
 
@@ -182,11 +182,11 @@ static void find_slabs(slabs *s, double (*corner)[3], const source *light)
 /// nothing.
 static bool is_clear_of(const slabs *s, const glint_ball *ball)
 {
-    double way[3];
-    vec_sub(way, ball->center, s->origin);
-    const double radius = loosened(ball->radius, length_of(way) + s->size);
+    double offset[3];
+    vec_sub(offset, ball->center, s->origin);
+    const double radius = loosened(ball->radius, length_of(offset) + s->size);
     for (int i = 0; i < s->count; i++) {
-        const double height = vec_dot(s->normal[i], way), reach = radius * s->length[i];
+        const double height = vec_dot(s->normal[i], offset), reach = radius * s->length[i];
         if (height - reach > s->high[i] || height + reach < s->low[i])
             return true;
     }

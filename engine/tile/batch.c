@@ -230,11 +230,11 @@ static void absorb(glint_batch *batch, const glint_tile_frame *frame)
         const uint32_t medium = glint_has_lane(rays->active, i) ? glint_batch_crossed(batch, frame, i) : GLINT_NO_MEDIUM;
         if (medium == GLINT_NO_MEDIUM)
             continue;
-        const double way = glint_batch_has_sample(batch, i)
-                               ? glint_real_at(tile->at.t, frame->plan->desc.precision, batch->sample[i])
-                               : HUGE_VAL; // directions are unit
+        const double distance = glint_batch_has_sample(batch, i)
+                                    ? glint_real_at(tile->at.t, frame->plan->desc.precision, batch->sample[i])
+                                    : HUGE_VAL; // directions are unit
         for (int c = 0; c < 3; c++)
-            rays->weight[c][i] *= glint_plan_left(frame->plan->bouncing[medium].absorption[c], way);
+            rays->weight[c][i] *= glint_plan_left(frame->plan->bouncing[medium].absorption[c], distance);
     }
 }
 
@@ -373,7 +373,7 @@ static double ratio_of(const glint_batch *batch, const glint_tile *tile, const g
     return index_of(frame->plan, sides[0]) / index_of(frame->plan, sides[1]);
 }
 
-void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame)
+void glint_batch_find_directions(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_precision precision = frame->plan->desc.precision;
     glint_bounce_args args = { .group_count = tile->group_count,
@@ -403,7 +403,7 @@ static void inherit(const glint_rays *rays, const glint_plan *plan, uint32_t i, 
 {
     for (int c = 0; c < 3; c++)
         ray->weight[c] = rays->weight[c][i];
-    ray->way = rays->way[i];
+    ray->path_length = rays->path_length[i];
     ray->least = rays->least[i];
     ray->pixel = rays->pixel[i];
     ray->point = rays->point[i];
@@ -421,7 +421,7 @@ static void begin_ray(const glint_plan *plan, uint32_t i, glint_ray *ray)
 {
     for (int c = 0; c < 3; c++)
         ray->weight[c] = 1;
-    ray->way = ray->least = 0;
+    ray->path_length = ray->least = 0;
     ray->pixel = i;
     ray->point = ray->depth = ray->passes = ray->scatters = 0;
     ray->sight = true;
@@ -439,7 +439,7 @@ void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, con
         begin_ray(frame->plan, i, ray);
     ray->inward = false;
     if (frame->plan->patterns)
-        ray->way += glint_real_at(tile->at.t, frame->plan->desc.precision, i);
+        ray->path_length += glint_real_at(tile->at.t, frame->plan->desc.precision, i);
     ray->leaving = tile->at.prim[i];
     for (int c = 0; c < 3; c++)
         ray->origin[c] = glint_real_at(tile->surface.point[c], frame->plan->desc.precision, i);
@@ -455,7 +455,7 @@ static void total_share(const glint_bounce_material *m, double share[3])
 }
 
 void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       double weight[GLINT_WAYS][3])
+                       double weight[GLINT_BRANCHES][3])
 {
     glint_bounce_material room;
     const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &room);
@@ -465,17 +465,17 @@ void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const g
     total_share(m, rest);
     const double *share = glint_has_lane(batch->total, i) ? rest : m->transmission;
     for (int c = 0; c < 3; c++) {
-        weight[GLINT_WAY_MIRRORED][c] = glint_weight(weight[GLINT_WAY_MIRRORED][c] * (m->mirror[c] * part));
-        weight[GLINT_WAY_REFRACTED][c] =
-            m->transmits ? glint_weight(weight[GLINT_WAY_REFRACTED][c] * (share[c] * left)) : 0;
-        weight[GLINT_WAY_STRAIGHT][c] = m->clears ? glint_weight(weight[GLINT_WAY_STRAIGHT][c] * m->clear) : 0;
+        weight[GLINT_BRANCH_MIRRORED][c] = glint_weight(weight[GLINT_BRANCH_MIRRORED][c] * (m->mirror[c] * part));
+        weight[GLINT_BRANCH_REFRACTED][c] =
+            m->transmits ? glint_weight(weight[GLINT_BRANCH_REFRACTED][c] * (share[c] * left)) : 0;
+        weight[GLINT_BRANCH_STRAIGHT][c] = m->clears ? glint_weight(weight[GLINT_BRANCH_STRAIGHT][c] * m->clear) : 0;
     }
 }
 
 /// Returns whether a ray that goes on from sample i crosses its surface.
-static bool crosses(const glint_batch *batch, uint32_t i, glint_way way)
+static bool crosses(const glint_batch *batch, uint32_t i, glint_branch branch)
 {
-    return way == GLINT_WAY_STRAIGHT || (way == GLINT_WAY_REFRACTED && !glint_has_lane(batch->total, i));
+    return branch == GLINT_BRANCH_STRAIGHT || (branch == GLINT_BRANCH_REFRACTED && !glint_has_lane(batch->total, i));
 }
 
 /// Updates the media of a ray that crosses the surface of sample i. A material that transmits has an inside; any
@@ -497,28 +497,29 @@ static void straight_direction(const glint_batch *batch, const glint_tile *tile,
 }
 
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       glint_ray rays[GLINT_WAYS])
+                       glint_ray rays[GLINT_BRANCHES])
 {
-    const int ways = frame->plan->clears ? GLINT_WAYS : GLINT_WAY_STRAIGHT;
-    double weight[GLINT_WAYS][3] = { { 0 } };
-    for (int way = 0; way < ways; way++) {
-        glint_batch_start_ray(batch, tile, frame, i, &rays[way]);
-        vec_copy(weight[way], rays[way].weight);
+    const int branch_count = frame->plan->clears ? GLINT_BRANCHES : GLINT_BRANCH_STRAIGHT;
+    double weight[GLINT_BRANCHES][3] = { { 0 } };
+    for (int branch = 0; branch < branch_count; branch++) {
+        glint_batch_start_ray(batch, tile, frame, i, &rays[branch]);
+        vec_copy(weight[branch], rays[branch].weight);
     }
     glint_batch_weigh(batch, tile, frame, i, weight);
-    for (int way = 0; way < ways; way++) {
-        const bool through = crosses(batch, i, (glint_way)way);
-        vec_copy(rays[way].weight, weight[way]);
+    for (int branch = 0; branch < branch_count; branch++) {
+        const bool through = crosses(batch, i, (glint_branch)branch);
+        vec_copy(rays[branch].weight, weight[branch]);
         for (int c = 0; c < 3; c++)
-            rays[way].direction[c] = glint_real_at(through ? batch->refracted[c] : batch->reflected[c], frame->plan->desc.precision, i);
-        if (way == GLINT_WAY_STRAIGHT)
-            straight_direction(batch, tile, frame, i, rays[way].direction);
-        rays[way].depth += way != GLINT_WAY_STRAIGHT;
-        rays[way].passes += way == GLINT_WAY_STRAIGHT;
-        rays[way].inward = glint_has_lane(tile->hit.back, i) != through;
-        rays[way].sight = rays[way].sight && through;
+            rays[branch].direction[c] =
+                glint_real_at(through ? batch->refracted[c] : batch->reflected[c], frame->plan->desc.precision, i);
+        if (branch == GLINT_BRANCH_STRAIGHT)
+            straight_direction(batch, tile, frame, i, rays[branch].direction);
+        rays[branch].depth += branch != GLINT_BRANCH_STRAIGHT;
+        rays[branch].passes += branch == GLINT_BRANCH_STRAIGHT;
+        rays[branch].inward = glint_has_lane(tile->hit.back, i) != through;
+        rays[branch].sight = rays[branch].sight && through;
         if (through && frame->plan->transmits)
-            cross(tile, frame, i, &rays[way].media);
+            cross(tile, frame, i, &rays[branch].media);
     }
 }
 
@@ -531,12 +532,12 @@ static void direct(const glint_batch *batch, const glint_tile *tile, const glint
     const glint_precision precision = frame->plan->desc.precision;
     for (uint32_t n = 0; n < sent->count; n++) {
         const uint32_t i = sent->sample[n];
-        const glint_way way = (glint_way)sent->way[n];
-        const bool through = crosses(batch, i, way), back = glint_has_lane(tile->hit.back, i);
+        const glint_branch branch = (glint_branch)sent->branch[n];
+        const bool through = crosses(batch, i, branch), back = glint_has_lane(tile->hit.back, i);
         double direction[3];
         for (int c = 0; c < 3; c++)
             direction[c] = glint_real_at(through ? batch->refracted[c] : batch->reflected[c], precision, i);
-        if (way == GLINT_WAY_STRAIGHT)
+        if (branch == GLINT_BRANCH_STRAIGHT)
             straight_direction(batch, tile, frame, i, direction);
         for (int c = 0; c < 3; c++)
             glint_real_put(rays->direction[c], precision, n, direction[c]);
@@ -556,10 +557,10 @@ static void note_passes(const glint_batch *batch, const glint_tile *tile, const 
     const glint_rays *from = tile == &batch->tile ? batch->rays : NULL;
     for (uint32_t n = 0; n < sent->count; n++) {
         const uint32_t i = sent->sample[n], ray = from ? batch->ray_of[i] : 0;
-        const bool straight = sent->way[n] == GLINT_WAY_STRAIGHT;
+        const bool straight = sent->branch[n] == GLINT_BRANCH_STRAIGHT;
         rays->depth[n] -= straight;
         rays->passes[n] = (from ? from->passes[ray] : 0) + straight;
-        rays->sight[n] = (from ? from->sight[ray] : true) && crosses(batch, i, (glint_way)sent->way[n]);
+        rays->sight[n] = (from ? from->sight[ray] : true) && crosses(batch, i, (glint_branch)sent->branch[n]);
     }
 }
 
@@ -575,9 +576,9 @@ static void hand_on(const glint_batch *batch, const glint_tile *tile, const glin
         rays->leaving[n] = tile->at.prim[i];
         rays->pixel[n] = from ? from->pixel[ray] : i;
         rays->depth[n] = from ? from->depth[ray] + 1 : 1;
-        rays->term[n] = from                                 ? from->term[ray]
-                        : sent->way[n] == GLINT_WAY_MIRRORED ? GLINT_TERM_MIRROR
-                                                             : GLINT_TERM_TRANSMISSION;
+        rays->term[n] = from                                       ? from->term[ray]
+                        : sent->branch[n] == GLINT_BRANCH_MIRRORED ? GLINT_TERM_MIRROR
+                                                                   : GLINT_TERM_TRANSMISSION;
     }
     memset(rays->passes, 0, sent->count * sizeof *rays->passes);
     if (frame->plan->clears || glint_tile_wants_coverage(frame->plan))
@@ -586,10 +587,10 @@ static void hand_on(const glint_batch *batch, const glint_tile *tile, const glin
     memset(rays->scatters, 0, sent->count * sizeof *rays->scatters);
     memset(rays->least, 0, sent->count * sizeof *rays->least);
     for (uint32_t n = 0; n < sent->count; n++)
-        rays->way[n] = frame->plan->patterns
-                           ? (from ? from->way[batch->ray_of[sent->sample[n]]] : 0) +
-                                 glint_real_at(tile->at.t, frame->plan->desc.precision, sent->sample[n])
-                           : 0;
+        rays->path_length[n] = frame->plan->patterns
+                                   ? (from ? from->path_length[batch->ray_of[sent->sample[n]]] : 0) +
+                                         glint_real_at(tile->at.t, frame->plan->desc.precision, sent->sample[n])
+                                   : 0;
 }
 
 void glint_batch_send(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,

@@ -26,7 +26,7 @@ typedef struct glint_batch {
     uint16_t sample[GLINT_TILE_SAMPLES]; ///< the sample of each ray that has one
     uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< the ray of each sample
     double shown[3][GLINT_TILE_SAMPLES]; ///< the background seen by rays without a sample, if a program computes it
-    // continuations of the wanted samples of a tile, by glint_batch_find_ways
+    // continuations of the wanted samples of a tile, by glint_batch_find_directions
     uint16_t wanted[GLINT_TILE_GROUPS], total[GLINT_TILE_GROUPS];
     _Alignas(64) double ratio[GLINT_TILE_SAMPLES];
     _Alignas(64) double reflectance[GLINT_TILE_SAMPLES];
@@ -34,12 +34,12 @@ typedef struct glint_batch {
 } glint_batch;
 
 /// The direction in which a ray goes on from a surface.
-typedef enum glint_way {
-    GLINT_WAY_MIRRORED,
-    GLINT_WAY_REFRACTED, ///< or totally reflected
-    GLINT_WAY_STRAIGHT, ///< through a translucent surface
-    GLINT_WAYS
-} glint_way;
+typedef enum glint_branch {
+    GLINT_BRANCH_MIRRORED,
+    GLINT_BRANCH_REFRACTED, ///< or totally reflected
+    GLINT_BRANCH_STRAIGHT, ///< through a translucent surface
+    GLINT_BRANCHES
+} glint_branch;
 
 #define GLINT_PASSES_MAX 4096 ///< translucent surfaces that one ray may go straight through
 
@@ -47,7 +47,7 @@ typedef enum glint_way {
 typedef struct glint_sent {
     uint32_t count;
     uint16_t sample[GLINT_TILE_SAMPLES]; ///< the sample where each ray starts
-    uint8_t way[GLINT_TILE_SAMPLES]; ///< a glint_way
+    uint8_t branch[GLINT_TILE_SAMPLES]; ///< a glint_branch
 } glint_sent;
 
 static inline bool glint_batch_has_sample(const glint_batch *batch, uint32_t ray)
@@ -99,19 +99,19 @@ static inline bool glint_batch_uncovers(const glint_batch *batch, const glint_pl
 }
 /// Computes the reflected and refracted directions at the samples of `tile` in batch->wanted. `tile` is the batch's
 /// own, or one that the eye sees.
-void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame);
+void glint_batch_find_directions(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame);
 /// Starts a ray at the hit of sample `i` of the tile. Direction and weight are set later,
 /// and the media only in frames with transparent materials.
 void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                            glint_ray *ray);
-/// Computes the weights of the rays that go on from sample `i`, after glint_batch_find_ways. In: the weight of the
-/// arriving ray for each. A ray that the material does not send gets 0.
+/// Computes the weights of the rays that go on from sample `i`, after glint_batch_find_directions. In: the weight of
+/// the arriving ray for each. A ray that the material does not send gets 0.
 void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       double weight[GLINT_WAYS][3]);
+                       double weight[GLINT_BRANCHES][3]);
 /// Returns these rays, with weights; the last one only in frames with translucent surfaces. If batch->total is set,
 /// the first two have the same direction.
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       glint_ray rays[GLINT_WAYS]);
+                       glint_ray rays[GLINT_BRANCHES]);
 /// Does the same for many samples: makes `rays` of the rays in `sent`, from ray 0 on, except for weights and slopes.
 /// Rays from a tile seen by the eye get their term, too.
 void glint_batch_send(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,

@@ -18,7 +18,7 @@ void glint_rays_put(glint_rays *rays, const glint_plan *plan, uint32_t i, const 
         rays->weight[c][i] = ray->weight[c];
     }
     rays->leaving[i] = ray->leaving;
-    rays->way[i] = ray->way;
+    rays->path_length[i] = ray->path_length;
     rays->least[i] = ray->least;
     rays->pixel[i] = ray->pixel;
     rays->point[i] = ray->point;

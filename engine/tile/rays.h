@@ -13,7 +13,7 @@ typedef struct glint_ray {
     uint32_t depth; ///< mirrors and refractions on its path so far
     uint32_t passes; ///< translucent surfaces that its path went straight through
     uint32_t scatters; ///< scatterings on its path so far
-    double way; ///< length of its path from the eye to its origin; in frames with programs
+    double path_length; ///< length of its path from the eye to its origin; in frames with programs
     double least; ///< the weight below which a path of indirect light ends
     uint16_t term; ///< the term that its light is added to
     bool inward;
@@ -27,7 +27,7 @@ typedef struct glint_rays {
     _Alignas(64) double origin[3][GLINT_TILE_SAMPLES], direction[3][GLINT_TILE_SAMPLES]; ///< real
     _Alignas(64) double weight[3][GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t leaving[GLINT_TILE_SAMPLES];
-    double way[GLINT_TILE_SAMPLES], least[GLINT_TILE_SAMPLES];
+    double path_length[GLINT_TILE_SAMPLES], least[GLINT_TILE_SAMPLES];
     uint32_t pixel[GLINT_TILE_SAMPLES], point[GLINT_TILE_SAMPLES];
     uint32_t depth[GLINT_TILE_SAMPLES], passes[GLINT_TILE_SAMPLES], scatters[GLINT_TILE_SAMPLES];
     uint16_t term[GLINT_TILE_SAMPLES];

@@ -8,17 +8,17 @@
 /// around the box that is nearest to the axis.
 static bool is_past(const glint_spot *spot, const double apex[3], const glint_point_box *box)
 {
-    double way[3], half[3], size = 0;
+    double offset[3], half[3], size = 0;
     for (int c = 0; c < 3; c++) {
-        way[c] = 0.5 * (box->lower[c] + box->upper[c]) - apex[c];
+        offset[c] = 0.5 * (box->lower[c] + box->upper[c]) - apex[c];
         half[c] = 0.5 * (box->upper[c] - box->lower[c]);
         size = fmax(size, fmax(fabs(apex[c]), fmax(fabs(box->lower[c]), fabs(box->upper[c]))));
     }
-    const double distance = sqrt(vec_dot(way, way)), radius = sqrt(vec_dot(half, half));
+    const double distance = sqrt(vec_dot(offset, offset)), radius = sqrt(vec_dot(half, half));
     if (!(distance - radius > SPOT_SLACK * size)) // too close: rounding may change the direction
         return false;
     const double sine = radius / distance, cosine = sqrt(1 - sine * sine);
-    const double along = vec_dot(way, spot->axis) / distance, across = sqrt(fmax(1 - along * along, 0));
+    const double along = vec_dot(offset, spot->axis) / distance, across = sqrt(fmax(1 - along * along, 0));
     return along < cosine && along * cosine + across * sine < spot->outer - SPOT_SLACK;
 }
 

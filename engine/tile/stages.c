@@ -357,10 +357,10 @@ static void weaken(glint_tile *tile, const glint_tile_frame *frame, const glint_
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = tile->at.light[slot].open[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            double way[3], most = HUGE_VAL;
+            double to_light[3], most = HUGE_VAL;
             for (int c = 0; c < 3 && light->radiant_cap; c++)
-                way[c] = light->position[c] - glint_real_at(tile->surface.point[c], precision, i);
-            if (light->radiant_cap && vec_dot(way, way) < light->cap->radius * light->cap->radius)
+                to_light[c] = light->position[c] - glint_real_at(tile->surface.point[c], precision, i);
+            if (light->radiant_cap && vec_dot(to_light, to_light) < light->cap->radius * light->cap->radius)
                 most = 1 / (light->cap->radius * light->cap->radius);
             if (light->attenuated)
                 tile->at.light[slot].visible[i] *= (float)fmin(tile->at.light[slot].attenuation[i], most);
@@ -374,12 +374,12 @@ static uint16_t facing_lanes(const glint_tile *tile, const glint_plan *plan, con
     uint16_t facing = 0;
     for (; lanes; lanes &= lanes - 1) {
         const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(lanes);
-        double way[3], normal[3];
+        double to_light[3], normal[3];
         for (int c = 0; c < 3; c++) {
-            way[c] = middle[c] - glint_real_at(tile->surface.point[c], plan->desc.precision, i);
+            to_light[c] = middle[c] - glint_real_at(tile->surface.point[c], plan->desc.precision, i);
             normal[c] = glint_real_at(tile->surface.normal[c], plan->desc.precision, i);
         }
-        if (!(vec_dot(normal, way) < 0))
+        if (!(vec_dot(normal, to_light) < 0))
             facing |= (uint16_t)(lanes & -lanes);
     }
     return facing;

@@ -376,7 +376,7 @@ bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
 
 /// effects/depth_cue/depth_cue.c: light that fades with the distance from the eye.
 /// Returns the distance of the hit of pixel i; infinite without a hit.
-double glint_tile_way_of(const glint_tile *tile, const glint_plan *plan, uint32_t i);
+double glint_tile_hit_distance(const glint_tile *tile, const glint_plan *plan, uint32_t i);
 
 /// effects/visible_light/visible_light.c: visible lights.
 /// Clears the lights seen. Returns false if no ray of the tile can see a light.

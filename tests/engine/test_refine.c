@@ -40,7 +40,7 @@ static uint32_t compare_row(const glint_refine *refine, size_t y)
     _Alignas(64) float light[48] = { 0 }, code[4][48], id[48] = { 0 };
     const float *line[GLINT_DIFFER_VALUES] = { id, id, id, id, code[0], code[1], code[2], code[3] };
     const glint_estimate_args estimate = { .count = 48, .gain = refine->gain, .light = light };
-    uint32_t differ[GLINT_DIFFER_WAYS];
+    uint32_t differ[GLINT_DIFFER_DIRECTIONS];
     for (int c = 0; c < 3; c++) {
         glint_estimate_args args = estimate;
         args.code = code[c];
@@ -160,7 +160,7 @@ static void differ_case(int precision, bool odd)
                                      .cosine = GLINT_REFINE_NORMAL };
     FOR_EACH_TESTED
     {
-        uint32_t *bits = output("differences", KIND_U32, 2 * GLINT_DIFFER_WAYS);
+        uint32_t *bits = output("differences", KIND_U32, 2 * GLINT_DIFFER_DIRECTIONS);
         glint_differences found;
         running->differ(&args, &found);
         memcpy(bits, &found, sizeof found);

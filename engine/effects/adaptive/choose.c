@@ -84,7 +84,7 @@ static void estimate_border(const glint_refine *refine, border *b)
 
 /// Computes which of the border's pixels differ.
 static void compare_border(const glint_refine *refine, border *b, uint32_t count, uint32_t ahead,
-                           uint32_t differ[GLINT_DIFFER_WAYS])
+                           uint32_t differ[GLINT_DIFFER_DIRECTIONS])
 {
     estimate_border(refine, b);
     glint_refine_lines lines = { .args = { .p = b->line[0], .q = b->line[1], .count = count, .ahead = ahead } };
@@ -103,7 +103,7 @@ static void join_columns(const glint_refine *refine, glint_refine_tile *left, gl
                          uint32_t height)
 {
     border b;
-    uint32_t differ[GLINT_DIFFER_WAYS];
+    uint32_t differ[GLINT_DIFFER_DIRECTIONS];
     if (are_alike(refine, left, right))
         return;
     for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
@@ -126,7 +126,7 @@ static void join_rows(const joiner *j, uint32_t column, uint32_t row)
     const size_t x = (size_t)column * GLINT_TILE_WIDTH, end = (size_t)(j->extent->x + j->extent->width);
     const uint32_t count = end - x < GLINT_TILE_WIDTH ? (uint32_t)(end - x) : GLINT_TILE_WIDTH;
     border b;
-    uint32_t differ[GLINT_DIFFER_WAYS];
+    uint32_t differ[GLINT_DIFFER_DIRECTIONS];
     const glint_refine_tile *own = tile_at(refine, column, row), *below = tile_at(refine, column, row + 1);
     const bool ahead = x + count < end; // a tile on the right
     if (are_alike(refine, own, below) && (!ahead || (are_alike(refine, own, below + 1) && are_alike(refine, own + 1, below))))

@@ -39,7 +39,8 @@ static bool exceeds(const glint_refine *refine, const glint_refine_lines *lines,
     return sum > refine->least;
 }
 
-void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *lines, uint32_t differ[GLINT_DIFFER_WAYS])
+void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *lines,
+                          uint32_t differ[GLINT_DIFFER_DIRECTIONS])
 {
     glint_differ_args args = lines->args;
     glint_differences found;
@@ -48,14 +49,15 @@ void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *
     args.high = refine->high;
     args.cosine = GLINT_REFINE_NORMAL;
     refine->stages->differ(&args, &found);
-    for (int way = 0; way < GLINT_DIFFER_WAYS; way++) {
-        const int line[2] = { 0, way != GLINT_DIFFER_ALONG };
-        const size_t p = way == GLINT_DIFFER_RISING, q = way == GLINT_DIFFER_ALONG || way == GLINT_DIFFER_FALLING;
-        differ[way] = found.sure[way];
-        for (uint32_t left = found.open[way] & ~found.sure[way]; left; left &= left - 1) {
+    for (int direction = 0; direction < GLINT_DIFFER_DIRECTIONS; direction++) {
+        const int line[2] = { 0, direction != GLINT_DIFFER_ALONG };
+        const size_t p = direction == GLINT_DIFFER_RISING,
+                     q = direction == GLINT_DIFFER_ALONG || direction == GLINT_DIFFER_FALLING;
+        differ[direction] = found.sure[direction];
+        for (uint32_t left = found.open[direction] & ~found.sure[direction]; left; left &= left - 1) {
             const size_t i = (size_t)__builtin_ctz(left);
             if (exceeds(refine, lines, line, p + i, q + i))
-                differ[way] |= left & -left;
+                differ[direction] |= left & -left;
         }
     }
 }
@@ -233,7 +235,7 @@ static void compare_rows(const glint_tile *tile, const glint_refine *refine, con
         const uint32_t y = (uint32_t)__builtin_ctz(open);
         const bool next = y + 1 < tile->height;
         const float *p[GLINT_DIFFER_VALUES], *q[GLINT_DIFFER_VALUES];
-        uint32_t differ[GLINT_DIFFER_WAYS];
+        uint32_t differ[GLINT_DIFFER_DIRECTIONS];
         for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
             p[v] = work->row[v][y];
             q[v] = work->row[v][y + next];

@@ -74,6 +74,7 @@ typedef struct glint_refine_lines {
 bool glint_refine_alike(const glint_refine *refine, const glint_refine_range *a, const glint_refine_range *b);
 
 /// Computes which of their pixels differ, as in glint_differences.
-void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *lines, uint32_t differ[GLINT_DIFFER_WAYS]);
+void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *lines,
+                          uint32_t differ[GLINT_DIFFER_DIRECTIONS]);
 
 #endif

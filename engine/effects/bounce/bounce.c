@@ -23,15 +23,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// One level, and GLINT_WAYS - 1 more for each surface that may send on several rays.
-#define LEVELS ((GLINT_WAYS - 1) * GLINT_BOUNCE_SPLITS + 1)
+/// One level, and GLINT_BRANCHES - 1 more for each surface that may send on several rays.
+#define LEVELS ((GLINT_BRANCHES - 1) * GLINT_BOUNCE_SPLITS + 1)
 
 struct glint_bounce {
     glint_batch batch;
     glint_rays room[LEVELS];
     glint_rays *levels[LEVELS]; ///< rays of each level; taking some swaps the buffers
     uint32_t counts[LEVELS];
-    glint_sent sent[GLINT_WAYS]; ///< the rays that a batch sends to its own level, and to the levels above
+    glint_sent sent[GLINT_BRANCHES]; ///< the rays that a batch sends to its own level, and to the levels above
     double budget[GLINT_TILE_SAMPLES]; ///< light that each sample may still lose
     glint_ray_slope *slopes; ///< slopes of the rays of all levels and of the batch's own rays; NULL until a frame has
         ///< derivatives
@@ -121,8 +121,8 @@ static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const gl
 
 /// The rays that continue from a sample.
 typedef struct parting {
-    double weight[GLINT_WAYS][3];
-    glint_ray_slope slopes[GLINT_WAYS][GLINT_DERIVATIVES_MAX]; ///< in frames with derivatives
+    double weight[GLINT_BRANCHES][3];
+    glint_ray_slope slopes[GLINT_BRANCHES][GLINT_DERIVATIVES_MAX]; ///< in frames with derivatives
 } parting;
 
 static double total_weight(const double weight[3]) { return (weight[0] + weight[1]) + weight[2]; }
@@ -145,17 +145,17 @@ static bool matters(const glint_plan *plan, const double weight[3], double *budg
 
 /// Sends one of the rays of sample i to level `base`, which is empty, or to one above.
 static void push(struct glint_bounce *bounce, const glint_plan *plan, uint32_t base, uint32_t above, uint32_t i,
-                 const parting *rays_of, glint_way way)
+                 const parting *rays_of, glint_branch branch)
 {
     glint_sent *sent = &bounce->sent[above];
     glint_rays *rays = bounce->levels[base + above];
     const uint32_t n = sent->count++;
     sent->sample[n] = (uint16_t)i;
-    sent->way[n] = (uint8_t)way;
+    sent->branch[n] = (uint8_t)branch;
     for (int c = 0; c < 3; c++)
-        rays->weight[c][n] = rays_of->weight[way][c];
+        rays->weight[c][n] = rays_of->weight[branch][c];
     if (plan->derivatives)
-        memcpy(rays->slopes + n * plan->derivatives->count, rays_of->slopes[way],
+        memcpy(rays->slopes + n * plan->derivatives->count, rays_of->slopes[branch],
                plan->derivatives->count * sizeof *rays->slopes);
 }
 
@@ -193,27 +193,27 @@ static void draw(const glint_plan *plan, parting *rays, double lot)
                  straight = total_weight(rays->weight[2]), at = lot * (mirrored + refracted + straight);
     const bool mirror = at < mirrored || !(refracted + straight > 0);
     const bool refraction = refracted > 0 && (at < mirrored + refracted || !(straight > 0));
-    const int drawn = mirror ? GLINT_WAY_MIRRORED : refraction ? GLINT_WAY_REFRACTED : GLINT_WAY_STRAIGHT;
-    for (int way = 0; way < GLINT_WAYS; way++)
-        if (way != drawn)
-            take_weight(plan, rays, drawn, way);
+    const int drawn = mirror ? GLINT_BRANCH_MIRRORED : refraction ? GLINT_BRANCH_REFRACTED : GLINT_BRANCH_STRAIGHT;
+    for (int branch = 0; branch < GLINT_BRANCHES; branch++)
+        if (branch != drawn)
+            take_weight(plan, rays, drawn, branch);
 }
 
 /// Sends on the rays of a sample that matter, the strongest to level `base`, the others to the levels above.
 static void push_all(struct glint_bounce *bounce, const glint_plan *plan, uint32_t base, uint32_t i, const parting *rays,
                      double *budget)
 {
-    const int ways = plan->clears ? GLINT_WAYS : GLINT_WAY_STRAIGHT;
-    double total[GLINT_WAYS];
-    for (int way = 0; way < ways; way++)
-        total[way] = matters(plan, rays->weight[way], budget) ? total_weight(rays->weight[way]) : 0;
-    for (int way = 0; way < ways; way++) {
+    const int branch_count = plan->clears ? GLINT_BRANCHES : GLINT_BRANCH_STRAIGHT;
+    double total[GLINT_BRANCHES];
+    for (int branch = 0; branch < branch_count; branch++)
+        total[branch] = matters(plan, rays->weight[branch], budget) ? total_weight(rays->weight[branch]) : 0;
+    for (int branch = 0; branch < branch_count; branch++) {
         uint32_t stronger = 0;
-        if (!(total[way] > 0))
+        if (!(total[branch] > 0))
             continue;
-        for (int other = 0; other < ways; other++)
-            stronger += total[other] > total[way] || (other < way && total[other] == total[way]);
-        push(bounce, plan, base, stronger, i, rays, (glint_way)way);
+        for (int other = 0; other < branch_count; other++)
+            stronger += total[other] > total[branch] || (other < branch && total[other] == total[branch]);
+        push(bounce, plan, base, stronger, i, rays, (glint_branch)branch);
     }
 }
 
@@ -228,15 +228,15 @@ static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const g
                    surfaces = depth + passes_at(bounce, tile, i) + 1;
     parting rays;
     for (int c = 0; c < 3; c++)
-        for (int way = 0; way < GLINT_WAYS; way++)
-            rays.weight[way][c] = first ? 1 : batch->rays->weight[c][ray];
+        for (int branch = 0; branch < GLINT_BRANCHES; branch++)
+            rays.weight[branch][c] = first ? 1 : batch->rays->weight[c][ray];
     glint_batch_weigh(batch, tile, frame, i, rays.weight);
     if (plan->derivatives)
         glint_derive_split(batch, tile, frame, i, rays.slopes);
     if (!(depth < plan->desc.max_depth)) // only the straight ray is left
-        memset(rays.weight, 0, GLINT_WAY_STRAIGHT * sizeof *rays.weight);
+        memset(rays.weight, 0, GLINT_BRANCH_STRAIGHT * sizeof *rays.weight);
     if (!first && glint_has_lane(batch->total, i)) // both have the same direction
-        take_weight(plan, &rays, GLINT_WAY_MIRRORED, GLINT_WAY_REFRACTED);
+        take_weight(plan, &rays, GLINT_BRANCH_MIRRORED, GLINT_BRANCH_REFRACTED);
     if (!first && surfaces > GLINT_BOUNCE_SPLITS)
         draw(plan, &rays, lot_of(batch, plan->desc.precision, i, surfaces));
     push_all(bounce, plan, base, i, &rays, &bounce->budget[first ? i : batch->rays->pixel[ray]]);
@@ -244,14 +244,14 @@ static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const g
 
 static void begin_sending(struct glint_bounce *bounce)
 {
-    for (int above = 0; above < GLINT_WAYS; above++)
+    for (int above = 0; above < GLINT_BRANCHES; above++)
         bounce->sent[above].count = 0;
 }
 
 static void end_sending(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame,
                         uint32_t base)
 {
-    for (uint32_t above = 0; above < GLINT_WAYS && base + above < LEVELS; above++) {
+    for (uint32_t above = 0; above < GLINT_BRANCHES && base + above < LEVELS; above++) {
         bounce->counts[base + above] = bounce->sent[above].count;
         if (bounce->sent[above].count)
             glint_batch_send(&bounce->batch, tile, frame, &bounce->sent[above], bounce->levels[base + above]);
@@ -263,7 +263,7 @@ static void spawn_first(struct glint_bounce *bounce, const glint_tile *tile, con
 {
     if (!choose(bounce, tile, frame))
         return;
-    glint_batch_find_ways(&bounce->batch, tile, frame);
+    glint_batch_find_directions(&bounce->batch, tile, frame);
     begin_sending(bounce);
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = bounce->batch.wanted[g]; left; left &= left - 1)
@@ -278,7 +278,7 @@ static void spawn(struct glint_bounce *bounce, const glint_tile_frame *frame, ui
     const glint_batch *batch = &bounce->batch;
     if (!choose(bounce, &batch->tile, frame))
         return;
-    glint_batch_find_ways(&bounce->batch, &batch->tile, frame);
+    glint_batch_find_directions(&bounce->batch, &batch->tile, frame);
     begin_sending(bounce);
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
         for (unsigned left = batch->rays->active[g]; left; left &= left - 1) {
@@ -356,13 +356,13 @@ static void follow(glint_tile *tile, const glint_tile_frame *frame)
     for (int i = 0; i < GLINT_TILE_SAMPLES; i++)
         bounce->budget[i] = GLINT_BOUNCE_LOSS;
     spawn_first(bounce, tile, frame);
-    for (uint32_t level = GLINT_WAYS - 1;;) { // the highest level that may have rays
+    for (uint32_t level = GLINT_BRANCHES - 1;;) { // the highest level that may have rays
         while (level > 0 && bounce->counts[level] == 0)
             level--;
         if (bounce->counts[level] == 0 || glint_tile_cancelled(frame))
             break;
         run_batch(bounce, tile, frame, level);
-        level = level + GLINT_WAYS - 1 < LEVELS ? level + GLINT_WAYS - 1 : LEVELS - 1;
+        level = level + GLINT_BRANCHES - 1 < LEVELS ? level + GLINT_BRANCHES - 1 : LEVELS - 1;
     }
     glint_batch_end(&bounce->batch, tile);
 }

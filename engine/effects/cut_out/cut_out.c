@@ -23,7 +23,7 @@ struct glint_cut_out {
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double t[GLINT_TILE_SAMPLES];
-    _Alignas(64) double way[GLINT_TILE_SAMPLES]; ///< t from the ray's first origin
+    _Alignas(64) double total_t[GLINT_TILE_SAMPLES]; ///< t from the ray's first origin
     _Alignas(64) double opacity[GLINT_PROGRAM_LANES];
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t material[GLINT_TILE_SAMPLES];
@@ -114,7 +114,7 @@ static void find_holes(struct glint_cut_out *cut, glint_tile *tile, const glint_
                                     .back = cut->back,
                                     .prim = cut->prim,
                                     .material = cut->material,
-                                    .t = seen ? cut->way : NULL,
+                                    .t = seen ? cut->total_t : NULL,
                                     .tile = tile };
     for (int c = 0; c < 3; c++) {
         surfaces.origin[c] = cut->origin[c];
@@ -218,7 +218,7 @@ static bool begin_seeing(struct glint_cut_out *cut, const glint_tile *tile, cons
         for (int c = 0; c < 3; c++)
             glint_real_put(cut->direction[c], precision, i, glint_tile_direction(tile, precision, c, i));
         glint_real_put(cut->t, precision, i, t);
-        glint_real_put(cut->way, precision, i, t);
+        glint_real_put(cut->total_t, precision, i, t);
         cut->begun[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
     }
     return true;
@@ -244,8 +244,8 @@ static void see_next(struct glint_cut_out *cut, glint_tile *tile, const glint_ti
             const uint16_t bit = (uint16_t)(left & -left);
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             const double t = glint_real_at(cut->t, precision, i);
-            const double before = cut->begun[g] & bit ? 0 : glint_real_at(cut->way, precision, i);
-            glint_real_put(cut->way, precision, i, before + t);
+            const double before = cut->begun[g] & bit ? 0 : glint_real_at(cut->total_t, precision, i);
+            glint_real_put(cut->total_t, precision, i, before + t);
             glint_real_put(tile->at.t, precision, i, before + t);
             tile->at.prim[i] = cut->prim[i];
             if (!(cut->hits[g] & bit))
@@ -262,7 +262,7 @@ static void take_nearer(const struct glint_cut_out *cut, glint_tile *tile, const
     const double rounding = precision == GLINT_FLOAT ? 0x1p-16 : 0x1p-40;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const double t = glint_real_at(cut->t, precision, i);
-        const double away = fabs(t - glint_real_at(cut->way, precision, i));
+        const double away = fabs(t - glint_real_at(cut->total_t, precision, i));
         if (!glint_has_lane(cut->hits, i) || !(away < off[i]) || !(any || away <= rounding * t))
             continue;
         glint_real_put(tile->at.t, precision, i, t);

@@ -24,7 +24,7 @@ static void *create(const glint_plan *plan)
 
 static struct glint_depth_cue *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_DEPTH_CUE]; }
 
-double glint_tile_way_of(const glint_tile *tile, const glint_plan *plan, uint32_t i)
+double glint_tile_hit_distance(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
     double d[3];
     if (!(tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) &&
@@ -36,10 +36,10 @@ double glint_tile_way_of(const glint_tile *tile, const glint_plan *plan, uint32_
 }
 
 /// Returns the share of the colour at a distance. The background does not fade.
-static double share_of(const glint_plan *plan, double way)
+static double share_of(const glint_plan *plan, double distance)
 {
-    const double x = (way - plan->depth_cue.near) / (plan->depth_cue.far - plan->depth_cue.near);
-    return plan->depth_cue.on && way < HUGE_VAL && x > 0 ? fmin(x, 1) : 0;
+    const double x = (distance - plan->depth_cue.near) / (plan->depth_cue.far - plan->depth_cue.near);
+    return plan->depth_cue.on && distance < HUGE_VAL && x > 0 ? fmin(x, 1) : 0;
 }
 
 /// Computes both shares from the hits of the current sample, before any other rays are followed.
@@ -51,10 +51,10 @@ static void find(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
         glint_tile_need_rays(tile, frame, walk);
     struct glint_depth_cue *depth_cue = own_of(tile);
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        const double way = any ? glint_tile_way_of(tile, plan, i) : HUGE_VAL;
-        depth_cue->share[i] = share_of(plan, way);
+        const double distance = any ? glint_tile_hit_distance(tile, plan, i) : HUGE_VAL;
+        depth_cue->share[i] = share_of(plan, distance);
         for (int c = 0; c < 3; c++)
-            depth_cue->left[c][i] = (1 - depth_cue->share[i]) * glint_plan_left(plan->veil.absorption[c], way);
+            depth_cue->left[c][i] = (1 - depth_cue->share[i]) * glint_plan_left(plan->veil.absorption[c], distance);
     }
 }
 

@@ -3,18 +3,20 @@
 #include "engine/effects/derivative/work.h"
 
 /// Computes the slope of the vector from a pinhole's eye to a hit as the view turns, at constant distance.
-static void turn_way(const glint_plan *plan, const glint_derivative_view *view, const double way[3], double out[3])
+static void turn_direction(const glint_plan *plan, const glint_derivative_view *view, const double direction[3],
+                           double out[3])
 {
     const glint_plan_camera *c = &plan->camera;
-    const double along = vec_dot(way, c->forward), across = vec_dot(way, c->right) / vec_dot(c->right, c->right),
-                 down = vec_dot(way, c->up) / vec_dot(c->up, c->up);
+    const double along = vec_dot(direction, c->forward),
+                 across = vec_dot(direction, c->right) / vec_dot(c->right, c->right),
+                 down = vec_dot(direction, c->up) / vec_dot(c->up, c->up);
     for (int i = 0; i < 3; i++)
         out[i] = (along * view->forward[i] + across * view->right[i]) + down * view->up[i];
 }
 
 /// A hit and its motion.
 typedef struct bent_hit {
-    double point[3], normal[3], way[3]; ///< way: along the ray, of any length
+    double point[3], normal[3], direction[3]; ///< direction: along the ray, of any length
     double carried[3]; ///< slope of the point at constant distance along the ray
 } bent_hit;
 
@@ -28,9 +30,9 @@ static void turn_unit(const double unit[3], double length, const double change[3
         out[c] = (change[c] - along * unit[c]) / length;
 }
 
-/// Computes half the gradient of the unit shape's implicit function on a curved surface, and its slope along `way`.
-/// Returns false on a flat face. `turn`: along the normal, in the space of the unit shape.
-static bool find_gradient(const glint_solid *solid, const double k[3], const double turn[3], const double way[3],
+/// Computes half the gradient of the unit shape's implicit function on a curved surface, and its slope along
+/// `direction`. Returns false on a flat face. `turn`: along the normal, in the space of the unit shape.
+static bool find_gradient(const glint_solid *solid, const double k[3], const double turn[3], const double direction[3],
                           double gradient[3], double change[3])
 {
     const double across = turn[0] * turn[0] + turn[1] * turn[1], along = turn[2] * turn[2];
@@ -43,11 +45,11 @@ static bool find_gradient(const glint_solid *solid, const double k[3], const dou
     if (solid->form == GLINT_FORM_TORUS) {
         const double round = sqrt(k[0] * k[0] + k[1] * k[1]);
         share = 1 - 1 / round;
-        share_slope = (k[0] * way[0] + k[1] * way[1]) / (round * round * round);
+        share_slope = (k[0] * direction[0] + k[1] * direction[1]) / (round * round * round);
     }
     for (int c = 0; c < 3; c++) {
         gradient[c] = c < 2 ? share * k[c] : z * k[c];
-        change[c] = c < 2 ? share * way[c] + share_slope * k[c] : z * way[c];
+        change[c] = c < 2 ? share * direction[c] + share_slope * k[c] : z * direction[c];
     }
     return true;
 }
@@ -56,17 +58,18 @@ static bool find_gradient(const glint_solid *solid, const double k[3], const dou
 static void curve_solid(const glint_solid *solid, const glint_prim *prim, const glint_derivative_part *part,
                         const bent_hit *hit, const double moved[3], double out[3])
 {
-    double k[3], turn[3], way[3], gradient[3], change[3], normal[3] = { 0 }, turned[3] = { 0 }, from[3], within[3];
+    double k[3], turn[3], direction[3], gradient[3], change[3], normal[3] = { 0 }, turned[3] = { 0 }, from[3],
+                                                                within[3];
     vec_sub(from, hit->point, prim->center);
     for (int c = 0; c < 3; c++) // relative to the moving sphere
         within[c] = (moved[c] - part->place[c]) - from[c] * part->growth;
     for (int c = 0; c < 3; c++) {
         const double column[3] = { solid->forward[0][c], solid->forward[1][c], solid->forward[2][c] };
         k[c] = vec_dot(solid->inverse[c], from);
-        way[c] = vec_dot(solid->inverse[c], within);
+        direction[c] = vec_dot(solid->inverse[c], within);
         turn[c] = vec_dot(column, hit->normal);
     }
-    if (!find_gradient(solid, k, turn, way, gradient, change))
+    if (!find_gradient(solid, k, turn, direction, gradient, change))
         return;
     for (int c = 0; c < 9; c++) {
         normal[c % 3] += solid->inverse[c / 3][c % 3] * gradient[c / 3];
@@ -156,9 +159,9 @@ static void hold(const bent_hit *hit, const glint_geometry_table *table, const g
         rest += gradient[c] * ((part->place[c] - hit->carried[c]) + part->growth * off[c]);
         rest -= part->normal[c] * (hit->point[c] - part->pivot[c]);
     }
-    const double further = rest / vec_dot(gradient, hit->way), side = vec_dot(gradient, hit->normal) < 0 ? -1 : 1;
+    const double further = rest / vec_dot(gradient, hit->direction), side = vec_dot(gradient, hit->normal) < 0 ? -1 : 1;
     for (int c = 0; c < 3; c++) {
-        out->point[c] = hit->carried[c] + further * hit->way[c];
+        out->point[c] = hit->carried[c] + further * hit->direction[c];
         out->normal[c] = side * part->normal[c];
     }
     for (int c = 0; c < 3 && prim->kind == GLINT_PRIM_SPHERE; c++)
@@ -190,9 +193,10 @@ static void find_lens(const glint_tile *tile, const glint_plan *plan, const glin
     }
 }
 
-/// Computes the ray of a sample, from `from` along `way`, with the slopes of both, for orthographic cameras and lenses.
+/// Computes the ray of a sample, from `from` along `direction`, with the slopes of both, for orthographic cameras and
+/// lenses.
 static void aim(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t i, double from[3],
-                double way[3], double moved[3], double turned[3])
+                double direction[3], double moved[3], double turned[3])
 {
     const glint_plan_camera *camera = &plan->camera;
     const double near = plan->lens ? 1 / camera->focus : 0;
@@ -204,7 +208,7 @@ static void aim(const glint_tile *tile, const glint_plan *plan, const glint_deri
         const double changed = place[0] * view->right[c] + place[1] * view->up[c];
         from[c] = camera->eye[c] + ((camera->orthographic ? across : 0) + at[c]);
         moved[c] = view->eye[c] + ((camera->orthographic ? changed : 0) + slope[c]);
-        way[c] = camera->forward[c] + ((camera->orthographic ? 0 : across) - at[c] * near);
+        direction[c] = camera->forward[c] + ((camera->orthographic ? 0 : across) - at[c] * near);
         turned[c] = view->forward[c] + ((camera->orthographic ? 0 : changed) - (slope[c] * near + at[c] * view->nearer));
     }
 }
@@ -216,16 +220,16 @@ static void bend_view(const glint_tile *tile, const glint_plan *plan, const glin
     double from[3], turned[3], far = 1;
     if (view->moves && (plan->lens || plan->camera.orthographic)) {
         double seen[3];
-        aim(tile, plan, view, i, from, hit->way, out->from, turned);
+        aim(tile, plan, view, i, from, hit->direction, out->from, turned);
         vec_sub(seen, hit->point, from);
-        far = vec_dot(seen, hit->way) / vec_dot(hit->way, hit->way);
+        far = vec_dot(seen, hit->direction) / vec_dot(hit->direction, hit->direction);
     } else {
         for (int c = 0; c < 3; c++)
-            hit->way[c] = view->moves ? hit->point[c] - plan->camera.eye[c] : -eye[c];
-        turn_way(plan, view, hit->way, turned);
+            hit->direction[c] = view->moves ? hit->point[c] - plan->camera.eye[c] : -eye[c];
+        turn_direction(plan, view, hit->direction, turned);
         vec_copy(out->from, view->eye);
     }
-    const double shorter = 1 / sqrt(vec_dot(hit->way, hit->way)), away = vec_dot(turned, eye);
+    const double shorter = 1 / sqrt(vec_dot(hit->direction, hit->direction)), away = vec_dot(turned, eye);
     for (int c = 0; c < 3; c++) {
         hit->carried[c] = out->from[c] + far * turned[c];
         out->eye[c] = (away * eye[c] - turned[c]) * shorter;
@@ -245,7 +249,7 @@ static bool bend_ray(const glint_batch *batch, const glint_plan *plan, size_t in
         moves = moves || slope->origin[c] != 0 || slope->direction[c] != 0;
     }
     for (int c = 0; c < 3; c++) {
-        hit->way[c] = -eye[c];
+        hit->direction[c] = -eye[c];
         out->from[c] = slope->origin[c];
         hit->carried[c] = slope->origin[c] + far * slope->direction[c];
         out->eye[c] = -slope->direction[c];
@@ -257,9 +261,9 @@ static bool bend_ray(const glint_batch *batch, const glint_plan *plan, size_t in
 static bool bend_site(const glint_plan *plan, const glint_derivative_view *view, const double point[3], const double eye[3],
                       glint_bend *out)
 {
-    double way[3];
-    vec_sub(way, plan->camera.eye, point);
-    const double length = sqrt(vec_dot(way, way)), along = vec_dot(view->eye, eye);
+    double direction[3];
+    vec_sub(direction, plan->camera.eye, point);
+    const double length = sqrt(vec_dot(direction, direction)), along = vec_dot(view->eye, eye);
     *out = (glint_bend) { .point = { 0 } };
     for (int c = 0; c < 3; c++) // see view_of in effects/vertex_shading/vertex.c
         out->eye[c] = plan->camera.orthographic || !(length > 0) ? -view->forward[c] : (view->eye[c] - along * eye[c]) / length;

@@ -12,7 +12,7 @@
 
 /// A ray at a surface, with its slopes for one derivative.
 typedef struct turning {
-    glint_dual way[3], normal[3]; ///< unit
+    glint_dual direction[3], normal[3]; ///< unit
     glint_dual ratio; ///< see glint_batch
     glint_dual cosine; ///< between them
     glint_dual left[3]; ///< share of the light along the ray on arrival
@@ -42,9 +42,9 @@ static turning find_turning(const glint_batch *batch, const glint_tile *tile, co
     glint_batch_sides(batch, tile, frame, i, sides);
     t.ratio = dual_div(index_of(plan, d, sides[0]), index_of(plan, d, sides[1]));
     for (int c = 0; c < 3; c++) {
-        t.way[c] = dual(-points.eye[c][i % GLINT_GROUP], -bend.eye[c]);
+        t.direction[c] = dual(-points.eye[c][i % GLINT_GROUP], -bend.eye[c]);
         t.normal[c] = dual(points.normal[c][i % GLINT_GROUP], bend.normal[c]);
-        t.cosine = dual_sub(t.cosine, dual_mul(t.way[c], t.normal[c]));
+        t.cosine = dual_sub(t.cosine, dual_mul(t.direction[c], t.normal[c]));
         t.point[c] = bend.point[c];
         t.left[c] = later ? dual(batch->rays->weight[c][ray], batch->rays->slopes[ray * plan->derivatives->count + index].weight[c])
                           : dual(1, 0);
@@ -68,14 +68,14 @@ static void refract(const turning *t, glint_dual *beyond, glint_dual *reflectanc
     *reflectance = dual_scale(dual_add(dual_mul(p, p), dual_mul(q, q)), 0.5);
 }
 
-/// Returns the slopes of a ray along ratio way + bend normal, with the weight `share` times `factor`.
+/// Returns the slopes of a ray along ratio direction + bend normal, with the weight `share` times `factor`.
 static glint_ray_slope slope_of(const turning *t, glint_dual ratio, glint_dual bend, const glint_dual share[3],
                                 glint_dual factor)
 {
     glint_ray_slope out;
     for (int c = 0; c < 3; c++) {
         out.origin[c] = t->point[c];
-        out.direction[c] = dual_add(dual_mul(ratio, t->way[c]), dual_mul(bend, t->normal[c])).slope;
+        out.direction[c] = dual_add(dual_mul(ratio, t->direction[c]), dual_mul(bend, t->normal[c])).slope;
         out.weight[c] = dual_mul(t->left[c], dual_mul(share[c], factor)).slope;
     }
     return out;
@@ -91,7 +91,7 @@ static glint_dual share_of(const glint_tile *tile, const glint_plan *plan, size_
 
 /// Like glint_batch_split, for one derivative.
 static void split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
-                  glint_ray_slope slopes[GLINT_WAYS][GLINT_DERIVATIVES_MAX])
+                  glint_ray_slope slopes[GLINT_BRANCHES][GLINT_DERIVATIVES_MAX])
 {
     const uint32_t material = tile->surface.material[i];
     glint_bounce_material room;
@@ -114,13 +114,13 @@ static void split(const glint_batch *batch, const glint_tile *tile, const glint_
     }
     const glint_dual part = m->fresnel ? reflectance : one, rest = m->fresnel ? dual_sub(one, reflectance) : one;
     const glint_dual bend = total ? twice : dual_sub(dual_mul(t.ratio, t.cosine), beyond);
-    slopes[GLINT_WAY_MIRRORED][index] = slope_of(&t, one, twice, mirrored, part);
-    slopes[GLINT_WAY_REFRACTED][index] = slope_of(&t, total ? one : t.ratio, bend, sent, rest);
-    slopes[GLINT_WAY_STRAIGHT][index] = slope_of(&t, one, dual(0, 0), straight, one);
+    slopes[GLINT_BRANCH_MIRRORED][index] = slope_of(&t, one, twice, mirrored, part);
+    slopes[GLINT_BRANCH_REFRACTED][index] = slope_of(&t, total ? one : t.ratio, bend, sent, rest);
+    slopes[GLINT_BRANCH_STRAIGHT][index] = slope_of(&t, one, dual(0, 0), straight, one);
 }
 
 void glint_derive_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                        glint_ray_slope slopes[GLINT_WAYS][GLINT_DERIVATIVES_MAX])
+                        glint_ray_slope slopes[GLINT_BRANCHES][GLINT_DERIVATIVES_MAX])
 {
     for (size_t k = 0; k < frame->plan->derivatives->count; k++)
         split(batch, tile, frame, k, i, slopes);
@@ -139,7 +139,7 @@ void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *f
             continue;
         const uint32_t i = batch->sample[ray];
         const bool hit = glint_batch_has_sample(batch, ray) && glint_has_lane(batch->tile.at.hits, i);
-        const double way =
+        const double distance =
             glint_batch_has_sample(batch, ray) ? glint_real_at(batch->tile.at.t, plan->desc.precision, i) : HUGE_VAL;
         for (size_t k = 0; k < count; k++) {
             const glint_plan_derivative *d = &plan->derivatives->of[k];
@@ -153,8 +153,8 @@ void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *f
                     longer -= (bend.point[c] - slope->origin[c]) * points.eye[c][i % GLINT_GROUP];
             for (int c = 0; c < 3; c++) {
                 const double a = plan->bouncing[medium].absorption[c], more = d->bounces[medium].absorption[c];
-                const double left = rays->weight[c][ray], off = way < HUGE_VAL ? a * longer + more * way : 0;
-                slope->weight[c] = slope->weight[c] * glint_plan_left(a, way) - left * off;
+                const double left = rays->weight[c][ray], off = distance < HUGE_VAL ? a * longer + more * distance : 0;
+                slope->weight[c] = slope->weight[c] * glint_plan_left(a, distance) - left * off;
             }
         }
     }

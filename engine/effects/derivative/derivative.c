@@ -127,7 +127,7 @@ void glint_derivative_take_cone(glint_tile *tile, const glint_tile_frame *frame,
         const glint_cone_sample own = glint_cone_at(
             sample, light->scale, is_float ? GLINT_CONE_SLACK_FLOAT : GLINT_CONE_SLACK_DOUBLE, at, normal, i);
         for (int c = 0; c < 3; c++)
-            work->position[c][i] = at[c] + own.way[c] * own.far;
+            work->position[c][i] = at[c] + own.direction[c] * own.far;
         work->weight[i] = own.weight;
     }
     for (int c = 0; c < 3; c++)

@@ -18,11 +18,12 @@ bool glint_derive_fade_fits(glint_derivative_work *work, const glint_plan *plan)
 }
 
 /// Returns the distance of the hit that the eye sees in lane i.
-static glint_dual way_of(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i, double way)
+static glint_dual distance_of(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
+                              double distance)
 {
     glint_derivative_points points;
     glint_derivative_find_points(tile, frame, i / GLINT_GROUP, &points);
-    glint_dual out = dual(way, 0);
+    glint_dual out = dual(distance, 0);
     glint_bend bend;
     if (frame->plan->derivatives->of[index].bends && glint_has_lane(tile->at.hits, i) &&
         glint_bend_sample(tile, frame, index, i, &points, &bend))
@@ -31,25 +32,25 @@ static glint_dual way_of(const glint_tile *tile, const glint_tile_frame *frame, 
     return out;
 }
 
-static glint_dual share_of(const glint_plan *plan, const glint_plan_derivative *d, glint_dual way)
+static glint_dual share_of(const glint_plan *plan, const glint_plan_derivative *d, glint_dual distance)
 {
     const glint_dual near = dual(plan->depth_cue.near, d->fade.near), far = dual(plan->depth_cue.far, d->fade.far);
-    if (!plan->depth_cue.on || !(way.value < HUGE_VAL))
+    if (!plan->depth_cue.on || !(distance.value < HUGE_VAL))
         return dual(0, 0);
-    const glint_dual x = dual_div(dual_sub(way, near), dual_sub(far, near));
+    const glint_dual x = dual_div(dual_sub(distance, near), dual_sub(far, near));
     return x.value >= 1 ? dual(1, 0) : x.value > 0 ? x : dual(0, 0);
 }
 
-static fade find_fade(const glint_plan *plan, const glint_plan_derivative *d, glint_dual way)
+static fade find_fade(const glint_plan *plan, const glint_plan_derivative *d, glint_dual distance)
 {
-    fade out = { .share = share_of(plan, d, way) };
+    fade out = { .share = share_of(plan, d, distance) };
     const glint_dual rest = dual_sub(dual(1, 0), out.share);
     for (int c = 0; c < 3; c++) {
         const double a = plan->veil.absorption[c], more = plan->veil.on ? d->bounces[plan->veil.material].absorption[c] : 0;
-        const double left = glint_plan_left(a, way.value);
+        const double left = glint_plan_left(a, distance.value);
         out.left[c] = rest;
-        if (way.value < HUGE_VAL)
-            out.left[c] = dual_mul(rest, dual(left, -left * (a * way.slope + more * way.value)));
+        if (distance.value < HUGE_VAL)
+            out.left[c] = dual_mul(rest, dual(left, -left * (a * distance.slope + more * distance.value)));
         else
             out.left[c] = dual_scale(rest, left);
     }
@@ -63,10 +64,10 @@ void glint_derive_fade(glint_tile *tile, const glint_tile_frame *frame)
     const glint_plan_derivatives *all = plan->derivatives;
     const bool weighs = glint_derivatives_weigh(all);
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        const double way = glint_tile_way_of(tile, plan, i);
+        const double distance = glint_tile_hit_distance(tile, plan, i);
         for (size_t k = 0; k < all->count; k++) {
             const glint_plan_derivative *d = &all->of[k];
-            const fade f = find_fade(plan, d, way_of(tile, frame, k, i, way));
+            const fade f = find_fade(plan, d, distance_of(tile, frame, k, i, distance));
             for (int c = 0; c < 3; c++) {
                 const double before = tile->sample == 0 ? 0 : work->faded[k][c][i], light = weighs ? work->light[c][i] : 0;
                 const double color = f.share.slope * plan->depth_cue.color[c] + f.share.value * d->fade.color[c];

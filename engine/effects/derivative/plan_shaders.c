@@ -6,13 +6,13 @@
 #include <stdlib.h>
 
 #define BITS(first, count) (((1u << (count)) - 1) << (first))
-#define PLACE (BITS(GLINT_INPUT_P_X, 12) | BITS(GLINT_INPUT_UV_U, 4)) ///< position, normal and viewer
-#define WAYS (BITS(GLINT_INPUT_L_X, 3) | 1u << GLINT_INPUT_DISTANCE) ///< directions and distances to lights
+#define GEOMETRY (BITS(GLINT_INPUT_P_X, 12) | BITS(GLINT_INPUT_UV_U, 4)) ///< position, normal and viewer
+#define TO_LIGHTS (BITS(GLINT_INPUT_L_X, 3) | 1u << GLINT_INPUT_DISTANCE) ///< directions and distances to lights
 #define COLORS BITS(GLINT_INPUT_LIGHT_R, 3) ///< light that arrives
 #define REFLECTANCES BITS(GLINT_INPUT_KD_R, 7) ///< with the exponent
 
 /// Returns whether the amount of some light depends on its direction.
-static bool ways_weigh(const glint_plan *plan, const glint_plan_derivative *d)
+static bool depends_on_direction(const glint_plan *plan, const glint_plan_derivative *d)
 {
     bool any = false;
     for (size_t i = 0; i < plan->derivatives->light_count; i++)
@@ -25,12 +25,12 @@ static bool ways_weigh(const glint_plan *plan, const glint_plan_derivative *d)
 /// Returns the inputs of a shader that a derivative changes, one bit each.
 static uint32_t find_inputs(const glint_plan *plan, const glint_plan_derivative *d, uint32_t material)
 {
-    const uint32_t arrival = WAYS | (ways_weigh(plan, d) ? COLORS : 0);
-    uint32_t inputs = d->bends ? PLACE | arrival : 0;
+    const uint32_t arrival = TO_LIGHTS | (depends_on_direction(plan, d) ? COLORS : 0);
+    uint32_t inputs = d->bends ? GEOMETRY | arrival : 0;
     for (size_t i = 0; i < plan->derivatives->light_count; i++)
         inputs |= d->lights[i].varies ? arrival | (d->lights[i].shines ? COLORS : 0) : 0;
     for (size_t i = 0; i < plan->derivatives->material_count; i++) // the light may come through any material
-        inputs |= glint_any_slope(d->bounces[i].transmission) ? WAYS | COLORS : 0;
+        inputs |= glint_any_slope(d->bounces[i].transmission) ? TO_LIGHTS | COLORS : 0;
     return inputs | (d->materials[material].varies ? REFLECTANCES : 0);
 }
 

@@ -59,12 +59,13 @@ static glint_dual find_size(const glint_plan *plan, const glint_camera_desc *des
 static glint_dual find_nearness(const glint_camera_desc *desc, const glint_camera_desc *slope, const glint_dual eye[3],
                                 const glint_dual forward[3])
 {
-    glint_dual way[3], focus = dual(desc->focus, slope->focus);
+    glint_dual to_focus[3], focus = dual(desc->focus, slope->focus);
     if (!(desc->focus > 0)) {
-        duals(way, desc->has_focus_point ? desc->focus_point : desc->at, desc->has_focus_point ? slope->focus_point : slope->at);
+        duals(to_focus, desc->has_focus_point ? desc->focus_point : desc->at,
+              desc->has_focus_point ? slope->focus_point : slope->at);
         for (int c = 0; c < 3; c++)
-            way[c] = dual_sub(way[c], eye[c]);
-        focus = dual_dot(way, forward);
+            to_focus[c] = dual_sub(to_focus[c], eye[c]);
+        focus = dual_dot(to_focus, forward);
     }
     return dual_div(dual(1, 0), focus);
 }

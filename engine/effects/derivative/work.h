@@ -106,7 +106,7 @@ const double *glint_derivative_painted(const glint_tile *tile, const glint_plan 
 
 /// bounce.c: with glint_batch_split, computes the slopes of the rays for all derivatives.
 void glint_derive_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                        glint_ray_slope slopes[GLINT_WAYS][GLINT_DERIVATIVES_MAX]);
+                        glint_ray_slope slopes[GLINT_BRANCHES][GLINT_DERIVATIVES_MAX]);
 /// After glint_batch_light: computes the slopes of the rays' weights by absorption.
 void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *frame);
 /// Adds the slopes of the rays' light to those of their pixels.

@@ -92,7 +92,7 @@ static bool goes_on(const glint_batch *batch, const glint_plan *plan, uint32_t i
            (m->clears && batch->rays->passes[ray] < GLINT_PASSES_MAX);
 }
 
-void glint_indirect_find_ways(struct glint_indirect *indirect, const glint_tile_frame *frame)
+void glint_indirect_find_directions(struct glint_indirect *indirect, const glint_tile_frame *frame)
 {
     glint_batch *batch = &indirect->batch;
     const glint_plan *plan = frame->plan;
@@ -107,12 +107,12 @@ void glint_indirect_find_ways(struct glint_indirect *indirect, const glint_tile_
         any |= batch->wanted[g];
     }
     if (any)
-        glint_batch_find_ways(batch, &batch->tile, frame);
+        glint_batch_find_directions(batch, &batch->tile, frame);
 }
 
-/// Draws the turn that a path takes, with a probability proportional to the shares of its light.
-static int choose_way(const struct glint_indirect *indirect, uint64_t number, const glint_rays *rays, uint32_t ray,
-                      const double share[CHOICES], double all)
+/// Draws the continuation of a path, with a probability proportional to the shares of its light.
+static int choose_branch(const struct glint_indirect *indirect, uint64_t number, const glint_rays *rays, uint32_t ray,
+                         const double share[CHOICES], double all)
 {
     int likely = 0, last = CHOICES - 1;
     double number_of[2], sum = 0;
@@ -140,21 +140,21 @@ static turn choose(struct glint_indirect *indirect, const glint_tile_frame *fram
     const uint32_t ray = batch->ray_of[i];
     double share[CHOICES] = { 0 }, least = 0, room[3];
     const double *diffuse = glint_tile_diffuse(&batch->tile, frame->plan, i, room);
-    glint_ray split[GLINT_WAYS];
+    glint_ray split[GLINT_BRANCHES];
     if (rays->scatters[ray] < frame->plan->indirect.bounces)
         for (int c = 0; c < 3; c++)
             share[0] += diffuse[c] * rays->weight[c][ray];
     if (glint_has_lane(batch->wanted, i)) {
         const bool ends = !(rays->depth[ray] < frame->plan->desc.max_depth); // only scattered or straight rays are left
         glint_batch_split(batch, &batch->tile, frame, i, split);
-        share[1] = ends ? 0 : 3 * mean(split[GLINT_WAY_MIRRORED].weight);
-        share[2] = ends ? 0 : 3 * mean(split[GLINT_WAY_REFRACTED].weight);
-        share[3] = frame->plan->clears ? 3 * mean(split[GLINT_WAY_STRAIGHT].weight) : 0;
+        share[1] = ends ? 0 : 3 * mean(split[GLINT_BRANCH_MIRRORED].weight);
+        share[2] = ends ? 0 : 3 * mean(split[GLINT_BRANCH_REFRACTED].weight);
+        share[3] = frame->plan->clears ? 3 * mean(split[GLINT_BRANCH_STRAIGHT].weight) : 0;
     }
     const double all = ((share[0] + share[1]) + share[2]) + share[3];
     if (!(all > 0))
         return TURN_NONE;
-    const int chosen = choose_way(indirect, number, rays, ray, share, all);
+    const int chosen = choose_branch(indirect, number, rays, ray, share, all);
     const double chance = share[chosen] / all;
     if (chosen)
         *next = split[chosen - 1];
@@ -193,7 +193,7 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
     unsigned any = 0;
     if (!frame->plan->bouncing && step + 1 >= frame->plan->indirect.bounces) // all paths have reached the limit
         return false;
-    glint_indirect_find_ways(indirect, frame);
+    glint_indirect_find_directions(indirect, frame);
     glint_rays_clear(rays, tile->group_count);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         indirect->scattered[g] = 0;

@@ -36,9 +36,9 @@ static void find_shares(glint_tile *tile, const glint_tile_frame *frame)
 static glint_ray ray_beyond(const glint_batch *batch, const glint_tile_frame *frame, uint32_t i)
 {
     const bool ends = !(batch->rays->depth[batch->ray_of[i]] < frame->plan->desc.max_depth);
-    glint_ray split[GLINT_WAYS];
+    glint_ray split[GLINT_BRANCHES];
     glint_batch_split(batch, &batch->tile, frame, i, split);
-    const glint_ray *refracted = &split[GLINT_WAY_REFRACTED], *straight = &split[GLINT_WAY_STRAIGHT];
+    const glint_ray *refracted = &split[GLINT_BRANCH_REFRACTED], *straight = &split[GLINT_BRANCH_STRAIGHT];
     if (!frame->plan->clears || !(straight->weight[0] > 0))
         return *refracted;
     glint_ray ray = *straight;
@@ -55,7 +55,7 @@ static bool go_through(struct glint_indirect *indirect, const glint_tile_frame *
     glint_rays *rays = &indirect->next[step & 1];
     unsigned any = 0;
     find_shares(tile, frame);
-    glint_indirect_find_ways(indirect, frame);
+    glint_indirect_find_directions(indirect, frame);
     glint_rays_clear(rays, tile->group_count);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         for (unsigned left = batch->wanted[g]; left; left &= left - 1) {

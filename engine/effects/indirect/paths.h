@@ -79,7 +79,7 @@ void glint_indirect_scatter(const glint_tile *tile, const glint_tile_frame *fram
 bool glint_indirect_begin_paths(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
                                 uint32_t path, uint64_t number);
 /// Computes the continuations at samples of the batch with mirrors and transparent materials.
-void glint_indirect_find_ways(struct glint_indirect *indirect, const glint_tile_frame *frame);
+void glint_indirect_find_directions(struct glint_indirect *indirect, const glint_tile_frame *frame);
 /// Adds the background seen by rays that hit nothing, the lanes in `missed`, to the sums of their pixels.
 void glint_indirect_collect_missed(const struct glint_indirect *indirect, const glint_tile_frame *frame,
                                    const uint16_t *missed, const double background[3], glint_tile *to);

@@ -154,14 +154,15 @@ static void gather_points(const gathering *g, unsigned lanes)
 
 // ---- The viewer ----
 
-/// Returns the camera of the rays if the stage `unit` can compute the directions; NULL: load_way_back computes them.
+/// Returns the camera of the rays if the stage `unit` can compute the directions; NULL: load_directions_to_eye computes
+/// them.
 static const glint_camera_args *camera_of(const glint_tile_frame *frame, const glint_pattern_points *points)
 {
     return points->direction[0] || frame->plan->desc.precision != GLINT_DOUBLE ? NULL : glint_tile_rays_of(points->tile);
 }
 
 /// Loads a component of the directions back along the group's rays, not normalised: see glint_tile_direction.
-static void load_way_back(const gathering *g, int c, double *restrict out)
+static void load_directions_to_eye(const gathering *g, int c, double *restrict out)
 {
     const glint_tile *tile = g->points->tile;
     if (g->points->direction[c] || glint_tile_has_arrays(tile)) {
@@ -199,7 +200,8 @@ static void gather_footprints(const gathering *g, unsigned lanes)
     for (; lanes; lanes &= lanes - 1) {
         const uint32_t lane = (uint32_t)__builtin_ctz(lanes), i = (uint32_t)g->at + lane;
         const double t = g->points->t ? glint_real_at(g->points->t, g->frame->plan->desc.precision, i) : 0;
-        const double far = t + (g->points->t && tile->batch ? tile->batch->rays->way[tile->batch->ray_of[i]] : 0);
+        const double far =
+            t + (g->points->t && tile->batch ? tile->batch->rays->path_length[tile->batch->ray_of[i]] : 0);
         row(g, GLINT_INPUT_FOOTPRINT)[lane] = !g->points->t ? 0 : patterns->pixel * (patterns->parallel ? 1 : far);
     }
 }
@@ -338,7 +340,7 @@ static void gather_group(const gathering *g, uint32_t reads, unsigned lanes)
     if (reads & READS_N)
         gather_normals(g, lanes);
     for (int c = 0; c < 3 && reads & READS_V; c++)
-        load_way_back(g, c, row(g, GLINT_INPUT_V_X + c));
+        load_directions_to_eye(g, c, row(g, GLINT_INPUT_V_X + c));
     if (reads & READS_FOOTPRINT)
         gather_footprints(g, lanes);
     if (reads & READS_UV)

@@ -105,8 +105,8 @@ static void place_sample(glint_tile *tile, const glint_plan *plan, const batch *
 }
 
 /// Gathers the directions to a light and, if the program reads it, the distance.
-static void gather_way(glint_tile *tile, const glint_tile_frame *frame, const batch *b, const reached *lit,
-                       const glint_plan_light *light)
+static void gather_light_directions(glint_tile *tile, const glint_tile_frame *frame, const batch *b, const reached *lit,
+                                    const glint_plan_light *light)
 {
     glint_pattern_inputs *inputs = &tile->pattern->inputs;
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
@@ -116,10 +116,10 @@ static void gather_way(glint_tile *tile, const glint_tile_frame *frame, const ba
                              .place = sample ? NULL : light->position,
                              .length = measured ? glint_pattern_row(inputs, GLINT_INPUT_DISTANCE) + at : NULL };
     for (int c = 0; c < 3; c++) {
-        double *way = inputs->row[GLINT_INPUT_L_X + c] + at;
-        args.to[c] = way;
+        double *direction = inputs->row[GLINT_INPUT_L_X + c] + at;
+        args.to[c] = direction;
         args.from[c] = light->directional ? NULL : inputs->from[GLINT_INPUT_WORLD_X + c] + at;
-        args.unit[c] = way;
+        args.unit[c] = direction;
     }
     if (sample)
         place_sample(tile, frame->plan, b, lit, light, sample);
@@ -173,7 +173,7 @@ static void add_light(glint_tile *tile, const glint_tile_frame *frame, const bat
                                 .wanted = lit->lanes + lit->first,
                                 .groups = to == TO_TOTALS ? NULL : b->groups + lit->first,
                                 .share = from->visible ? share : NULL };
-    gather_way(tile, frame, b, lit, from->light);
+    gather_light_directions(tile, frame, b, lit, from->light);
     gather_color(tile, b, from);
     if (from->visible)
         gather_share(b, lit, from, share);

@@ -229,9 +229,9 @@ static void aim(struct glint_transparent_shadow *transparent_shadow, glint_preci
 }
 
 /// Returns the share of channel c that a medium transmits over a distance.
-static double left_of(const glint_plan *plan, uint32_t medium, int c, double way)
+static double left_of(const glint_plan *plan, uint32_t medium, int c, double distance)
 {
-    return glint_plan_left(medium == GLINT_NO_MEDIUM ? 0 : plan->bouncing[medium].absorption[c], way);
+    return glint_plan_left(medium == GLINT_NO_MEDIUM ? 0 : plan->bouncing[medium].absorption[c], distance);
 }
 
 static double direction_length(const struct glint_transparent_shadow *transparent_shadow, glint_precision precision,
@@ -253,9 +253,10 @@ static void arrive(struct glint_transparent_shadow *transparent_shadow, const gl
     if (!plan->absorbs)
         return;
     const uint32_t medium = glint_media_top(&transparent_shadow->media[ray]);
-    const double way = light->directional ? HUGE_VAL : direction_length(transparent_shadow, plan->desc.precision, i);
+    const double distance =
+        light->directional ? HUGE_VAL : direction_length(transparent_shadow, plan->desc.precision, i);
     for (int c = 0; c < 3; c++)
-        transparent_shadow->color[c][ray] *= left_of(plan, medium, c, way);
+        transparent_shadow->color[c][ray] *= left_of(plan, medium, c, distance);
 }
 
 /// Returns the share of light that goes straight on through the surface in slot i.

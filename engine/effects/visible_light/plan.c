@@ -14,9 +14,10 @@ bool glint_light_shows(const glint_light_desc *desc, double shown[3])
     bool any = false;
     if (!desc->visible || !(area > 0))
         return false;
-    const double way = desc->kind == GLINT_LIGHT_POLYGON ? sqrt(area / PI) : desc->radius;
-    const double factor =
-        desc->has_radiance ? PI * desc->radiance : desc->intensity / (a[0] + (a[1] * way + a[2] * (way * way)));
+    const double distance = desc->kind == GLINT_LIGHT_POLYGON ? sqrt(area / PI) : desc->radius;
+    const double factor = desc->has_radiance
+                              ? PI * desc->radiance
+                              : desc->intensity / (a[0] + (a[1] * distance + a[2] * (distance * distance)));
     for (int c = 0; c < 3; c++) {
         shown[c] = desc->color[c] == 0 ? 0 : fmin(desc->color[c] * factor, STRENGTH_MAX);
         any = any || shown[c] > 0;

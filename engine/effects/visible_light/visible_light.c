@@ -110,13 +110,13 @@ static double meet_flat(const glint_plan_visible_light *visible_light, const vis
 /// Returns whether a surface at `t` lies in the light's plane, within rounding.
 static bool lies_in(const glint_plan_visible_light *visible_light, const visible_light_ray *ray, double t)
 {
-    double p[3], way[3];
+    double p[3], offset[3];
     if (visible_light->ball || !(t < HUGE_VAL))
         return false;
-    vec_scale(way, ray->direction, t);
+    vec_scale(offset, ray->direction, t);
     for (int c = 0; c < 3; c++)
-        p[c] = ray->origin[c] + way[c];
-    return height_over(visible_light, p, vec_max_abs(way) + vec_max_abs(ray->origin), ray->slack) == 0;
+        p[c] = ray->origin[c] + offset[c];
+    return height_over(visible_light, p, vec_max_abs(offset) + vec_max_abs(ray->origin), ray->slack) == 0;
 }
 
 /// Returns the light that a ray hits before its surface at `*t`; GLINT_MISS: none. At equal distance, the light

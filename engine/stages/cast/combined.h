@@ -69,7 +69,7 @@ static void R(stretch_from)(const glint_geometry_table *table, const glint_prim 
         R(solid_start) start;
         R(start_at)(solid, part, o, &start);
         const R(span) span = R(span_along)(solid, &start, d, true);
-        out = r_max(span.t[1], r_set(GLINT_LEAST_WAY));
+        out = r_max(span.t[1], r_set(GLINT_LEAST_T));
     }
     const rm on = rm_from_bits(own), in = rm_from_bits(into & ((1u << VR) - 1));
     t[0] = r_select(on, r_select(in, r_set(-HUGE_VAL), r_set(HUGE_VAL)), t[0]);

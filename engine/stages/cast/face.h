@@ -52,7 +52,7 @@ INNER vr R(over_slab)(const glint_face *low, const vr *place, const vr d[3], vr 
 static inline vr R(face_rise)(const glint_face *face, const vr d[3]) { return R(over_slab)(face, NULL, d, NULL); }
 
 /// Returns t where rays hit the plane.
-static inline vr R(face_way)(const glint_face *face, const vr o[3], const vr d[3])
+static inline vr R(face_t)(const glint_face *face, const vr o[3], const vr d[3])
 {
     return -R(face_height)(face, o) / R(face_rise)(face, d);
 }

@@ -19,7 +19,7 @@
 typedef struct R(crossings) {
     int count, sum; ///< sum: number of exits minus entries over all crossings
     real t[HULL_KEPT];
-    int way[HULL_KEPT]; ///< exits minus entries at that t
+    int winding[HULL_KEPT]; ///< exits minus entries at that t
     uint32_t triangle[HULL_KEPT][2]; ///< the first triangle there through which the ray enters, leaves; GLINT_MISS:
         ///< none
     uint32_t begun[2]; ///< likewise, for triangles that the ray starts on
@@ -50,7 +50,7 @@ static void R(begin_hull_rays)(R(hull_rays) * rays, vr from)
 {
     const glint_geometry_table *table = rays->table;
     const vr ax = R(abs)(rays->d[0]), ay = R(abs)(rays->d[1]), az = R(abs)(rays->d[2]);
-    _Alignas(64) real local[3][VR], way[3][VR];
+    _Alignas(64) real local[3][VR], dir[3][VR];
     rays->y = r_lt(ax, ay);
     rays->z = r_lt(r_select(rays->y, ay, ax), az);
     R(turn_axes)(rays, rays->d, rays->turned);
@@ -58,13 +58,13 @@ static void R(begin_hull_rays)(R(hull_rays) * rays, vr from)
     for (int k = 0; k < 3; k++) {
         r_store(rays->origin[k], rays->o[k]);
         r_store(local[k], (rays->o[k] - r_set(table->reference[k])) * r_set(table->scale));
-        r_store(way[k], rays->d[k]);
+        r_store(dir[k], rays->d[k]);
     }
     for (int i = 0; i < VR; i++) {
         rays->view[i].slack = R(walk_slack)(table);
         for (int k = 0; k < 3; k++) {
             rays->view[i].origin[k] = (float)local[k][i];
-            rays->view[i].inverse[k] = 1 / (float)way[k][i];
+            rays->view[i].inverse[k] = 1 / (float)dir[k][i];
         }
         rays->of[i].count = rays->of[i].sum = 0;
         rays->of[i].begun[0] = rays->of[i].begun[1] = GLINT_MISS;
@@ -73,13 +73,13 @@ static void R(begin_hull_rays)(R(hull_rays) * rays, vr from)
 }
 
 /// Stores a triangle if it is the first one defined at its t with this direction of crossing.
-static inline void R(note_triangle)(uint32_t found[2], int way, uint32_t index)
+static inline void R(note_triangle)(uint32_t found[2], int winding, uint32_t index)
 {
-    if (index < found[way > 0])
-        found[way > 0] = index;
+    if (index < found[winding > 0])
+        found[winding > 0] = index;
 }
 
-static void R(keep_crossing)(R(crossings) * of, real t, int way, uint32_t index)
+static void R(keep_crossing)(R(crossings) * of, real t, int winding, uint32_t index)
 {
     int at = 0;
     if (!(t < of->lost))
@@ -93,15 +93,15 @@ static void R(keep_crossing)(R(crossings) * of, real t, int way, uint32_t index)
             return;
         for (int i = of->count++; i > at; i--) {
             of->t[i] = of->t[i - 1];
-            of->way[i] = of->way[i - 1];
+            of->winding[i] = of->winding[i - 1];
             memcpy(of->triangle[i], of->triangle[i - 1], sizeof of->triangle[i]);
         }
         of->t[at] = t;
-        of->way[at] = 0;
+        of->winding[at] = 0;
         of->triangle[at][0] = of->triangle[at][1] = GLINT_MISS;
     }
-    of->way[at] += way;
-    R(note_triangle)(of->triangle[at], way, index);
+    of->winding[at] += winding;
+    R(note_triangle)(of->triangle[at], winding, index);
 }
 
 static inline bool R(starts_on_hull)(const R(hull_rays) * rays, int i)
@@ -111,12 +111,12 @@ static inline bool R(starts_on_hull)(const R(hull_rays) * rays, int i)
 }
 
 /// Stores the crossings of the rays of `out` and `in` with the triangle.
-static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out, unsigned in, vr way)
+static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out, unsigned in, vr crossing_t)
 {
     const glint_prim *prim = &rays->table->prims[index];
     const real near = R(near_shared_edge)(rays->table);
     _Alignas(64) real t[VR];
-    r_store(t, way);
+    r_store(t, crossing_t);
     for (unsigned left = out | in; left; left &= left - 1) {
         const int i = __builtin_ctz(left), turns = out >> i & 1 ? 1 : -1;
         const bool on_surface = rays->on && rays->on[i] != GLINT_MISS, on_hull = R(starts_on_hull)(rays, i);
@@ -167,7 +167,7 @@ static void R(cross_triangle)(R(hull_rays) * rays, uint32_t index, unsigned lane
     const glint_face *face = R(face_of)(rays->table, prim);
     vr t;
     if (face) {
-        t = R(face_way)(face, rays->o, rays->d);
+        t = R(face_t)(face, rays->o, rays->d);
     } else {
         const R(seen_edges) edges = R(see_edges)(p, rays->d, false);
         for (int j = 0; j < 3; j++)
@@ -220,11 +220,11 @@ typedef struct R(ray_within) {
 /// disagree, adds an exit or entry at its origin.
 static int R(agree_at_start)(R(crossings) * of, uint32_t on, bool inside)
 {
-    const int way = (inside ? 1 : 0) - of->sum;
+    const int winding = (inside ? 1 : 0) - of->sum;
     if (inside == (of->sum > 0))
         return of->sum;
-    const uint32_t begun = of->begun[way > 0];
-    R(keep_crossing)(of, (real)GLINT_LEAST_WAY, way, begun == GLINT_MISS ? on : begun);
+    const uint32_t begun = of->begun[winding > 0];
+    R(keep_crossing)(of, (real)GLINT_LEAST_T, winding, begun == GLINT_MISS ? on : begun);
     return inside;
 }
 
@@ -235,7 +235,7 @@ static void R(find_within)(const R(crossings) * of, int left, R(ray_within) * in
     in->known = of->lost;
     in->t[0][0] = (real)-HUGE_VAL;
     for (int i = 0; i < of->count; i++) {
-        const int after = left - of->way[i], side = left > 0;
+        const int after = left - of->winding[i], side = left > 0;
         if (side != (after > 0)) {
             if (!side && in->count == GLINT_HULL_PARTS) {
                 in->known = of->t[i];

@@ -159,7 +159,7 @@ INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, b
         R(start_of_pair)(tile, leaf, own, n, place);
         const vr o[3] = { r_set(place[0]), r_set(place[1]), r_set(place[2]) };
         const vr d[3] = { r_set(leaf->direction[0][n]), r_set(leaf->direction[1][n]), r_set(leaf->direction[2][n]) };
-        leaf->t[n] = R(first_lane)(R(face_way)(R(face_of)(table, prim), o, d));
+        leaf->t[n] = R(first_lane)(R(face_t)(R(face_of)(table, prim), o, d));
         hits = 0 < leaf->t[n] ? hits | lane : hits & ~lane;
     }
     return hits;

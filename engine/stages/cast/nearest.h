@@ -119,9 +119,9 @@ INNER void R(load_float_rays)(const R(ray_group) * rays, int i, R(float_rays) * 
     out->usual = fm_and(fm_and(f_lt(f_set(0x1p-40f), a), f_lt(a, f_set(0x1p40f))), f_lt(out->bound, f_set(1)));
 }
 
-/// Returns the lanes that may enter a sphere, or start inside of it. If there are any, *way gets the least distance
+/// Returns the lanes that may enter a sphere, or start inside of it. If there are any, *entry gets the least distance
 /// before entry, infinite in the other lanes, in the index's units.
-INNER fm R(way_to_ball)(const R(float_rays) * rays, const glint_prim *prim, vf *way)
+INNER fm R(enter_ball)(const R(float_rays) * rays, const glint_prim *prim, vf *entry)
 {
     vf f[3];
     const vf *d = rays->direction;
@@ -135,13 +135,13 @@ INNER fm R(way_to_ball)(const R(float_rays) * rays, const glint_prim *prim, vf *
     const vf half = f_sqrt(f_max(room, f_set(0)));
     const vf slack = f_set(NEAREST_SLACK) * (f_abs(b) + limit);
     const fm near = fm_and(f_le(f_set(0), room), f_le(f_set(0), (b + half) + slack));
-    *way = f_select(near, f_max((b - half) - slack, f_set(0)) * rays->per_a, f_set(HUGE_VALF));
+    *entry = f_select(near, f_max((b - half) - slack, f_set(0)) * rays->per_a, f_set(HUGE_VALF));
     return near;
 }
 
 /// The possible first hits of a group.
 typedef struct R(first_met) {
-    _Alignas(64) float way[GLINT_GROUP], next[GLINT_GROUP];
+    _Alignas(64) float entry[GLINT_GROUP], next[GLINT_GROUP];
     _Alignas(64) uint32_t prim[GLINT_GROUP];
     unsigned usual;
 } R(first_met);
@@ -156,19 +156,19 @@ static inline void R(find_first)(const glint_cast_args *args, const R(ray_group)
     out->usual = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         R(float_rays) lanes;
-        vf way = f_set(HUGE_VALF), next = way, first = f_from_bits(i_set(GLINT_MISS));
+        vf entry = f_set(HUGE_VALF), next = entry, first = f_from_bits(i_set(GLINT_MISS));
         R(load_float_rays)(rays, i, &lanes);
         const vi leaving = args->leaving ? i_load(args->leaving + at + i) : i_set(GLINT_MISS);
         for (int n = 0; n < count; n++) {
             vf own = f_set(HUGE_VALF);
-            if (list[n] == common || !fm_bits(R(way_to_ball)(&lanes, &args->geometry->prims[list[n]], &own)))
+            if (list[n] == common || !fm_bits(R(enter_ball)(&lanes, &args->geometry->prims[list[n]], &own)))
                 continue;
             own = f_select(i_eq(leaving, i_set(list[n])), f_set(HUGE_VALF), own);
-            first = f_select(f_lt(own, way), f_from_bits(i_set(list[n])), first);
-            next = f_min(next, f_max(own, way));
-            way = f_min(own, way);
+            first = f_select(f_lt(own, entry), f_from_bits(i_set(list[n])), first);
+            next = f_min(next, f_max(own, entry));
+            entry = f_min(own, entry);
         }
-        f_store(out->way + i, way);
+        f_store(out->entry + i, entry);
         f_store(out->next + i, next);
         i_store(out->prim + i, f_bits(first));
         out->usual |= fm_bits(lanes.usual) << i;
@@ -186,7 +186,7 @@ static inline void R(cast_spheres)(const glint_cast_args *args, uint32_t g, cons
     for (unsigned left = args->active[g] & met.usual & ~lanes_equal(met.prim, GLINT_MISS); left; left &= left - 1) {
         const int lane = __builtin_ctz(left);
         const uint32_t ray = (uint32_t)at + (uint32_t)lane;
-        if (met.way[lane] <= R(reach_in_index)(args, ((const real *)args->t)[ray]))
+        if (met.entry[lane] <= R(reach_in_index)(args, ((const real *)args->t)[ray]))
             R(add_pair)(args, pairs, ray, met.prim[lane], met.next[lane]);
     }
 }
@@ -217,7 +217,7 @@ static inline void R(load_lone_rays)(const R(ray_group) * rays, R(lone_rays) * o
 /// The possible first hits of a group's rays so far, in the index's units.
 typedef struct R(first_balls) {
     _Alignas(64) float far[GLINT_GROUP]; ///< upper bound of hits
-    float way[2][GLINT_GROUP],
+    float entry[2][GLINT_GROUP],
         next[GLINT_GROUP]; ///< distances to the first two spheres that each ray may enter, and to the third
     uint32_t prim[2][GLINT_GROUP]; ///< the first two spheres; GLINT_MISS: none
 } R(first_balls);
@@ -230,7 +230,7 @@ static inline void R(begin_balls)(const glint_cast_args *args, size_t at, R(firs
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         f_store(first->next + i, none);
         for (int k = 0; k < 2; k++) {
-            f_store(first->way[k] + i, none);
+            f_store(first->entry[k] + i, none);
             i_store(first->prim[k] + i, i_set(GLINT_MISS));
         }
     }
@@ -293,7 +293,7 @@ static inline unsigned R(boxes_of_lone_ray)(const glint_node *node, const R(lone
 
 /// Distances to the spheres of a node, one per slot.
 typedef struct R(balls_on_ray) {
-    _Alignas(64) float way[GLINT_NODE_WIDTH]; ///< lower bound of the entry
+    _Alignas(64) float entry[GLINT_NODE_WIDTH]; ///< lower bound of the entry
     _Alignas(64) float sure[GLINT_NODE_WIDTH]; ///< upper bound of the entry; infinite: the ray may miss
 } R(balls_on_ray);
 
@@ -335,14 +335,14 @@ static inline unsigned R(meet_balls)(const glint_node *node, const R(lone_ray) *
         if (!fm_bits(f_le(zero, room)))
             continue;
         const vf half = f_sqrt(f_max(room, zero)), slack = f_set(NEAREST_SLACK) * (f_abs(b) + reach);
-        const vf way = f_max((b - half) - slack, zero) * per_a;
-        const fm near = fm_and(fm_and(f_le(zero, room), f_le(zero, (b + half) + slack)), f_le(way, f_set(far)));
+        const vf entry = f_max((b - half) - slack, zero) * per_a;
+        const fm near = fm_and(fm_and(f_le(zero, room), f_le(zero, (b + half) + slack)), f_le(entry, f_set(far)));
         if (!fm_bits(near))
             continue;
         const vf inner_half = f_sqrt(f_max(inner_room, zero));
         const fm outside = fm_and(f_lt(limit * limit, DOT(f, f)), f_lt(zero, b));
         const vf sure = ((b - inner_half) + (slack + ball.margin * length)) * per_a;
-        f_store(out->way + i, way);
+        f_store(out->entry + i, entry);
         f_store(out->sure + i, f_select(fm_and(outside, f_lt(zero, inner_room)), sure, f_set(HUGE_VALF)));
         may |= fm_bits(near) << i;
     }
@@ -350,20 +350,20 @@ static inline unsigned R(meet_balls)(const glint_node *node, const R(lone_ray) *
 }
 
 /// Records a sphere that a ray may enter.
-static inline void R(note_ball)(R(first_balls) * first, int lane, uint32_t id, float way, float sure)
+static inline void R(note_ball)(R(first_balls) * first, int lane, uint32_t id, float entry, float sure)
 {
-    if (way < first->way[0][lane]) {
-        first->next[lane] = first->way[1][lane];
-        first->way[1][lane] = first->way[0][lane];
+    if (entry < first->entry[0][lane]) {
+        first->next[lane] = first->entry[1][lane];
+        first->entry[1][lane] = first->entry[0][lane];
         first->prim[1][lane] = first->prim[0][lane];
-        first->way[0][lane] = way;
+        first->entry[0][lane] = entry;
         first->prim[0][lane] = id;
-    } else if (way < first->way[1][lane]) {
-        first->next[lane] = first->way[1][lane];
-        first->way[1][lane] = way;
+    } else if (entry < first->entry[1][lane]) {
+        first->next[lane] = first->entry[1][lane];
+        first->entry[1][lane] = entry;
         first->prim[1][lane] = id;
     } else {
-        first->next[lane] = smaller(first->next[lane], way);
+        first->next[lane] = smaller(first->next[lane], entry);
     }
     R(look_no_further)(first, lane, sure);
 }
@@ -377,7 +377,7 @@ static inline void R(note_balls)(const glint_node *node, unsigned mask, const R(
         const int slot = __builtin_ctz(mask);
         const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
         if (id != ray->leaving)
-            R(note_ball)(first, lane, id, balls.way[slot], balls.sure[slot]);
+            R(note_ball)(first, lane, id, balls.entry[slot], balls.sure[slot]);
     }
 }
 
@@ -388,9 +388,9 @@ static inline void R(pair_first)(const glint_cast_args *args, size_t at, unsigne
     for (lanes &= ~lanes_equal(first->prim[0], GLINT_MISS); lanes; lanes &= lanes - 1) {
         const int lane = __builtin_ctz(lanes);
         const uint32_t ray = (uint32_t)at + (uint32_t)lane;
-        const float far = first->far[lane], second = first->way[1][lane], next = first->next[lane];
+        const float far = first->far[lane], second = first->entry[1][lane], next = first->next[lane];
         const bool two = first->prim[1][lane] != GLINT_MISS && second <= far;
-        if (!(first->way[0][lane] <= far))
+        if (!(first->entry[0][lane] <= far))
             continue;
         if (two)
             R(add_pair)(args, pairs, ray, first->prim[1][lane], HUGE_VALF);

@@ -46,15 +46,15 @@ typedef struct R(raster_triangle) {
 static int R(raster_edges)(const glint_camera_args *camera, double p[3][3], double base[3], double along_s[3],
                            double along_t[3], double rounding, double limit[3])
 {
-    double sum = 0, size = 0, way = 1;
+    double sum = 0, size = 0, longest = 1;
     const double beyond = fabs(camera->beyond[0]) + fabs(camera->beyond[1]);
     const double reach = (fabs(camera->width) + fabs(camera->height)) + 2 * beyond + 2;
     for (int j = 0; j < 3; j++) {
         size = fmax(size, (fabs(p[j][0]) + fabs(p[j][1])) + fabs(p[j][2]));
-        way = fmax(way, reach * ((fabs(camera->right[j]) + fabs(camera->up[j])) + fabs(camera->forward[j])));
+        longest = fmax(longest, reach * ((fabs(camera->right[j]) + fabs(camera->up[j])) + fabs(camera->forward[j])));
     }
     if (camera->orthographic)
-        size += way;
+        size += longest;
     for (int j = 0; j < 3; j++) {
         const double *a = p[(j + 1) % 3], *b = p[(j + 2) % 3];
         double n[3], c[3], r[3], u[3];
@@ -75,10 +75,10 @@ static int R(raster_edges)(const glint_camera_args *camera, double p[3][3], doub
             along_s[j] = -DOT(r, camera->forward);
             along_t[j] = -DOT(u, camera->forward);
         }
-        limit[j] = rounding * size * size * way;
+        limit[j] = rounding * size * size * longest;
         sum += camera->orthographic ? base[j] : DOT(p[j], n) / 3;
     }
-    const double unsure = rounding * size * size * (camera->orthographic ? way : size);
+    const double unsure = rounding * size * size * (camera->orthographic ? longest : size);
     return sum > unsure ? 1 : sum < -unsure ? -1 : 0;
 }
 

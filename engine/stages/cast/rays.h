@@ -18,8 +18,8 @@
 
 /// Computes t where rays that enter a sphere or solid leave it. They always do, because it is convex. For a form
 /// without an inside, they may hit its other side.
-static inline rm R(way_out)(const glint_geometry_table *table, const glint_prim *prim, const vr o[3], const vr d[3],
-                            vr *t)
+static inline rm R(exit_t)(const glint_geometry_table *table, const glint_prim *prim, const vr o[3], const vr d[3],
+                           vr *t)
 {
     const rm all = rm_from_bits((1u << VR) - 1);
     vr f[3];
@@ -31,18 +31,18 @@ static inline rm R(way_out)(const glint_geometry_table *table, const glint_prim 
         *t = span.t[1];
         if (is_open(solid))
             return rm_and(rm_and(span.hit, span.second), r_lt(r_set(0), *t));
-        *t = r_max(*t, r_set(GLINT_LEAST_WAY));
+        *t = r_max(*t, r_set(GLINT_LEAST_T));
         return all;
     }
     R(offset)(o, prim, f);
     const vr b = -DOT(f, d);
-    *t = r_max((b + b) / (DOT(d, d) * r_set(glint_sphere_scale(prim))), r_set(GLINT_LEAST_WAY));
+    *t = r_max((b + b) / (DOT(d, d) * r_set(glint_sphere_scale(prim))), r_set(GLINT_LEAST_T));
     return all;
 }
 
 /// Computes t where rays that leave a torus hit it again; inward: rays that go inside, which always do.
-static inline rm R(way_back)(const glint_solid *solid, const glint_prim *prim, const vr o[3], const vr d[3],
-                             unsigned inward, vr *t)
+static inline rm R(reentry_t)(const glint_solid *solid, const glint_prim *prim, const vr o[3], const vr d[3],
+                              unsigned inward, vr *t)
 {
     vr f[3], e[3];
     R(unit_offset)(solid, prim, o, f);
@@ -86,8 +86,8 @@ static inline void R(cast_on_own)(const glint_cast_args *args, uint32_t g)
             R(load3)(args->origin, at + (size_t)i, o);
             R(load3)(args->direction, at + (size_t)i, d);
             const glint_prim *prim = &table->prims[id];
-            const rm hit = torus ? R(way_back)(&table->solids[prim->item], prim, o, d, args->inward[g] >> i, &t)
-                                 : R(way_out)(table, prim, o, d, &t);
+            const rm hit = torus ? R(reentry_t)(&table->solids[prim->item], prim, o, d, args->inward[g] >> i, &t)
+                                 : R(exit_t)(table, prim, o, d, &t);
             R(keep_nearest)(args, at + (size_t)i, id, rm_and(rm_from_bits(own), hit), t);
         }
     }

@@ -134,24 +134,24 @@ INNER void R(meet_round)(const glint_geometry_table *table, const R(rounds) * ro
     out->at = R(at_triangle)(table, &edges);
     if (!out->at)
         return;
-    const vr *e = edges.e, way = edges.depth / ((R(det)(&edges) * edges.dz) * scale);
+    const vr *e = edges.e, t = edges.depth / ((R(det)(&edges) * edges.dz) * scale);
     const rm sure = rm_or(r_lt(zero, r_min(r_min(e[0], e[1]), e[2])), r_lt(r_max(r_max(e[0], e[1]), e[2]), zero));
     out->off = R(begins_off_plane)(table, corner, o);
     out->plain = out->at & out->off & rm_bits(sure);
     if (!table->faces) // hits behind the origin are misses
-        out->at &= rm_bits(r_lt(zero, way)) | ~out->off;
-    r_store(out->t, way);
+        out->at &= rm_bits(r_lt(zero, t)) | ~out->off;
+    r_store(out->t, t);
 }
 
 /// Returns t where a ray hits the plane that a triangle shares with others.
-static inline real R(way_to_face)(const glint_cast_args *args, const glint_face *face, size_t ray)
+static inline real R(t_of_face)(const glint_cast_args *args, const glint_face *face, size_t ray)
 {
     vr o[3], d[3];
     for (int k = 0; k < 3; k++) {
         o[k] = r_set(((const real *)args->origin[k])[ray]);
         d[k] = r_set(((const real *)args->direction[k])[ray]);
     }
-    return R(first_lane)(R(face_way)(face, o, d));
+    return R(first_lane)(R(face_t)(face, o, d));
 }
 
 /// Decides the pairs, and lowers the upper bounds of hits. Unless the distance is short, a ray that certainly starts
@@ -171,7 +171,7 @@ static __attribute__((noinline)) void R(decide_triangles)(const glint_cast_args 
             const int j = __builtin_ctz(left);
             const uint32_t lane = rounds->lane[i + j], id = rounds->prim[i + j], ray = g * GLINT_GROUP + lane;
             const glint_face *face = table->faces ? R(face_of)(table, &table->prims[id]) : NULL;
-            const real t = face ? R(way_to_face)(args, face, ray) : lanes.t[j];
+            const real t = face ? R(t_of_face)(args, face, ray) : lanes.t[j];
             if (lanes.off >> j & 1 && !(0 < t))
                 continue;
             if (lanes.plain >> j & 1 && near < t)

@@ -95,15 +95,15 @@ static inline rm R(unless_begun_on)(const glint_geometry_table *table, const gli
     return rm_andnot(hit, rm_from_bits(on));
 }
 
-/// Returns whether a corner of the other triangle is certainly on the side of the plane that `way` points to. The
+/// Returns whether a corner of the other triangle is certainly on the side of the plane that `side` points to. The
 /// corners are rounded, too.
-static inline bool R(reaches)(const R(flat) * flat, real way, const R(flat) * other)
+static inline bool R(reaches)(const R(flat) * flat, real side, const R(flat) * other)
 {
     for (int j = 0; j < 3; j++) {
         real rounding;
         const real h = R(height_over)(flat, other->corner[j], &rounding), place = R(size_of_all)(other->corner[j]);
         const real off = rounding + R(spread_of)(flat) * ((real)GLINT_POINT_SLACK * place);
-        if (off < R(size_of)(h) && ((0 < way && 0 < h) || (way < 0 && h < 0)))
+        if (off < R(size_of)(h) && ((0 < side && 0 < h) || (side < 0 && h < 0)))
             return true;
     }
     return false;
@@ -123,9 +123,9 @@ static inline real R(point_slack_of)(const R(flat) * flat, const real o[3])
     return (real)GLINT_POINT_SLACK * ((f + g) + p);
 }
 
-/// Returns whether the ray is at the triangle at t = `way`, within the error of its origin: on the same side of all
+/// Returns whether the ray is at the triangle at t = `t`, within the error of its origin: on the same side of all
 /// edges, and within its bounds. For a triangle seen edge-on, all edges are near.
-static inline bool R(passes_near)(const R(flat) * flat, const real o[3], const real d[3], real way, real slack,
+static inline bool R(passes_near)(const R(flat) * flat, const real o[3], const real d[3], real t, real slack,
                                   double scale)
 {
     vr p[3][3], direction[3];
@@ -142,7 +142,7 @@ static inline bool R(passes_near)(const R(flat) * flat, const real o[3], const r
     }
     const real loose = 2 * (slack * (real)scale) + (real)GLINT_POINT_SLACK * r;
     for (int k = 0; k < 3; k++) {
-        const real at = (way * d[k]) * (real)scale;
+        const real at = (t * d[k]) * (real)scale;
         if (!(low[k] <= at + loose && at - loose <= high[k]))
             return false;
     }
@@ -153,21 +153,21 @@ static inline bool R(passes_near)(const R(flat) * flat, const real o[3], const r
            1;
 }
 
-/// For a ray that starts on `from` and at t = `way` is within rounding in both planes, returns whether it passes
+/// For a ray that starts on `from` and at t = `t` is within rounding in both planes, returns whether it passes
 /// through `other`: `other` extends to the side that the ray goes to, and the ray leaves the side of `other` that
 /// `from` is on.
 static inline bool R(goes_through)(const R(flat) * from, const R(flat) * other, const real o[3], const real d[3],
-                                   real way, real slack, double scale)
+                                   real t, real slack, double scale)
 {
     return R(reaches)(from, DOT(from->m, d), other) && R(reaches)(other, -DOT(other->m, d), from) &&
-           R(passes_near)(other, o, d, way, slack, scale);
+           R(passes_near)(other, o, d, t, slack, scale);
 }
 
 /// Returns whether a ray that starts on `from` is still in its plane, within rounding, when it hits another plane at
-/// t = `way`. Rays at a grazing angle may start on the wrong side of `from` and pass an edge there.
-static inline bool R(is_still_on)(const R(flat) * from, const real d[3], real slack, real way)
+/// t = `t`. Rays at a grazing angle may start on the wrong side of `from` and pass an edge there.
+static inline bool R(is_still_on)(const R(flat) * from, const real d[3], real slack, real t)
 {
-    return way * R(size_of)(DOT(from->m, d)) <= R(spread_of)(from) * slack;
+    return t * R(size_of)(DOT(from->m, d)) <= R(spread_of)(from) * slack;
 }
 
 /// Returns the lanes whose lines pass the triangle, within the error of their origins.
@@ -202,13 +202,13 @@ static inline rm R(meet_shared_edge)(const glint_cast_args *args, size_t at, uns
     const vr h = (r_set(m[0]) * q[0] + r_set(m[1]) * q[1]) + r_set(m[2]) * q[2];
     const real near = R(near_shared_edge)(table);
     const rm soon = rm_and(r_lt(r_set(0), *t), r_le(*t, r_set(near)));
-    _Alignas(64) real way[VR];
+    _Alignas(64) real each_t[VR];
     unsigned begins = 0, anew = 0, through = 0;
     const unsigned by_edge = R(may_be_near)(table, edges, *t) & ~rm_bits(hit);
     unsigned left = (~rm_bits(r_lt(r_set(most), R(abs)(h))) | rm_bits(soon) | by_edge) & ~own & ((1u << VR) - 1);
     left &= (unsigned)args->active[at / GLINT_GROUP] >> at % GLINT_GROUP; // `leaving` is undefined in other lanes
     if (left)
-        r_store(way, *t);
+        r_store(each_t, *t);
     for (; left; left &= left - 1) {
         const unsigned lane = left & -left;
         const int j = __builtin_ctz(left);
@@ -225,15 +225,16 @@ static inline rm R(meet_shared_edge)(const glint_cast_args *args, size_t at, uns
         const real slack = R(point_slack_of)(&from, origin), height = R(height_over)(flat, origin, &rounding);
         if (!(spread * slack + rounding < R(size_of)(height))) {
             begins |= lane;
-            way[j] = 0;
-        } else if (!(by_edge & lane) && !(0 < way[j] && way[j] <= near && R(is_still_on)(&from, d, slack, way[j]))) {
+            each_t[j] = 0;
+        } else if (!(by_edge & lane) &&
+                   !(0 < each_t[j] && each_t[j] <= near && R(is_still_on)(&from, d, slack, each_t[j]))) {
             continue;
         }
         anew |= lane;
-        if (R(goes_through)(&from, flat, origin, d, way[j], slack, table->scale))
+        if (R(goes_through)(&from, flat, origin, d, each_t[j], slack, table->scale))
             through |= lane;
     }
-    *t = r_select(rm_from_bits(begins), r_set(GLINT_LEAST_WAY), *t);
+    *t = r_select(rm_from_bits(begins), r_set(GLINT_LEAST_T), *t);
     return rm_or(rm_andnot(hit, rm_from_bits(anew)), rm_from_bits(through));
 }
 

@@ -17,12 +17,12 @@
 
 /// Bounds of the tests of boxes_of_lone_ray over all rays of a group. There is no bound along an axis with both signs
 /// of direction.
-typedef struct R(common_way) {
+typedef struct R(common_slabs) {
     float enter[3], leave[3]; ///< subtracted from the sides by which rays enter and leave
     float gentle[3], steep[3]; ///< inverse directions with the smallest and the largest magnitude; the largest may be
         ///< infinite
     int first[3], last[3]; ///< offsets of these sides in a node, in floats
-} R(common_way);
+} R(common_slabs);
 
 /// A node that rays of a group have yet to visit.
 typedef struct R(common_node) {
@@ -38,7 +38,7 @@ typedef struct R(common_walk) {
     const R(lone_rays) * lone;
     unsigned back[3]; ///< the rays with a negative direction along each axis
     const uint32_t *leaving; ///< NULL: no ray starts on a primitive
-    R(common_way) way;
+    R(common_slabs) slabs;
     int height;
     R(common_node) stack[WALK_STACK];
 } R(common_walk);
@@ -58,43 +58,43 @@ static inline void R(range_in)(const float x[GLINT_GROUP], unsigned lanes, float
     *most = f_max_all(high);
 }
 
-static inline void R(find_common_way)(const R(common_walk) * walk, unsigned lanes, R(common_way) * way)
+static inline void R(find_common_slabs)(const R(common_walk) * walk, unsigned lanes, R(common_slabs) * slabs)
 {
     for (int k = 0; k < 3; k++) {
         const unsigned back = walk->back[k] & lanes;
-        way->first[k] = (back ? k + 3 : k) * GLINT_NODE_WIDTH;
-        way->last[k] = (back ? k : k + 3) * GLINT_NODE_WIDTH;
-        way->enter[k] = HUGE_VALF;
-        way->leave[k] = -HUGE_VALF;
-        way->gentle[k] = way->steep[k] = 1;
+        slabs->first[k] = (back ? k + 3 : k) * GLINT_NODE_WIDTH;
+        slabs->last[k] = (back ? k : k + 3) * GLINT_NODE_WIDTH;
+        slabs->enter[k] = HUGE_VALF;
+        slabs->leave[k] = -HUGE_VALF;
+        slabs->gentle[k] = slabs->steep[k] = 1;
         if (back && back != lanes) {
-            way->first[k] = k * GLINT_NODE_WIDTH;
-            way->last[k] = (k + 3) * GLINT_NODE_WIDTH;
+            slabs->first[k] = k * GLINT_NODE_WIDTH;
+            slabs->last[k] = (k + 3) * GLINT_NODE_WIDTH;
             continue;
         }
         float low, high;
         R(range_in)(walk->lone->inverse[k], lanes, &low, &high);
-        way->gentle[k] = back ? high : low;
-        way->steep[k] = back ? low : high;
+        slabs->gentle[k] = back ? high : low;
+        slabs->steep[k] = back ? low : high;
         R(range_in)(walk->enter[k], lanes, &low, &high);
-        way->enter[k] = back ? low : high;
+        slabs->enter[k] = back ? low : high;
         R(range_in)(walk->leave[k], lanes, &low, &high);
-        way->leave[k] = back ? high : low;
+        slabs->leave[k] = back ? high : low;
     }
 }
 
 /// Returns the boxes that some ray may enter before `far`; depth: lower bound of the entry over all rays. Rounding is
 /// monotonic, so each product bounds the products of all rays after rounding.
-static inline unsigned R(boxes_on_way)(const glint_node *node, const R(common_way) * way, float far,
-                                       float depth[GLINT_NODE_WIDTH])
+static inline unsigned R(boxes_in_slabs)(const glint_node *node, const R(common_slabs) * slabs, float far,
+                                         float depth[GLINT_NODE_WIDTH])
 {
     unsigned inside = 0;
     for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
         vf enter = f_set(0), leave = f_set(far);
         for (int k = 0; k < 3; k++) {
-            const float *first = (const float *)node + way->first[k], *last = (const float *)node + way->last[k];
-            const vf gentle = f_set(way->gentle[k]), steep = f_set(way->steep[k]);
-            const vf x = f_load(first + i) - f_set(way->enter[k]), y = f_load(last + i) - f_set(way->leave[k]);
+            const float *first = (const float *)node + slabs->first[k], *last = (const float *)node + slabs->last[k];
+            const vf gentle = f_set(slabs->gentle[k]), steep = f_set(slabs->steep[k]);
+            const vf x = f_load(first + i) - f_set(slabs->enter[k]), y = f_load(last + i) - f_set(slabs->leave[k]);
             enter = f_max(f_min(x * gentle, x * steep), enter); // a NaN (0 times inf) keeps the previous value
             leave = f_min(f_max(y * gentle, y * steep), leave);
         }
@@ -157,8 +157,8 @@ static inline void R(note_ball_of_group)(const glint_node *node, int slot, const
         const vf x2 = DOT(x, x), b = -DOT(f, d), reach = limit * length, sure_reach = inner * length;
         const vf room = reach * reach - x2, sure_room = sure_reach * sure_reach - x2;
         const vf half = f_sqrt(f_max(room, zero)), slack = f_set(NEAREST_SLACK) * (f_abs(b) + reach);
-        const vf way = f_max((b - half) - slack, zero) * per_a;
-        fm near = fm_and(fm_and(f_le(zero, room), f_le(zero, (b + half) + slack)), f_le(way, far));
+        const vf entry = f_max((b - half) - slack, zero) * per_a;
+        fm near = fm_and(fm_and(f_le(zero, room), f_le(zero, (b + half) + slack)), f_le(entry, far));
         near = fm_and(near, fm_from_bits(lanes >> i));
         if (walk->leaving)
             near = fm_andnot(near, i_eq(i_load(walk->leaving + i), i_set(id)));
@@ -166,14 +166,15 @@ static inline void R(note_ball_of_group)(const glint_node *node, int slot, const
             continue;
         const vf sure = ((b - f_sqrt(f_max(sure_room, zero))) + (slack + margin * length)) * per_a;
         const fm enters = fm_and(fm_and(f_lt(limit * limit, DOT(f, f)), f_lt(zero, b)), f_lt(zero, sure_room));
-        const vf own = f_select(near, way, none), way0 = f_load(first->way[0] + i), way1 = f_load(first->way[1] + i);
+        const vf own = f_select(near, entry, none), way0 = f_load(first->entry[0] + i),
+                 way1 = f_load(first->entry[1] + i);
         const fm before = f_lt(own, way0), second = f_lt(own, way1);
         const vf prim0 = f_from_bits(i_load(first->prim[0] + i)), prim1 = f_from_bits(i_load(first->prim[1] + i));
         const vf prim = f_from_bits(i_set(id));
         f_store(first->next + i, f_min(f_load(first->next + i), f_max(own, way1)));
-        f_store(first->way[1] + i, f_max(way0, f_min(own, way1)));
+        f_store(first->entry[1] + i, f_max(way0, f_min(own, way1)));
         i_store(first->prim[1] + i, f_bits(f_select(before, prim0, f_select(second, prim, prim1))));
-        f_store(first->way[0] + i, f_min(own, way0));
+        f_store(first->entry[0] + i, f_min(own, way0));
         i_store(first->prim[0] + i, f_bits(f_select(before, prim, prim0)));
         f_store(first->far + i, f_select(fm_and(near, enters), f_min(far, sure), far));
     }
@@ -252,7 +253,7 @@ static inline bool R(step_together)(const glint_cast_args *args, uint32_t g, R(c
         return true;
     R(range_in)(rounds->first.far, lanes, &least, &far);
     const glint_node *node = &args->geometry->nodes[entry->node];
-    const unsigned mask = R(boxes_on_way)(node, &walk->way, far, depth), prims = mask & prims_of_node(node);
+    const unsigned mask = R(boxes_in_slabs)(node, &walk->slabs, far, depth), prims = mask & prims_of_node(node);
     if (__builtin_popcount(mask) > __builtin_popcount(lanes) && R(leave_to_each)(entry, lanes, rounds))
         return true;
     for (unsigned left = prims; left; left &= left - 1)
@@ -286,7 +287,7 @@ static inline void R(begin_together)(const glint_cast_args *args, size_t at, con
             f_store(walk->leave[k] + i, f_select(back, x + moved, x - moved));
         }
     }
-    R(find_common_way)(walk, lanes, &walk->way);
+    R(find_common_slabs)(walk, lanes, &walk->slabs);
     walk->height = 1;
     walk->stack[0].node = 0;
     walk->stack[0].lanes = lanes;

@@ -258,7 +258,7 @@ static vr R(torus_root)(const R(torus_line) * l, R(torus_stretch) * at, rm hit)
     for (int n = 0; n < GLINT_ROOT_STEPS && wanted; n++)
         R(step_to_root)(l, at, &s, &wanted);
     const vr found = l->from + s * l->per;
-    return r_select(rm_and(hit, r_lt(zero, found)), found, r_set(GLINT_LEAST_WAY));
+    return r_select(rm_and(hit, r_lt(zero, found)), found, r_set(GLINT_LEAST_T));
 }
 
 /// Finds the stretch of each line with the first root ahead. Returns the lanes that have one.
@@ -289,7 +289,7 @@ static rm R(meet_torus)(const glint_solid *solid, const vr f[3], const vr e[3], 
     R(torus_stretch) at;
     R(along_torus)(solid, f, e, start, &l);
     const rm hit = rm_andnot(R(first_ahead)(&l, &at), R(leaves_torus)(f, e, start));
-    *t = rm_bits(hit) ? R(torus_root)(&l, &at, hit) : r_set(GLINT_LEAST_WAY);
+    *t = rm_bits(hit) ? R(torus_root)(&l, &at, hit) : r_set(GLINT_LEAST_T);
     return rm_or(hit, rm_and(start.leaves, start.inward));
 }
 
@@ -311,7 +311,7 @@ static void R(torus_ends)(const glint_solid *solid, const vr f[3], const vr e[3]
     }
     ends[2] = r_select(rm_and(l.near, r_lt(zero, l.gap[1])), ends[2], ends[0]);
     const rm out = rm_or(r_lt(zero, ends[1]), r_lt(zero, ends[3]));
-    ends[3] = r_select(rm_andnot(rm_and(start.leaves, start.inward), out), r_set(GLINT_LEAST_WAY), ends[3]);
+    ends[3] = r_select(rm_andnot(rm_and(start.leaves, start.inward), out), r_set(GLINT_LEAST_T), ends[3]);
 }
 
 /// Projects points next to the surface onto it; g: the outward normal there.

@@ -130,7 +130,7 @@ static inline rm R(meet_seen)(const R(seen_edges) * edges, vr p[3][3], const vr 
                               const glint_face *face, vr *t)
 {
     if (face)
-        *t = R(face_way)(face, o, d);
+        *t = R(face_t)(face, o, d);
     else
         *t = edges->depth / ((R(det)(edges) * edges->dz) * scale);
     return rm_and(R(passes)(edges, p, d), r_lt(r_set(0), *t));

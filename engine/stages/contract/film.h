@@ -162,7 +162,7 @@ typedef struct glint_resolve_args {
 #define GLINT_DIFFER_LENGTH 40 ///< length of each array of a line: it may be read up to here, however few pairs there
     ///< are
 enum { GLINT_DIFFER_ID, GLINT_DIFFER_NORMAL, GLINT_DIFFER_CODE = 4, GLINT_DIFFER_VALUES = 8 };
-enum { GLINT_DIFFER_ALONG, GLINT_DIFFER_ACROSS, GLINT_DIFFER_FALLING, GLINT_DIFFER_RISING, GLINT_DIFFER_WAYS };
+enum { GLINT_DIFFER_ALONG, GLINT_DIFFER_ACROSS, GLINT_DIFFER_FALLING, GLINT_DIFFER_RISING, GLINT_DIFFER_DIRECTIONS };
 
 /// estimate: approximate 16-bit sRGB values before rounding, as a sum of three roots. Its derivative is sRGB's within
 /// a relative error of GLINT_ESTIMATE_SHARE. The difference of two estimates therefore is the difference of the exact
@@ -203,7 +203,7 @@ typedef struct glint_differ_args {
 /// One bit per pair. `sure`: the pair differs. `open`: the pair differs if its estimates do, which low and high leave
 /// undecided; undefined for pairs that are sure.
 typedef struct glint_differences {
-    uint32_t sure[GLINT_DIFFER_WAYS], open[GLINT_DIFFER_WAYS];
+    uint32_t sure[GLINT_DIFFER_DIRECTIONS], open[GLINT_DIFFER_DIRECTIONS];
 } glint_differences;
 // Bit i stands for (p[i], p[i + 1]) along, (p[i], q[i]) across, (p[i], q[i + 1]) falling and (p[i + 1], q[i]) rising.
 // Pixels differ by object, by normal if the objects are the same and not 0, and by estimate. The arithmetic:

@@ -69,7 +69,7 @@ typedef struct glint_cast_args {
         *tests; ///< added to: pairs of a ray and a primitive that are decided by the formulas below. The number depends
         ///< on index and filter. May be NULL
 } glint_cast_args;
-#define GLINT_LEAST_WAY 0x1p-126 ///< t of a hit at the origin of the ray
+#define GLINT_LEAST_T 0x1p-126 ///< t of a hit at the origin of the ray
 #define GLINT_TURN_NEAR 0x1p-20 ///< of a torus's quartic: a step this small towards a turning point leaves an error
     ///< below rounding, because convergence is cubic
 #define GLINT_TURN_STEPS 24 ///< maximum steps to a turning point; more than 10 are only needed where three coincide
@@ -99,7 +99,7 @@ typedef struct glint_cast_args {
 //     the face is along two axes of the world, otherwise within rounding. The same holds for curved sides (except of
 //     spheres), and for the plane of a triangle.
 // A ray never hits the primitive that it leaves, with one exception: spheres and solids other than disks, if the lane
-// is inward (and starts on or inside of them). They are always hit, at GLINT_LEAST_WAY or beyond. A ray that leaves a
+// is inward (and starts on or inside of them). They are always hit, at GLINT_LEAST_T or beyond. A ray that leaves a
 // torus outwards can hit it again, too.
 // A ray that leaves triangle A hits another triangle B like any other ray, with two exceptions: the ray lies in both
 // planes within rounding, or it does not cross B and the offset of its origin may have moved it over a common edge.

@@ -10,7 +10,7 @@
 /// The rays of VD hits: their directions, of any length; slopes of origin and direction; distance of the hits along
 /// them.
 typedef struct bent_rays {
-    vd way[3], moved[3], turned[3], far;
+    vd direction[3], moved[3], turned[3], far;
 } bent_rays;
 
 INNER bent_rays see_from_point(const glint_bend_args *args, int i)
@@ -20,12 +20,13 @@ INNER bent_rays see_from_point(const glint_bend_args *args, int i)
     const glint_derivative_points *points = args->points;
     bent_rays out = { .far = d_set(1) };
     for (int c = 0; c < 3; c++) {
-        out.way[c] = d_either(view->moves, d_load(points->point[c] + i) - d_set(camera->eye[c]), -d_load(points->eye[c] + i));
+        out.direction[c] =
+            d_either(view->moves, d_load(points->point[c] + i) - d_set(camera->eye[c]), -d_load(points->eye[c] + i));
         out.moved[c] = d_set(view->eye[c]);
     }
     for (int c = 0; c < 3; c++) {
         const vd turn[3] = { d_set(camera->turn[c][0]), d_set(camera->turn[c][1]), d_set(camera->turn[c][2]) };
-        out.turned[c] = DOT(turn, out.way);
+        out.turned[c] = DOT(turn, out.direction);
     }
     return out;
 }
@@ -43,11 +44,11 @@ INNER bent_rays see_along(const glint_bend_args *args, const bool parallel, int 
         const vd changed = x * d_set(view->right[c]) + y * d_set(view->up[c]);
         const vd at = d_load(args->shift[c] + i), slope = d_load(args->shift_slope[c] + i);
         seen[c] = d_load(args->points->point[c] + i) - (d_set(camera->eye[c]) + (d_either(parallel, across, zero) + at));
-        out.way[c] = d_set(camera->forward[c]) + (d_either(parallel, zero, across) - at * near);
+        out.direction[c] = d_set(camera->forward[c]) + (d_either(parallel, zero, across) - at * near);
         out.moved[c] = d_set(view->eye[c]) + (d_either(parallel, changed, zero) + slope);
         out.turned[c] = d_set(view->forward[c]) + (d_either(parallel, zero, changed) - (slope * near + at * d_set(view->nearer)));
     }
-    out.far = DOT(seen, out.way) / DOT(out.way, out.way);
+    out.far = DOT(seen, out.direction) / DOT(out.direction, out.direction);
     return out;
 }
 
@@ -70,12 +71,13 @@ INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const 
         if (!round)
             rest = rest - d_set(part->normal[c]) * (point - d_set(part->pivot[c]));
     }
-    const vd further = rest / DOT(gradient, rays->way);
+    const vd further = rest / DOT(gradient, rays->direction);
     const vd side = d_select(d_lt(DOT(gradient, normal), d_set(0)), d_set(-1), d_set(1));
-    const vd shorter = d_set(-1) / DOT(rays->way, eye), away = DOT(rays->turned, eye); // eye is opposite to the ray
+    const vd shorter = d_set(-1) / DOT(rays->direction, eye),
+             away = DOT(rays->turned, eye); // eye is opposite to the ray
     const vd curved = side * d_set(round ? 1 / prim->radius : 1);
     for (int c = 0; c < 3; c++) {
-        const vd moved = carried[c] + further * rays->way[c];
+        const vd moved = carried[c] + further * rays->direction[c];
         const vd left = (moved - d_set(part->place[c])) - off[c] * d_set(part->growth);
         out[0][c] = moved;
         out[1][c] = d_either(round, left * curved, side * d_set(part->normal[c]));

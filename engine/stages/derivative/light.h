@@ -24,7 +24,7 @@ typedef struct seen_lanes {
 
 /// The data of a light for VD lanes of a group.
 typedef struct shine_lanes {
-    vs way[3]; ///< unit, towards the light
+    vs direction[3]; ///< unit, towards the light
     vs cosine; ///< n.l
     vs distance; ///< directional: infinite
     vs weight; ///< attenuation by distance, cone and surface, times the transmitted share
@@ -48,11 +48,11 @@ INNER seen_lanes seen_points(const glint_derivative_points *points, const unsign
 }
 
 /// Returns a spot's factor; see spot_x and cone of stages/ref/light.h.
-INNER vs spot_cone(const glint_derivative_light *light, const unsigned slopes, const vs way[3])
+INNER vs spot_cone(const glint_derivative_light *light, const unsigned slopes, const vs direction[3])
 {
     const bool any = slopes, turned = slopes & SLOPES_TURNED, other = slopes & SLOPES_OTHER;
     const vs axis[3] = { s_of(turned, light->axis[0]), s_of(turned, light->axis[1]), s_of(turned, light->axis[2]) };
-    const vs zero = s_set(0), one = s_set(1), c = s_sub(zero, s_dot(axis, way));
+    const vs zero = s_set(0), one = s_set(1), c = s_sub(zero, s_dot(axis, direction));
     vs x = s_keep(any, s_mul(s_sub(c, s_of(other, light->outer)), s_of(other, light->inverse)));
     if (light->inverse.value == HUGE_VAL)
         x = s_keep(any, s_select(d_lt(d_set(light->outer.value), c.v), one, zero));
@@ -64,12 +64,12 @@ INNER vs spot_cone(const glint_derivative_light *light, const unsigned slopes, c
 }
 
 /// Computes the weight of a surface with radiance, from its orientation and distance.
-INNER vs surface_weight(const glint_derivative_source *source, const vs way[3], vs length2, vs distance, int i)
+INNER vs surface_weight(const glint_derivative_source *source, const vs direction[3], vs length2, vs distance, int i)
 {
     vs normal[3];
     for (int c = 0; c < 3; c++)
         normal[c] = s_level(d_load(source->normal[c] + i));
-    vs m = s_sub(s_set(0), s_dot(way, normal));
+    vs m = s_sub(s_set(0), s_dot(direction, normal));
     if (source->both)
         m = s_select(d_lt(m.v, d_set(0)), s_sub(s_set(0), m), m);
     return s_div(m, s_mul(length2, distance));
@@ -86,7 +86,7 @@ INNER vs weaken(const glint_derivative_light *light, const shine_lanes *s, const
         weight = s_keep(any, s_div(weight, s_add(s_of(other, light->coefficients[0]), further)));
     }
     if (light->is_spot)
-        weight = s_keep(any, s_mul(weight, spot_cone(light, slopes, s->way)));
+        weight = s_keep(any, s_mul(weight, spot_cone(light, slopes, s->direction)));
     return weight;
 }
 
@@ -101,20 +101,20 @@ INNER shine_lanes find_shine(const glint_derivative_light *light, const glint_de
         s.weight = s_keep(any, s_level(d_load(source->weight + i)));
     for (int c = 0; c < 3; c++) {
         const vs to = { d_load(source->position[c] + i), d_set(turned ? light->position[c].slope : 0), !turned };
-        s.way[c] = s_keep(moving, light->directional ? s_keep(moving, to) : s_keep(moving, s_sub(to, point[c])));
+        s.direction[c] = s_keep(moving, light->directional ? s_keep(moving, to) : s_keep(moving, s_sub(to, point[c])));
     }
     if (!light->directional) {
-        const vs length2 = s_dot(s.way, s.way);
+        const vs length2 = s_dot(s.direction, s.direction);
         const vs_length length = s_length(length2);
         const vs inverse = s_keep(moving, length.inverse);
         s.distance = s_keep(moving, length.whole);
         if (source->radiant)
-            s.weight = s_keep(any, s_mul(s.weight, surface_weight(source, s.way, length2, s.distance, i)));
+            s.weight = s_keep(any, s_mul(s.weight, surface_weight(source, s.direction, length2, s.distance, i)));
         for (int c = 0; c < 3; c++)
-            s.way[c] = s_keep(moving, s_mul(s.way[c], inverse));
+            s.direction[c] = s_keep(moving, s_mul(s.direction[c], inverse));
     }
     s.weight = weaken(light, &s, slopes);
-    s.cosine = s_dot(s.way, normal);
+    s.cosine = s_dot(s.direction, normal);
     return s;
 }
 
@@ -135,11 +135,11 @@ INNER vs power_lanes(const glint_derivative_material *material, vs shininess, co
     vs x;
     if (material->highlight == GLINT_HIGHLIGHT_PHONG) {
         const vs twice = s_mul(s_dot(normal, eye), s_set(2));
-        x = s_keep(!s->cosine.level, s_sub(s_mul(s->cosine, twice), s_dot(s->way, eye)));
+        x = s_keep(!s->cosine.level, s_sub(s_mul(s->cosine, twice), s_dot(s->direction, eye)));
     } else {
         vs h[3];
         for (int c = 0; c < 3; c++)
-            h[c] = s_add(s->way[c], eye[c]);
+            h[c] = s_add(s->direction[c], eye[c]);
         x = s_keep(!s->cosine.level, s_div(s_dot(h, normal), s_sqrt(s_dot(h, h))));
     }
     const vs strength = s_pow(x, shininess);
@@ -182,7 +182,7 @@ INNER void lobe_lanes(const glint_derivative_material *material, vs alpha, const
     const vs zero = s_set(0), one = s_set(1);
     vs h[3], across[3];
     for (int c = 0; c < 3; c++)
-        h[c] = s_add(s->way[c], eye[c]);
+        h[c] = s_add(s->direction[c], eye[c]);
     for (int c = 0; c < 3; c++) {
         const int a = (c + 1) % 3, b = (c + 2) % 3;
         across[c] = s_sub(s_mul(h[b], normal[a]), s_mul(h[a], normal[b]));
@@ -191,7 +191,7 @@ INNER void lobe_lanes(const glint_derivative_material *material, vs alpha, const
     const vs l = s_min(s->cosine, one);
     const vs v = s_max(s_min(s_dot(normal, eye), one), zero); // a bumped normal may face away; see stages/ref/microfacets.h
     const vs lobe = facet_lanes(material, alpha, sine2, l, v);
-    const vs z = s_min(s_mul(s_add(one, s_dot(s->way, eye)), s_set(0.5)), one);
+    const vs z = s_min(s_mul(s_add(one, s_dot(s->direction, eye)), s_set(0.5)), one);
     const vs m = s_sub(one, s_sqrt(s_max(z, zero))), mm = s_mul(m, m);
     const dm there = d_lt(zero.v, h2.v);
     *specular = s_keep(true, s_select(there, lobe, zero));
@@ -297,7 +297,8 @@ INNER void arrival_group(const glint_arrival_args *args, const unsigned slopes)
     for (int i = 0; i < GLINT_GROUP; i += VD) {
         const seen_lanes seen = seen_points(call.points, slopes, i);
         const shine_lanes s = find_shine(call.light, source, seen.point, seen.normal, slopes, i);
-        vs all[GLINT_ARRIVAL_COUNT] = { s.way[0], s.way[1], s.way[2], s.weight, s.weight, s.weight, s.distance };
+        vs all[GLINT_ARRIVAL_COUNT] = { s.direction[0], s.direction[1], s.direction[2], s.weight,
+                                        s.weight,       s.weight,       s.distance };
         for (int c = 0; c < 3; c++) {
             all[3 + c] = s_keep(any, s_mul(s_of(other, call.light->diffuse[c]), s.weight));
             if (source->tint[0])

@@ -72,10 +72,10 @@ static inline void differ_lines(const glint_differ_args *args, bool along, bool 
                      &out->open[GLINT_DIFFER_FALLING]);
         differ_pairs(args, args->p, i + 1, args->q, i, i, &out->sure[GLINT_DIFFER_RISING], &out->open[GLINT_DIFFER_RISING]);
     }
-    for (int way = 0; way < GLINT_DIFFER_WAYS; way++) {
-        const uint32_t pairs = first_bits(way == GLINT_DIFFER_ACROSS ? args->count : args->ahead);
-        out->sure[way] &= pairs;
-        out->open[way] &= pairs;
+    for (int direction = 0; direction < GLINT_DIFFER_DIRECTIONS; direction++) {
+        const uint32_t pairs = first_bits(direction == GLINT_DIFFER_ACROSS ? args->count : args->ahead);
+        out->sure[direction] &= pairs;
+        out->open[direction] &= pairs;
     }
 }
 

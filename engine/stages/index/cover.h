@@ -63,8 +63,8 @@ static void R(make_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
     candidate->power = 0;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 2; i++) {
-            const double s = candidate->along_s[k], t = candidate->along_t[k], way = i ? s + t : s - t;
-            diagonal2[i] += way * way;
+            const double s = candidate->along_s[k], t = candidate->along_t[k], diagonal = i ? s + t : s - t;
+            diagonal2[i] += diagonal * diagonal;
         }
     for (int k = 0; k < 3; k++) {
         s2 += (double)candidate->along_s[k] * (double)candidate->along_s[k];
@@ -160,8 +160,8 @@ INNER unsigned R(cover_groups)(const R(tile_cast) * tile, const R(candidate) * c
 }
 
 /// Computes bounds of t of the hits in the groups; the upper one holds where the candidate fills the group.
-INNER void R(ways_to)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at, vf *low,
-                      vf *high)
+INNER void R(bounds_of_t)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at, vf *low,
+                          vf *high)
 {
     const vf zero = f_set(0), less = f_set(1 - 1e-5f), more = f_set(1 + 1e-5f), power = f_set(candidate->power);
     *low = zero;
@@ -196,7 +196,7 @@ static inline void R(leave_hidden)(const R(tile_cast) * tile, const R(candidate)
         vf high;
         if (!may[k])
             continue;
-        R(ways_to)(tile, candidates[k], at, &low[k], &high);
+        R(bounds_of_t)(tile, candidates[k], at, &low[k], &high);
         nearest = f_select(fm_from_bits(may[k] & sure[k]), f_min(high, nearest), nearest);
     }
     for (int k = 0; k < count; k++)

@@ -191,12 +191,12 @@ static void show_through_lens(const leaf_on_screen *corners, const screen_view *
         const leaf_lanes at = place_leaf(corners, view, i);
         vf deepest = f_set(0), off[2], wide[2];
         for (int j = 0; j < 3; j++) {
-            const vf way = at.w[j] * f_set(lens->per_focus);
+            const vf focus_ratio = at.w[j] * f_set(lens->per_focus);
             f_store(out->a[j] + i, at.a[j]);
             f_store(out->b[j] + i, at.b[j]);
             f_store(out->k[j] + i, at.k[j]);
-            f_store(out->c[j] + i, f_set(1) - way);
-            deepest = f_max(deepest, f_abs(way));
+            f_store(out->c[j] + i, f_set(1) - focus_ratio);
+            deepest = f_max(deepest, f_abs(focus_ratio));
         }
         const vf slack = slack_of_leaf(&at, view, is_float);
         for (int j = 0; j < 2; j++) { // for l c: its rounding error, and that of c

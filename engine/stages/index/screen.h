@@ -96,8 +96,8 @@ typedef struct lens_on_screen {
 /// Returns a bound of |1 - per_focus w| over k, including rounding.
 INNER vf lens_share(const lens_on_screen *lens, vf w, vf per_k)
 {
-    const vf way = w * f_set(lens->per_focus);
-    return (f_abs(f_set(1) - way) + f_set(1e-6f) * (f_set(1) + f_abs(way))) * f_abs(per_k);
+    const vf focus_ratio = w * f_set(lens->per_focus);
+    return (f_abs(f_set(1) - focus_ratio) + f_set(1e-6f) * (f_set(1) + f_abs(focus_ratio))) * f_abs(per_k);
 }
 
 /// Returns the boxes that may be hit before `far`. NaN, from boxes as wide as float's range, gives every cell.

@@ -17,7 +17,7 @@
 
 /// The light as seen from the points of a group.
 typedef struct R(light_cap) {
-    _Alignas(64) real way[3][GLINT_GROUP]; ///< unit, towards its centre
+    _Alignas(64) real direction[3][GLINT_GROUP]; ///< unit, towards its centre
     _Alignas(64) real sine[GLINT_GROUP], cosine[GLINT_GROUP]; ///< of half the cap's radius
     _Alignas(64) real power[GLINT_GROUP]; ///< squared length of a tangent, in the light's units
     _Alignas(64) real left[GLINT_GROUP]; ///< visible share so far
@@ -53,7 +53,7 @@ static void R(make_light_cap)(const glint_occlude_args *args, size_t at, R(light
         const vr d = r_sqrt(DOT(l, l)), power = (d - radius) * (d + radius);
         const vr cosine = R(half_cosine)(r_sqrt(r_max(power, zero)) / d);
         for (int k = 0; k < 3; k++)
-            r_store(cap->way[k] + i, l[k] / d);
+            r_store(cap->direction[k] + i, l[k] / d);
         r_store(cap->cosine + i, cosine);
         r_store(cap->sine + i, r_min(radius / d, one) / (r_set(2) * cosine));
         r_store(cap->power + i, power);
@@ -130,7 +130,7 @@ static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, siz
             const vr sine = r_min(r_set(prim->radius * glint_sphere_scale(prim)) / d, one) / (r_set(2) * cosine);
             vr apart[3], along[3];
             for (int k = 0; k < 3; k++) {
-                const vr u = r_load(cap->way[k] + i), v = -f[k] / d;
+                const vr u = r_load(cap->direction[k] + i), v = -f[k] / d;
                 apart[k] = u - v;
                 along[k] = u + v;
             }

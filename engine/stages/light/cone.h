@@ -59,16 +59,16 @@ static inline void R(see_ball)(const glint_light_sample *light_sample, double sc
 
 /// Computes the directions from the points to one sample each. Returns the distances at which they hit the ball from
 /// outside, or leave it, in the light's units.
-static inline vd R(aim_in_cone)(const R(cone) * cone, vd u, vd cosine, vd sine, vd way[3])
+static inline vd R(aim_in_cone)(const R(cone) * cone, vd u, vd cosine, vd sine, vd direction[3])
 {
     const vd zero = d_set(0), one = d_set(1);
     const vd m = (u * cone->sine2) * cone->part, c = one - m;
     const vd s2 = (u * cone->part) * (d_set(2) - m), s = cone->sine * d_sqrt(s2);
     const vd x = s * cosine, y = s * sine;
     for (int k = 0; k < 3; k++)
-        way[k] = (x * cone->tangent[k] + y * cone->bitangent[k]) + c * cone->axis[k];
+        direction[k] = (x * cone->tangent[k] + y * cone->bitangent[k]) + c * cone->axis[k];
     const vd far = c + cone->sine * d_sqrt(d_max(one - s2, zero));
-    const vd b = zero - DOT(cone->away, way), root = d_sqrt(b * b + cone->beyond);
+    const vd b = zero - DOT(cone->away, direction), root = d_sqrt(b * b + cone->beyond);
     const vd inside = d_select(d_lt(zero, b), cone->beyond / (b + root), root - b);
     return d_select(cone->within, inside, (cone->distance * cone->before) / far);
 }
@@ -84,16 +84,16 @@ static __attribute__((noinline)) void R(place_in_cone)(const glint_light_sample 
         R(store_exact)(set->weight + i, d_set(2) * (cone.sine2 * cone.part));
         for (uint32_t s = 0; s < count; s++) {
             const double(*square)[GLINT_GROUP] = light_sample[s]->position;
-            vd way[3];
+            vd direction[3];
             const vd t =
-                R(aim_in_cone)(&cone, d_load(square[0] + i), d_load(square[1] + i), d_load(square[2] + i), way);
+                R(aim_in_cone)(&cone, d_load(square[0] + i), d_load(square[1] + i), d_load(square[2] + i), direction);
             const vd far = t * d_set(1 / scale);
             R(store_exact)(set->far[s] + i, far);
             for (int k = 0; k < 3; k++) {
-                const vd met = cone.point[k] + way[k] * far;
+                const vd met = cone.point[k] + direction[k] * far;
                 const vd place = d_min(d_max(met, d_set(light_sample[0]->lower[k])), d_set(light_sample[0]->upper[k]));
                 d_store(set->place[s][k] + i, place);
-                R(store_exact)(set->way[s][k] + i, way[k]);
+                R(store_exact)(set->direction[s][k] + i, direction[k]);
 #if GLINT_REAL == 32
                 R(store_exact)(set->rounded[s][0][k] + i, place);
 #endif

@@ -7,7 +7,7 @@
 #include <math.h>
 
 typedef struct glint_cone_sample {
-    double way[3], far; ///< from the point to the sample: unit direction, and distance
+    double direction[3], far; ///< from the point to the sample: unit direction, and distance
     double place[3];
     double weight; ///< the solid angle over pi
 } glint_cone_sample;
@@ -43,21 +43,22 @@ static inline glint_cone_sample glint_cone_at(const glint_light_sample *light_sa
     const double g = excess / length2;
     if (g < (glint_cone_dot(normal, to) > 0 ? slack : -slack)) { // inside, or on the surface: half of all directions
         const double left = 0 - excess > 0 ? 0 - excess : 0, s = sqrt(u * (2 - u));
-        glint_cone_turn(normal, s * turn[0], s * turn[1], 1 - u, out.way);
-        const double b = 0 - glint_cone_dot(to, out.way), root = sqrt(b * b + left);
+        glint_cone_turn(normal, s * turn[0], s * turn[1], 1 - u, out.direction);
+        const double b = 0 - glint_cone_dot(to, out.direction), root = sqrt(b * b + left);
         t = b > 0 ? left / (b + root) : root - b;
         out.weight = 2;
     } else {
         const double open = g > 0 ? g : 0, q = r / d, q2 = q * q, h = 1 / (1 + sqrt(open));
         const double m = (u * q2) * h, s2 = (u * h) * (2 - m), s = q * sqrt(s2), rest = 1 - s2;
         const double axis[3] = { to[0] / d, to[1] / d, to[2] / d };
-        glint_cone_turn(axis, s * turn[0], s * turn[1], 1 - m, out.way);
+        glint_cone_turn(axis, s * turn[0], s * turn[1], 1 - m, out.direction);
         t = (d * open) / ((1 - m) + q * sqrt(rest > 0 ? rest : 0));
         out.weight = 2 * (q2 * h);
     }
     out.far = t * (1 / scale);
     for (int k = 0; k < 3; k++) {
-        const double met = point[k] + out.way[k] * out.far, above = met > light_sample->lower[k] ? met : light_sample->lower[k];
+        const double met = point[k] + out.direction[k] * out.far,
+                     above = met > light_sample->lower[k] ? met : light_sample->lower[k];
         out.place[k] = above < light_sample->upper[k] ? above : light_sample->upper[k];
     }
     return out;

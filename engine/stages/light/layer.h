@@ -26,7 +26,7 @@ typedef struct layer_frame {
     float slack; ///< bound of a segment's rounding error, at any h
     float lowest, highest; ///< smallest and largest h of a point
     float nearest, farthest; ///< smallest and largest h of a sample
-    float per_way; ///< 1 / (nearest - highest)
+    float per_gap; ///< 1 / (nearest - highest)
     float width[2]; ///< of all segments, halfway
     float slope[2][2]; ///< smallest and largest
     _Alignas(64) float point[3][GLINT_TILE_SAMPLES]; ///< of lit groups
@@ -72,29 +72,30 @@ static inline layer_lanes lanes_of_layer(const layer_frame *frame, uint32_t s, s
 /// coincide.
 static bool make_layer_axes(const float lower[3], const float upper[3], const light_place *light, layer_frame *frame)
 {
-    double way[3], across[3], down[3], least[3] = { 0, 0, 0 };
+    double offset[3], across[3], down[3], least[3] = { 0, 0, 0 };
     int k = 0;
     for (int j = 0; j < 3; j++) {
         frame->origin[j] = 0.5f * (lower[j] + upper[j]);
         frame->exact[j] = (double)frame->origin[j];
-        way[j] = 0.5 * ((double)light->lower[j] + (double)light->upper[j]) - frame->exact[j];
+        offset[j] = 0.5 * ((double)light->lower[j] + (double)light->upper[j]) - frame->exact[j];
     }
-    const double length = sqrt(DOT(way, way));
+    const double length = sqrt(DOT(offset, offset));
     if (!(length > 0x1p-100) || !(length < 0x1p100))
         return false;
     for (int j = 1; j < 3; j++)
-        if (fabs(way[j]) < fabs(way[k]))
+        if (fabs(offset[j]) < fabs(offset[k]))
             k = j;
     least[k] = 1;
     for (int j = 0; j < 3; j++)
-        across[j] = (least[(j + 1) % 3] * way[(j + 2) % 3] - least[(j + 2) % 3] * way[(j + 1) % 3]) / length;
+        across[j] = (least[(j + 1) % 3] * offset[(j + 2) % 3] - least[(j + 2) % 3] * offset[(j + 1) % 3]) / length;
     const double width = sqrt(DOT(across, across));
     for (int j = 0; j < 3; j++)
-        down[j] = (way[(j + 1) % 3] * across[(j + 2) % 3] - way[(j + 2) % 3] * across[(j + 1) % 3]) / (length * width);
+        down[j] =
+            (offset[(j + 1) % 3] * across[(j + 2) % 3] - offset[(j + 2) % 3] * across[(j + 1) % 3]) / (length * width);
     for (int j = 0; j < 3; j++) {
         frame->axis[0][j] = (float)(across[j] / width);
         frame->axis[1][j] = (float)down[j];
-        frame->axis[2][j] = (float)(way[j] / length);
+        frame->axis[2][j] = (float)(offset[j] / length);
     }
     return true;
 }

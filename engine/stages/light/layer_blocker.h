@@ -209,7 +209,7 @@ static inline float R(slack_at)(const layer_frame *frame, const layer_prim *prim
     for (int j = 0; j < 3; j++)
         size += largest_of(prim->low[j], prim->high[j]);
     const float beyond = larger(larger(frame->highest - least, most - frame->nearest), 0);
-    return (frame->slack + LAYER_SLACK * (size + largest_of(least, most))) * (1 + 2 * beyond * frame->per_way);
+    return (frame->slack + LAYER_SLACK * (size + largest_of(least, most))) * (1 + 2 * beyond * frame->per_gap);
 }
 
 /// Computes bounds of the positions, along axis j, at which segments that hit a primitive cross a plane at h.

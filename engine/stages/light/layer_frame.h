@@ -105,14 +105,14 @@ static bool R(aim_layers)(const R(shadow_tile) * tile, const uint16_t *lit, laye
             high[n][j] = f_max_all(most[n][j]);
             size += largest_of(low[n][j], high[n][j]);
         }
-    const float way = low[1][2] - high[0][2], longest = high[1][2] - low[0][2];
-    if (!(way > 0.125f * longest) || !(size < 0x1p60f))
+    const float gap = low[1][2] - high[0][2], longest = high[1][2] - low[0][2];
+    if (!(gap > 0.125f * longest) || !(size < 0x1p60f))
         return false;
     for (int j = 0; j < 2; j++) {
         const float right = high[1][j] - low[0][j], left = low[1][j] - high[0][j];
         frame->width[j] = 0.5f * ((high[0][j] - low[0][j]) + (high[1][j] - low[1][j]));
-        frame->slope[j][0] = (left < 0 ? left / way : left / longest) - 1e-5f;
-        frame->slope[j][1] = (right > 0 ? right / way : right / longest) + 1e-5f;
+        frame->slope[j][0] = (left < 0 ? left / gap : left / longest) - 1e-5f;
+        frame->slope[j][1] = (right > 0 ? right / gap : right / longest) + 1e-5f;
         steepest = larger(steepest, largest_of(frame->slope[j][0], frame->slope[j][1]));
     }
     if (!(steepest < LAYER_STEEPEST))
@@ -121,7 +121,7 @@ static bool R(aim_layers)(const R(shadow_tile) * tile, const uint16_t *lit, laye
     frame->highest = high[0][2];
     frame->nearest = low[1][2];
     frame->farthest = high[1][2];
-    frame->per_way = 1 / way;
+    frame->per_gap = 1 / gap;
     frame->slack = LAYER_SLACK * size + (float)(16 * GLINT_POINT_SLACK * geometry->extent * geometry->scale);
     return true;
 }

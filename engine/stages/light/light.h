@@ -79,7 +79,7 @@ INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t
     vr l[3], m = zero;
     for (int k = 0; k < 3; k++) {
         if (kind == LIGHT_CONE) {
-            l[k] = r_load(light_samples->way[s][k] + i);
+            l[k] = r_load(light_samples->direction[s][k] + i);
             continue;
         }
         l[k] = kind == LIGHT_LIGHT_SAMPLE ? r_load(light_samples->light_sample[s].position[k] + i)

@@ -25,7 +25,8 @@ typedef struct R(light_sample_set) {
 #endif
     // for GLINT_EMIT_CONE, of the current group:
     _Alignas(64) double place[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];
-    _Alignas(64) real way[GLINT_LIGHT_CHUNK][3][GLINT_GROUP], far[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< from the points:
+    _Alignas(64) real direction[GLINT_LIGHT_CHUNK][3][GLINT_GROUP],
+        far[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< from the points:
         ///< unit directions, and distances
     _Alignas(64) real weight[GLINT_GROUP]; ///< the cone's solid angle over pi
 } R(light_sample_set);

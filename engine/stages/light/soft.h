@@ -122,19 +122,20 @@ static inline R(soft_lanes) R(sort_by_ball)(const R(whole_light) * light, const 
     R(soft_lanes) out = { 0, 0 };
     const vf radius = f_set(light->radius), bound = f_set(prim->filter_bound), slack = f_set(occluder->slack);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vf way[3], e[3], off[3]; // from the point to the light; to the occluder; the perpendicular between both
+        vf to_light[3], e[3], off[3]; // from the point to the light; to the occluder; the perpendicular between both
         for (int k = 0; k < 3; k++) {
             const vf x = f_load(local[k] + i);
-            way[k] = f_set(light->middle[k]) - x;
+            to_light[k] = f_set(light->middle[k]) - x;
             e[k] = f_set(prim->filter_center[k]) - x;
         }
-        const vf length2 = DOT(way, way), ee = DOT(e, e), along = DOT(e, way), inverse = f_set(1) / length2;
+        const vf length2 = DOT(to_light, to_light), ee = DOT(e, e), along = DOT(e, to_light),
+                 inverse = f_set(1) / length2;
         const vf share = along * inverse, one = f_set(1);
         // close to the occluder, and where squares overflow or underflow, nothing is decided
         const fm fit =
             fm_and(f_lt(f_max(f_set(4) * (radius * radius), f_set(0x1p-80f)), length2), f_lt(length2, f_set(0x1p80f)));
         for (int k = 0; k < 3; k++)
-            off[k] = e[k] - share * way[k];
+            off[k] = e[k] - share * to_light[k];
         const vf beside2 = DOT(off, off) * (one - (radius * radius) * inverse);
         const vf loose = slack * (one + ee * inverse), reach = bound + share * radius;
         fm apart = fm_and(fit, f_lt(reach + f_set(2) * loose, f_sqrt(beside2)));
@@ -153,7 +154,7 @@ static inline R(soft_lanes) R(sort_by_ball)(const R(whole_light) * light, const 
             continue;
         const vf part = f_min(f_max(share, f_set(0)), one);
         for (int k = 0; k < 3; k++)
-            off[k] = e[k] - part * way[k];
+            off[k] = e[k] - part * to_light[k];
         const vf widest = f_sqrt(DOT(off, off)) + (part * radius + slack);
         const vf within = f_set((float)(prim->radius * light->scale) * 0.99999f);
         out.hidden |= fm_bits(fm_and(fit, f_lt(widest, within))) << i;

@@ -116,7 +116,7 @@ INNER unsigned R(add_sample)(const R(soft_call) * call, const int kind, const bo
     for (int j = 0; j < SOFT_PARTS; j++) {
         for (int k = 0; k < 3; k++)
             if (cone)
-                l[j][k] = r_load(call->light.light_samples.way[s][k] + i + j * VR);
+                l[j][k] = r_load(call->light.light_samples.direction[s][k] + i + j * VR);
             else
                 l[j][k] = plain ? r_load(call->scaled[s][k] + i + j * VR) - p->point[j][k]
                                 : (r_load(light_sample->position[k] + i + j * VR) - p->point[j][k]) * scale;

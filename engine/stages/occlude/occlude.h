@@ -17,22 +17,22 @@
 static bool R(sphere_apart)(const glint_prim *prim, const float lower[3], const float upper[3],
                             const light_place *light)
 {
-    float middle[3], half[3], end[3], end_half[3], way[3], e[3], along = 0, length2 = 0;
+    float middle[3], half[3], end[3], end_half[3], segment[3], e[3], along = 0, length2 = 0;
     for (int k = 0; k < 3; k++) {
         middle[k] = 0.5f * (lower[k] + upper[k]);
         half[k] = upper[k] - middle[k];
         end[k] = 0.5f * (light->lower[k] + light->upper[k]);
         end_half[k] = light->upper[k] - end[k];
-        way[k] = light->directional ? end[k] : end[k] - middle[k];
+        segment[k] = light->directional ? end[k] : end[k] - middle[k];
         e[k] = middle[k] - prim->filter_center[k];
-        along -= e[k] * way[k];
-        length2 += way[k] * way[k];
+        along -= e[k] * segment[k];
+        length2 += segment[k] * segment[k];
     }
     along = larger(along / length2, 0);
     if (!light->directional)
         along = smaller(along, 1);
     for (int k = 0; k < 3; k++)
-        e[k] += along * way[k];
+        e[k] += along * segment[k];
     // e: from the centre to the nearest point of the middle segment
     float size = 0, at_points = 0, at_light = 0;
     for (int k = 0; k < 3; k++) {

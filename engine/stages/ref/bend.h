@@ -2,7 +2,7 @@
 
 /// The ray that sees a hit: distance of the hit along it, and the ray's slopes.
 typedef struct bent_ray {
-    double way[3], moved[3], turned[3], far;
+    double direction[3], moved[3], turned[3], far;
 } bent_ray;
 
 static bent_ray seen_from_point(const glint_bend_args *args, int i)
@@ -11,10 +11,10 @@ static bent_ray seen_from_point(const glint_bend_args *args, int i)
     const glint_bend_camera *camera = args->camera;
     bent_ray out = { .far = 1 };
     for (int c = 0; c < 3; c++)
-        out.way[c] = view->moves ? args->points->point[c][i] - camera->eye[c] : -args->points->eye[c][i];
+        out.direction[c] = view->moves ? args->points->point[c][i] - camera->eye[c] : -args->points->eye[c][i];
     for (int c = 0; c < 3; c++) {
         out.moved[c] = view->eye[c];
-        out.turned[c] = dot_of(camera->turn[c], out.way);
+        out.turned[c] = dot_of(camera->turn[c], out.direction);
     }
     return out;
 }
@@ -31,11 +31,11 @@ static bent_ray seen_along(const glint_bend_args *args, int i)
         const double at = args->shift[c][i], slope = args->shift_slope[c][i];
         const bool parallel = camera->orthographic;
         seen[c] = args->points->point[c][i] - (camera->eye[c] + ((parallel ? across : 0) + at));
-        out.way[c] = camera->forward[c] + ((parallel ? 0 : across) - at * camera->near);
+        out.direction[c] = camera->forward[c] + ((parallel ? 0 : across) - at * camera->near);
         out.moved[c] = view->eye[c] + ((parallel ? changed : 0) + slope);
         out.turned[c] = view->forward[c] + ((parallel ? 0 : changed) - (slope * camera->near + at * view->nearer));
     }
-    out.far = dot_of(seen, out.way) / dot_of(out.way, out.way);
+    out.far = dot_of(seen, out.direction) / dot_of(out.direction, out.direction);
     return out;
 }
 
@@ -56,10 +56,10 @@ static void bend_lane(const glint_bend_args *args, int i)
         rest += gradient[c] * ((part->place[c] - carried[c]) + part->growth * off[c]);
         rest -= round ? 0 : part->normal[c] * (point - part->pivot[c]);
     }
-    const double further = rest / dot_of(gradient, ray.way), side = dot_of(gradient, normal) < 0 ? -1 : 1;
-    const double shorter = -1 / dot_of(ray.way, eye), away = dot_of(ray.turned, eye);
+    const double further = rest / dot_of(gradient, ray.direction), side = dot_of(gradient, normal) < 0 ? -1 : 1;
+    const double shorter = -1 / dot_of(ray.direction, eye), away = dot_of(ray.turned, eye);
     for (int c = 0; c < 3; c++) {
-        const double moved = carried[c] + further * ray.way[c];
+        const double moved = carried[c] + further * ray.direction[c];
         args->slope[0][c][i] = moved;
         args->slope[1][c][i] = side * part->normal[c];
         if (round)

@@ -13,7 +13,7 @@ static REAL NAME(angle_of)(REAL y, REAL x)
 }
 
 typedef struct NAME(cap) {
-    NAME(vec3) way;
+    NAME(vec3) direction;
     REAL sine, cosine; ///< of half its radius
 } NAME(cap);
 
@@ -29,7 +29,7 @@ static NAME(cap) NAME(cap_of)(NAME(vec3) offset, REAL radius, REAL power)
 
 static REAL NAME(covered_part)(NAME(cap) s, NAME(cap) a)
 {
-    NAME(vec3) apart = NAME(sub)(s.way, a.way), along = NAME(add)(s.way, a.way);
+    NAME(vec3) apart = NAME(sub)(s.direction, a.direction), along = NAME(add)(s.direction, a.direction);
     REAL sg = (REAL)0.5 * NAME(square_root)(NAME(length2)(apart));
     REAL cg = (REAL)0.5 * NAME(square_root)(NAME(length2)(along));
     REAL sum_s = a.sine * cg + a.cosine * sg, sum_c = a.cosine * cg - a.sine * sg;

@@ -74,7 +74,7 @@ static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3)
         const glint_solid *solid = &args->geometry->solids[prim->item];
         NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);
         const bool open = solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_FUNNEL;
-        *t = solid->form != GLINT_FORM_DISK ? NAME(max)(p.out.t, (REAL)GLINT_LEAST_WAY) : 0;
+        *t = solid->form != GLINT_FORM_DISK ? NAME(max)(p.out.t, (REAL)GLINT_LEAST_T) : 0;
         if (open)
             *t = p.hit && !p.ends && p.out.t > 0 ? p.out.t : 0;
     }
@@ -82,7 +82,7 @@ static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3)
         return true;
     NAME(vec3) f = NAME(from_center)(origin, prim);
     REAL b = -NAME(dot)(f, direction);
-    *t = NAME(max)((b + b) / (NAME(length2)(direction) * (REAL)glint_sphere_scale(prim)), (REAL)GLINT_LEAST_WAY);
+    *t = NAME(max)((b + b) / (NAME(length2)(direction) * (REAL)glint_sphere_scale(prim)), (REAL)GLINT_LEAST_T);
     return true;
 }
 

@@ -40,7 +40,7 @@ static NAME(stretch) NAME(from_part)(const glint_geometry_table *geometry, const
     if (part->kind == GLINT_PRIM_PLANE)
         return (NAME(stretch)) { -INFINITY, INFINITY };
     NAME(passage) p = NAME(pass_prim)(&geometry->solids[part->item], part, origin, direction);
-    return (NAME(stretch)) { -INFINITY, NAME(max)(p.out.t, (REAL)GLINT_LEAST_WAY) };
+    return (NAME(stretch)) { -INFINITY, NAME(max)(p.out.t, (REAL)GLINT_LEAST_T) };
 }
 
 /// Returns one of the two intervals in which a ray may be inside a torus.
@@ -163,7 +163,7 @@ static REAL NAME(combined_t)(const glint_geometry_table *geometry, const glint_p
         for (uint32_t k = 0; k < geometry->hulls[part->item].count; k++)
             if (NAME(hull_crossing)(geometry, part, k, origin, direction, start, &t))
                 NAME(consider)(&ray, t, &best, met);
-        NAME(consider)(&ray, (REAL)GLINT_LEAST_WAY, &best, met); // for rays that start on it
+        NAME(consider)(&ray, (REAL)GLINT_LEAST_T, &best, met); // for rays that start on it
     }
     return best < INFINITY ? best : 0;
 }

@@ -19,15 +19,15 @@ static glint_dual dual_power(glint_dual x, glint_dual s)
 
 /// A light at a lane.
 typedef struct dual_shine {
-    glint_dual way[3], cosine, distance, weight;
+    glint_dual direction[3], cosine, distance, weight;
     bool weighs;
 } dual_shine;
 
 static glint_dual dual_at(const double *value, const double *slope, int i) { return dual(value[i], slope ? slope[i] : 0); }
 
-static glint_dual dual_cone(const glint_derivative_light *light, const glint_dual way[3])
+static glint_dual dual_cone(const glint_derivative_light *light, const glint_dual direction[3])
 {
-    const glint_dual c = dual_sub(dual(0, 0), dual_dot(light->axis, way));
+    const glint_dual c = dual_sub(dual(0, 0), dual_dot(light->axis, direction));
     glint_dual x = dual_mul(dual_sub(c, light->outer), light->inverse);
     if (light->inverse.value == HUGE_VAL)
         x = dual(light->outer.value < c.value ? 1 : 0, 0);
@@ -43,20 +43,20 @@ static glint_dual dual_cone(const glint_derivative_light *light, const glint_dua
 /// Computes the direction to a light at a position, not normalised yet.
 static void come_near(const glint_derivative_source *source, dual_shine *s, int i)
 {
-    const glint_dual length2 = dual_dot(s->way, s->way);
+    const glint_dual length2 = dual_dot(s->direction, s->direction);
     const double length = sqrt(length2.value), over = 1 / length;
     s->distance = dual(length, length > 0 ? (0.5 * length2.slope) * over : 0);
     if (source->radiant) {
         const glint_dual normal[3] = { dual(source->normal[0][i], 0), dual(source->normal[1][i], 0),
                                        dual(source->normal[2][i], 0) };
-        glint_dual m = dual_sub(dual(0, 0), dual_dot(s->way, normal));
+        glint_dual m = dual_sub(dual(0, 0), dual_dot(s->direction, normal));
         if (source->both && m.value < 0)
             m = dual_sub(dual(0, 0), m);
         s->weight = dual_mul(s->weight, dual_div(m, dual_mul(length2, s->distance)));
     }
     const glint_dual inverse = dual(over, -(over * s->distance.slope) * over);
     for (int c = 0; c < 3; c++)
-        s->way[c] = dual_mul(s->way[c], inverse);
+        s->direction[c] = dual_mul(s->direction[c], inverse);
 }
 
 static dual_shine dual_shine_at(const glint_derivative_light *light, const glint_derivative_points *points,
@@ -66,9 +66,9 @@ static dual_shine dual_shine_at(const glint_derivative_light *light, const glint
     glint_dual normal[3];
     s.weighs = source->weight || source->radiant || light->attenuated || light->is_spot;
     for (int c = 0; c < 3; c++) {
-        s.way[c] = dual(source->position[c][i], light->position[c].slope);
+        s.direction[c] = dual(source->position[c][i], light->position[c].slope);
         if (!light->directional)
-            s.way[c] = dual_sub(s.way[c], dual_at(points->point[c], points->slope[0][c], i));
+            s.direction[c] = dual_sub(s.direction[c], dual_at(points->point[c], points->slope[0][c], i));
         normal[c] = dual_at(points->normal[c], points->slope[1][c], i);
     }
     if (!light->directional)
@@ -79,23 +79,24 @@ static dual_shine dual_shine_at(const glint_derivative_light *light, const glint
         s.weight = dual_div(s.weight, dual_add(a[0], further));
     }
     if (light->is_spot)
-        s.weight = dual_mul(s.weight, dual_cone(light, s.way));
-    s.cosine = dual_dot(s.way, normal);
+        s.weight = dual_mul(s.weight, dual_cone(light, s.direction));
+    s.cosine = dual_dot(s.direction, normal);
     return s;
 }
 
 // ---- Highlights ----------------------------------------------------------------------------------------------------
 
 /// A lane's directions.
-typedef struct dual_ways {
+typedef struct dual_directions {
     glint_dual normal[3], eye[3], half[3];
-} dual_ways;
+} dual_directions;
 
-static glint_dual dual_strength(const glint_derivative_material *m, glint_dual power, const dual_shine *s, const dual_ways *w)
+static glint_dual dual_strength(const glint_derivative_material *m, glint_dual power, const dual_shine *s,
+                                const dual_directions *w)
 {
     glint_dual x;
     if (m->highlight == GLINT_HIGHLIGHT_PHONG)
-        x = dual_sub(dual_mul(s->cosine, dual_scale(dual_dot(w->normal, w->eye), 2)), dual_dot(s->way, w->eye));
+        x = dual_sub(dual_mul(s->cosine, dual_scale(dual_dot(w->normal, w->eye), 2)), dual_dot(s->direction, w->eye));
     else
         x = dual_div(dual_dot(w->half, w->normal), dual_sqrt(dual_dot(w->half, w->half)));
     const glint_dual strength = dual_power(x, power);
@@ -135,8 +136,8 @@ static glint_dual dual_beckmann(glint_dual alpha, glint_dual sine2, glint_dual l
 }
 
 /// Returns the microfacet term; *grazing: the term times Schlick's (1 - v.h)^5.
-static glint_dual dual_lobe(const glint_derivative_material *m, glint_dual alpha, const dual_shine *s, const dual_ways *w,
-                            glint_dual *grazing)
+static glint_dual dual_lobe(const glint_derivative_material *m, glint_dual alpha, const dual_shine *s,
+                            const dual_directions *w, glint_dual *grazing)
 {
     const glint_dual one = dual(1, 0), zero = dual(0, 0), h2 = dual_dot(w->half, w->half);
     glint_dual across[3];
@@ -153,7 +154,7 @@ static glint_dual dual_lobe(const glint_derivative_material *m, glint_dual alpha
     v = dual_either(v.value < 1, v, one);
     v = dual_either(v.value > 0, v, zero);
     const glint_dual lobe = m->lobe == GLINT_LOBE_GGX ? dual_ggx(alpha, sine2, l, v) : dual_beckmann(alpha, sine2, l, v);
-    glint_dual z = dual_scale(dual_add(one, dual_dot(s->way, w->eye)), 0.5);
+    glint_dual z = dual_scale(dual_add(one, dual_dot(s->direction, w->eye)), 0.5);
     z = dual_either(z.value < 1, z, one);
     const glint_dual rest = dual_sub(one, dual_sqrt(dual_either(z.value > 0, z, zero))), squared = dual_mul(rest, rest);
     *grazing = dual_mul(lobe, dual_mul(dual_mul(squared, squared), rest));
@@ -194,11 +195,11 @@ static void slope_lane(const glint_slope_args *args, int i)
     const glint_derivative_material *m = args->material;
     const dual_shine s = dual_shine_at(args->light, points, args->source, i);
     glint_dual specular = dual(0, 0), grazing = dual(0, 0);
-    dual_ways w;
+    dual_directions w;
     for (int c = 0; c < 3; c++) {
         w.normal[c] = dual_at(points->normal[c], points->slope[1][c], i);
         w.eye[c] = dual_at(points->eye[c], points->slope[2][c], i);
-        w.half[c] = dual_add(s.way[c], w.eye[c]);
+        w.half[c] = dual_add(s.direction[c], w.eye[c]);
     }
     if (m->highlight == GLINT_HIGHLIGHT_FACETS)
         specular = dual_lobe(m, dual_plane(args->planes, GLINT_DERIVED_ALPHA, i, m->alpha), &s, &w, &grazing);
@@ -224,7 +225,7 @@ static void arrival(const glint_arrival_args *args)
     for (int i = 0; i < GLINT_GROUP; i++) {
         const glint_derivative_source *source = args->source;
         const dual_shine s = dual_shine_at(args->light, args->points, source, i);
-        glint_dual all[GLINT_ARRIVAL_COUNT] = { s.way[0], s.way[1], s.way[2] };
+        glint_dual all[GLINT_ARRIVAL_COUNT] = { s.direction[0], s.direction[1], s.direction[2] };
         for (int c = 0; c < 3; c++) {
             all[3 + c] = dual_mul(args->light->diffuse[c], s.weight);
             if (source->tint[0])

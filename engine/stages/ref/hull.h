@@ -44,8 +44,8 @@ static bool NAME(begins_on)(const glint_geometry_table *table, const glint_prim 
 
 /// Returns how the ray crosses triangle k of the mesh: 1: out, -1: in, 0: not; *t: where, within the triangle's own
 /// depth.
-static int NAME(way_through)(const glint_geometry_table *table, const glint_prim *part, uint32_t k, NAME(vec3) origin,
-                             NAME(vec3) direction, REAL *t)
+static int NAME(crossing_sign)(const glint_geometry_table *table, const glint_prim *part, uint32_t k, NAME(vec3) origin,
+                               NAME(vec3) direction, REAL *t)
 {
     const glint_prim *prim = &table->prims[table->prim_count + table->hulls[part->item].first + k];
     NAME(vec3) corner[3];
@@ -54,7 +54,7 @@ static int NAME(way_through)(const glint_geometry_table *table, const glint_prim
     if (!turns)
         return 0;
     NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
-    *t = NAME(way_to_plane)(table, prim, seen, origin, direction);
+    *t = NAME(plane_distance)(table, prim, seen, origin, direction);
     if (!prim->face) {
         REAL w[3];
         for (int j = 0; j < 3; j++)
@@ -71,11 +71,11 @@ static int NAME(hull_crossing)(const glint_geometry_table *table, const glint_pr
 {
     const uint32_t index = table->prim_count + table->hulls[part->item].first + k;
     const bool on_hull = NAME(starts_on_hull)(table, &table->hulls[part->item], start);
-    int way = start.on == index ? 0 : NAME(way_through)(table, part, k, origin, direction, t);
-    if (!way || !(*t > 0) ||
+    int winding = start.on == index ? 0 : NAME(crossing_sign)(table, part, k, origin, direction, t);
+    if (!winding || !(*t > 0) ||
         NAME(begins_on)(table, &table->prims[index], origin, direction, start.on != GLINT_MISS, on_hull, *t))
         return 0;
-    return way;
+    return winding;
 }
 
 /// For a ray that starts on the mesh, it is known whether it goes inside. If the crossings ahead disagree, an exit or
@@ -96,13 +96,14 @@ static int NAME(hull_crossing_at_start)(const glint_geometry_table *table, const
     *triangle = start.on;
     if (inside == (ahead > 0))
         return 0;
-    const int way = (inside ? 1 : 0) - ahead;
+    const int winding = (inside ? 1 : 0) - ahead;
     for (uint32_t k = hull->count; k-- > 0;) {
-        int through = first + k == start.on ? 0 : NAME(way_through)(table, part, k, origin, direction, &t);
-        if (through * way > 0 && (t == 0 || NAME(begins_on)(table, &table->prims[first + k], origin, direction, true, true, t)))
+        int through = first + k == start.on ? 0 : NAME(crossing_sign)(table, part, k, origin, direction, &t);
+        if (through * winding > 0 &&
+            (t == 0 || NAME(begins_on)(table, &table->prims[first + k], origin, direction, true, true, t)))
             *triangle = first + k;
     }
-    return way;
+    return winding;
 }
 
 /// The state of the mesh next to a point on the ray: inside if there are more exits than entries ahead.
@@ -111,28 +112,28 @@ typedef struct NAME(hull_change) {
     uint32_t triangle; ///< the first of the triangles that are crossed there in the direction of the change
 } NAME(hull_change);
 
-static void NAME(note_crossing)(int way, bool here, bool later, uint32_t triangle, int left[2], uint32_t found[2])
+static void NAME(note_crossing)(int winding, bool here, bool later, uint32_t triangle, int left[2], uint32_t found[2])
 {
-    left[0] += here || later ? way : 0;
-    left[1] += later ? way : 0;
-    if (here && way && found[way > 0] == GLINT_MISS)
-        found[way > 0] = triangle;
+    left[0] += here || later ? winding : 0;
+    left[1] += later ? winding : 0;
+    if (here && winding && found[winding > 0] == GLINT_MISS)
+        found[winding > 0] = triangle;
 }
 
 static NAME(hull_change) NAME(hull_change_at)(const glint_geometry_table *table, const glint_prim *part, NAME(vec3) origin,
                                               NAME(vec3) direction, NAME(start) start, REAL t)
 {
     const glint_hull *hull = &table->hulls[part->item];
-    const REAL least = (REAL)GLINT_LEAST_WAY;
+    const REAL least = (REAL)GLINT_LEAST_T;
     int left[2] = { 0, 0 };
     uint32_t found[2] = { GLINT_MISS, GLINT_MISS }, triangle = GLINT_MISS;
-    int way = NAME(hull_crossing_at_start)(table, part, origin, direction, start, &triangle);
-    NAME(note_crossing)(way, t == least, t < least, triangle, left, found);
+    int winding = NAME(hull_crossing_at_start)(table, part, origin, direction, start, &triangle);
+    NAME(note_crossing)(winding, t == least, t < least, triangle, left, found);
     for (uint32_t k = 0; k < hull->count; k++) {
         REAL at;
-        way = NAME(hull_crossing)(table, part, k, origin, direction, start, &at);
-        if (way)
-            NAME(note_crossing)(way, at == t, at > t, table->prim_count + hull->first + k, left, found);
+        winding = NAME(hull_crossing)(table, part, k, origin, direction, start, &at);
+        if (winding)
+            NAME(note_crossing)(winding, at == t, at > t, table->prim_count + hull->first + k, left, found);
     }
     return (NAME(hull_change)) { left[0] > 0, left[1] > 0, found[left[0] > 0] };
 }

@@ -48,7 +48,7 @@ static NAME(vec3) NAME(to_light)(const glint_light_args *args, uint32_t s, uint3
     const double *place = args->place[0] ? args->place[s] : args->position;
     if (NAME(is_cone)(light_sample)) {
         glint_cone_sample sample = NAME(in_own_cone)(light_sample, args->scale, args->point, args->normal, i);
-        return NAME(rounded)(sample.way);
+        return NAME(rounded)(sample.direction);
     }
     NAME(vec3) position = light_sample ? NAME(lane_of)(light_sample->position, i) : NAME(rounded)(place);
     return args->directional ? position

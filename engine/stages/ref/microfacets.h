@@ -27,7 +27,7 @@ static void NAME(facet_sample)(const glint_facet_args *args, uint32_t s, uint32_
     const glint_light_sample *light_sample = args->light_sample[s];
     NAME(vec3) l = light_sample ? NAME(lane_of)(light_sample->position, i) : NAME(rounded)(args->position);
     if (NAME(is_cone)(light_sample))
-        l = NAME(rounded)(NAME(in_own_cone)(light_sample, args->scale, args->point, args->normal, i).way);
+        l = NAME(rounded)(NAME(in_own_cone)(light_sample, args->scale, args->point, args->normal, i).direction);
     else if (!args->directional)
         l = NAME(times)(NAME(sub)(l, NAME(load)(args->point, i)), (REAL)args->scale);
     NAME(vec3) n = NAME(load)(args->normal, i), d = NAME(direction_of)(args->camera, args->direction, i);

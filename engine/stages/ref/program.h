@@ -315,7 +315,7 @@ static void program(const glint_program_args *args)
     }
 }
 
-static double way_back(const glint_camera_args *camera, uint32_t group, int c, uint32_t lane)
+static double direction_to_eye(const glint_camera_args *camera, uint32_t group, int c, uint32_t lane)
 {
     const uint32_t x = group % camera->groups_across, y = group / camera->groups_across;
     const double *across = (const double *)camera->across + 3 * x * GLINT_GROUP,
@@ -328,8 +328,9 @@ static void unit(const glint_unit_args *args)
     for (uint32_t lane = 0; lane < args->group_count * GLINT_GROUP; lane++) {
         double d[3];
         for (int c = 0; c < 3; c++)
-            d[c] = args->camera ? way_back(args->camera, args->groups[lane / GLINT_GROUP], c, lane % GLINT_GROUP)
-                                : (args->place ? args->place[c] : args->to[c][lane]);
+            d[c] = args->camera
+                       ? direction_to_eye(args->camera, args->groups[lane / GLINT_GROUP], c, lane % GLINT_GROUP)
+                       : (args->place ? args->place[c] : args->to[c][lane]);
         for (int c = 0; c < 3 && !args->camera && args->from[0]; c++)
             d[c] -= args->from[c][lane];
         const double length = sqrt((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);

@@ -167,7 +167,7 @@ static REAL NAME(torus_root)(const NAME(torus_line) * l, int stretch)
             break; // convergence is cubic: the remaining error is below rounding
     }
     REAL t = l->from + s * l->per;
-    return t > 0 ? t : (REAL)GLINT_LEAST_WAY;
+    return t > 0 ? t : (REAL)GLINT_LEAST_T;
 }
 
 /// Returns the distance at which a ray hits a torus; 0: a miss. leaves: the ray starts on it, and goes inside or not.
@@ -179,7 +179,7 @@ static REAL NAME(torus_t)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, 
     for (int stretch = 0; stretch < 4; stretch++)
         if (NAME(torus_crosses)(&l, stretch) && NAME(torus_ahead)(&l, stretch))
             return NAME(torus_root)(&l, stretch);
-    return leaves && inward ? (REAL)GLINT_LEAST_WAY : 0;
+    return leaves && inward ? (REAL)GLINT_LEAST_T : 0;
 }
 
 /// Computes the intervals inside: ends[0] to ends[1], and ends[2] to ends[3]. If the ray does not come out in
@@ -194,7 +194,7 @@ static void NAME(torus_ends)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) 
     if (!(l.near && l.gap[1] > 0))
         ends[2] = ends[0];
     if (leaves && inward && !(ends[1] > 0) && !(ends[3] > 0))
-        ends[3] = (REAL)GLINT_LEAST_WAY;
+        ends[3] = (REAL)GLINT_LEAST_T;
 }
 
 /// Projects a point next to the surface onto it. Returns the outward normal there.

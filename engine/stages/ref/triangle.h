@@ -65,8 +65,8 @@ static void NAME(corners_seen)(const glint_prim *prim, NAME(vec3) from, double s
 
 /// Returns the distance at which a ray crosses the plane of a triangle: the plane of its corners, or one that it
 /// shares.
-static REAL NAME(way_to_plane)(const glint_geometry_table *table, const glint_prim *prim, NAME(seen_edges) seen,
-                               NAME(vec3) origin, NAME(vec3) direction)
+static REAL NAME(plane_distance)(const glint_geometry_table *table, const glint_prim *prim, NAME(seen_edges) seen,
+                                 NAME(vec3) origin, NAME(vec3) direction)
 {
     const glint_face *face = prim->face ? &table->faces[prim->face - 1] : NULL;
     if (face)
@@ -219,7 +219,7 @@ static REAL NAME(triangle_t)(const glint_geometry_table *table, const glint_prim
     NAME(vec3) corner[3];
     NAME(corners_seen)(prim, origin, table->scale, corner);
     NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
-    REAL t = NAME(way_to_plane)(table, prim, seen, origin, direction);
+    REAL t = NAME(plane_distance)(table, prim, seen, origin, direction);
     if (!NAME(passes)(seen) || !(t > 0))
         return 0;
     bool begins = !prim->face && t <= (REAL)(GLINT_NEAR_SHARED_EDGE * table->extent) &&
@@ -227,14 +227,14 @@ static REAL NAME(triangle_t)(const glint_geometry_table *table, const glint_prim
     return begins ? 0 : t;
 }
 
-/// Returns whether a corner of `other` is certainly on the side of the plane that `way` points to.
-static bool NAME(has_corner)(NAME(parted) plane, const glint_prim *prim, REAL way, const glint_prim *other)
+/// Returns whether a corner of `other` is certainly on the side of the plane that `side` points to.
+static bool NAME(has_corner)(NAME(parted) plane, const glint_prim *prim, REAL side, const glint_prim *other)
 {
     for (int j = 0; j < 3; j++) {
         NAME(vec3) corner = NAME(rounded)(other->corner[j]);
         REAL rounding, h = NAME(height)(plane, prim, corner, &rounding);
         if (NAME(abs)(h) > rounding + NAME(spread)(plane) * (NAME(POINT_SLACK) * NAME(largest)(corner)) &&
-            ((h > 0 && way > 0) || (h < 0 && way < 0)))
+            ((h > 0 && side > 0) || (h < 0 && side < 0)))
             return true;
     }
     return false;
@@ -257,10 +257,10 @@ static bool NAME(is_shared_edge)(const glint_geometry_table *table, const glint_
     bool begins = !(NAME(abs)(h) > NAME(spread)(here) * slack + rounding);
     NAME(corners_seen)(prim, origin, table->scale, corner);
     NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
-    REAL way = NAME(way_to_plane)(table, prim, seen, origin, direction);
-    bool soon = way > 0 && way <= (REAL)(GLINT_NEAR_SHARED_EDGE * table->extent);
-    bool still_on = way * NAME(abs)(there.light) <= NAME(spread)(there) * slack;
-    bool by_edge = way > 0 && !NAME(passes)(seen);
+    REAL distance = NAME(plane_distance)(table, prim, seen, origin, direction);
+    bool soon = distance > 0 && distance <= (REAL)(GLINT_NEAR_SHARED_EDGE * table->extent);
+    bool still_on = distance * NAME(abs)(there.light) <= NAME(spread)(there) * slack;
+    bool by_edge = distance > 0 && !NAME(passes)(seen);
     if (!begins && !(soon && still_on) && !by_edge)
         return false;
     REAL r = 0;
@@ -268,11 +268,11 @@ static bool NAME(is_shared_edge)(const glint_geometry_table *table, const glint_
         r = NAME(max)(r, NAME(largest)(corner[j]));
     REAL loose = 2 * (slack * (REAL)table->scale) + NAME(POINT_SLACK) * r;
     REAL move = NAME(abs)(seen.dz) * loose, reach = move * (seen.sum_of_sizes + 2 * move);
-    NAME(vec3) at = NAME(times)(NAME(times)(direction, begins ? 0 : way), (REAL)table->scale);
+    NAME(vec3) at = NAME(times)(NAME(times)(direction, begins ? 0 : distance), (REAL)table->scale);
     bool through = NAME(has_corner)(there, from, there.light, prim) &&
                    NAME(has_corner)(here, prim, -here.light, from) && NAME(in_box)(corner, at, loose) &&
                    NAME(all_on_one_side)(seen, reach) && NAME(between_corners)(seen, move);
-    *t = !through ? 0 : begins ? (REAL)GLINT_LEAST_WAY : way;
+    *t = !through ? 0 : begins ? (REAL)GLINT_LEAST_T : distance;
     return true;
 }
 

@@ -72,7 +72,7 @@ static inline void R(facet_group)(const glint_facet_args *args, uint32_t s, cons
         for (int k = 0; k < 3; k++) {
             l[k] = light_samples ? r_load(light_samples->light_sample[s].position[k] + i) : r_set(args->position[k]);
             if (cone)
-                l[k] = r_load(light_samples->way[s][k] + i);
+                l[k] = r_load(light_samples->direction[s][k] + i);
             else if (!args->directional)
                 l[k] = (l[k] - point[k]) * r_set(args->scale);
         }

@@ -39,7 +39,8 @@ typedef struct R(seen_prim) {
     real f[3]; ///< of a sphere, scaled; of a solid, in the space of the unit shape
     real normal[3]; ///< of a plane or triangle
     int level; ///< of a plane: the axis that it is perpendicular to; 3: none
-    real from[3], way[3]; ///< of a plane: points are at from + way (t direction); along that axis this is the plane's
+    real from[3],
+        factor[3]; ///< of a plane: points are at from + factor (t direction); along that axis this is the plane's
         ///< exact coordinate
 } R(seen_prim);
 
@@ -60,7 +61,7 @@ static inline void R(see_prim)(const glint_surface_args *args, uint32_t id, R(se
         seen->level = prim->kind == GLINT_PRIM_PLANE ? glint_axis_along(prim->normal) : 3;
         for (int k = 0; k < 3 && args->camera; k++) {
             seen->from[k] = (real)(k == seen->level ? prim->center[k] : args->camera->eye[k]);
-            seen->way[k] = k != seen->level;
+            seen->factor[k] = k != seen->level;
         }
         if (prim->kind == GLINT_PRIM_SOLID && args->camera)
             R(start_at_eye)(&args->solids[prim->item], prim, args->camera->eye, seen->f, height);
@@ -233,27 +234,27 @@ static void R(write_box)(R(point_box) box, glint_point_box *out)
 }
 
 /// The outputs of a call. Each combination is compiled separately.
-typedef enum R(surface_way) {
+typedef enum R(surface_outputs) {
     R(MIXED), ///< there are triangles or solids
     R(BALLS_AND_PLANES),
-    R(POINTS_ALONE) ///< only points, of balls and planes
-} R(surface_way);
+    R(POINTS_ONLY) ///< only points, of balls and planes
+} R(surface_outputs);
 
 /// Stores some lanes of a vector, and leaves the others unchanged. Returns the lanes that are seen from behind.
 INNER unsigned R(put_found)(const glint_surface_args *args, const R(found) * found, size_t at, unsigned lanes,
-                            R(surface_way) way, R(point_box) * box)
+                            R(surface_outputs) outputs, R(point_box) * box)
 {
     const bool whole = lanes == (1u << VR) - 1;
     const rm mask = rm_from_bits(lanes);
     for (int k = 0; k < 3; k++)
         R(put)(args->point[k], at, whole, mask, found->point[k]);
-    if (way == R(POINTS_ALONE))
+    if (outputs == R(POINTS_ONLY))
         return 0;
     for (int k = 0; k < 3; k++)
         R(put)(args->normal[k], at, whole, mask, found->normal[k]);
     if (args->box)
         R(enclose)(box, found->point, whole, mask);
-    if (way == R(MIXED) && args->slack)
+    if (outputs == R(MIXED) && args->slack)
         R(put)(args->slack, at, whole, mask, found->slack);
     return rm_bits(found->back) & lanes;
 }
@@ -357,7 +358,7 @@ INNER void R(find_whole)(const glint_surface_args *args, R(seen_slot) * slot, co
     }
     for (int k = 0; k < 3 && kind == GLINT_PRIM_PLANE; k++) {
         n[k] = r_set(seen->normal[k]);
-        p[k] = r_set(seen->from[k]) + r_set(seen->way[k]) * (t * d[k]);
+        p[k] = r_set(seen->from[k]) + r_set(seen->factor[k]) * (t * d[k]);
     }
     if (kind == GLINT_PRIM_PLANE && seen->level == 3)
         R(onto_plane_of)(seen->prim, n, p);
@@ -409,7 +410,7 @@ INNER void R(place_whole)(const glint_surface_args *args, R(seen_slot) * slot, R
 
 /// Computes one group with hits: its triangles together, if there are several, and the rest primitive by primitive.
 INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * walk, R(point_box) * box,
-                            R(group_place) place, R(surface_way) way)
+                            R(group_place) place, R(surface_outputs) outputs)
 {
     const uint32_t g = place.g;
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -417,7 +418,7 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
     unsigned left = args->hits[g], back = 0, dark = 0;
     if (left != 0xffff)
         R(clear_surface)(args, at);
-    const bool meshes = way == R(MIXED) && args->slack; // only triangles need slack
+    const bool meshes = outputs == R(MIXED) && args->slack; // only triangles need slack
     const unsigned mesh = meshes ? R(mesh_lanes)(args, at, left) : 0;
     if (mesh) {
         back = R(surface_mesh)(args, walk, box, directions, at, mesh);
@@ -425,16 +426,17 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
         left &= ~mesh;
     }
     while (left) {
-        R(seen_slot) *slot = R(last_seen)(walk, way == R(MIXED));
+        R(seen_slot) *slot = R(last_seen)(walk, outputs == R(MIXED));
         uint32_t id = slot->prim.id; // the last primitive of the previous group is not looked up again
         unsigned lanes = lanes_equal(args->prim + at, id) & left, behind = 0;
         if (!lanes) {
             id = args->prim[at + (unsigned)__builtin_ctz(left)];
             lanes = lanes_equal(args->prim + at, id) & left;
-            R(look_at)(args, walk, way == R(MIXED), id);
-            slot = R(last_seen)(walk, way == R(MIXED));
+            R(look_at)(args, walk, outputs == R(MIXED), id);
+            slot = R(last_seen)(walk, outputs == R(MIXED));
         }
-        const bool placed = way == R(POINTS_ALONE) && args->camera && lanes == 0xffff && R(is_near_or_plane)(&slot->prim);
+        const bool placed =
+            outputs == R(POINTS_ONLY) && args->camera && lanes == 0xffff && R(is_near_or_plane)(&slot->prim);
         if (placed)
             R(place_whole)(args, slot, directions, at);
         for (int i = placed ? GLINT_GROUP : 0; i < GLINT_GROUP; i += VR) {
@@ -442,24 +444,24 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
             if (!here)
                 continue;
             R(found) found;
-            R(find_lanes)(args, slot, directions, at, i, way == R(MIXED), &found);
-            behind |= R(put_found)(args, &found, at + (size_t)i, here, way, box) << i;
+            R(find_lanes)(args, slot, directions, at, i, outputs == R(MIXED), &found);
+            behind |= R(put_found)(args, &found, at + (size_t)i, here, outputs, box) << i;
         }
-        if (way != R(POINTS_ALONE))
+        if (outputs != R(POINTS_ONLY))
             lanes_put(args->material + at, lanes, slot->prim.prim->material);
         back |= behind;
         if (!slot->prim.prim->two_sided)
             dark |= behind;
         left &= ~lanes;
     }
-    if (way == R(POINTS_ALONE))
+    if (outputs == R(POINTS_ONLY))
         return;
     args->back[g] = (uint16_t)back;
     args->dark[g] = (uint16_t)dark;
     walk->turned = walk->turned || back;
 }
 
-INNER void R(surface_groups)(const glint_surface_args *args, R(surface_way) way)
+INNER void R(surface_groups)(const glint_surface_args *args, R(surface_outputs) outputs)
 {
     R(surface_walk) walk;
     R(point_box) box;
@@ -467,8 +469,8 @@ INNER void R(surface_groups)(const glint_surface_args *args, R(surface_way) way)
     R(empty_box)(&box);
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
         if (args->hits[place.g])
-            R(surface_group)(args, &walk, &box, place, way);
-        else if (way != R(POINTS_ALONE))
+            R(surface_group)(args, &walk, &box, place, outputs);
+        else if (outputs != R(POINTS_ONLY))
             args->back[place.g] = args->dark[place.g] = 0;
     }
     R(end_walk)(args, &walk, &box);
@@ -477,7 +479,7 @@ INNER void R(surface_groups)(const glint_surface_args *args, R(surface_way) way)
 static void R(surface)(const glint_surface_args *args)
 {
     if (!args->normal[0])
-        R(surface_groups)(args, R(POINTS_ALONE));
+        R(surface_groups)(args, R(POINTS_ONLY));
     else if (args->mixed)
         R(surface_groups)(args, R(MIXED));
     else
