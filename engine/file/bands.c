@@ -114,7 +114,7 @@ typedef struct task {
     atomic_bool failed;
 } task;
 
-static bool make_room(worker *memory, const layout *l, size_t rows)
+static bool ensure_capacity(worker *memory, const layout *l, size_t rows)
 {
     return glint_bytes_reserve(&memory->rows, l->row_bytes) &&
            (l->tone.bits == 8 || glint_bytes_reserve(&memory->swapped, l->row_bytes)) &&
@@ -143,7 +143,7 @@ static bool make_band(task *t, size_t index, worker *memory)
     band *b = &t->picture->band[index];
     const size_t first = index * l->band_rows, left = (size_t)l->height - first;
     const size_t rows = left < l->band_rows ? left : l->band_rows;
-    if (!make_room(memory, l, rows))
+    if (!ensure_capacity(memory, l, rows))
         return false;
     filter_rows(t->source, l->row_bytes, first, rows, memory);
     memory->deflated.size = 0;

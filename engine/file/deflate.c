@@ -22,7 +22,7 @@
 
 /// Returns a buffer size that is enough for every encoder. It depends only on the size of the data, because some
 /// encoders look at the space.
-static size_t room_for(size_t size) { return size + size / 8 + 4096; }
+static size_t capacity_for(size_t size) { return size + size / 8 + 4096; }
 
 // ---- zlib ---------------------------------------------------------------------------------------------------------
 
@@ -38,7 +38,7 @@ static const char *name_of_zlib(void)
     return zlib_name;
 }
 
-static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool last, uint8_t *out, size_t capacity)
 {
     z_stream stream = { 0 };
     if (deflateInit2(&stream, level, Z_DEFLATED, -15, 9, level < 4 ? Z_RLE : Z_FILTERED) != Z_OK)
@@ -46,7 +46,7 @@ static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool las
     stream.next_in = (Bytef *)(uintptr_t)data; // not written: zlib's interface lacks the const
     stream.avail_in = (uInt)size;
     stream.next_out = out;
-    stream.avail_out = (uInt)(room < UINT32_MAX ? room : UINT32_MAX);
+    stream.avail_out = (uInt)(capacity < UINT32_MAX ? capacity : UINT32_MAX);
     int result = deflate(&stream, last ? Z_FINISH : Z_FULL_FLUSH);
     bool whole = last ? result == Z_STREAM_END : result == Z_OK && stream.avail_in == 0 && stream.avail_out > 0;
     size_t written = whole ? (size_t)(stream.next_out - out) : 0;
@@ -227,7 +227,7 @@ static void *stream_for(struct glint_deflate_memory *memory, const uint8_t *data
 }
 
 static size_t fast_band_at(struct isal_zstream *stream, uint8_t *level, const uint8_t *data, size_t size, bool last,
-                           uint8_t *out, size_t room)
+                           uint8_t *out, size_t capacity)
 {
     isal_deflate_stateless_init(stream);
     stream->hist_bits = 0; // the whole window; init leaves the field uninitialised
@@ -240,17 +240,17 @@ static size_t fast_band_at(struct isal_zstream *stream, uint8_t *level, const ui
     stream->next_in = (uint8_t *)(uintptr_t)data; // not written: the interface lacks the const
     stream->avail_in = (uint32_t)size;
     stream->next_out = out;
-    stream->avail_out = (uint32_t)(room < UINT32_MAX ? room : UINT32_MAX);
+    stream->avail_out = (uint32_t)(capacity < UINT32_MAX ? capacity : UINT32_MAX);
     return isal_deflate_stateless(stream) == COMP_OK ? stream->total_out : 0;
 }
 
 static size_t fast_band(struct glint_deflate_memory *memory, const uint8_t *data, size_t size, bool last, uint8_t *out,
-                        size_t room)
+                        size_t capacity)
 {
     if (!memory->level)
         memory->level = malloc(ISAL_DEF_LVL1_DEFAULT);
     void *stream = memory->level ? stream_for(memory, data, size) : NULL;
-    return stream ? fast_band_at(stream, memory->level, data, size, last, out, room) : 0;
+    return stream ? fast_band_at(stream, memory->level, data, size, last, out, capacity) : 0;
 }
 #else
 #define NAME_OF_FAST name_of_zlib()
@@ -262,10 +262,10 @@ struct glint_deflate_memory {
 static void free_memory(struct glint_deflate_memory *memory) { (void)memory; }
 
 static size_t fast_band(struct glint_deflate_memory *memory, const uint8_t *data, size_t size, bool last, uint8_t *out,
-                        size_t room)
+                        size_t capacity)
 {
     (void)memory;
-    return band_by_zlib(FAST_LEVEL_ZLIB, data, size, last, out, room);
+    return band_by_zlib(FAST_LEVEL_ZLIB, data, size, last, out, capacity);
 }
 #endif
 
@@ -275,12 +275,12 @@ static size_t fast_band(struct glint_deflate_memory *memory, const uint8_t *data
 #define NAME_OF_SMALL "libdeflate " LIBDEFLATE_VERSION_STRING
 #define SMALL_HAS_BANDS false
 
-static size_t small_band(const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+static size_t small_band(const uint8_t *data, size_t size, bool last, uint8_t *out, size_t capacity)
 {
     struct libdeflate_compressor *compressor = last ? libdeflate_alloc_compressor(SMALL_LEVEL_LIBDEFLATE) : NULL;
     if (!compressor)
         return 0;
-    size_t written = libdeflate_deflate_compress(compressor, data, size, out, room);
+    size_t written = libdeflate_deflate_compress(compressor, data, size, out, capacity);
     libdeflate_free_compressor(compressor);
     return written;
 }
@@ -288,9 +288,9 @@ static size_t small_band(const uint8_t *data, size_t size, bool last, uint8_t *o
 #define NAME_OF_SMALL name_of_zlib()
 #define SMALL_HAS_BANDS true
 
-static size_t small_band(const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+static size_t small_band(const uint8_t *data, size_t size, bool last, uint8_t *out, size_t capacity)
 {
-    return band_by_zlib(SMALL_LEVEL_ZLIB, data, size, last, out, room);
+    return band_by_zlib(SMALL_LEVEL_ZLIB, data, size, last, out, capacity);
 }
 #endif
 
@@ -329,12 +329,12 @@ glint_status glint_deflate_band(struct glint_deflate_memory *memory, glint_encod
     bool bands = glint_deflate_has_bands(encode);
     if (bands ? size > BAND_SIZE_MAX : !last)
         return glint_fail(error, GLINT_ERR_INVALID, "size: the encoder takes 2^31 bytes, or the whole, at a time");
-    size_t room = room_for(size);
-    if (!glint_bytes_reserve(out, room))
+    size_t capacity = capacity_for(size);
+    if (!glint_bytes_reserve(out, capacity))
         return glint_fail_nomem(error);
     uint8_t *end = out->data + out->size;
-    size_t written = encode == GLINT_ENCODE_SMALL ? small_band(data, size, last, end, room)
-                                                  : fast_band(memory, data, size, last, end, room);
+    size_t written = encode == GLINT_ENCODE_SMALL ? small_band(data, size, last, end, capacity)
+                                                  : fast_band(memory, data, size, last, end, capacity);
     if (!written) // the buffer is large enough, so only memory can be short
         return glint_fail_nomem(error);
     out->size += written;

@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #define TEMPORARY_TRIES 100
-#define TEMPORARY_ROOM 160 // bytes that the temporary name adds to the file's name: host, process, number
+#define TEMPORARY_EXTRA 160 // bytes that the temporary name adds to the file's name: host, process, number
 #define LINKS 40 // links followed in a chain, at most; the same limit as the system's
 #define PIECE ((size_t)1 << 20) // bytes of one write, so that the growing size of the file shows progress
 
@@ -78,7 +78,7 @@ static int make_folders(char *path)
 }
 
 /// Writes the name of a hidden file next to `path`, unique to this process and thread.
-static void make_temporary_name(const char *path, char *out, size_t room)
+static void make_temporary_name(const char *path, char *out, size_t capacity)
 {
     static atomic_uint count;
     char host[GLINT_HOST_SIZE];
@@ -86,14 +86,14 @@ static void make_temporary_name(const char *path, char *out, size_t room)
     const char *slash = strrchr(path, '/');
     const char *name = slash ? slash + 1 : path;
     unsigned number = atomic_fetch_add(&count, 1);
-    snprintf(out, room, "%.*s.%.120s.%s.%ld.%u.tmp", (int)(name - path), path, name, host, (long)getpid(), number);
+    snprintf(out, capacity, "%.*s.%.120s.%s.%ld.%u.tmp", (int)(name - path), path, name, host, (long)getpid(), number);
 }
 
 /// Registers the name before the file exists, so that a signal in between cannot leave the file behind.
-static int create_temporary(const char *path, char *temporary, size_t room, int *file)
+static int create_temporary(const char *path, char *temporary, size_t capacity, int *file)
 {
     for (int i = 0; i < TEMPORARY_TRIES; i++) {
-        make_temporary_name(path, temporary, room);
+        make_temporary_name(path, temporary, capacity);
         glint_draft_enlist(temporary);
         *file = open_again(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (*file >= 0) {
@@ -221,15 +221,15 @@ char *glint_draft_place(const char *path)
 
 static int open_hidden(glint_draft *draft)
 {
-    size_t room = strlen(draft->target) + TEMPORARY_ROOM;
-    draft->temporary = malloc(room);
+    size_t capacity = strlen(draft->target) + TEMPORARY_EXTRA;
+    draft->temporary = malloc(capacity);
     if (!draft->temporary)
         return ENOMEM;
-    int code = create_temporary(draft->target, draft->temporary, room, &draft->file);
+    int code = create_temporary(draft->target, draft->temporary, capacity, &draft->file);
     if (code == ENOENT) {
         code = make_folders(draft->target);
         if (!code)
-            code = create_temporary(draft->target, draft->temporary, room, &draft->file);
+            code = create_temporary(draft->target, draft->temporary, capacity, &draft->file);
     }
     if (code) { // there is no file to remove
         free(draft->temporary);

@@ -11,7 +11,7 @@
 #include <openexr.h>
 
 #define CHANNEL_NAME (GLINT_PLANE_NAME_SIZE + 2)
-#define FIRST_ROOM ((size_t)1 << 20)
+#define FIRST_CAPACITY ((size_t)1 << 20)
 
 static char library_name[48];
 
@@ -49,8 +49,8 @@ typedef struct exr_file {
 
 static void name_channel(const glint_image *image, glint_pass pass, int c, char out[CHANNEL_NAME])
 {
-    char room[GLINT_PLANE_NAME_SIZE];
-    const char *name = glint_plane_name(image, pass, room);
+    char buffer[GLINT_PLANE_NAME_SIZE];
+    const char *name = glint_plane_name(image, pass, buffer);
     const bool is_place = pass == GLINT_PASS_NORMAL;
     const char letter = is_place ? "XYZ"[c] : "RGB"[c];
     if (pass >= GLINT_PASS_LIGHT)
@@ -108,7 +108,7 @@ static int64_t put_bytes(exr_const_context_t context, void *user, const void *by
 {
     exr_file *file = user;
     const size_t end = (size_t)(offset + size), used = file->bytes.size;
-    if (end > file->bytes.capacity && !glint_bytes_reserve(&file->bytes, end - used + FIRST_ROOM)) {
+    if (end > file->bytes.capacity && !glint_bytes_reserve(&file->bytes, end - used + FIRST_CAPACITY)) {
         file->no_memory = true;
         fail(context, EXR_ERR_OUT_OF_MEMORY, "out of memory");
         return -1;
@@ -146,7 +146,7 @@ static exr_result_t write_head(exr_file *file, const glint_text *text, size_t te
 }
 
 /// Writes the rows of a chunk, from row y on, as floats: channel after channel in the encoder's order.
-static void fill_chunk(const exr_file *file, exr_encode_pipeline_t *pipe, int y, float *room)
+static void fill_chunk(const exr_file *file, exr_encode_pipeline_t *pipe, int y, float *buffer)
 {
     const size_t width = (size_t)file->width;
     for (int c = 0; c < pipe->channel_count; c++) {
@@ -154,17 +154,17 @@ static void fill_chunk(const exr_file *file, exr_encode_pipeline_t *pipe, int y,
         const channel *from = find_channel(file, info->channel_name);
         const size_t count = (size_t)info->height * width;
         for (size_t i = 0; i < count; i++)
-            room[i] = glint_pfm_value(from->of, from->plane[(size_t)y * width + i]);
+            buffer[i] = glint_pfm_value(from->of, from->plane[(size_t)y * width + i]);
         info->user_data_type = EXR_PIXEL_FLOAT;
         info->user_bytes_per_element = sizeof(float);
         info->user_pixel_stride = sizeof(float);
         info->user_line_stride = (int32_t)(width * sizeof(float));
-        info->encode_from_ptr = (const uint8_t *)room;
-        room += count;
+        info->encode_from_ptr = (const uint8_t *)buffer;
+        buffer += count;
     }
 }
 
-static exr_result_t write_rows(exr_file *file, float *room, int lines)
+static exr_result_t write_rows(exr_file *file, float *buffer, int lines)
 {
     exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
     exr_result_t result = EXR_ERR_SUCCESS;
@@ -176,7 +176,7 @@ static exr_result_t write_rows(exr_file *file, float *room, int lines)
                        : exr_encoding_initialize(file->context, 0, &chunk, &pipe);
         if (result)
             break;
-        fill_chunk(file, &pipe, y, room);
+        fill_chunk(file, &pipe, y, buffer);
         if (y == 0)
             result = exr_encoding_choose_default_routines(file->context, 0, &pipe);
         if (!result)
@@ -194,9 +194,9 @@ static exr_result_t write_file(exr_file *file, const glint_text *text, size_t te
         result = exr_get_scanlines_per_chunk(file->context, 0, &lines);
     if (result)
         return result;
-    float *room = malloc((size_t)lines * (size_t)file->width * (size_t)file->count * sizeof *room);
-    result = room ? write_rows(file, room, lines) : EXR_ERR_OUT_OF_MEMORY;
-    free(room);
+    float *buffer = malloc((size_t)lines * (size_t)file->width * (size_t)file->count * sizeof *buffer);
+    result = buffer ? write_rows(file, buffer, lines) : EXR_ERR_OUT_OF_MEMORY;
+    free(buffer);
     return result;
 }
 

@@ -287,15 +287,15 @@ static const char *keep_string(char **at, const char *string)
     return copy;
 }
 
-static size_t room_of(const char *string) { return string ? strlen(string) + 1 : 0; }
+static size_t bytes_of(const char *string) { return string ? strlen(string) + 1 : 0; }
 
 static job *make_job(const glint_write_desc *desc)
 {
     size_t text_bytes = desc->text_count * sizeof(glint_text);
-    size_t room = sizeof(job) + text_bytes + room_of(desc->path);
+    size_t bytes = sizeof(job) + text_bytes + bytes_of(desc->path);
     for (size_t i = 0; i < desc->text_count; i++)
-        room += room_of(desc->text[i].keyword) + room_of(desc->text[i].value);
-    job *j = malloc(room);
+        bytes += bytes_of(desc->text[i].keyword) + bytes_of(desc->text[i].value);
+    job *j = malloc(bytes);
     if (!j)
         return NULL;
     *j = (job) { .state = JOB_QUEUED, .desc = *desc, .place = glint_draft_place(desc->path) };

@@ -52,17 +52,17 @@ int glint_pass_channels(glint_pass pass)
     return is_pass(pass) ? pass_table[pass].channels : pass >= GLINT_PASS_DERIVATIVE ? 3 : 0;
 }
 
-const char *glint_plane_name(const glint_image *image, glint_pass pass, char room[GLINT_PLANE_NAME_SIZE])
+const char *glint_plane_name(const glint_image *image, glint_pass pass, char buffer[GLINT_PLANE_NAME_SIZE])
 {
     if (pass < GLINT_PASS_DERIVATIVE)
         return glint_pass_name(pass);
     if (is_plane(pass))
-        snprintf(room, GLINT_PLANE_NAME_SIZE, "d:%s", image->derivative[pass - GLINT_PASS_DERIVATIVE]);
+        snprintf(buffer, GLINT_PLANE_NAME_SIZE, "d:%s", image->derivative[pass - GLINT_PASS_DERIVATIVE]);
     else if (glint_image_light_pass(image, (size_t)pass - GLINT_PASS_LIGHT))
-        snprintf(room, GLINT_PLANE_NAME_SIZE, "light:%s", image->light_name[pass - GLINT_PASS_LIGHT]);
+        snprintf(buffer, GLINT_PLANE_NAME_SIZE, "light:%s", image->light_name[pass - GLINT_PASS_LIGHT]);
     else
         return NULL;
-    return room;
+    return buffer;
 }
 
 static bool allocate_plane(size_t pixels, float **plane)

@@ -56,7 +56,7 @@ static inline size_t glint_image_stamps(const glint_image *image)
 
 /// Returns the name of a pass: "ambient", "d:lamp_x" for a derivative, "light:key" for a light pass. NULL: no such
 /// pass.
-const char *glint_plane_name(const glint_image *image, glint_pass pass, char room[GLINT_PLANE_NAME_SIZE]);
+const char *glint_plane_name(const glint_image *image, glint_pass pass, char buffer[GLINT_PLANE_NAME_SIZE]);
 
 /// Returns the planes of a pass, a derivative or a light pass; NULL for planes that are not stored.
 float *const *glint_image_planes(const glint_image *image, glint_pass pass);

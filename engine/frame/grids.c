@@ -44,7 +44,7 @@ static void keep_used(glint_grids *grids, const glint_plan *plan)
 
 /// Records a light, or makes its grid: at once, or if an earlier frame recorded it.
 static glint_status add(glint_grids *grids, const glint_plan_light *light, const glint_geometry_table *table,
-                        bool at_once, size_t room, glint_error *error)
+                        bool at_once, size_t max_bytes, glint_error *error)
 {
     uint32_t i = 0;
     while (i < grids->count && !is_of(grids, i, light))
@@ -62,7 +62,7 @@ static glint_status add(glint_grids *grids, const glint_plan_light *light, const
     if (!noted && !at_once)
         return GLINT_OK;
     grids->of[i].made = true;
-    return glint_light_grid_create(table, light->directional, light->position, room, &grids->of[i].grid, error);
+    return glint_light_grid_create(table, light->directional, light->position, max_bytes, &grids->of[i].grid, error);
 }
 
 /// Returns whether a tile needs shadows that are not cached.

@@ -39,7 +39,7 @@ static void arrangement_free(arrangement *a)
     free(a->chunks);
 }
 
-static bool corner_room(arrangement *a)
+static bool allocate_corners(arrangement *a)
 {
     const uint32_t members = a->geometry->member_count, most = a->count > members ? a->count : members;
     if (!a->geometry->corners)
@@ -57,7 +57,7 @@ static bool arrangement_init(arrangement *a, const glint_geometry *geometry)
     a->rest = malloc((count - bounded + 1) * sizeof *a->rest);
     a->done = calloc((size_t)count + 1, sizeof *a->done);
     a->first = glint_alloc_large(count / STRIDE + 1, sizeof *a->first);
-    if (!a->rest || !a->done || !a->first || !corner_room(a))
+    if (!a->rest || !a->done || !a->first || !allocate_corners(a))
         return false;
     memcpy(a->rest, geometry->unbounded, at * sizeof *a->rest);
     for (uint32_t i = 0; i < count; i += STRIDE)
@@ -192,10 +192,10 @@ glint_status glint_geometry_move(glint_geometry *geometry, glint_pool *pool, gli
 {
     const uint32_t bounded = geometry->index->box_count;
     arrangement a;
-    bool room = arrangement_init(&a, geometry);
+    bool allocated = arrangement_init(&a, geometry);
     if (geometry->shading_points && !geometry->places)
-        room = (geometry->places = glint_alloc(geometry->id_count, sizeof *geometry->places)) && room;
-    if (room) {
+        allocated = (geometry->places = glint_alloc(geometry->id_count, sizeof *geometry->places)) && allocated;
+    if (allocated) {
         move_prims(&a, pool);
         if (geometry->corners)
             move_corners(geometry, &a, pool);
@@ -210,5 +210,5 @@ glint_status glint_geometry_move(glint_geometry *geometry, glint_pool *pool, gli
         geometry->arranged = true;
     }
     arrangement_free(&a);
-    return room ? GLINT_OK : glint_fail_nomem(error);
+    return allocated ? GLINT_OK : glint_fail_nomem(error);
 }

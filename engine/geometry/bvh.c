@@ -17,7 +17,7 @@
 typedef struct node_list {
     glint_node *nodes; ///< owned, unless `lent`
     uint32_t count, capacity;
-    bool lent; ///< `nodes` belongs to the builder's `room`
+    bool lent; ///< `nodes` belongs to the builder's `node_block`
 } node_list;
 
 /// A subtree that one worker builds. Its first node is in the top; the others follow all earlier nodes.
@@ -36,8 +36,8 @@ typedef struct builder {
     task *tasks; ///< owned
     size_t task_count, task_capacity;
     uint32_t task_max; ///< boxes in a task; larger sets are split by all workers together
-    glint_node *room; ///< owned; the tasks' lists begin here, and few outgrow it
-    size_t room_bytes;
+    glint_node *node_block; ///< owned; the tasks' lists begin here, and few outgrow it
+    size_t block_bytes;
     glint_node *nodes; ///< the finished tree
 } builder;
 
@@ -136,19 +136,19 @@ static void plan_sets(const builder *b, const glint_record_set *set, int depth, 
 /// Gives free slots to the records of small sets, the largest sets first. Such sets need no node.
 static void plan_open(node_plan *plan)
 {
-    uint32_t room = GLINT_NODE_WIDTH - plan->count;
+    uint32_t free_slots = GLINT_NODE_WIDTH - plan->count;
     for (uint32_t i = 0; i < plan->count; i++)
         plan->open[i] = plan->sets[i].count == 1;
     for (;;) {
         uint32_t best = plan->count;
         for (uint32_t i = 0; i < plan->count; i++)
-            if (!plan->open[i] && plan->sets[i].count - 1 <= room &&
+            if (!plan->open[i] && plan->sets[i].count - 1 <= free_slots &&
                 (best == plan->count || plan->area[i] > plan->area[best]))
                 best = i;
         if (best == plan->count)
             return;
         plan->open[best] = true;
-        room -= plan->sets[best].count - 1;
+        free_slots -= plan->sets[best].count - 1;
     }
 }
 
@@ -296,18 +296,18 @@ static void join_task(void *context, size_t index, int worker)
 static uint32_t nodes_of(const task *t) { return t->set.count / RECORDS_A_NODE + GLINT_NODE_WIDTH; }
 
 /// Lends each task the nodes that it will probably need, from one block of memory with large pages.
-static bool make_room(builder *b)
+static bool ensure_capacity(builder *b)
 {
     size_t total = 0, next = 0;
     for (size_t i = 0; i < b->task_count; i++)
         total += nodes_of(&b->tasks[i]);
-    b->room = glint_scratch_resize(NULL, 0, total * sizeof *b->room);
-    if (!b->room)
+    b->node_block = glint_scratch_resize(NULL, 0, total * sizeof *b->node_block);
+    if (!b->node_block)
         return false;
-    b->room_bytes = total * sizeof *b->room;
+    b->block_bytes = total * sizeof *b->node_block;
     for (size_t i = 0; i < b->task_count; i++) {
         const uint32_t count = nodes_of(&b->tasks[i]);
-        b->tasks[i].list = (node_list) { b->room + next, 0, count, true };
+        b->tasks[i].list = (node_list) { b->node_block + next, 0, count, true };
         next += count;
     }
     return true;
@@ -315,7 +315,7 @@ static bool make_room(builder *b)
 
 static bool build_lists(builder *b, const glint_record_set *root)
 {
-    if (nodes_add(&b->top, 1) == UINT32_MAX || !build_node(b, &b->top, 0, root, GLINT_BVH_DEPTH) || !make_room(b))
+    if (nodes_add(&b->top, 1) == UINT32_MAX || !build_node(b, &b->top, 0, root, GLINT_BVH_DEPTH) || !ensure_capacity(b))
         return false;
     glint_run_items(b->records.pool, b->task_count, build_task, b);
     for (size_t i = 0; i < b->task_count; i++)
@@ -349,7 +349,7 @@ static void builder_free(builder *b)
         nodes_free(&b->tasks[i].list);
     free(b->tasks);
     nodes_free(&b->top);
-    glint_scratch_free(b->room, b->room_bytes);
+    glint_scratch_free(b->node_block, b->block_bytes);
 }
 
 glint_box *glint_boxes_alloc(uint32_t count)

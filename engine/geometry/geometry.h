@@ -88,11 +88,11 @@ glint_status glint_geometry_others(glint_geometry *geometry, glint_pool *pool, g
                                    glint_error *error);
 
 /// geometry/light_grid.c: makes the grid of a light without samples over an arranged table with its BVH. position:
-/// for a directional light, the unit vector towards the light. room: most bytes. *out NULL: there is no grid, because
-/// it would take more, or because too few primitives are small spheres that do not contain the light and lie to one
-/// side of it.
-glint_status glint_light_grid_create(const glint_geometry_table *table, bool directional, const double position[3], size_t room,
-                                     glint_light_grid **out, glint_error *error);
+/// for a directional light, the unit vector towards the light. max_bytes: most bytes. *out NULL: there is no grid,
+/// because it would take more, or because too few primitives are small spheres that do not contain the light and lie to
+/// one side of it.
+glint_status glint_light_grid_create(const glint_geometry_table *table, bool directional, const double position[3],
+                                     size_t max_bytes, glint_light_grid **out, glint_error *error);
 void glint_light_grid_destroy(glint_light_grid *grid);
 
 /// Returns the index of a primitive's object in order of definition, from 0: a mesh is one object, each sphere of

@@ -44,7 +44,7 @@ typedef struct grid_maker {
     uint32_t count; ///< number of `seen`
     float least[2], most[2]; ///< bounds of the positions that they cover
     float near, far; ///< least and largest `near`
-    size_t room; ///< bytes that entries and cells may take
+    size_t max_bytes; ///< bytes that entries and cells may take
 } grid_maker;
 
 // ---- The light's view ----
@@ -237,7 +237,7 @@ static uint64_t count_entries(grid_maker *maker, float side, uint64_t limit)
 /// Chooses the smallest cells that are large enough, and returns the number of entries; 0: none are.
 static uint64_t choose_cells(grid_maker *maker)
 {
-    const uint64_t most = (uint64_t)ENTRIES_MAX * maker->count + 1024, fit = maker->room / ENTRY_BYTES;
+    const uint64_t most = (uint64_t)ENTRIES_MAX * maker->count + 1024, fit = maker->max_bytes / ENTRY_BYTES;
     const uint64_t limit = fit < most ? fit : most;
     float side = (float)CELLS_A_RADIUS * mean_reach(maker);
     int tries = 0;
@@ -380,10 +380,10 @@ static bool fill(grid_maker *maker, uint64_t count)
     return true;
 }
 
-glint_status glint_light_grid_create(const glint_geometry_table *table, bool directional, const double position[3], size_t room,
-                                     glint_light_grid **out, glint_error *error)
+glint_status glint_light_grid_create(const glint_geometry_table *table, bool directional, const double position[3],
+                                     size_t max_bytes, glint_light_grid **out, glint_error *error)
 {
-    grid_maker maker = { .table = table, .room = room };
+    grid_maker maker = { .table = table, .max_bytes = max_bytes };
     bool enough = true;
     *out = NULL;
     if (!table->nodes || table->prim_count < SMALLEST_COUNT)

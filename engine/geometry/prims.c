@@ -13,18 +13,18 @@ void glint_sphere_init(glint_prim *prim, const double center[3], double radius)
     prim->radius = radius;
 }
 
-void glint_plane_init(glint_prim *prim, double room[4], const double point[3], const double normal[3],
+void glint_plane_init(glint_prim *prim, double buffer[4], const double point[3], const double normal[3],
                       const glint_placing *place)
 {
     glint_face face;
     glint_face_init(&face, place, normal, point);
     prim->kind = GLINT_PRIM_PLANE;
     vec_copy(prim->center, face.at);
-    prim->normal = room;
-    vec_copy(room, face.normal);
-    room[3] = 0;
+    prim->normal = buffer;
+    vec_copy(buffer, face.normal);
+    buffer[3] = 0;
     for (int c = 0; c < 3 && face.axis == 3; c++)
-        room[3] += 2 * fabs(face.normal[c] * face.at[c]) + DBL_MIN;
+        buffer[3] += 2 * fabs(face.normal[c] * face.at[c]) + DBL_MIN;
 }
 
 static int copy_face(double *out, const glint_face *face)

@@ -6,8 +6,8 @@
 #include "engine/geometry/geometry.h"
 
 void glint_sphere_init(glint_prim *prim, const double center[3], double radius);
-/// Makes a plane. room: memory for the fields except the position, which must live as long as the primitive.
-void glint_plane_init(glint_prim *prim, double room[4], const double point[3], const double normal[3],
+/// Makes a plane. buffer: memory for the fields except the position, which must live as long as the primitive.
+void glint_plane_init(glint_prim *prim, double buffer[4], const double point[3], const double normal[3],
                       const glint_placing *place);
 /// Makes a sphere, box, disk, cylinder, cone or torus; faces: memory for its faces. Returns their number.
 int glint_solid_init(glint_prim *prim, glint_solid *solid, const glint_shape_desc *desc, const glint_placing *place,

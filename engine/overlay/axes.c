@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define THICK 0.18 ///< thickness of a line, in font sizes
-#define NAME_ROOM 0.75 ///< from an axis's end to the middle of its name, in font sizes
+#define NAME_GAP 0.75 ///< from an axis's end to the middle of its name, in font sizes
 
 /// x, y and z: red, green and blue, linear.
 static const double colors[3][3] = { { 0.80, 0.07, 0.05 }, { 0.10, 0.52, 0.06 }, { 0.07, 0.19, 0.90 } };
@@ -22,12 +22,12 @@ static axis find_axis(const glint_layout *layout, int i)
 {
     const double(*view)[3] = layout->overlays->view;
     const double across = view[0][i], down = -view[1][i], shown = sqrt(across * across + down * down);
-    const double room = shown > 0 ? NAME_ROOM * layout->em / shown : 0;
+    const double gap = shown > 0 ? NAME_GAP * layout->em / shown : 0;
     axis a = { .away = view[2][i] };
     a.end[0] = across * layout->length;
     a.end[1] = down * layout->length;
-    a.name[0] = a.end[0] + across * room;
-    a.name[1] = a.end[1] + down * room;
+    a.name[0] = a.end[0] + across * gap;
+    a.name[1] = a.end[1] + down * gap;
     return a;
 }
 
@@ -41,7 +41,8 @@ static int reach(const glint_layout *layout)
         const int width = glint_typeface_width(&layout->typeface, name, strlen(name));
         widest = width > widest ? width : widest;
     }
-    return (int)ceil(layout->length + NAME_ROOM * layout->em + (widest > layout->typeface.height ? widest : layout->typeface.height) / 2.0);
+    return (int)ceil(layout->length + NAME_GAP * layout->em +
+                     (widest > layout->typeface.height ? widest : layout->typeface.height) / 2.0);
 }
 
 void glint_axes_measure(glint_layout *layout) { layout->width = layout->height = 2 * reach(layout) + 1; }

@@ -13,7 +13,7 @@
 
 #define LINE 0.08 ///< thickness, in font sizes
 #define TICK 0.35 ///< length of a mark, in font sizes
-#define ROOM 0.35 ///< gap between a mark and its number, and between numbers and the name, in font sizes
+#define GAP 0.35 ///< gap between a mark and its number, and between numbers and the name, in font sizes
 #define SHORTEST 1.5 ///< length of an axis with numbers, in font sizes
 #define WANTED 5 ///< steps between round numbers, at least, if they fit
 #define NEAREST 1e-6 ///< smallest depth drawn, relative to the depth of the box's farthest corner
@@ -222,19 +222,20 @@ static rect place_text(const box_axes *axes, const edge *e, const double at[2], 
     return r;
 }
 
-static bool overlap(const rect *a, const rect *b, double room)
+static bool overlap(const rect *a, const rect *b, double gap)
 {
-    return a->low[0] < b->high[0] + room && b->low[0] < a->high[0] + room && a->low[1] < b->high[1] && b->low[1] < a->high[1];
+    return a->low[0] < b->high[0] + gap && b->low[0] < a->high[0] + gap && a->low[1] < b->high[1] &&
+           b->low[1] < a->high[1];
 }
 
 /// Draws a text unless it would overlap another one or leave the picture.
 static void draw_text(box_axes *axes, const char *text, rect r)
 {
     const glint_layout *layout = axes->layout;
-    const double room = ROOM * layout->em;
+    const double gap = GAP * layout->em;
     bool fits = r.high[0] > 0 && r.high[1] > 0 && r.low[0] < layout->overlays->width && r.low[1] < layout->overlays->height;
     for (int i = 0; i < axes->count && fits; i++)
-        fits = !overlap(&r, &axes->texts[i], room);
+        fits = !overlap(&r, &axes->texts[i], gap);
     if (!fits)
         return;
     axes->texts[axes->count++] = r;
@@ -245,7 +246,7 @@ static void draw_text(box_axes *axes, const char *text, rect r)
 /// NaN.
 static bool place_marks(const box_axes *axes, const edge *e, const glint_marks *marks, double at[][2])
 {
-    const double room = ROOM * axes->layout->em;
+    const double gap = GAP * axes->layout->em;
     bool clear = true;
     int before = -1;
     for (int i = 0; i < marks->count; i++) {
@@ -258,7 +259,7 @@ static bool place_marks(const box_axes *axes, const edge *e, const glint_marks *
         if (before >= 0) {
             const rect a = place_text(axes, e, at[before], 0, marks->of[before].width);
             const rect b = place_text(axes, e, at[i], 0, marks->of[i].width);
-            clear = clear && !overlap(&a, &b, room);
+            clear = clear && !overlap(&a, &b, gap);
         }
         before = i;
     }
@@ -273,7 +274,7 @@ static void draw_axis(box_axes *axes, int direction, const edge *e)
     const bool is_measured = desc->has_sides && !desc->has_values;
     const double first = is_measured ? 0 : values[0][direction];
     const double last = is_measured ? length_of(desc, direction) : values[1][direction];
-    const double half = fmax(LINE * layout->em / 2, 0.5), tick = TICK * layout->em, room = ROOM * layout->em;
+    const double half = fmax(LINE * layout->em / 2, 0.5), tick = TICK * layout->em, gap = GAP * layout->em;
     const double offset[2] = { e->at[1][0] - e->at[0][0], e->at[1][1] - e->at[0][1] };
     double at[GLINT_OVERLAY_TICKS_MAX][2], steps = WANTED;
     glint_marks marks = { .count = 0 };
@@ -282,14 +283,15 @@ static void draw_axis(box_axes *axes, int direction, const edge *e)
         steps *= 0.8;
     } while (!place_marks(axes, e, &marks, at) && steps > 0.5);
     glint_layout_line(layout, e->at[0], offset, half, desc->color);
-    double reach = tick + room; // from the edge to beyond the numbers
+    double reach = tick + gap; // from the edge to beyond the numbers
     for (int i = 0; i < marks.count; i++) {
         const double mark[2] = { e->out[0] * tick, e->out[1] * tick };
         if (isnan(at[i][0]))
             continue;
         glint_layout_line(layout, at[i], mark, half, desc->color);
-        draw_text(axes, marks.of[i].text, place_text(axes, e, at[i], tick + room, marks.of[i].width));
-        reach = fmax(reach, tick + 2 * room + fabs(e->out[0]) * marks.of[i].width + fabs(e->out[1]) * layout->typeface.height);
+        draw_text(axes, marks.of[i].text, place_text(axes, e, at[i], tick + gap, marks.of[i].width));
+        reach = fmax(reach,
+                     tick + 2 * gap + fabs(e->out[0]) * marks.of[i].width + fabs(e->out[1]) * layout->typeface.height);
     }
     const char *name = desc->names[direction];
     const double middle[2] = { (e->at[0][0] + e->at[1][0]) / 2, (e->at[0][1] + e->at[1][1]) / 2 };

@@ -6,13 +6,13 @@
 
 #define BAR 0.9 ///< thickness of the bar, in font sizes
 #define TICK 0.3 ///< length of a mark, in font sizes
-#define ROOM 0.3 ///< gap between a mark and its number, in font sizes
+#define GAP 0.3 ///< gap between a mark and its number, in font sizes
 #define WANTED 4 ///< steps between round numbers, at least
 #define COLORS 256
 
 typedef struct bar {
     glint_marks marks;
-    int thick, tick, room, line, length; ///< pixels
+    int thick, tick, gap, line, length; ///< pixels
     int title_width, title_height;
 } bar;
 
@@ -86,10 +86,10 @@ static bar make_bar(const glint_layout *layout)
     find_marks(layout, &b);
     b.thick = (int)ceil(BAR * layout->em);
     b.tick = (int)ceil(TICK * layout->em);
-    b.room = (int)ceil(ROOM * layout->em);
+    b.gap = (int)ceil(GAP * layout->em);
     b.length = (int)layout->length > 2 ? (int)layout->length : 2;
     b.title_width = glint_layout_measure(layout, layout->desc->text, &lines);
-    b.title_height = lines * layout->typeface.line + (lines ? b.room : 0);
+    b.title_height = lines * layout->typeface.line + (lines ? b.gap : 0);
     return b;
 }
 
@@ -103,7 +103,7 @@ void glint_colorbar_measure(glint_layout *layout)
 {
     const bar b = make_bar(layout);
     const int along = b.length + 2 * overhang(layout, &b);
-    const int beside = b.thick + (b.marks.count ? b.tick + b.room : 0);
+    const int beside = b.thick + (b.marks.count ? b.tick + b.gap : 0);
     if (is_horizontal(layout)) {
         layout->width = along;
         layout->height = b.title_height + beside + (b.marks.count ? layout->typeface.height : 0);
@@ -152,10 +152,11 @@ static void draw_marks(const glint_layout *layout, const bar *b, int x, int y)
         const int along = (int)floor(share * b->length + 0.5), line = along - b->line / 2;
         if (is_horizontal(layout)) {
             glint_layout_fill(layout, x + line, y + b->thick, b->line, b->tick, ink, 1);
-            glint_layout_text(layout, m->text, x + along - m->width / 2, y + b->thick + b->tick + b->room, m->width, 0, ink);
+            glint_layout_text(layout, m->text, x + along - m->width / 2, y + b->thick + b->tick + b->gap, m->width, 0,
+                              ink);
         } else {
             glint_layout_fill(layout, x + b->thick, y + line, b->tick, b->line, ink, 1);
-            glint_layout_text(layout, m->text, x + b->thick + b->tick + b->room, y + along - layout->typeface.height / 2,
+            glint_layout_text(layout, m->text, x + b->thick + b->tick + b->gap, y + along - layout->typeface.height / 2,
                               m->width, 0, ink);
         }
     }

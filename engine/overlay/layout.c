@@ -117,14 +117,14 @@ void glint_layout_line(const glint_layout *layout, const double from[2], const d
 /// stays whole.
 static void wrap(glint_layout *layout, double margin)
 {
-    const int most = layout->overlays->width - 2 * layout->padding, room = most - 2 * (int)ceil(margin);
+    const int most = layout->overlays->width - 2 * layout->padding, space = most - 2 * (int)ceil(margin);
     const glint_typeface *typeface = &layout->typeface;
     for (char *line = layout->text; *line;) {
         const size_t size = strcspn(line, "\n");
         char *end = line + size, *fits = NULL;
         bool is_wide = glint_typeface_width(typeface, line, size) > most;
         for (char *blank = line; is_wide && (blank = memchr(blank, ' ', (size_t)(end - blank))) != NULL; blank++) {
-            if (fits && glint_typeface_width(typeface, line, (size_t)(blank - line)) > room)
+            if (fits && glint_typeface_width(typeface, line, (size_t)(blank - line)) > space)
                 break;
             fits = blank;
         }

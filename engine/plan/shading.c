@@ -246,7 +246,7 @@ static glint_status make_materials(glint_plan *plan, bool *powers, bool *facets,
 }
 
 /// Allocates rows for all lights, and sample patterns for area lights.
-static glint_status make_room(glint_plan *plan, const glint_scene *scene, glint_error *error)
+static glint_status ensure_capacity(glint_plan *plan, const glint_scene *scene, glint_error *error)
 {
     double rows = 0, light_samples = 0;
     for (size_t i = 0; i < scene->lights.count; i++) {
@@ -332,7 +332,7 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
     if (!status)
         status = make_materials(plan, &powers, &facets, error);
     if (!status)
-        status = make_room(plan, scene, error);
+        status = ensure_capacity(plan, scene, error);
     if (status)
         return status;
     for (size_t i = 0; i < scene->lights.count; i++) {

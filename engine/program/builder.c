@@ -64,7 +64,7 @@ static uint32_t *find_slot(const glint_builder *builder, const glint_ssa_node *n
 }
 
 /// Reserves space for GLINT_RESULTS_MAX more nodes and a hash slot.
-static glint_status make_room(glint_builder *builder, glint_error *error)
+static glint_status ensure_capacity(glint_builder *builder, glint_error *error)
 {
     if (builder->count + GLINT_RESULTS_MAX <= builder->capacity)
         return GLINT_OK;
@@ -93,7 +93,7 @@ static glint_status make_room(glint_builder *builder, glint_error *error)
 static glint_status share(glint_builder *builder, const glint_ssa_node *node, uint32_t results, glint_value *out,
                           glint_error *error)
 {
-    const glint_status status = make_room(builder, error);
+    const glint_status status = ensure_capacity(builder, error);
     if (status)
         return status;
     uint32_t *slot = find_slot(builder, node);

@@ -22,15 +22,15 @@ void glint_flow_destroy(glint_flow *flow)
     free(flow->next_edge);
 }
 
-static void add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t room)
+static void add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t residual)
 {
-    flow->edges[flow->edge_count] = (glint_flow_edge) { to, room, flow->from[from] };
+    flow->edges[flow->edge_count] = (glint_flow_edge) { to, residual, flow->from[from] };
     flow->from[from] = ++flow->edge_count;
 }
 
-void glint_flow_add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t room)
+void glint_flow_add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t residual)
 {
-    add(flow, from, to, room);
+    add(flow, from, to, residual);
     add(flow, to, from, 0);
 }
 
@@ -44,7 +44,7 @@ static bool find_path(glint_flow *flow)
     for (uint32_t at = 0; at < count; at++)
         for (uint32_t e = flow->from[flow->queue[at]]; e; e = flow->edges[e - 1].next) {
             const uint32_t node = flow->edges[e - 1].to, step = ((e - 1) ^ 1) + 1;
-            if (node == GLINT_FLOW_SINK || flow->next_edge[node] || !flow->edges[step - 1].room)
+            if (node == GLINT_FLOW_SINK || flow->next_edge[node] || !flow->edges[step - 1].residual)
                 continue;
             flow->next_edge[node] = step;
             flow->queue[count++] = node;
@@ -55,14 +55,16 @@ static bool find_path(glint_flow *flow)
 /// Fills the augmenting path from the source. Returns the added flow.
 static uint32_t fill_path(glint_flow *flow)
 {
-    uint32_t room = UINT32_MAX, node = GLINT_FLOW_SOURCE;
+    uint32_t residual = UINT32_MAX, node = GLINT_FLOW_SOURCE;
     for (; node != GLINT_FLOW_SINK; node = flow->edges[flow->next_edge[node] - 1].to)
-        room = room < flow->edges[flow->next_edge[node] - 1].room ? room : flow->edges[flow->next_edge[node] - 1].room;
+        residual = residual < flow->edges[flow->next_edge[node] - 1].residual
+                       ? residual
+                       : flow->edges[flow->next_edge[node] - 1].residual;
     for (node = GLINT_FLOW_SOURCE; node != GLINT_FLOW_SINK; node = flow->edges[flow->next_edge[node] - 1].to) {
-        flow->edges[flow->next_edge[node] - 1].room -= room;
-        flow->edges[(flow->next_edge[node] - 1) ^ 1].room += room;
+        flow->edges[flow->next_edge[node] - 1].residual -= residual;
+        flow->edges[(flow->next_edge[node] - 1) ^ 1].residual += residual;
     }
-    return room;
+    return residual;
 }
 
 uint32_t glint_flow_fill(glint_flow *flow, uint32_t limit)

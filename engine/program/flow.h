@@ -11,7 +11,7 @@
 #define GLINT_FLOW_ENDLESS 1000000u ///< capacity of edges that no cut may cross
 
 typedef struct glint_flow_edge {
-    uint32_t to, room; ///< room: the remaining capacity
+    uint32_t to, residual; ///< room: the remaining capacity
     uint32_t next; ///< next edge from the same node, plus 1; 0: none
 } glint_flow_edge;
 
@@ -27,7 +27,7 @@ typedef struct glint_flow {
 /// Reserves space for so many nodes and edges. False: out of memory; the caller still destroys the flow.
 bool glint_flow_create(glint_flow *flow, size_t node_count, size_t edge_count);
 void glint_flow_destroy(glint_flow *flow);
-void glint_flow_add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t room);
+void glint_flow_add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t residual);
 /// Returns the maximum flow, or a value above `limit` when the maximum is larger. Marks the nodes from which the sink
 /// can still be reached along edges with capacity left: they are the sink's side of the minimum cut nearest to the
 /// sink.

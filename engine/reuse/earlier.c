@@ -16,7 +16,7 @@ static const glint_key none = { 0 };
 
 /// Returns how many results can be set aside, at most `most`: they may take half of the budget that whole pictures
 /// leave.
-static size_t room_for(const glint_reuse *reuse, size_t bytes, size_t most)
+static size_t slots_for(const glint_reuse *reuse, size_t bytes, size_t most)
 {
     const size_t fits = (reuse->budget - reuse->pictures) / 2 / bytes;
     return fits < most ? fits : most;
@@ -84,7 +84,7 @@ static bool exchange_light(glint_reuse *reuse, int s, uint32_t row)
 static bool find_light(glint_reuse *reuse, uint32_t row, glint_key key)
 {
     glint_earlier *e = reuse->earlier;
-    const int sets = (int)room_for(reuse, reuse->light_count * light_bytes(reuse), GLINT_EARLIER_MAX);
+    const int sets = (int)slots_for(reuse, reuse->light_count * light_bytes(reuse), GLINT_EARLIER_MAX);
     const bool again = glint_recent_has(&e->lights[row], (size_t)sets, key);
     int s = again ? find_set(e, sets, row, key) : -1;
     if (s < 0 && reuse->light_recurs[row])
@@ -190,7 +190,7 @@ bool glint_earlier_tiles_found(glint_reuse *reuse, glint_key key)
     if (!e || glint_key_equal(reuse->cast, key))
         return glint_key_equal(reuse->cast, key);
     e->frame++;
-    const int slots = (int)room_for(reuse, tiles_bytes(reuse), GLINT_EARLIER_TILES);
+    const int slots = (int)slots_for(reuse, tiles_bytes(reuse), GLINT_EARLIER_TILES);
     const bool again = glint_recent_has(&e->casts, (size_t)slots, key);
     glint_earlier_tiles *slot = NULL, *oldest = NULL;
     for (int i = 0; i < slots; i++) {

@@ -170,10 +170,10 @@ void glint_reuse_unreserve(glint_reuse *reuse, size_t bytes) { reuse->pictures -
 /// Makes a chunk for blocks of this size: a large one if it fits into the budget.
 static bool add_chunk(glint_reuse *reuse, size_t bytes)
 {
-    const size_t room = reuse->budget - reuse->pictures, least = bytes + BLOCK_ALIGN;
+    const size_t available = reuse->budget - reuse->pictures, least = bytes + BLOCK_ALIGN;
     const size_t whole =
-        least < CHUNK_BYTES && room >= CHUNK_BYTES && reuse->used <= room - CHUNK_BYTES ? CHUNK_BYTES : least;
-    if (whole > room || reuse->used > room - whole)
+        least < CHUNK_BYTES && available >= CHUNK_BYTES && reuse->used <= available - CHUNK_BYTES ? CHUNK_BYTES : least;
+    if (whole > available || reuse->used > available - whole)
         return false;
     char *chunk = glint_alloc_large(whole, 1);
     if (!chunk)

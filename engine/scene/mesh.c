@@ -41,7 +41,7 @@ glint_status glint_check_shading(glint_shading shading, glint_error *error)
 typedef struct builder {
     const glint_mesh_desc *desc;
     glint_mesh *mesh;
-    size_t room; ///< capacity, in triangles
+    size_t capacity; ///< capacity, in triangles
     glint_polygon face;
     size_t number; ///< of the face, from 1
     glint_ears ears;
@@ -71,19 +71,19 @@ static bool resize(void **array, size_t bytes)
 static bool grow(builder *b)
 {
     glint_mesh *mesh = b->mesh;
-    const size_t room = b->room * 2;
+    const size_t capacity = b->capacity * 2;
     void *of_corners[] = { mesh->triangles, mesh->triangle_normals, mesh->triangle_uv }, *faces = mesh->faces;
-    bool good = resize(&faces, room * sizeof *mesh->faces);
+    bool good = resize(&faces, capacity * sizeof *mesh->faces);
     for (int i = 0; i < 3; i++)
-        good = good && resize(&of_corners[i], room * sizeof *mesh->triangles);
+        good = good && resize(&of_corners[i], capacity * sizeof *mesh->triangles);
     void *index = b->index;
-    good = good && resize(&index, room * sizeof *b->index);
+    good = good && resize(&index, capacity * sizeof *b->index);
     b->index = index;
     mesh->triangles = of_corners[0];
     mesh->triangle_normals = of_corners[1];
     mesh->triangle_uv = of_corners[2];
     mesh->faces = faces;
-    b->room = good ? room : b->room;
+    b->capacity = good ? capacity : b->capacity;
     return good;
 }
 
@@ -104,7 +104,7 @@ static glint_status keep_triangle(builder *b, size_t first_corner, uint32_t i, u
     glint_mesh *mesh = b->mesh;
     if (mesh->triangle_count == MOST)
         return glint_fail(b->error, GLINT_ERR_INVALID, "faces: at most %zu triangles expected", MOST);
-    if (mesh->triangle_count == b->room && !grow(b))
+    if (mesh->triangle_count == b->capacity && !grow(b))
         return glint_fail_nomem(b->error);
     if (mesh->faces)
         mesh->faces[mesh->triangle_count] = (uint32_t)(b->number - 1);
@@ -328,12 +328,12 @@ static glint_status allocate(builder *b)
     const glint_mesh_desc *desc = b->desc;
     const bool numbered = desc->normals && desc->normal_corners, mapped = desc->uv && desc->uv_corners;
     const bool polygons = has_polygons(desc), several = desc->material_count > 1;
-    mesh->triangles = malloc(b->room * sizeof *mesh->triangles);
-    mesh->triangle_normals = numbered ? malloc(b->room * sizeof *mesh->triangles) : NULL;
-    mesh->triangle_uv = mapped ? malloc(b->room * sizeof *mesh->triangles) : NULL;
-    mesh->faces = polygons ? malloc(b->room * sizeof *mesh->faces) : NULL;
+    mesh->triangles = malloc(b->capacity * sizeof *mesh->triangles);
+    mesh->triangle_normals = numbered ? malloc(b->capacity * sizeof *mesh->triangles) : NULL;
+    mesh->triangle_uv = mapped ? malloc(b->capacity * sizeof *mesh->triangles) : NULL;
+    mesh->faces = polygons ? malloc(b->capacity * sizeof *mesh->faces) : NULL;
     mesh->uv_missing = calloc(desc->material_count ? desc->material_count : 1, sizeof *mesh->uv_missing);
-    b->index = several ? malloc(b->room * sizeof *b->index) : NULL;
+    b->index = several ? malloc(b->capacity * sizeof *b->index) : NULL;
     if (!mesh->triangles || (numbered && !mesh->triangle_normals) || (mapped && !mesh->triangle_uv) ||
         (polygons && !mesh->faces) || !mesh->uv_missing || (several && !b->index))
         return glint_fail_nomem(b->error);
@@ -389,7 +389,7 @@ static glint_status make_shape(const glint_mesh_desc *desc, glint_mesh_faults *f
     shape->mesh = calloc(1, sizeof *shape->mesh);
     if (!shape->mesh)
         return glint_fail_nomem(error);
-    builder b = { .desc = desc, .mesh = shape->mesh, .room = desc->face_count, .faults = faults, .error = error };
+    builder b = { .desc = desc, .mesh = shape->mesh, .capacity = desc->face_count, .faults = faults, .error = error };
     glint_status status = take_materials(desc, shape, error);
     if (!status)
         status = fill(&b);

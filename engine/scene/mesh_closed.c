@@ -136,8 +136,8 @@ glint_status glint_mesh_find_closure(glint_mesh *mesh, glint_error *error)
     seams s = { .mesh = mesh, .slots = power_above(4 * mesh->triangle_count) };
     s.place = malloc(mesh->vertex_count * sizeof *s.place);
     s.edges = malloc(s.slots * sizeof *s.edges);
-    const bool room = s.place && s.edges && find_vertex_places(&s);
-    if (room) {
+    const bool allocated = s.place && s.edges && find_vertex_places(&s);
+    if (allocated) {
         count_edges(&s);
         find_open_edge(&s, &mesh->closure);
         mesh->closure.inverted = volume_of(mesh) < 0;
@@ -145,5 +145,5 @@ glint_status glint_mesh_find_closure(glint_mesh *mesh, glint_error *error)
     }
     free(s.place);
     free(s.edges);
-    return room ? GLINT_OK : glint_fail_nomem(error);
+    return allocated ? GLINT_OK : glint_fail_nomem(error);
 }

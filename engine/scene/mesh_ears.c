@@ -46,7 +46,7 @@ void glint_ears_free(glint_ears *ears)
 
 static glint_status reserve(glint_ears *ears, size_t count, glint_error *error)
 {
-    if (count <= ears->room)
+    if (count <= ears->capacity)
         return GLINT_OK;
     glint_ears_free(ears);
     *ears = (glint_ears) { 0 };
@@ -58,7 +58,7 @@ static glint_status reserve(glint_ears *ears, size_t count, glint_error *error)
     ears->order = malloc(count * sizeof *ears->order);
     ears->heap = malloc(count * sizeof *ears->heap);
     ears->triangles = malloc(count * sizeof *ears->triangles);
-    ears->room = count;
+    ears->capacity = count;
     if (ears->corners && ears->nodes && ears->order && ears->heap && ears->triangles)
         return GLINT_OK;
     glint_ears_free(ears);

@@ -21,7 +21,7 @@ typedef struct glint_ears {
     struct corner *corners; ///< of the current polygon
     struct node *nodes; ///< tree over the corners
     uint32_t *order, *heap, (*triangles)[3];
-    size_t room; ///< capacity, in corners
+    size_t capacity; ///< capacity, in corners
     size_t triangle_count; ///< number of `triangles`, each three corners of the polygon
 } glint_ears;
 

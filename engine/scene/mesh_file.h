@@ -12,7 +12,7 @@
 /// An array that grows.
 typedef struct glint_mesh_array {
     void *items;
-    size_t count, room, size; ///< `size` of one item, bytes
+    size_t count, capacity, size; ///< `size` of one item, bytes
 } glint_mesh_array;
 
 glint_status glint_mesh_append(glint_mesh_array *array, const void *item, glint_error *error);
@@ -20,7 +20,7 @@ glint_status glint_mesh_append(glint_mesh_array *array, const void *item, glint_
 /// Finds items of an array by their first bytes, which are unique.
 typedef struct glint_mesh_set {
     uint32_t *slots; ///< indices of items from 1; 0: free
-    size_t room; ///< a power of two
+    size_t capacity; ///< a power of two
 } glint_mesh_set;
 
 /// Writes the index of the item that begins with the same `key_size` bytes; appends `item` if there is none.
@@ -39,7 +39,7 @@ typedef struct glint_mesh_text {
     size_t skipped; ///< ignored empty lines after the current line
     locale_t c_locale; ///< a locale with decimal points, whatever the script's locale
     char *line;
-    size_t room, longest; ///< bytes of `line`: capacity, and its limit
+    size_t capacity, longest; ///< bytes of `line`: capacity, and its limit
     size_t number; ///< of the current line, from 1
     glint_error *error;
 } glint_mesh_text;

@@ -92,14 +92,14 @@ static glint_status number_shading_points(glint_mesh *mesh, const uint32_t *inde
     chains c = { malloc(mesh->vertex_count * sizeof *c.first), malloc(corners * sizeof *c.next),
                  malloc(corners * sizeof *c.normal), index ? malloc(corners * sizeof *c.material) : NULL };
     mesh->shading_points = malloc(mesh->triangle_count * sizeof *mesh->shading_points);
-    const bool room = c.first && c.next && c.normal && (c.material || !index) && mesh->shading_points;
-    if (room)
+    const bool allocated = c.first && c.next && c.normal && (c.material || !index) && mesh->shading_points;
+    if (allocated)
         link_corners(mesh, index, &c);
     free(c.first);
     free(c.next);
     free(c.normal);
     free(c.material);
-    if (room)
+    if (allocated)
         return GLINT_OK;
     free(mesh->shading_points);
     mesh->shading_points = NULL;

@@ -16,13 +16,13 @@
 
 glint_status glint_mesh_append(glint_mesh_array *array, const void *item, glint_error *error)
 {
-    if (array->count == array->room) {
-        const size_t room = array->room ? 2 * array->room : 1024;
-        void *items = room > SIZE_MAX / array->size ? NULL : realloc(array->items, room * array->size);
+    if (array->count == array->capacity) {
+        const size_t capacity = array->capacity ? 2 * array->capacity : 1024;
+        void *items = capacity > SIZE_MAX / array->size ? NULL : realloc(array->items, capacity * array->size);
         if (!items)
             return glint_fail_nomem(error);
         array->items = items;
-        array->room = room;
+        array->capacity = capacity;
     }
     memcpy((char *)array->items + array->count * array->size, item, array->size);
     array->count++;
@@ -36,20 +36,20 @@ static const char *item_at(const glint_mesh_array *array, size_t i)
 
 static size_t slot_of(const glint_mesh_set *set, const void *item, size_t key_size)
 {
-    return (size_t)glint_key_add((glint_key) { 0 }, item, key_size).low & (set->room - 1);
+    return (size_t)glint_key_add((glint_key) { 0 }, item, key_size).low & (set->capacity - 1);
 }
 
 /// Doubles the capacity, so that at most half of the slots are used.
 static glint_status grow_set(glint_mesh_set *set, const glint_mesh_array *array, size_t key_size, glint_error *error)
 {
-    glint_mesh_set grown = { .room = set->room ? 2 * set->room : 1024 };
-    grown.slots = calloc(grown.room, sizeof *grown.slots);
+    glint_mesh_set grown = { .capacity = set->capacity ? 2 * set->capacity : 1024 };
+    grown.slots = calloc(grown.capacity, sizeof *grown.slots);
     if (!grown.slots)
         return glint_fail_nomem(error);
     for (size_t i = 0; i < array->count; i++) {
         size_t slot = slot_of(&grown, item_at(array, i), key_size);
         while (grown.slots[slot])
-            slot = (slot + 1) & (grown.room - 1);
+            slot = (slot + 1) & (grown.capacity - 1);
         grown.slots[slot] = (uint32_t)i + 1;
     }
     free(set->slots);
@@ -61,13 +61,13 @@ glint_status glint_mesh_find(glint_mesh_set *set, glint_mesh_array *array, const
                              uint32_t *number, glint_error *error)
 {
     glint_status status = GLINT_OK;
-    if (2 * array->count >= set->room)
+    if (2 * array->count >= set->capacity)
         status = grow_set(set, array, key_size, error);
     if (status)
         return status;
     size_t slot = slot_of(set, item, key_size);
     while (set->slots[slot] && memcmp(item_at(array, set->slots[slot] - 1), item, key_size) != 0)
-        slot = (slot + 1) & (set->room - 1);
+        slot = (slot + 1) & (set->capacity - 1);
     if (!set->slots[slot]) {
         status = glint_mesh_append(array, item, error);
         set->slots[slot] = (uint32_t)array->count;
@@ -81,14 +81,14 @@ glint_status glint_mesh_find(glint_mesh_set *set, glint_mesh_array *array, const
 glint_status glint_mesh_text_open(glint_mesh_text *text, const char *path, glint_error *error)
 {
     int file;
-    *text = (glint_mesh_text) { .path = path, .room = 4096, .longest = LINE_MAX_BYTES, .error = error };
+    *text = (glint_mesh_text) { .path = path, .capacity = 4096, .longest = LINE_MAX_BYTES, .error = error };
     glint_status status = glint_open_file(path, &file, &text->size, error);
     if (status)
         return status;
     text->file = fdopen(file, "rb");
     if (!text->file)
         close(file);
-    text->line = malloc(text->room);
+    text->line = malloc(text->capacity);
     text->c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (!text->file || !text->line || !text->c_locale)
         return glint_fail_nomem(error);
@@ -124,16 +124,16 @@ glint_status glint_mesh_refuse(const glint_mesh_text *text, const char *expected
 
 static glint_status grow_line(glint_mesh_text *text, size_t used)
 {
-    if (used + 2 < text->room)
+    if (used + 2 < text->capacity)
         return GLINT_OK;
-    if (text->room >= text->longest)
+    if (text->capacity >= text->longest)
         return glint_fail(text->error, GLINT_ERR_FORMAT, "%s:%zu: at most %zu bytes expected", text->path, text->number,
                           text->longest);
-    char *line = realloc(text->line, text->room * 2);
+    char *line = realloc(text->line, text->capacity * 2);
     if (!line)
         return glint_fail_nomem(text->error);
     text->line = line;
-    text->room *= 2;
+    text->capacity *= 2;
     return GLINT_OK;
 }
 

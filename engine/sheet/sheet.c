@@ -80,9 +80,9 @@ static void write_text(layout *l, glint_canvas *canvas, const glint_typeface *ty
     l->lost = !glint_canvas_text(canvas, typeface, x, y, text, size, color) || l->lost;
 }
 
-/// Breaks `label` into lines at most `room` wide; parts share a line if they fit. Unless `canvas` is NULL, draws the
-/// lines from `y` down, centred in the space `room` that begins at `x`. Returns the number of lines.
-static int set_label(layout *l, const char *label, int room, glint_canvas *canvas, int x, int y)
+/// Breaks `label` into lines at most `space` wide; parts share a line if they fit. Unless `canvas` is NULL, draws the
+/// lines from `y` down, centred in the space `space` that begins at `x`. Returns the number of lines.
+static int set_label(layout *l, const char *label, int space, glint_canvas *canvas, int x, int y)
 {
     int lines = 0;
     while (label && *label) {
@@ -91,12 +91,12 @@ static int set_label(layout *l, const char *label, int room, glint_canvas *canva
         while (*part) { // counts the parts of this line
             size_t size = strcspn(part, "\n");
             int wider = (part > label ? width + gap : 0) + text_width(l, part, size);
-            if (part > label && wider > room)
+            if (part > label && wider > space)
                 break;
             width = wider;
             part += size + (part[size] == '\n');
         }
-        for (int at = x + (room - width) / 2; label < part;) {
+        for (int at = x + (space - width) / 2; label < part;) {
             size_t size = strcspn(label, "\n");
             if (canvas)
                 write_text(l, canvas, &l->typeface, at, y + lines * line_height(l), label, size, INK);
@@ -256,7 +256,7 @@ static void draw_bar(layout *l, glint_canvas *canvas)
 {
     const int sides[2] = { canvas->width, canvas->height };
     const bool across = l->bar.orientation == GLINT_HORIZONTAL;
-    const int room = (int)grid_size(l, across) - l->bar_size[across ? 0 : 1], shift = room > 0 ? room / 2 : 0;
+    const int space = (int)grid_size(l, across) - l->bar_size[across ? 0 : 1], shift = space > 0 ? space / 2 : 0;
     const int beyond = (int)grid_size(l, !across) + l->gap;
     glint_stamps stamps = { .transfer = GLINT_TRANSFER_SRGB, .bits = 8 };
     glint_colorbar_alone(&l->bar, l->letters, sides, l->left + (across ? shift : beyond), l->top + (across ? beyond : shift), &stamps,

@@ -31,7 +31,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     batch->by_lane = has_area_light(frame->plan);
     tile->batch = batch;
     tile->group_sums = glint_group_sums_of(to, walk == GLINT_WALK_SITES);
-    tile->shadow_room = to->shadow_room;
+    tile->shadow_scratch = to->shadow_scratch;
     tile->sample = to->sample;
     tile->counts = (glint_tile_counts) { 0 };
     tile->clock = to->clock;
@@ -457,8 +457,8 @@ static void total_share(const glint_bounce_material *m, double share[3])
 void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        double weight[GLINT_BRANCHES][3])
 {
-    glint_bounce_material room;
-    const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &room);
+    glint_bounce_material buffer;
+    const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
     const double part = m->fresnel ? glint_real_at(batch->reflectance, frame->plan->desc.precision, i) : 1;
     const double left = m->fresnel ? 1 - part : 1;
     double rest[3];

@@ -57,8 +57,8 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->samples = glint_samples_create()) && good;
     if (plan->base && plan->local && !tile->gathered)
         good = (tile->gathered = glint_gathered_create()) && good;
-    if (has_soft_shadows(plan) && !tile->shadow_room)
-        good = (tile->shadow_room = glint_alloc_large(1, GLINT_OCCLUDE_ROOM)) && good;
+    if (has_soft_shadows(plan) && !tile->shadow_scratch)
+        good = (tile->shadow_scratch = glint_alloc_large(1, GLINT_OCCLUDE_SCRATCH)) && good;
     if (!glint_group_sums_fit(tile->group_sums, plan)) {
         glint_group_sums_destroy(tile->group_sums);
         tile->group_sums = NULL;
@@ -80,6 +80,6 @@ void glint_tile_destroy(glint_tile *tile)
     glint_samples_destroy(tile->samples);
     glint_pattern_destroy(tile->pattern);
     glint_group_sums_destroy(tile->group_sums);
-    free(tile->shadow_room);
+    free(tile->shadow_scratch);
     free(tile);
 }

@@ -173,8 +173,8 @@ static void store_object_id(const glint_tile *tile, const glint_tile_frame *fram
 /// Returns the opacity of the surface of sample i, which is 1 unless the material is translucent.
 static double opacity_of(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
-    glint_bounce_material room;
-    return plan->clears ? 1 - glint_tile_bouncing(tile, plan, i, &room)->clear : 1;
+    glint_bounce_material buffer;
+    return plan->clears ? 1 - glint_tile_bouncing(tile, plan, i, &buffer)->clear : 1;
 }
 
 /// Stores diffuse reflectances. Reflectances of translucent materials are divided by the opacity again; at an opacity
@@ -182,10 +182,10 @@ static double opacity_of(const glint_tile *tile, const glint_plan *plan, uint32_
 static void store_albedo(const glint_tile *tile, const glint_tile_frame *frame)
 {
     float albedo[3][GLINT_TILE_SAMPLES];
-    double room[3];
+    double buffer[3];
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const bool hit = glint_has_lane(tile->at.hits, i);
-        const double *kd = hit ? glint_tile_diffuse(tile, frame->plan, i, room) : NULL;
+        const double *kd = hit ? glint_tile_diffuse(tile, frame->plan, i, buffer) : NULL;
         const double opacity = hit ? opacity_of(tile, frame->plan, i) : 0;
         for (int c = 0; c < 3; c++)
             albedo[c][i] = opacity > 0 ? (float)(kd[c] / opacity) : 0;

@@ -454,7 +454,7 @@ glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_fr
                                 .stop = frame->cancelled,
                                 .camera = glint_tile_rays_of(tile),
                                 .slack = tile->surface.slack,
-                                .room = tile->shadow_room,
+                                .scratch = tile->shadow_scratch,
                                 .box = tile->at.box,
                                 .rays = &tile->counts.shadow,
                                 .tests = glint_tile_tests_of(tile, frame) };

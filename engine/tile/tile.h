@@ -189,7 +189,7 @@ typedef struct glint_tile {
     struct glint_differ_work *differ; ///< of effects/adaptive/differ.c; NULL until a frame is a base
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
-    void *shadow_room; ///< of occlude; owned; NULL until a frame has shadows of area lights
+    void *shadow_scratch; ///< of occlude; owned; NULL until a frame has shadows of area lights
     struct glint_pattern *pattern; ///< memory of effects/pattern/pattern.c; NULL in frames without programs
     struct glint_group_sums *group_sums; ///< of effects/light_groups/; NULL in frames without light passes; for a batch
         ///< those of its tile

@@ -13,7 +13,7 @@ enum { ROW = 3 * BENCH_WIDTH };
 struct picture_writer {
     z_stream stream;
     uint8_t row[ROW + 1];
-    size_t room, size;
+    size_t capacity, size;
     uint8_t *file;
 };
 
@@ -49,8 +49,8 @@ picture_writer *picture_writer_create(void)
         bench_fail("png", "out of memory");
     if (deflateInit2(&w->stream, 1, Z_DEFLATED, 15, 9, Z_RLE) != Z_OK)
         bench_fail("zlib", "deflateInit2");
-    w->room = deflateBound(&w->stream, (ROW + 1) * BENCH_HEIGHT) + 4096;
-    w->file = malloc(w->room);
+    w->capacity = deflateBound(&w->stream, (ROW + 1) * BENCH_HEIGHT) + 4096;
+    w->file = malloc(w->capacity);
     if (!w->file)
         bench_fail("png", "out of memory");
     return w;
@@ -84,7 +84,7 @@ static size_t deflate_rows(picture_writer *w, const picture *codes)
     z_stream *z = &w->stream;
     deflateReset(z);
     z->next_out = w->file + w->size + 8;
-    z->avail_out = (uInt)(w->room - w->size - 8);
+    z->avail_out = (uInt)(w->capacity - w->size - 8);
     w->row[0] = 1; // the filter "Sub"
     for (int y = 0; y < BENCH_HEIGHT; y++) {
         const uint8_t *row = codes->bytes + y * ROW;
@@ -118,7 +118,7 @@ const uint8_t *picture_encode(picture_writer *w, const picture *codes, size_t *s
 static void append(png_structp png, png_bytep bytes, png_size_t count)
 {
     picture_writer *w = png_get_io_ptr(png);
-    if (count > w->room - w->size)
+    if (count > w->capacity - w->size)
         png_error(png, "too large");
     memcpy(w->file + w->size, bytes, count);
     w->size += count;

@@ -46,8 +46,8 @@ static glint_bytes band_at(const uint8_t *data, void *stream)
 {
     static uint8_t level[ISAL_DEF_LVL1_DEFAULT];
     glint_bytes out = { 0 };
-    assert_true(glint_bytes_reserve(&out, room_for(BAND_BYTES)));
-    out.size = fast_band_at(stream, level, data, BAND_BYTES, false, out.data, room_for(BAND_BYTES));
+    assert_true(glint_bytes_reserve(&out, capacity_for(BAND_BYTES)));
+    out.size = fast_band_at(stream, level, data, BAND_BYTES, false, out.data, capacity_for(BAND_BYTES));
     assert_true(out.size > 0);
     return out;
 }

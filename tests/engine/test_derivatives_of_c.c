@@ -229,13 +229,13 @@ static void write_places(void)
     release(&m);
 }
 
-/// Reads at most `room` bytes of a file. Fails when there is no such file.
-static size_t bytes_of(const char *path, char *out, size_t room)
+/// Reads at most `capacity` bytes of a file. Fails when there is no such file.
+static size_t bytes_of(const char *path, char *out, size_t capacity)
 {
     FILE *file = fopen(path, "rb");
     if (!file)
         fail_msg("%s is not there", path);
-    const size_t count = fread(out, 1, room, file);
+    const size_t count = fread(out, 1, capacity, file);
     fclose(file);
     return count;
 }

@@ -28,7 +28,9 @@ static void lattice_way(double v[3])
 static void set_lattice_triangle(glint_prim *prim, const glint_prim *last)
 {
     double f[3], g[3], n[3];
-    *prim = (glint_prim) { .kind = GLINT_PRIM_TRIANGLE, .corner = corner_room(), .item = GLINT_MISS, .shading_points = GLINT_MISS };
+    *prim = (glint_prim) {
+        .kind = GLINT_PRIM_TRIANGLE, .corner = corner_buffer(), .item = GLINT_MISS, .shading_points = GLINT_MISS
+    };
     do {
         for (int j = 0; j < 3; j++)
             if (j < 2 && last && last->kind == GLINT_PRIM_TRIANGLE && one_in(2))

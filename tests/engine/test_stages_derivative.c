@@ -122,41 +122,47 @@ static void any_three(bool sloped, double out[3])
 }
 
 /// Hits on a moving sphere or plane, or seen by a moving eye.
-typedef struct any_bend_room {
+typedef struct any_bend_buffers {
     glint_prim prim;
     glint_derivative_part part;
     glint_derivative_view view;
     glint_bend_camera camera;
     double normal[4];
-} any_bend_room;
+} any_bend_buffers;
 
-static glint_bend_args any_bend(const glint_derivative_points *points, any_bend_room *room)
+static glint_bend_args any_bend(const glint_derivative_points *points, any_bend_buffers *buffers)
 {
     const bool along = one_in(2), sees = along || !one_in(3), moves = !sees || one_in(2), round = one_in(2);
-    room->prim = (glint_prim) { .kind = round ? GLINT_PRIM_SPHERE : GLINT_PRIM_PLANE, .center = { between(-1, 1), 2, between(-1, 1) } };
+    buffers->prim = (glint_prim) { .kind = round ? GLINT_PRIM_SPHERE : GLINT_PRIM_PLANE,
+                                   .center = { between(-1, 1), 2, between(-1, 1) } };
     if (round) {
-        room->prim.radius = between(0.1, 3);
+        buffers->prim.radius = between(0.1, 3);
     } else {
-        random_unit(room->normal);
-        room->prim.normal = room->normal;
+        random_unit(buffers->normal);
+        buffers->prim.normal = buffers->normal;
     }
-    room->part = (glint_derivative_part) { .moves = moves, .growth = moves && round ? between(-1, 1) : 0 };
-    any_three(moves, room->part.place);
-    any_three(moves && !round, room->part.normal);
-    any_three(!round, room->part.pivot);
-    room->view = (glint_derivative_view) { .moves = sees, .nearer = along ? between(-1, 1) : 0 };
-    room->camera = (glint_bend_camera) { .near = along && one_in(2) ? between(0, 1) : 0, .orthographic = along && one_in(2) };
-    any_three(true, room->camera.eye);
-    random_unit(room->camera.forward);
-    random_across(room->camera.forward, room->camera.right);
-    cross3(room->camera.right, room->camera.forward, room->camera.up);
-    any_three(sees, room->view.eye);
-    any_three(sees, room->view.forward);
-    any_three(sees, room->view.right);
-    any_three(sees, room->view.up);
+    buffers->part = (glint_derivative_part) { .moves = moves, .growth = moves && round ? between(-1, 1) : 0 };
+    any_three(moves, buffers->part.place);
+    any_three(moves && !round, buffers->part.normal);
+    any_three(!round, buffers->part.pivot);
+    buffers->view = (glint_derivative_view) { .moves = sees, .nearer = along ? between(-1, 1) : 0 };
+    buffers->camera =
+        (glint_bend_camera) { .near = along && one_in(2) ? between(0, 1) : 0, .orthographic = along && one_in(2) };
+    any_three(true, buffers->camera.eye);
+    random_unit(buffers->camera.forward);
+    random_across(buffers->camera.forward, buffers->camera.right);
+    cross3(buffers->camera.right, buffers->camera.forward, buffers->camera.up);
+    any_three(sees, buffers->view.eye);
+    any_three(sees, buffers->view.forward);
+    any_three(sees, buffers->view.right);
+    any_three(sees, buffers->view.up);
     for (int c = 0; c < 3; c++)
-        any_three(sees, room->camera.turn[c]);
-    glint_bend_args args = { .points = points, .prim = &room->prim, .part = &room->part, .view = &room->view, .camera = &room->camera };
+        any_three(sees, buffers->camera.turn[c]);
+    glint_bend_args args = { .points = points,
+                             .prim = &buffers->prim,
+                             .part = &buffers->part,
+                             .view = &buffers->view,
+                             .camera = &buffers->camera };
     for (int c = 0; c < 3 && along; c++) {
         args.place[c % 2] = sixteen(-4, 4);
         args.shift[c] = sixteen(-1, 1);
@@ -256,10 +262,10 @@ static void bend_case(int precision, bool odd)
 {
     (void)precision;
     (void)odd;
-    any_bend_room room = { .normal = { 0 } };
+    any_bend_buffers buffers = { .normal = { 0 } };
     glint_derivative_points points;
     any_points(false, &points);
-    glint_bend_args args = any_bend(&points, &room);
+    glint_bend_args args = any_bend(&points, &buffers);
     FOR_EACH_TESTED
     {
         double *rows = output("slope", KIND_DOUBLE, 9 * GLINT_GROUP);

@@ -318,28 +318,29 @@ static glint_light_grid *make_grid(const shadow_case *c)
     glint_light_grid *grid = NULL;
     glint_error error;
     // a small limit gives wider cells, or no grid
-    const size_t room = calls++ % 3 ? SIZE_MAX : (size_t)c->scene->table.prim_count * 40;
+    const size_t max_bytes = calls++ % 3 ? SIZE_MAX : (size_t)c->scene->table.prim_count * 40;
     if (!c->soft)
         assert_int_equal(
-            glint_light_grid_create(&c->scene->table, c->args.directional, c->args.position, room, &grid, &error), GLINT_OK);
+            glint_light_grid_create(&c->scene->table, c->args.directional, c->args.position, max_bytes, &grid, &error),
+            GLINT_OK);
     gridded += grid != NULL;
     if (grid) {
         const size_t cells = (size_t)grid->count[0] * grid->count[1];
-        assert_true(cells * sizeof(uint32_t) + grid->begin[cells] * 3 * sizeof(uint32_t) <= room);
+        assert_true(cells * sizeof(uint32_t) + grid->begin[cells] * 3 * sizeof(uint32_t) <= max_bytes);
     }
     return grid;
 }
 
 static void occlude_all(shadow_case *c)
 {
-    static _Alignas(64) unsigned char room[GLINT_OCCLUDE_ROOM];
+    static _Alignas(64) unsigned char scratch[GLINT_OCCLUDE_SCRATCH];
     glint_occlude_args args = c->args;
     glint_point_box box;
     make_box(c, &box);
     args.box = one_in(2) ? &box : NULL;
     glint_light_grid *grid = make_grid(c);
     args.grid = grid;
-    args.room = c->kind == SHADOWS_IN_LAYERS || one_in(2) ? room : NULL;
+    args.scratch = c->kind == SHADOWS_IN_LAYERS || one_in(2) ? scratch : NULL;
     FOR_EACH_TESTED
     {
         uint64_t rays = 5;

@@ -13,7 +13,7 @@ static glint_refine_tile *tile_at(const glint_refine *refine, uint32_t column, u
     return &refine->tiles[(size_t)row * refine->across + column];
 }
 
-static glint_status make_room(glint_refine *refine, const glint_image *image, glint_error *error)
+static glint_status ensure_capacity(glint_refine *refine, const glint_image *image, glint_error *error)
 {
     const uint32_t across = ((uint32_t)image->width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     const uint32_t down = (uint32_t)glint_image_stamps(image);
@@ -34,7 +34,7 @@ static glint_status make_room(glint_refine *refine, const glint_image *image, gl
 glint_status glint_refine_begin(glint_refine *refine, const glint_stages *stages, const glint_image *image,
                                 const glint_render_desc *desc, glint_error *error)
 {
-    const glint_status status = make_room(refine, image, error);
+    const glint_status status = ensure_capacity(refine, image, error);
     refine->stages = stages;
     refine->base = image;
     refine->tone = glint_plan_compared(desc);

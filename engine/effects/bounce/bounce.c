@@ -28,7 +28,7 @@
 
 struct glint_bounce {
     glint_batch batch;
-    glint_rays room[LEVELS];
+    glint_rays buffers[LEVELS];
     glint_rays *levels[LEVELS]; ///< rays of each level; taking some swaps the buffers
     uint32_t counts[LEVELS];
     glint_sent sent[GLINT_BRANCHES]; ///< the rays that a batch sends to its own level, and to the levels above
@@ -47,8 +47,8 @@ static void *create(const glint_plan *plan)
     memset(&bounce->batch, 0, sizeof bounce->batch);
     bounce->slopes = NULL;
     for (int i = 0; i < LEVELS; i++) {
-        bounce->room[i].slopes = NULL;
-        bounce->levels[i] = &bounce->room[i];
+        bounce->buffers[i].slopes = NULL;
+        bounce->levels[i] = &bounce->buffers[i];
         bounce->counts[i] = 0;
     }
     return bounce;
@@ -74,7 +74,7 @@ static bool fit(void *memory, const glint_plan *plan)
     if (!bounce->slopes)
         bounce->slopes = malloc((LEVELS + 1) * each * sizeof *bounce->slopes); // the system allocates pages when used
     for (size_t i = 0; bounce->slopes && i < LEVELS; i++)
-        bounce->room[i].slopes = bounce->slopes + i * each;
+        bounce->buffers[i].slopes = bounce->slopes + i * each;
     if (bounce->slopes)
         bounce->batch.own.slopes = bounce->slopes + LEVELS * each;
     return bounce->slopes && glint_tile_fit_stage(&bounce->batch.tile, plan, GLINT_STAGE_DERIVATIVE);

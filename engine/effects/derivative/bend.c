@@ -318,14 +318,14 @@ void glint_bend_aim(const glint_tile *tile, const glint_plan *plan)
 }
 
 /// The input of the kernel for hits on one sphere or plane.
-typedef struct bend_room {
+typedef struct bend_buffers {
     glint_bend_args args;
     _Alignas(64) double place[2][GLINT_GROUP], shift[3][GLINT_GROUP], shift_slope[3][GLINT_GROUP];
-} bend_room;
+} bend_buffers;
 
 /// Computes the positions of a group's samples in the picture and on the lens.
 static void find_places(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t g,
-                        bend_room *out)
+                        bend_buffers *out)
 {
     for (uint32_t i = 0; i < GLINT_GROUP; i++) {
         double middle[2], lens[3] = { 0 }, change[3] = { 0 };
@@ -375,7 +375,7 @@ static unsigned bend_each(const glint_tile *tile, const glint_tile_frame *frame,
 /// Prepares those of `lanes` that hit the same primitive as the first one. Returns these lanes. *moves: they move;
 /// *seen: the kernel bends them, otherwise they are bent one by one.
 static unsigned begin(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
-                      const glint_derivative_points *points, bend_room *out, bool *seen, bool *moves)
+                      const glint_derivative_points *points, bend_buffers *out, bool *seen, bool *moves)
 {
     const glint_plan *plan = frame->plan;
     const glint_plan_derivative *d = &plan->derivatives->of[index];
@@ -406,11 +406,11 @@ unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame
                            unsigned lanes, const glint_derivative_points *points, double *const slope[9])
 {
     _Alignas(64) double some[9][GLINT_GROUP];
-    bend_room room;
+    bend_buffers buffers;
     unsigned bent = 0;
     bool seen, moves;
     for (unsigned left = lanes, same; left; left &= ~same) {
-        same = begin(tile, frame, index, g, left, points, &room, &seen, &moves);
+        same = begin(tile, frame, index, g, left, points, &buffers, &seen, &moves);
         if (!moves)
             continue;
         if (!seen) {
@@ -418,8 +418,8 @@ unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame
             continue;
         }
         for (int k = 0; k < 9; k++)
-            room.args.slope[k / 3][k % 3] = same == lanes ? slope[k] : some[k];
-        frame->stages->bend(&room.args);
+            buffers.args.slope[k / 3][k % 3] = same == lanes ? slope[k] : some[k];
+        frame->stages->bend(&buffers.args);
         if (same != lanes)
             put_lanes(same, some, slope);
         bent |= same;

@@ -94,8 +94,8 @@ static void split(const glint_batch *batch, const glint_tile *tile, const glint_
                   glint_ray_slope slopes[GLINT_BRANCHES][GLINT_DERIVATIVES_MAX])
 {
     const uint32_t material = tile->surface.material[i];
-    glint_bounce_material room;
-    const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &room);
+    glint_bounce_material buffer;
+    const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
     const glint_derivative_bounce *slope = &frame->plan->derivatives->of[index].bounces[material];
     const bool total = glint_has_lane(batch->total, i);
     const turning t = find_turning(batch, tile, frame, index, i);

@@ -33,10 +33,10 @@ static void find_eyes(const glint_tile *tile, const glint_tile_frame *frame, uin
 {
     double (*eye)[GLINT_TILE_SAMPLES] = glint_derivative_of(tile)->eye;
     const size_t at = (size_t)g * GLINT_GROUP;
-    _Alignas(64) double room[3][GLINT_GROUP];
-    glint_eyes_args args = { .direction = room[0], .eye = { eye[0] + at, eye[1] + at, eye[2] + at } };
+    _Alignas(64) double buffer[3][GLINT_GROUP];
+    glint_eyes_args args = { .direction = buffer[0], .eye = { eye[0] + at, eye[1] + at, eye[2] + at } };
     if (glint_tile_has_arrays(tile) || frame->plan->desc.precision == GLINT_FLOAT) {
-        gather_directions(tile, frame->plan->desc.precision, g, room);
+        gather_directions(tile, frame->plan->desc.precision, g, buffer);
     } else {
         args.direction = (const double *)tile->rays.across + (size_t)3 * GLINT_GROUP * (g % tile->groups_across);
         args.more = (const double *)tile->rays.down + (size_t)3 * GLINT_GROUP * (g / tile->groups_across);
@@ -160,21 +160,21 @@ static void take_field(const glint_tile *tile, const glint_plan *plan, size_t in
 
 /// Returns the planes of a material in group g for derivative number `index`. NULL: it has only numbers.
 static const glint_derivative_planes *planes_of(const glint_tile *tile, const glint_plan *plan, size_t index,
-                                                uint32_t material, uint32_t g, glint_derivative_planes *room)
+                                                uint32_t material, uint32_t g, glint_derivative_planes *buffer)
 {
     const uint32_t planes = plan->materials[material].planes;
     if (!planes)
         return NULL;
-    *room = (glint_derivative_planes) { .value = { NULL }, .slope = { NULL } };
+    *buffer = (glint_derivative_planes) { .value = { NULL }, .slope = { NULL } };
     if (planes & GLINT_PLANE_DIFFUSE)
-        take_field(tile, plan, index, GLINT_FIELD_DIFFUSE, GLINT_DERIVED_DIFFUSE, g, room);
+        take_field(tile, plan, index, GLINT_FIELD_DIFFUSE, GLINT_DERIVED_DIFFUSE, g, buffer);
     if (planes & GLINT_PLANE_SPECULAR)
-        take_field(tile, plan, index, GLINT_FIELD_SPECULAR, GLINT_DERIVED_SPECULAR, g, room);
+        take_field(tile, plan, index, GLINT_FIELD_SPECULAR, GLINT_DERIVED_SPECULAR, g, buffer);
     if (planes & GLINT_PLANE_SHININESS)
-        take_field(tile, plan, index, GLINT_FIELD_SHININESS, GLINT_DERIVED_SHININESS, g, room);
+        take_field(tile, plan, index, GLINT_FIELD_SHININESS, GLINT_DERIVED_SHININESS, g, buffer);
     if (planes & GLINT_PLANE_ALPHA)
-        take_field(tile, plan, index, GLINT_FIELD_ROUGHNESS, GLINT_DERIVED_ALPHA, g, room);
-    return room;
+        take_field(tile, plan, index, GLINT_FIELD_ROUGHNESS, GLINT_DERIVED_ALPHA, g, buffer);
+    return buffer;
 }
 
 /// Returns a program's result for the ambient reflectance of sample i in channel c; 1 if the material has only a
@@ -237,8 +237,8 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
             glint_slope_args args = { .light = &all->of[k].lights[light->source],
                                       .material = &all->of[k].materials[material],
                                       .source = &source };
-            glint_derivative_planes room;
-            args.planes = planes_of(tile, frame->plan, k, material, g, &room);
+            glint_derivative_planes buffer;
+            args.planes = planes_of(tile, frame->plan, k, material, g, &buffer);
             if (tinted)
                 glint_derivative_take_tint(tile, k, g, &source);
             for (int c = 0; c < 3; c++) {

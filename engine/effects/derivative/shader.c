@@ -29,7 +29,7 @@ struct glint_shader_slopes {
     float share[GLINT_PROGRAM_LANES]; ///< visible share of a light that may be partly covered
     uint16_t wanted[GLINT_PROGRAM_GROUPS], odd[GLINT_PROGRAM_GROUPS];
     glint_program_sums sums[GLINT_DERIVATIVES_MAX]; ///< one for each derivative that changes something
-    size_t room; ///< number of derivatives with memory
+    size_t capacity; ///< number of derivatives with memory
     input_slopes of[];
 };
 
@@ -46,12 +46,12 @@ typedef struct shading {
 bool glint_derive_shaders_fit(glint_derivative_work *work, const glint_plan *plan)
 {
     const size_t wanted = plan->derivatives->count;
-    if (!plan->derivatives->gradients || (work->shader && work->shader->room >= wanted))
+    if (!plan->derivatives->gradients || (work->shader && work->shader->capacity >= wanted))
         return true;
     free(work->shader);
     work->shader = glint_alloc(1, sizeof *work->shader + wanted * sizeof *work->shader->of);
     if (work->shader)
-        work->shader->room = wanted;
+        work->shader->capacity = wanted;
     return work->shader;
 }
 

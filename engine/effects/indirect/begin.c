@@ -39,13 +39,13 @@ static void find_block(struct glint_indirect *indirect, const glint_tile *to, co
 
 /// Returns the factor of the light of paths at sample i of a tile: the diffuse reflectance; with ambient occlusion
 /// the ambient light of the whole sky.
-static const double *first_weight(const glint_tile *seen, const glint_plan *plan, uint32_t i, double room[3])
+static const double *first_weight(const glint_tile *seen, const glint_plan *plan, uint32_t i, double buffer[3])
 {
     if (!plan->indirect.is_sky)
-        return glint_tile_diffuse(seen, plan, i, room);
+        return glint_tile_diffuse(seen, plan, i, buffer);
     for (int c = 0; c < 3; c++)
-        room[c] = glint_tile_ambient_rest(seen, plan, i, c);
-    return room;
+        buffer[c] = glint_tile_ambient_rest(seen, plan, i, c);
+    return buffer;
 }
 
 /// Returns the number of paths of a point, which is smaller for points seen weakly in mirrors.
@@ -89,14 +89,14 @@ uint32_t glint_indirect_find_points(struct glint_indirect *indirect, const glint
                                     const glint_tile_frame *frame, const glint_tile *seen, const glint_batch *from)
 {
     uint32_t most = 0;
-    double room[3];
+    double buffer[3];
     pixel_block block = { .known = false };
     indirect->fewest = UINT32_MAX;
     glint_rays_clear(&indirect->first, seen->group_count);
     for (uint32_t g = 0; g < seen->group_count; g++) {
         for (unsigned left = seen->at.hits[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const double *found = first_weight(seen, frame->plan, i, room);
+            const double *found = first_weight(seen, frame->plan, i, buffer);
             if (glint_largest(found) == 0)
                 continue;
             const uint32_t paths = begin_point(indirect, to, frame, seen, from, i, found, &block);

@@ -138,8 +138,8 @@ static turn choose(struct glint_indirect *indirect, const glint_tile_frame *fram
     glint_batch *batch = &indirect->batch;
     const glint_rays *rays = batch->rays;
     const uint32_t ray = batch->ray_of[i];
-    double share[CHOICES] = { 0 }, least = 0, room[3];
-    const double *diffuse = glint_tile_diffuse(&batch->tile, frame->plan, i, room);
+    double share[CHOICES] = { 0 }, least = 0, buffer[3];
+    const double *diffuse = glint_tile_diffuse(&batch->tile, frame->plan, i, buffer);
     glint_ray split[GLINT_BRANCHES];
     if (rays->scatters[ray] < frame->plan->indirect.bounces)
         for (int c = 0; c < 3; c++)
@@ -174,8 +174,8 @@ static void leave(const struct glint_indirect *indirect, const glint_tile_frame 
 {
     const glint_tile *tile = &indirect->batch.tile;
     const glint_precision precision = frame->plan->desc.precision;
-    double room[3];
-    const double *diffuse = glint_tile_diffuse(tile, frame->plan, i, room);
+    double buffer[3];
+    const double *diffuse = glint_tile_diffuse(tile, frame->plan, i, buffer);
     const bool free = glint_indirect_leaves(tile, frame->plan, i, indirect->direction);
     next->scatters[i]++;
     for (int c = 0; c < 3; c++) {

@@ -183,8 +183,8 @@ static bool run_second(glint_tile *tile, const glint_tile_frame *frame, const gl
             continue;
         if (of->split) {
             const glint_program_code second = part_of(&of->split->second, batch->own->program[field]);
-            glint_program_code room;
-            const glint_program_code *code = glint_pattern_point_planes(batch, frame, points, field, &second, &room);
+            glint_program_code buffer;
+            const glint_program_code *code = glint_pattern_point_planes(batch, frame, points, field, &second, &buffer);
             if (!choose_outputs(frame, batch, of, code, from) && !run_field(tile, frame, batch, of, code, from))
                 return false;
         }

@@ -11,15 +11,15 @@
 #include <string.h>
 
 /// Returns the sizes that a plan needs.
-static glint_pattern_room room_for(const glint_plan *plan)
+static glint_pattern_sizes sizes_for(const glint_plan *plan)
 {
     const glint_plan_patterns *patterns = plan->patterns;
-    return (glint_pattern_room) { .planes = (size_t)patterns->plane_count * GLINT_TILE_SAMPLES,
-                                  .samples = plan->together ? (size_t)plan->desc.samples : 1,
-                                  // all cached values of a first part may be live until its end
-                                  .rows = patterns->row_count + GLINT_PROGRAM_OUTPUTS_MAX,
-                                  .bumps = patterns->bumps,
-                                  .cut_outs = patterns->cut_outs };
+    return (glint_pattern_sizes) { .planes = (size_t)patterns->plane_count * GLINT_TILE_SAMPLES,
+                                   .samples = plan->together ? (size_t)plan->desc.samples : 1,
+                                   // all cached values of a first part may be live until its end
+                                   .rows = patterns->row_count + GLINT_PROGRAM_OUTPUTS_MAX,
+                                   .bumps = patterns->bumps,
+                                   .cut_outs = patterns->cut_outs };
 }
 
 struct glint_pattern *glint_pattern_create(const glint_plan *plan)
@@ -27,16 +27,16 @@ struct glint_pattern *glint_pattern_create(const glint_plan *plan)
     struct glint_pattern *pattern = glint_alloc(1, sizeof *pattern);
     if (!pattern)
         return NULL;
-    const glint_pattern_room room = room_for(plan);
-    pattern->room = room;
-    pattern->rows = glint_alloc(room.rows * GLINT_PROGRAM_LANES, sizeof *pattern->rows);
-    pattern->cut_out = room.cut_outs ? glint_cut_out_create() : NULL;
-    bool good = pattern->rows && (pattern->cut_out || !room.cut_outs);
+    const glint_pattern_sizes sizes = sizes_for(plan);
+    pattern->sizes = sizes;
+    pattern->rows = glint_alloc(sizes.rows * GLINT_PROGRAM_LANES, sizeof *pattern->rows);
+    pattern->cut_out = sizes.cut_outs ? glint_cut_out_create() : NULL;
+    bool good = pattern->rows && (pattern->cut_out || !sizes.cut_outs);
     for (int walk = 0; walk < GLINT_WALK_COUNT; walk++) {
-        const size_t samples = walk == GLINT_WALK_EYE ? room.samples : 1;
-        pattern->planes[walk] = glint_alloc(samples * room.planes, sizeof *pattern->planes[walk]);
-        pattern->normals[walk] = room.bumps ? glint_alloc(3 * GLINT_TILE_SAMPLES, sizeof(double)) : NULL;
-        good = good && pattern->planes[walk] && (pattern->normals[walk] || !room.bumps);
+        const size_t samples = walk == GLINT_WALK_EYE ? sizes.samples : 1;
+        pattern->planes[walk] = glint_alloc(samples * sizes.planes, sizeof *pattern->planes[walk]);
+        pattern->normals[walk] = sizes.bumps ? glint_alloc(3 * GLINT_TILE_SAMPLES, sizeof(double)) : NULL;
+        good = good && pattern->planes[walk] && (pattern->normals[walk] || !sizes.bumps);
     }
     if (good)
         return pattern;
@@ -48,9 +48,9 @@ bool glint_pattern_fits(const struct glint_pattern *pattern, const glint_plan *p
 {
     if (!pattern || !plan->patterns)
         return !pattern && !plan->patterns;
-    const glint_pattern_room room = room_for(plan), has = pattern->room;
-    return room.planes == has.planes && room.samples == has.samples && room.rows == has.rows &&
-           room.bumps == has.bumps && room.cut_outs == has.cut_outs;
+    const glint_pattern_sizes sizes = sizes_for(plan), has = pattern->sizes;
+    return sizes.planes == has.planes && sizes.samples == has.samples && sizes.rows == has.rows &&
+           sizes.bumps == has.bumps && sizes.cut_outs == has.cut_outs;
 }
 
 void glint_pattern_destroy(struct glint_pattern *pattern)
@@ -75,7 +75,7 @@ void glint_pattern_point(struct glint_pattern *pattern, glint_tile *tile, glint_
     if (!pattern)
         return;
     const size_t sample = walk == GLINT_WALK_EYE ? tile->own_planes : 0;
-    tile->at.planes = pattern->planes[walk] + sample * pattern->room.planes;
+    tile->at.planes = pattern->planes[walk] + sample * pattern->sizes.planes;
     for (int c = 0; c < 3 && pattern->normals[walk]; c++)
         tile->unbumped[c] = pattern->normals[walk] + (size_t)c * GLINT_TILE_SAMPLES;
 }
@@ -270,17 +270,17 @@ void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *f
 
 const glint_program_code *glint_pattern_point_planes(glint_pattern_batch *batch, const glint_tile_frame *frame,
                                                      const glint_pattern_points *points, int field,
-                                                     const glint_program_code *code, glint_program_code *room)
+                                                     const glint_program_code *code, glint_program_code *buffer)
 {
     const int planes = frame->plan->patterns->planes[field];
     for (int c = 0; c < planes; c++)
         batch->args.plane[c] = plane_at(points, frame->plan, field, c);
     if (code->output_count >= (uint32_t)planes)
         return code;
-    *room = *code;
-    for (; room->output_count < (uint32_t)planes; room->output_count++)
-        room->outputs[room->output_count] = room->outputs[0];
-    return room;
+    *buffer = *code;
+    for (; buffer->output_count < (uint32_t)planes; buffer->output_count++)
+        buffer->outputs[buffer->output_count] = buffer->outputs[0];
+    return buffer;
 }
 
 static bool is_before(const double a[3], const double b[3])
@@ -377,9 +377,9 @@ void glint_pattern_run_batch(struct glint_pattern *pattern, const glint_tile_fra
         if (!(own->made & points->fields & 1u << field))
             continue;
         if (own->program[field]) {
-            glint_program_code room;
+            glint_program_code buffer;
             const glint_program_code *code =
-                glint_pattern_point_planes(batch, frame, points, field, &own->program[field]->code, &room);
+                glint_pattern_point_planes(batch, frame, points, field, &own->program[field]->code, &buffer);
             glint_pattern_call(pattern, frame, code, 0, &batch->args);
             note_odd(pattern, batch, frame, points, field, code, counts);
         }

@@ -82,16 +82,16 @@ static inline const float *glint_plane_of(const float *planes, const glint_plan 
     return start < 0 ? NULL : planes + start;
 }
 
-/// Returns a colour of material `m` at sample i: the program's result, written to `room`, or `number` without a
+/// Returns a colour of material `m` at sample i: the program's result, written to `buffer`, or `number` without a
 /// program.
 static inline const double *glint_color_at(const float *planes, const glint_plan *plan, glint_field field, uint32_t m,
-                                           uint32_t i, const double *number, double room[3])
+                                           uint32_t i, const double *number, double buffer[3])
 {
     if (!plan->patterns || !(plan->patterns->of[m].made >> field & 1))
         return number;
     for (int c = 0; c < 3; c++)
-        room[c] = (double)glint_plane_of(planes, plan, field, c)[i];
-    return room;
+        buffer[c] = (double)glint_plane_of(planes, plan, field, c)[i];
+    return buffer;
 }
 
 /// Computes the normals used for reflection and refraction. If the bumped normal would send light through the surface
@@ -120,15 +120,15 @@ void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const gl
 
 /// Returns the diffuse reflectance of a tile's sample.
 static inline const double *glint_tile_diffuse(const glint_tile *tile, const glint_plan *plan, uint32_t i,
-                                               double room[3])
+                                               double buffer[3])
 {
     const uint32_t m = tile->surface.material[i];
-    return glint_color_at(tile->at.planes, plan, GLINT_FIELD_DIFFUSE, m, i, glint_plan_diffuse(plan, m), room);
+    return glint_color_at(tile->at.planes, plan, GLINT_FIELD_DIFFUSE, m, i, glint_plan_diffuse(plan, m), buffer);
 }
 
-/// Returns mirror, transmission and absorption of a tile's sample; `room` holds them if programs compute any.
+/// Returns mirror, transmission and absorption of a tile's sample; `buffer` holds them if programs compute any.
 const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
-                                                 glint_bounce_material *room);
+                                                 glint_bounce_material *buffer);
 /// Returns the part of a sample's ambient light that indirect light replaces, in channel c: for materials whose
 /// diffuse reflectance a program computes, and for all others.
 double glint_tile_pattern_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c);

@@ -7,7 +7,7 @@
 #include <math.h>
 
 const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
-                                                 glint_bounce_material *room)
+                                                 glint_bounce_material *buffer)
 {
     const uint32_t material = tile->surface.material[i];
     const glint_bounce_material *m = &plan->bouncing[material];
@@ -15,24 +15,24 @@ const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const g
     double color[3];
     if (!plan->patterns || !(plan->patterns->of[material].made & shares))
         return m;
-    *room = *m;
-    vec_copy(room->mirror, glint_color_at(tile->at.planes, plan, GLINT_FIELD_MIRROR, material, i, m->mirror, color));
-    vec_copy(room->transmission,
+    *buffer = *m;
+    vec_copy(buffer->mirror, glint_color_at(tile->at.planes, plan, GLINT_FIELD_MIRROR, material, i, m->mirror, color));
+    vec_copy(buffer->transmission,
              glint_color_at(tile->at.planes, plan, GLINT_FIELD_TRANSMISSION, material, i, m->transmission, color));
     if (plan->patterns->of[material].made >> GLINT_FIELD_CLEAR & 1)
-        room->clear = (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_CLEAR, 0)[i];
-    return room;
+        buffer->clear = (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_CLEAR, 0)[i];
+    return buffer;
 }
 
 double glint_tile_pattern_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c)
 {
     const uint32_t material = tile->surface.material[i];
     const glint_plan_pattern *own = plan->patterns ? &plan->patterns->of[material] : NULL;
-    double room[3];
+    double buffer[3];
     if (own && own->made >> GLINT_FIELD_REST & 1)
         return (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_REST, c)[i] * plan->ambient[c];
     if (!own || !(own->made >> GLINT_FIELD_DIFFUSE & 1))
         return plan->indirect.rest[material][c];
-    const double kd = glint_tile_diffuse(tile, plan, i, room)[c];
+    const double kd = glint_tile_diffuse(tile, plan, i, buffer)[c];
     return (own->ambient_follows ? kd : fmin(kd, own->desc.ambient[c])) * plan->ambient[c];
 }

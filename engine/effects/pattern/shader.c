@@ -258,24 +258,24 @@ glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint
     return points;
 }
 
-/// Returns the lanes that any light reaches; `room` holds them if there are several lights.
+/// Returns the lanes that any light reaches; `buffer` holds them if there are several lights.
 static const uint16_t *find_lit(const glint_tile *tile, const glint_shader_light *lights, uint32_t light_count,
-                                uint16_t room[GLINT_TILE_GROUPS])
+                                uint16_t buffer[GLINT_TILE_GROUPS])
 {
     if (light_count == 1)
         return lights->lit;
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        room[g] = 0;
+        buffer[g] = 0;
         for (uint32_t i = 0; i < light_count; i++)
-            room[g] |= lights[i].lit[g];
+            buffer[g] |= lights[i].lit[g];
     }
-    return room;
+    return buffer;
 }
 
 void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const glint_shader_light *lights, uint32_t light_count)
 {
-    uint16_t room[GLINT_TILE_GROUPS];
-    const uint16_t *lit = find_lit(tile, lights, light_count, room);
+    uint16_t buffer[GLINT_TILE_GROUPS];
+    const uint16_t *lit = find_lit(tile, lights, light_count, buffer);
     const glint_pattern_points points = glint_shader_find_lanes(tile, frame->plan, lit);
     const glint_pattern_lanes *entries;
     if (!tile->pattern->count)

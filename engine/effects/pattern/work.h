@@ -9,12 +9,12 @@
 #define GLINT_SHADER_TERMS 6 ///< diffuse, specular
 
 /// Sizes that depend on the plan.
-typedef struct glint_pattern_room {
+typedef struct glint_pattern_sizes {
     size_t planes; ///< floats in the planes of a sample
     size_t samples; ///< number of samples shaded together
     size_t rows;
     bool bumps, cut_outs; ///< whether any surface has bumps or holes
-} glint_pattern_room;
+} glint_pattern_sizes;
 
 struct glint_pattern {
     glint_pattern_inputs inputs;
@@ -30,7 +30,7 @@ struct glint_pattern {
     float *planes[GLINT_WALK_COUNT]; ///< the first walk has a set for each sample shaded together
     double *normals[GLINT_WALK_COUNT]; ///< normals of bumped surfaces, before the bump; NULL: no bumps
     struct glint_cut_out *cut_out; ///< memory of cut_out.c; NULL: no surface has holes
-    glint_pattern_room room;
+    glint_pattern_sizes sizes;
     glint_pattern_lanes lanes[GLINT_TILE_SAMPLES]; ///< the list made by glint_pattern_find_lanes
     uint32_t first, count; ///< the remaining entries are among lanes[first .. count)
     bool several; ///< the entries have several materials; taken entries have no lanes
@@ -59,10 +59,10 @@ bool glint_pattern_next(struct glint_pattern *pattern, const glint_tile_frame *f
 void glint_pattern_run_batch(struct glint_pattern *pattern, const glint_tile_frame *frame,
                              const glint_pattern_points *points, glint_pattern_batch *batch, glint_tile_counts *counts);
 /// Sets the batch's outputs to the planes of a field. Returns the program; if the program gives one number for
-/// several planes, a copy in `room` that gives it for each plane.
+/// several planes, a copy in `buffer` that gives it for each plane.
 const glint_program_code *glint_pattern_point_planes(glint_pattern_batch *batch, const glint_tile_frame *frame,
                                                      const glint_pattern_points *points, int field,
-                                                     const glint_program_code *code, glint_program_code *room);
+                                                     const glint_program_code *code, glint_program_code *buffer);
 /// Computes the planes derived from a field, after the field's program has run.
 void glint_pattern_finish(const glint_pattern_batch *batch, const glint_pattern_points *points, const glint_plan *plan,
                           int field);

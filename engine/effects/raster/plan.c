@@ -304,13 +304,13 @@ static glint_status enter_all(scanning *s, glint_pool *pool, glint_error *error)
     const size_t placed = place_entries(s), total = placed ? placed : 1; // an allocation, even if empty
     if (total > ENTRIES_MAX)
         return GLINT_OK;
-    if (total > raster->entry_room) {
+    if (total > raster->entry_capacity) {
         free(raster->entries);
-        raster->entry_room = 0;
+        raster->entry_capacity = 0;
         raster->entries = glint_alloc_large(total, sizeof *raster->entries);
         if (!raster->entries)
             return glint_fail_nomem(error);
-        raster->entry_room = total;
+        raster->entry_capacity = total;
     }
     glint_pool_run(pool, s->chunk_count, enter_chunk, s);
     glint_pool_run(pool, s->tile_count, order_tile, s);
@@ -329,11 +329,11 @@ glint_status glint_raster_begin(glint_raster *raster, const glint_plan *plan, co
     glint_status status = glint_geometry_others(plan->geometry, pool, &raster->others, &raster->rest, error);
     if (status || s.tile_count > COUNTS_MAX / (s.chunk_count + 1))
         return status;
-    if (s.tile_count > raster->tile_room) {
+    if (s.tile_count > raster->tile_capacity) {
         free(raster->first);
-        raster->tile_room = 0;
+        raster->tile_capacity = 0;
         raster->first = glint_alloc(s.tile_count + 1, sizeof *raster->first);
-        raster->tile_room = raster->first ? s.tile_count : 0;
+        raster->tile_capacity = raster->first ? s.tile_count : 0;
     }
     s.extents = glint_alloc_large(geometry->prim_count, sizeof *s.extents);
     s.counts = glint_alloc(s.chunk_count * s.tile_count, sizeof *s.counts);

@@ -13,7 +13,7 @@ typedef struct glint_raster {
     double ms; ///< time of finding the entries
     bool rest; ///< other primitives must be cast as well
     glint_geometry_table others; ///< these, with their own index
-    size_t tile_count, tile_room, entry_room;
+    size_t tile_count, tile_capacity, entry_capacity;
     size_t *first; ///< of each tile, its first entry, and one more
     glint_raster_entry *entries; ///< tile after tile, the nearer first
 } glint_raster;

@@ -135,7 +135,7 @@ static void add_all(lights *to, glint_plan *const *times, size_t count)
     }
 }
 
-static glint_status make_room(lights *to, glint_plan *const *times, size_t count, glint_error *error)
+static glint_status ensure_capacity(lights *to, glint_plan *const *times, size_t count, glint_error *error)
 {
     double rows = 0, samples = 0;
     for (size_t k = 0; k < count; k++) {
@@ -155,7 +155,7 @@ static glint_status make_room(lights *to, glint_plan *const *times, size_t count
 glint_status glint_plan_take_lights(glint_plan *plan, glint_plan *const *times, size_t count, glint_error *error)
 {
     lights all = { 0 };
-    glint_status status = make_room(&all, times, count, error);
+    glint_status status = ensure_capacity(&all, times, count, error);
     if (status) {
         free(all.rows);
         free(all.samples);

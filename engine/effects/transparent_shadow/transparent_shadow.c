@@ -279,9 +279,9 @@ static bool cross(struct glint_transparent_shadow *transparent_shadow, const gli
     const bool back = glint_has_lane(transparent_shadow->back, i), fills = plan->bouncing[material].transmits;
     const double clear = clear_at(transparent_shadow, plan, material, i);
     bool any = false;
-    double room[3], left[3] = { 1, 1, 1 };
+    double buffer[3], left[3] = { 1, 1, 1 };
     const double *transmission = glint_color_at(transparent_shadow->planes, plan, GLINT_FIELD_TRANSMISSION, material, i,
-                                                plan->bouncing[material].transmission, room);
+                                                plan->bouncing[material].transmission, buffer);
     if (plan->absorbs) {
         const glint_media *media = &transparent_shadow->media[ray];
         const uint32_t medium = fills ? glint_media_before(media, inside, back) : glint_media_top(media);

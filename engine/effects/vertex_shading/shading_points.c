@@ -15,8 +15,8 @@ void glint_shading_points_clear(glint_shading_points_cached *shading_points, gli
     *shading_points = (glint_shading_points_cached) { 0 };
 }
 
-static glint_status make_room(glint_shading_points_cached *shading_points, uint32_t blocks, size_t derivatives, size_t groups, glint_reuse *reuse,
-                              glint_error *error)
+static glint_status ensure_capacity(glint_shading_points_cached *shading_points, uint32_t blocks, size_t derivatives,
+                                    size_t groups, glint_reuse *reuse, glint_error *error)
 {
     const size_t count = 2 * (size_t)blocks, slopes = derivatives ? 3 * (derivatives + 1) : 0,
                  each = (1 + groups) * sizeof *shading_points->light + slopes * sizeof *shading_points->slopes,
@@ -49,7 +49,7 @@ glint_status glint_shading_points_begin(glint_shading_points_cached *shading_poi
     const size_t derivatives = plan->derivatives ? plan->derivatives->count : 0;
     const size_t groups = plan->light_groups ? plan->light_groups->count : 0;
     if (shading_points->blocks != blocks || shading_points->slope_count != derivatives || shading_points->group_count != groups) {
-        glint_status status = make_room(shading_points, blocks, derivatives, groups, reuse, error);
+        glint_status status = ensure_capacity(shading_points, blocks, derivatives, groups, reuse, error);
         if (status)
             return status;
     }

@@ -271,12 +271,12 @@ static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
         R(cast_prims)(tile, &leaf, waiting, &seen[!turn], waiting_prims);
 }
 
-/// Makes candidates of the planes ahead of the camera, from number *next on, at most `room` of them.
-static int R(open_planes)(R(tile_cast) * tile, uint32_t *next, R(candidate) * candidates, int room)
+/// Makes candidates of the planes ahead of the camera, from number *next on, at most `capacity` of them.
+static int R(open_planes)(R(tile_cast) * tile, uint32_t *next, R(candidate) * candidates, int capacity)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     int found = 0;
-    for (; *next < geometry->unbounded_count && found < room; ++*next) {
+    for (; *next < geometry->unbounded_count && found < capacity; ++*next) {
         const uint32_t id = geometry->unbounded[*next];
         if (!R(plane_ahead)(tile->args->camera, &tile->view, &geometry->prims[id]))
             continue;

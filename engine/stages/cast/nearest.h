@@ -129,12 +129,12 @@ INNER fm R(enter_ball)(const R(float_rays) * rays, const glint_prim *prim, vf *e
         f[k] = rays->origin[k] - f_set(prim->filter_center[k]);
     const vf x[3] = { f[1] * d[2] - f[2] * d[1], f[2] * d[0] - f[0] * d[2], f[0] * d[1] - f[1] * d[0] };
     const vf limit = (f_set(prim->filter_bound) + rays->bound) * rays->length;
-    const vf room = limit * limit - DOT(x, x), b = -DOT(f, d);
-    if (!fm_bits(f_le(f_set(0), room)))
+    const vf discriminant = limit * limit - DOT(x, x), b = -DOT(f, d);
+    if (!fm_bits(f_le(f_set(0), discriminant)))
         return fm_from_bits(0);
-    const vf half = f_sqrt(f_max(room, f_set(0)));
+    const vf half = f_sqrt(f_max(discriminant, f_set(0)));
     const vf slack = f_set(NEAREST_SLACK) * (f_abs(b) + limit);
-    const fm near = fm_and(f_le(f_set(0), room), f_le(f_set(0), (b + half) + slack));
+    const fm near = fm_and(f_le(f_set(0), discriminant), f_le(f_set(0), (b + half) + slack));
     *entry = f_select(near, f_max((b - half) - slack, f_set(0)) * rays->per_a, f_set(HUGE_VALF));
     return near;
 }
@@ -331,19 +331,20 @@ static inline unsigned R(meet_balls)(const glint_node *node, const R(lone_ray) *
         const vf x[3] = { f[1] * d[2] - f[2] * d[1], f[2] * d[0] - f[0] * d[2], f[0] * d[1] - f[1] * d[0] };
         const vf limit = ball.most + ball.margin, inner = f_max(ball.least - ball.margin, zero);
         const vf x2 = DOT(x, x), b = -DOT(f, d), reach = limit * length, least = inner * length;
-        const vf room = reach * reach - x2, inner_room = least * least - x2;
-        if (!fm_bits(f_le(zero, room)))
+        const vf discriminant = reach * reach - x2, inner_discriminant = least * least - x2;
+        if (!fm_bits(f_le(zero, discriminant)))
             continue;
-        const vf half = f_sqrt(f_max(room, zero)), slack = f_set(NEAREST_SLACK) * (f_abs(b) + reach);
+        const vf half = f_sqrt(f_max(discriminant, zero)), slack = f_set(NEAREST_SLACK) * (f_abs(b) + reach);
         const vf entry = f_max((b - half) - slack, zero) * per_a;
-        const fm near = fm_and(fm_and(f_le(zero, room), f_le(zero, (b + half) + slack)), f_le(entry, f_set(far)));
+        const fm near =
+            fm_and(fm_and(f_le(zero, discriminant), f_le(zero, (b + half) + slack)), f_le(entry, f_set(far)));
         if (!fm_bits(near))
             continue;
-        const vf inner_half = f_sqrt(f_max(inner_room, zero));
+        const vf inner_half = f_sqrt(f_max(inner_discriminant, zero));
         const fm outside = fm_and(f_lt(limit * limit, DOT(f, f)), f_lt(zero, b));
         const vf sure = ((b - inner_half) + (slack + ball.margin * length)) * per_a;
         f_store(out->entry + i, entry);
-        f_store(out->sure + i, f_select(fm_and(outside, f_lt(zero, inner_room)), sure, f_set(HUGE_VALF)));
+        f_store(out->sure + i, f_select(fm_and(outside, f_lt(zero, inner_discriminant)), sure, f_set(HUGE_VALF)));
         may |= fm_bits(near) << i;
     }
     return may;

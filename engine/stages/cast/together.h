@@ -155,17 +155,17 @@ static inline void R(note_ball_of_group)(const glint_node *node, int slot, const
         const vf limit = f_set(most) + margin, inner = f_max(f_set(least) - margin, zero);
         const vf x[3] = { f[1] * d[2] - f[2] * d[1], f[2] * d[0] - f[0] * d[2], f[0] * d[1] - f[1] * d[0] };
         const vf x2 = DOT(x, x), b = -DOT(f, d), reach = limit * length, sure_reach = inner * length;
-        const vf room = reach * reach - x2, sure_room = sure_reach * sure_reach - x2;
-        const vf half = f_sqrt(f_max(room, zero)), slack = f_set(NEAREST_SLACK) * (f_abs(b) + reach);
+        const vf discriminant = reach * reach - x2, sure_discriminant = sure_reach * sure_reach - x2;
+        const vf half = f_sqrt(f_max(discriminant, zero)), slack = f_set(NEAREST_SLACK) * (f_abs(b) + reach);
         const vf entry = f_max((b - half) - slack, zero) * per_a;
-        fm near = fm_and(fm_and(f_le(zero, room), f_le(zero, (b + half) + slack)), f_le(entry, far));
+        fm near = fm_and(fm_and(f_le(zero, discriminant), f_le(zero, (b + half) + slack)), f_le(entry, far));
         near = fm_and(near, fm_from_bits(lanes >> i));
         if (walk->leaving)
             near = fm_andnot(near, i_eq(i_load(walk->leaving + i), i_set(id)));
         if (!fm_bits(near))
             continue;
-        const vf sure = ((b - f_sqrt(f_max(sure_room, zero))) + (slack + margin * length)) * per_a;
-        const fm enters = fm_and(fm_and(f_lt(limit * limit, DOT(f, f)), f_lt(zero, b)), f_lt(zero, sure_room));
+        const vf sure = ((b - f_sqrt(f_max(sure_discriminant, zero))) + (slack + margin * length)) * per_a;
+        const fm enters = fm_and(fm_and(f_lt(limit * limit, DOT(f, f)), f_lt(zero, b)), f_lt(zero, sure_discriminant));
         const vf own = f_select(near, entry, none), way0 = f_load(first->entry[0] + i),
                  way1 = f_load(first->entry[1] + i);
         const fm before = f_lt(own, way0), second = f_lt(own, way1);
@@ -312,7 +312,7 @@ static inline void R(turn_stack)(R(node_stack) * stack)
 static __attribute__((noinline)) void R(walk_rays)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays,
                                                    const R(lone_rays) * lone, unsigned lanes, R(ray_pairs) * pairs)
 {
-    R(rounds) room, *const rounds = &room;
+    R(rounds) buffer, *const rounds = &buffer;
     R(common_walk) walk;
     const size_t at = (size_t)g * GLINT_GROUP;
     const bool mixed = args->geometry->triangles || args->geometry->solids;

@@ -45,7 +45,7 @@ typedef struct glint_camera_args {
 
 /// The part of a table that a camera sees anywhere in its picture. The first call computes it, later calls use it.
 typedef struct glint_cast_view {
-    _Alignas(64) unsigned char room[8128]; ///< private to the kernels
+    _Alignas(64) unsigned char scratch[8128]; ///< private to the kernels
     bool made; ///< false before the first call
 } glint_cast_view;
 

@@ -151,7 +151,7 @@ typedef struct glint_light_grid {
     uint32_t others[GLINT_GRID_OTHERS], other_count; ///< the bounded primitives that are in no cell
 } glint_light_grid;
 
-#define GLINT_OCCLUDE_ROOM ((size_t)512 << 10) ///< bytes
+#define GLINT_OCCLUDE_SCRATCH ((size_t)512 << 10) ///< bytes
 
 typedef struct glint_occlude_args {
     uint32_t group_count;
@@ -172,7 +172,7 @@ typedef struct glint_occlude_args {
         ///< in `direction`
     const void *direction[3];
     const void *slack; ///< written by surface; only read if the table has triangles
-    void *room; ///< area lights: GLINT_OCCLUDE_ROOM bytes of scratch memory; NULL: none, and scenes with many occluders
+    void *scratch; ///< area lights: GLINT_OCCLUDE_SCRATCH bytes of memory; NULL: none, and scenes with many occluders
         ///< take longer
     const glint_point_box *box; ///< written by surface: around all lit points, perhaps also others; NULL: unknown
     uint16_t *open[GLINT_LIGHT_CHUNK]; ///< out: the lit lanes without an occluder

@@ -17,7 +17,7 @@ typedef struct R(cast_view) {
     R(candidate) candidates[GLINT_FIRST_CANDIDATES];
 } R(cast_view);
 
-_Static_assert(sizeof(R(cast_view)) <= sizeof(((glint_cast_view *)0)->room), "room for the candidates");
+_Static_assert(sizeof(R(cast_view)) <= sizeof(((glint_cast_view *)0)->scratch), "the candidates fit");
 
 /// Returns the camera of the whole picture, including the tile, as if it were one tile.
 static glint_camera_args R(whole_picture)(const glint_camera_args *camera)
@@ -69,7 +69,7 @@ static void R(make_view)(const glint_cast_args *args, R(cast_view) * view)
 static const R(cast_view) * R(view_of)(const glint_cast_args *args, glint_cast_view *own)
 {
     glint_cast_view *view = args->view ? args->view : own;
-    R(cast_view) *made = (R(cast_view) *)(void *)view->room;
+    R(cast_view) *made = (R(cast_view) *)(void *)view->scratch;
     if (!view->made)
         R(make_view)(args, made);
     view->made = true;

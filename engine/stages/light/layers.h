@@ -226,8 +226,8 @@ static bool R(occlude_by_layers)(R(shadow_tile) * tile, const uint16_t *lit)
 {
     const glint_occlude_args *args = tile->args;
     const uint64_t rays = *args->rays;
-    R(layers) *l = args->room;
-    _Static_assert(sizeof *l <= GLINT_OCCLUDE_ROOM, "the room of the contract holds the layers");
+    R(layers) *l = args->scratch;
+    _Static_assert(sizeof *l <= GLINT_OCCLUDE_SCRATCH, "the layers fit");
     if (!l || tile->unbounded > GLINT_OCCLUDERS || R(is_cone)(args->light_sample[0]) || !R(aim_layers)(tile, lit, &l->frame))
         return false;
     tile->count = tile->unbounded; // these are tested by a list

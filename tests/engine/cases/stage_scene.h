@@ -40,11 +40,11 @@ typedef struct test_scene {
 // ---- Primitives --------------------------------------------------------------------------------------------------
 
 /// Storage for a primitive's corners or normal, reused after a few scenes.
-static inline double (*corner_room(void))[3]
+static inline double (*corner_buffer(void))[3]
 {
-    static double room[8 * MOST_PRIMS][3][3];
+    static double buffer[8 * MOST_PRIMS][3][3];
     static uint32_t next;
-    return room[next++ % (8 * MOST_PRIMS)];
+    return buffer[next++ % (8 * MOST_PRIMS)];
 }
 
 static inline void set_sphere(glint_prim *prim, const double center[3], double radius)
@@ -57,7 +57,7 @@ static inline void set_plane(glint_prim *prim, const double point[3], const doub
 {
     *prim = (glint_prim) { .kind = GLINT_PRIM_PLANE };
     memcpy(prim->center, point, sizeof prim->center);
-    prim->normal = corner_room()[0];
+    prim->normal = corner_buffer()[0];
     memcpy(prim->normal, normal, 3 * sizeof *normal);
     prim->normal[3] = 0;
 }
@@ -120,7 +120,9 @@ static inline void set_random_triangle(glint_prim *prim, const glint_prim *last,
 {
     const bool joined = last && last->kind == GLINT_PRIM_TRIANGLE && one_in(3), near = one_in(2);
     double away[3], place[3];
-    glint_prim out = { .kind = GLINT_PRIM_TRIANGLE, .corner = corner_room(), .item = GLINT_MISS, .shading_points = GLINT_MISS };
+    glint_prim out = {
+        .kind = GLINT_PRIM_TRIANGLE, .corner = corner_buffer(), .item = GLINT_MISS, .shading_points = GLINT_MISS
+    };
     along3(line->origin, line->length * between(-0.2, 1.2), line->direction, place);
     for (int j = 0; j < 3; j++) {
         random_unit(away);
