@@ -141,8 +141,8 @@ static bool make_band(task *t, size_t index, worker *memory)
 {
     const layout *l = &t->picture->layout;
     band *b = &t->picture->band[index];
-    const size_t first = index * l->band_rows, left = (size_t)l->height - first;
-    const size_t rows = left < l->band_rows ? left : l->band_rows;
+    const size_t first = index * l->band_rows, remaining = (size_t)l->height - first;
+    const size_t rows = remaining < l->band_rows ? remaining : l->band_rows;
     if (!ensure_capacity(memory, l, rows))
         return false;
     filter_rows(t->source, l->row_bytes, first, rows, memory);
@@ -250,8 +250,8 @@ static bool make_stream(const picture *p, glint_bytes *stream)
     stream->size = 0;
     bool done = glint_deflate_begin(stream);
     for (size_t i = 0; i < l->band_count && done; i++) {
-        const size_t left = (size_t)l->height - i * l->band_rows;
-        const size_t rows = left < l->band_rows ? left : l->band_rows;
+        const size_t remaining = (size_t)l->height - i * l->band_rows;
+        const size_t rows = remaining < l->band_rows ? remaining : l->band_rows;
         sum = glint_deflate_join(sum, p->band[i].adler, (l->row_bytes + 1) * rows);
         done = glint_bytes_append(stream, p->band[i].deflated, p->band[i].size);
     }

@@ -68,7 +68,7 @@ static bool is_draft(const char *name, const char *host, long *process, bool *is
 }
 
 /// Returns whether the file's process is gone, as far as this process can tell.
-static bool is_left(int folder, const char *name, long process, bool is_ours, const struct stat *info)
+static bool is_leftover(int folder, const char *name, long process, bool is_ours, const struct stat *info)
 {
     if (!S_ISREG(info->st_mode) || info->st_uid != geteuid())
         return false;
@@ -98,7 +98,7 @@ void glint_drafts_collect(const char *path)
         bool is_ours = false;
         if (is_draft(entry->d_name, host, &process, &is_ours) &&
             fstatat(dirfd(folder), entry->d_name, &info, AT_SYMLINK_NOFOLLOW) == 0 &&
-            is_left(dirfd(folder), entry->d_name, process, is_ours, &info))
+            is_leftover(dirfd(folder), entry->d_name, process, is_ours, &info))
             unlinkat(dirfd(folder), entry->d_name, 0);
     }
     if (folder)

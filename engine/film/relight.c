@@ -16,10 +16,10 @@ static bool take_off(const glint_image *image, double rounding)
     for (int c = 0; c < 3; c++)
         for (size_t i = 0; i < pixels; i++) {
             float *all = &image->plane[GLINT_PASS_BEAUTY][c][i];
-            double left = *all;
+            double rest = *all;
             for (size_t k = 0; k < image->light_count; k++)
-                left -= image->light[k][c][i];
-            *all = left > rounding * *all ? (float)left : 0; // NaN leaves nothing
+                rest -= image->light[k][c][i];
+            *all = rest > rounding * *all ? (float)rest : 0; // NaN leaves nothing
             any = any || *all > 0;
         }
     return any;

@@ -333,7 +333,7 @@ void glint_plan_twin_free(glint_plan_twin *twin);
 glint_status glint_plan_explain(glint_plan *plan, const glint_scene *scene, glint_error *error);
 
 /// Returns the share of light that remains after a distance, with an absorption per unit of length.
-static inline double glint_plan_left(double absorption, double distance)
+static inline double glint_plan_transmittance(double absorption, double distance)
 {
     return absorption > 0 ? glint_exp(-absorption * distance) : 1;
 }

@@ -125,7 +125,7 @@ static glint_status make_gradient(const glint_builder *builder, const glint_valu
     out->each = GLINT_GRADIENT_PART;
     status = GLINT_OK;
     for (uint32_t k = 0; k < out->count && !status; k += out->each) {
-        const uint32_t left = out->count - k, count = left < out->each ? left : out->each;
+        const uint32_t remaining = out->count - k, count = remaining < out->each ? remaining : out->each;
         status = glint_program_make(builder, values + k, count, &out->programs[k / out->each], error);
     }
     return status;

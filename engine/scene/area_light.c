@@ -202,19 +202,19 @@ static void polygon_point(const surface *s, double u, double v, double position[
         on_triangle(corner[0], corner[1], corner[3], u, v, position);
         return;
     }
-    double left = u * s->area2;
+    double rest = u * s->area2;
     for (size_t i = 1;; i++) {
         double a[3], b[3], c[3];
         vec_sub(a, corner[i], corner[0]);
         vec_sub(b, corner[i + 1], corner[0]);
         vec_cross(c, a, b);
         const double area2 = fmax(vec_dot(c, s->normal), 0);
-        if (left < area2 || i + 2 == s->desc->vertex_count) {
-            const double r = sqrt(area2 > 0 ? fmin(left / area2, 1) : 0);
+        if (rest < area2 || i + 2 == s->desc->vertex_count) {
+            const double r = sqrt(area2 > 0 ? fmin(rest / area2, 1) : 0);
             on_triangle(corner[0], corner[i], corner[i + 1], r * (1 - v), r * v, position);
             return;
         }
-        left -= area2;
+        rest -= area2;
     }
 }
 

@@ -25,7 +25,7 @@ typedef struct corner {
 /// A node of the tree has a range of `order`; the children of node k are 2 k + 1 and 2 k + 2.
 typedef struct node {
     double low[2], high[2];
-    uint32_t first, count, left; ///< left: corners not yet cut
+    uint32_t first, count, remaining; ///< remaining: corners not yet cut
     bool is_leaf;
 } node;
 
@@ -152,7 +152,7 @@ static void build(const cutting *c, uint32_t k, uint32_t first, uint32_t count, 
 {
     glint_ears *ears = c->ears;
     node *made = &ears->nodes[k];
-    *made = (node) { .first = first, .count = count, .left = count, .is_leaf = leaves == 1 };
+    *made = (node) { .first = first, .count = count, .remaining = count, .is_leaf = leaves == 1 };
     bound(c, made);
     if (made->is_leaf) {
         for (uint32_t i = 0; i < count; i++)
@@ -226,7 +226,7 @@ static uint32_t find_blocker(const cutting *c, uint32_t i, uint32_t j, uint32_t 
     while (height) {
         const uint32_t number = stack[--height];
         const node *at = &c->ears->nodes[number];
-        if (!at->left || (number && is_apart(at, triangle)))
+        if (!at->remaining || (number && is_apart(at, triangle)))
             continue;
         if (!at->is_leaf) {
             stack[height++] = 2 * number + 2;
@@ -314,7 +314,7 @@ static void cut_off(cutting *c, uint32_t i)
     corners[at->previous].next = at->next;
     corners[at->next].previous = at->previous;
     for (uint32_t k = at->leaf;; k = (k - 1) / 2) {
-        ears->nodes[k].left--;
+        ears->nodes[k].remaining--;
         if (!k)
             break;
     }
@@ -328,7 +328,7 @@ glint_status glint_ears_cut(glint_ears *ears, const glint_polygon *polygon, bool
 {
     const uint32_t count = polygon->size;
     cutting c = { .ears = ears, .polygon = polygon };
-    uint32_t leaves = 1, left = count;
+    uint32_t leaves = 1, remaining = count;
     glint_status status = reserve(ears, count, error);
     if (status)
         return status;
@@ -349,15 +349,15 @@ glint_status glint_ears_cut(glint_ears *ears, const glint_polygon *polygon, bool
     build(&c, 0, 0, count, leaves);
     for (uint32_t i = 0; i < count; i++)
         look_at(&c, i);
-    while (left > 2 && c.heap_count) {
+    while (remaining > 2 && c.heap_count) {
         const uint32_t i = pop(&c);
         ears->corners[i].is_queued = false;
         if (!ears->corners[i].is_ear)
             continue;
         ears->corners[i].is_ear = false;
         cut_off(&c, i);
-        left--;
+        remaining--;
     }
-    *whole = left <= 2;
+    *whole = remaining <= 2;
     return GLINT_OK;
 }

@@ -10,20 +10,20 @@
 // ---- The statements of a file ----
 
 /// The ignored lines and words of a .mtl file. Each of the two kinds gives one warning.
-typedef struct leavings {
+typedef struct ignored_parts {
     size_t bad; ///< invalid lines
     glint_error first_bad;
     char words[160]; ///< unsupported statements, each once
-} leavings;
+} ignored_parts;
 
 /// Adds a word to the unsupported statements, once.
-static void add_word(const char *at, leavings *left)
+static void add_word(const char *at, ignored_parts *ignored)
 {
     char word[40];
-    const size_t length = strcspn(at, " \t"), used = strlen(left->words);
+    const size_t length = strcspn(at, " \t"), used = strlen(ignored->words);
     snprintf(word, sizeof word, " %.*s,", (int)(length < 32 ? length : 32), at);
-    if (!strstr(left->words, word) && used + strlen(word) < sizeof left->words)
-        strcpy(left->words + used, word);
+    if (!strstr(ignored->words, word) && used + strlen(word) < sizeof ignored->words)
+        strcpy(ignored->words + used, word);
 }
 
 /// Reads a colour; a single number stands for all three.
@@ -109,7 +109,7 @@ typedef struct map_options {
 } map_options;
 
 /// Reads options up to the first word that is not an option, and returns the position of that word.
-static const char *read_options(const glint_mesh_text *text, const char *at, map_options *o, leavings *left)
+static const char *read_options(const glint_mesh_text *text, const char *at, map_options *o, ignored_parts *ignored)
 {
     for (int words; (words = option_words(at)) > 0;) {
         const char *option = at;
@@ -127,7 +127,7 @@ static const char *read_options(const glint_mesh_text *text, const char *at, map
             o->bm[strcspn(o->bm, " \t")] = 0;
         }
         if (mm[0] != 0 || mm[1] != 1 || glint_mesh_is_word(option, "-imfchan"))
-            add_word(option, left);
+            add_word(option, ignored);
     }
     return at;
 }
@@ -143,12 +143,12 @@ static const char *find_name_end(const char *at)
 
 /// Reads a picture with its options; the options of a statement without a picture are ignored.
 static glint_status read_map(const glint_mesh_text *text, const char *at, glint_mesh_map_kind kind,
-                             glint_mesh_entry *to, leavings *left)
+                             glint_mesh_entry *to, ignored_parts *ignored)
 {
     map_options o = { .place = to->place[kind] };
-    at = read_options(text, glint_skip_blanks(at), &o, left);
+    at = read_options(text, glint_skip_blanks(at), &o, ignored);
     const char *end = find_name_end(at);
-    read_options(text, glint_skip_blanks(end), &o, left);
+    read_options(text, glint_skip_blanks(end), &o, ignored);
     if (end == at)
         return glint_mesh_refuse(text, "the name of a picture", at);
     char *name = strndup(at, (size_t)(end - at)), *path = name ? glint_mesh_beside(text->path, name) : NULL;
@@ -173,16 +173,16 @@ const char *const glint_mesh_map_words[GLINT_MAP_COUNT] = { "map_Kd", "map_Ks", 
 static const char *const bump_words[] = { "map_bump", "bump" }; ///< other spellings of map_Bump
 
 /// Reads a statement about a picture; *known: it was one.
-static glint_status read_picture(const glint_mesh_text *text, const char *at, glint_mesh_entry *to, leavings *left,
-                                 bool *known)
+static glint_status read_picture(const glint_mesh_text *text, const char *at, glint_mesh_entry *to,
+                                 ignored_parts *ignored, bool *known)
 {
     *known = true;
     for (int kind = 0; kind < GLINT_MAP_COUNT; kind++)
         if (glint_mesh_is_word(at, glint_mesh_map_words[kind]))
-            return read_map(text, at + strlen(glint_mesh_map_words[kind]), (glint_mesh_map_kind)kind, to, left);
+            return read_map(text, at + strlen(glint_mesh_map_words[kind]), (glint_mesh_map_kind)kind, to, ignored);
     for (size_t i = 0; i < sizeof bump_words / sizeof *bump_words; i++)
         if (glint_mesh_is_word(at, bump_words[i]))
-            return read_map(text, at + strlen(bump_words[i]), GLINT_MAP_BUMP, to, left);
+            return read_map(text, at + strlen(bump_words[i]), GLINT_MAP_BUMP, to, ignored);
     *known = false;
     return GLINT_OK;
 }
@@ -235,17 +235,18 @@ static bool says_nothing(const glint_mesh_text *text, const char *at)
 
 /// Notes a statement that has no field in materials. Ka is ignored because ambient follows Kd; sharpness belongs to
 /// another one.
-static void note_word(const glint_mesh_text *text, const char *at, leavings *left)
+static void note_word(const glint_mesh_text *text, const char *at, ignored_parts *ignored)
 {
     static const char *const silent[] = { "Ka", "map_Ka", "sharpness", "Km" };
     for (size_t i = 0; i < sizeof silent / sizeof *silent; i++)
         if (glint_mesh_is_word(at, silent[i]))
             return;
     if (*at && *at != '#' && !says_nothing(text, at))
-        add_word(at, left);
+        add_word(at, ignored);
 }
 
-static glint_status read_field(const glint_mesh_text *text, const char *at, glint_mesh_entry *to, leavings *left)
+static glint_status read_field(const glint_mesh_text *text, const char *at, glint_mesh_entry *to,
+                               ignored_parts *ignored)
 {
     bool known = true;
     glint_status status = GLINT_OK;
@@ -257,15 +258,15 @@ static glint_status read_field(const glint_mesh_text *text, const char *at, glin
     } else {
         status = read_one(text, at, to, &known);
         if (!known)
-            status = read_picture(text, at, to, left, &known);
+            status = read_picture(text, at, to, ignored, &known);
     }
     if (!known)
-        note_word(text, at, left);
+        note_word(text, at, ignored);
     return status;
 }
 
 /// Reads the statements of a file. Invalid ones are ignored.
-static glint_status read_lines(glint_mesh_library *library, glint_mesh_text *text, leavings *left)
+static glint_status read_lines(glint_mesh_library *library, glint_mesh_text *text, ignored_parts *ignored)
 {
     bool more = true;
     uint32_t number = GLINT_MESH_NO_FACE;
@@ -280,9 +281,9 @@ static glint_status read_lines(glint_mesh_library *library, glint_mesh_text *tex
         if (glint_mesh_is_word(at, "newmtl"))
             status = glint_mesh_library_begin(library, glint_skip_blanks(at + 6), &number, text->error);
         else if (number != GLINT_MESH_NO_FACE)
-            status = read_field(text, at, glint_mesh_known_at(library, number), left);
-        if (status == GLINT_ERR_FORMAT && left->bad++ == 0)
-            left->first_bad = *text->error;
+            status = read_field(text, at, glint_mesh_known_at(library, number), ignored);
+        if (status == GLINT_ERR_FORMAT && ignored->bad++ == 0)
+            ignored->first_bad = *text->error;
         if (status && status != GLINT_ERR_FORMAT)
             return status;
     }
@@ -291,19 +292,19 @@ static glint_status read_lines(glint_mesh_library *library, glint_mesh_text *tex
 // ---- Files ----
 
 /// Writes the warnings about the ignored parts of a file.
-static void tell_left(const glint_mesh_reader *reader, const char *path, leavings *left)
+static void warn_of_ignored(const glint_mesh_reader *reader, const char *path, ignored_parts *ignored)
 {
-    const size_t length = strlen(left->words);
-    if (left->bad > 1)
+    const size_t length = strlen(ignored->words);
+    if (ignored->bad > 1)
         glint_mesh_warn(reader->desc, reader->text.path, "%.300s; the line is ignored, and %zu more",
-                        left->first_bad.message, left->bad - 1);
-    else if (left->bad)
-        glint_mesh_warn(reader->desc, reader->text.path, "%.300s; the line is ignored", left->first_bad.message);
+                        ignored->first_bad.message, ignored->bad - 1);
+    else if (ignored->bad)
+        glint_mesh_warn(reader->desc, reader->text.path, "%.300s; the line is ignored", ignored->first_bad.message);
     if (!length)
         return;
-    left->words[length - 1] = 0;
+    ignored->words[length - 1] = 0;
     glint_mesh_warn(reader->desc, reader->text.path, "%.200s:%s %s ignored: not a field of a material", path,
-                    left->words, strchr(left->words, ',') ? "are" : "is");
+                    ignored->words, strchr(ignored->words, ',') ? "are" : "is");
 }
 
 /// Reads one file; *there: it could be opened. Faults in the file cause warnings.
@@ -312,7 +313,7 @@ static glint_status read_file(glint_mesh_library *library, const glint_mesh_read
 {
     glint_mesh_text text;
     glint_error inner;
-    leavings left = { 0 };
+    ignored_parts ignored = { 0 };
     glint_status status = glint_mesh_text_open(&text, path, &inner);
     *there = !status;
     if ((!status || last) && reader->desc->reads)
@@ -320,9 +321,9 @@ static glint_status read_file(glint_mesh_library *library, const glint_mesh_read
     if (!status && glint_mesh_text_is_utf16(&text))
         status = glint_fail(&inner, GLINT_ERR_FORMAT, "%s: is UTF-16, not UTF-8", path);
     if (!status)
-        status = read_lines(library, &text, &left);
+        status = read_lines(library, &text, &ignored);
     glint_mesh_text_close(&text);
-    tell_left(reader, path, &left);
+    warn_of_ignored(reader, path, &ignored);
     if (status == GLINT_ERR_NOMEM)
         return glint_fail_nomem(reader->error);
     library->told = library->told || (status && (*there || last));

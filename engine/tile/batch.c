@@ -161,8 +161,8 @@ static void pack_lanes(glint_batch *batch, glint_precision precision)
         next[lane] = lane;
     memset(batch->ray_of, 0, batch->rays->group_count * GLINT_GROUP * sizeof *batch->ray_of); // for samples without a ray
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
-        for (unsigned left = batch->met[g]; left; left &= left - 1) {
-            const uint32_t lane = (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = batch->met[g]; bits; bits &= bits - 1) {
+            const uint32_t lane = (uint32_t)__builtin_ctz(bits);
             give_sample(batch, g * GLINT_GROUP + lane, next[lane]);
             end = next[lane] >= end ? next[lane] + 1 : end;
             next[lane] += GLINT_GROUP;
@@ -179,8 +179,8 @@ static void pack(glint_batch *batch, const glint_tile_frame *frame)
     uint32_t first[SORTED_PRIMS + 1] = { 0 }, next[GLINT_GROUP], count = 0;
     uint16_t from[GLINT_TILE_SAMPLES];
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
-        for (unsigned left = batch->met[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = batch->met[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             from[count++] = (uint16_t)i;
             first[(batch->prim[i] & last) + 1]++;
         }
@@ -234,7 +234,7 @@ static void absorb(glint_batch *batch, const glint_tile_frame *frame)
                                     ? glint_real_at(tile->at.t, frame->plan->desc.precision, batch->sample[i])
                                     : HUGE_VAL; // directions are unit
         for (int c = 0; c < 3; c++)
-            rays->weight[c][i] *= glint_plan_left(frame->plan->bouncing[medium].absorption[c], distance);
+            rays->weight[c][i] *= glint_plan_transmittance(frame->plan->bouncing[medium].absorption[c], distance);
     }
 }
 
@@ -389,8 +389,8 @@ void glint_batch_find_directions(glint_batch *batch, const glint_tile *tile, con
         args.refracted[c] = batch->refracted[c];
     }
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = batch->wanted[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = batch->wanted[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             glint_real_put(batch->ratio, precision, i, ratio_of(batch, tile, frame, i));
         }
     if (glint_plan_bumps(frame->plan))
@@ -460,14 +460,14 @@ void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const g
     glint_bounce_material buffer;
     const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
     const double part = m->fresnel ? glint_real_at(batch->reflectance, frame->plan->desc.precision, i) : 1;
-    const double left = m->fresnel ? 1 - part : 1;
+    const double transmitted = m->fresnel ? 1 - part : 1;
     double rest[3];
     total_share(m, rest);
     const double *share = glint_has_lane(batch->total, i) ? rest : m->transmission;
     for (int c = 0; c < 3; c++) {
         weight[GLINT_BRANCH_MIRRORED][c] = glint_weight(weight[GLINT_BRANCH_MIRRORED][c] * (m->mirror[c] * part));
         weight[GLINT_BRANCH_REFRACTED][c] =
-            m->transmits ? glint_weight(weight[GLINT_BRANCH_REFRACTED][c] * (share[c] * left)) : 0;
+            m->transmits ? glint_weight(weight[GLINT_BRANCH_REFRACTED][c] * (share[c] * transmitted)) : 0;
         weight[GLINT_BRANCH_STRAIGHT][c] = m->clears ? glint_weight(weight[GLINT_BRANCH_STRAIGHT][c] * m->clear) : 0;
     }
 }

@@ -90,8 +90,8 @@ static void store_depth(const glint_tile *tile, const glint_tile_frame *frame)
 /// Clears the normals of a group's rays that hit nothing.
 static void rest_normals(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, float *const normal[3])
 {
-    for (unsigned left = 0xffffu & ~(unsigned)tile->at.hits[g]; left; left &= left - 1) {
-        const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+    for (unsigned bits = 0xffffu & ~(unsigned)tile->at.hits[g]; bits; bits &= bits - 1) {
+        const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
         double n[3] = { 0 };
         if (sees_light(tile, frame->plan, i))
             glint_stage_table[GLINT_STAGE_VISIBLE_LIGHT]->normal(tile, frame, i, n);
@@ -308,9 +308,9 @@ void glint_tile_prefetch_output(const glint_tile *tile, const glint_tile_frame *
 {
     const glint_image *image = frame->image;
     prefetch_rows(tile, image->codes, image->width, glint_image_pixel_bytes(image));
-    for (uint32_t left = frame->plan->desc.passes & ((1u << GLINT_PASS_COUNT) - 1); left; left &= left - 1)
+    for (uint32_t bits = frame->plan->desc.passes & ((1u << GLINT_PASS_COUNT) - 1); bits; bits &= bits - 1)
         for (int c = 0; c < 3; c++)
-            prefetch_rows(tile, image->plane[__builtin_ctz(left)][c], image->width, sizeof(float));
+            prefetch_rows(tile, image->plane[__builtin_ctz(bits)][c], image->width, sizeof(float));
 }
 
 /// Prefetches the cache line of number `at` in a plane.

@@ -86,8 +86,8 @@ bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
         return glint_sends_on(only);
     }
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
-            const uint32_t material = tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)];
+        for (unsigned bits = tile->at.hits[g]; bits; bits &= bits - 1) {
+            const uint32_t material = tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)];
             if (material != last && glint_sends_on(&materials[material]))
                 return true;
             last = material;

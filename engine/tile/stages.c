@@ -289,8 +289,8 @@ static void leave_unlit(const glint_tile *tile, const glint_light_args *args)
 /// Lets stages remove lanes from those that a light shines on.
 static void limit(glint_tile *tile, const glint_plan *plan, const glint_light_args *args)
 {
-    for (uint32_t left = plan->limits; left; left &= left - 1)
-        glint_stage_table[__builtin_ctz(left)]->limit(tile, plan, args);
+    for (uint32_t bits = plan->limits; bits; bits &= bits - 1)
+        glint_stage_table[__builtin_ctz(bits)]->limit(tile, plan, args);
 }
 
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
@@ -355,8 +355,8 @@ static void weaken(glint_tile *tile, const glint_tile_frame *frame, const glint_
 {
     const glint_precision precision = frame->plan->desc.precision;
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = tile->at.light[slot].open[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = tile->at.light[slot].open[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             double to_light[3], most = HUGE_VAL;
             for (int c = 0; c < 3 && light->radiant_cap; c++)
                 to_light[c] = light->position[c] - glint_real_at(tile->surface.point[c], precision, i);
@@ -389,8 +389,8 @@ static uint16_t facing_lanes(const glint_tile *tile, const glint_plan *plan, con
 static void admit(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle, const uint16_t *lit,
                   uint16_t *open)
 {
-    for (uint32_t left = frame->plan->admits; left; left &= left - 1)
-        glint_stage_table[__builtin_ctz(left)]->admit(tile, frame, light, middle, lit, open);
+    for (uint32_t bits = frame->plan->admits; bits; bits &= bits - 1)
+        glint_stage_table[__builtin_ctz(bits)]->admit(tile, frame, light, middle, lit, open);
 }
 
 /// Casts one ray to the middle of an area light for all samples of the call.

@@ -244,8 +244,8 @@ void glint_tile_need_points(glint_tile *tile, const glint_tile_frame *frame, gli
 /// Calls the steps of all stages of the frame at a time of the walk.
 static inline void glint_tile_step(glint_tile *tile, const glint_tile_frame *frame, glint_stage_time time, glint_sample_walk *walk)
 {
-    for (uint32_t left = frame->plan->steps[time]; left; left &= left - 1)
-        glint_stage_table[__builtin_ctz(left)]->step[time](tile, frame, walk);
+    for (uint32_t bits = frame->plan->steps[time]; bits; bits &= bits - 1)
+        glint_stage_table[__builtin_ctz(bits)]->step[time](tile, frame, walk);
 }
 
 static inline bool glint_tile_cancelled(const glint_tile_frame *frame)
@@ -577,11 +577,11 @@ void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const gl
 /// shadows must be known. The points must be known.
 void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 /// For light through transparent surfaces, these are called: before the first step of its rays; when ray `ray`
-/// crosses a surface, at which `share` and `left` multiply channel c of its colour; when it arrives at sample i; and
-/// when a light in `slot` is added to samples this way.
+/// crosses a surface, at which `share` and `transmitted` multiply channel c of its colour; when it arrives at sample i;
+/// and when a light in `slot` is added to samples this way.
 void glint_tile_begin_tints(const glint_tile *tile, const glint_plan *plan);
 void glint_tile_derive_tint(const glint_tile *tile, const glint_plan *plan, uint32_t material, uint32_t ray, int c,
-                            double color, double share, double left);
+                            double color, double share, double transmitted);
 void glint_tile_put_tint(const glint_tile *tile, const glint_plan *plan, uint32_t i, uint32_t ray,
                          const double (*color)[GLINT_TILE_SAMPLES]);
 void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,

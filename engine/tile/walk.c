@@ -229,8 +229,9 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 /// Renders some samples, from number `first` on, of `count` gathered pixels.
 static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first)
 {
-    const uint32_t left = (uint32_t)frame->plan->desc.samples - first, most = glint_tile_gathered_samples(frame->plan);
-    const uint32_t samples = left < most ? left : most;
+    const uint32_t remaining = (uint32_t)frame->plan->desc.samples - first,
+                   most = glint_tile_gathered_samples(frame->plan);
+    const uint32_t samples = remaining < most ? remaining : most;
     glint_sample_walk w = { .rays = true };
     tile->own_lights = 0;
     glint_tile_gather(tile, frame, place, count, first, samples);

@@ -54,10 +54,10 @@ void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *
         const size_t p = direction == GLINT_DIFFER_RISING,
                      q = direction == GLINT_DIFFER_ALONG || direction == GLINT_DIFFER_FALLING;
         differ[direction] = found.sure[direction];
-        for (uint32_t left = found.open[direction] & ~found.sure[direction]; left; left &= left - 1) {
-            const size_t i = (size_t)__builtin_ctz(left);
+        for (uint32_t bits = found.open[direction] & ~found.sure[direction]; bits; bits &= bits - 1) {
+            const size_t i = (size_t)__builtin_ctz(bits);
             if (exceeds(refine, lines, line, p + i, q + i))
-                differ[direction] |= left & -left;
+                differ[direction] |= bits & -bits;
         }
     }
 }

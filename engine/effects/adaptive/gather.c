@@ -47,8 +47,8 @@ uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame
                 if (column >= across || row >= down)
                     continue;
                 groups += tile->active[g] != 0;
-                for (unsigned left = tile->active[g]; left; left &= left - 1)
-                    place[count++] = (uint16_t)(g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+                for (unsigned bits = tile->active[g]; bits; bits &= bits - 1)
+                    place[count++] = (uint16_t)(g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits));
             }
     return count < FULL * GLINT_GROUP * groups ? count : 0;
 }
@@ -128,8 +128,8 @@ static void make_pixel_rays(glint_tile *tile, const glint_tile_frame *frame, con
 static void activate_lanes(glint_tile *tile, uint32_t every, uint32_t count)
 {
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        const uint32_t left = count - g % every * GLINT_GROUP;
-        tile->active[g] = left < GLINT_GROUP ? (uint16_t)((1u << left) - 1) : 0xffff;
+        const uint32_t remaining = count - g % every * GLINT_GROUP;
+        tile->active[g] = remaining < GLINT_GROUP ? (uint16_t)((1u << remaining) - 1) : 0xffff;
     }
 }
 

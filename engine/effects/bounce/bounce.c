@@ -109,10 +109,10 @@ static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const gl
     bool any = false;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         bounce->batch.wanted[g] = 0;
-        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = tile->at.hits[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             if (goes_on(bounce, tile, plan, i))
-                bounce->batch.wanted[g] |= (uint16_t)(left & -left);
+                bounce->batch.wanted[g] |= (uint16_t)(bits & -bits);
         }
         any = any || bounce->batch.wanted[g];
     }
@@ -266,8 +266,8 @@ static void spawn_first(struct glint_bounce *bounce, const glint_tile *tile, con
     glint_batch_find_directions(&bounce->batch, tile, frame);
     begin_sending(bounce);
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = bounce->batch.wanted[g]; left; left &= left - 1)
-            send_on(bounce, tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), 0);
+        for (unsigned bits = bounce->batch.wanted[g]; bits; bits &= bits - 1)
+            send_on(bounce, tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits), 0);
     end_sending(bounce, tile, frame, 0);
 }
 
@@ -281,8 +281,8 @@ static void spawn(struct glint_bounce *bounce, const glint_tile_frame *frame, ui
     glint_batch_find_directions(&bounce->batch, &batch->tile, frame);
     begin_sending(bounce);
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
-        for (unsigned left = batch->rays->active[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = batch->rays->active[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             if (glint_batch_has_sample(batch, i) && glint_has_lane(batch->wanted, batch->sample[i]))
                 send_on(bounce, &batch->tile, frame, batch->sample[i], level);
         }
@@ -310,8 +310,8 @@ static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile
     const glint_rays *rays = batch->rays;
     const bool covers = glint_tile_wants_coverage(plan);
     for (uint32_t g = 0; g < rays->group_count; g++)
-        for (unsigned left = rays->active[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = rays->active[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]];
             const uint32_t pixel = rays->pixel[i];
             double weight[3];

@@ -52,8 +52,8 @@ static void turn_lanes(glint_tile *tile, const glint_tile_frame *frame, const gl
                        bool on_surface)
 {
     const glint_precision precision = frame->plan->desc.precision;
-    for (unsigned left = entry->lanes; left; left &= left - 1) {
-        const uint32_t lane = (uint32_t)__builtin_ctz(left), i = entry->group * GLINT_GROUP + lane;
+    for (unsigned bits = entry->lanes; bits; bits &= bits - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctz(bits), i = entry->group * GLINT_GROUP + lane;
         double n[3], gradient[3];
         for (int c = 0; c < 3; c++)
             n[c] = glint_real_at(tile->surface.normal[c], precision, i);
@@ -127,10 +127,10 @@ static void cut_horizon(glint_tile *tile, const glint_plan *plan, const glint_li
 {
     for (uint32_t s = 0; s < light->sample_count; s++)
         for (uint32_t g = 0; g < tile->group_count; g++)
-            for (unsigned left = light->lit[s][g]; left; left &= left - 1) {
-                const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            for (unsigned bits = light->lit[s][g]; bits; bits &= bits - 1) {
+                const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
                 if (plan->patterns->of[tile->surface.material[i]].slope && !is_above(tile, plan, light, s, i))
-                    light->lit[s][g] &= (uint16_t) ~(left & -left);
+                    light->lit[s][g] &= (uint16_t) ~(bits & -bits);
             }
 }
 

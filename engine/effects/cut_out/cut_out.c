@@ -64,9 +64,9 @@ static void find_material_holes(glint_tile *tile, const glint_tile_frame *frame,
     glint_program_args args = { .group_count = count, .wanted = wanted, .result = { pattern->cut_out->opacity } };
     glint_pattern_call(pattern, frame, &program->code, 0, &args);
     for (uint32_t k = 0; k < count; k++)
-        for (unsigned left = wanted[k]; left; left &= left - 1)
-            if (!(pattern->cut_out->opacity[k * GLINT_GROUP + (uint32_t)__builtin_ctz(left)] >= 0.5))
-                holes[entries[k].group] |= (uint16_t)(left & -left);
+        for (unsigned bits = wanted[k]; bits; bits &= bits - 1)
+            if (!(pattern->cut_out->opacity[k * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)] >= 0.5))
+                holes[entries[k].group] |= (uint16_t)(bits & -bits);
 }
 
 void glint_tile_find_holes(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
@@ -84,10 +84,10 @@ static bool choose_cut(struct glint_cut_out *cut, const glint_tile *tile, const 
 {
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        for (unsigned left = cut->hits[g]; left; left &= left - 1) {
-            const uint32_t prim = cut->prim[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)];
+        for (unsigned bits = cut->hits[g]; bits; bits &= bits - 1) {
+            const uint32_t prim = cut->prim[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)];
             if (!frame->plan->patterns->of[frame->geometry.prims[prim].material].cut)
-                cut->hits[g] &= (uint16_t) ~(left & -left);
+                cut->hits[g] &= (uint16_t) ~(bits & -bits);
         }
         any |= cut->hits[g];
     }
@@ -230,9 +230,9 @@ static void see_next(struct glint_cut_out *cut, glint_tile *tile, const glint_ti
     const glint_precision precision = frame->plan->desc.precision;
     const bool eye = tile->batch == NULL; // its rays do not leave a surface
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        for (unsigned left = cut->holes[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const bool first = eye && !(cut->passed[g] & left & -left) && stands_alone(&frame->geometry, cut->prim[i]);
+        for (unsigned bits = cut->holes[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
+            const bool first = eye && !(cut->passed[g] & bits & -bits) && stands_alone(&frame->geometry, cut->prim[i]);
             leave_hole(cut, frame, i, first && is_flat(&frame->geometry, &frame->geometry.prims[cut->prim[i]]));
         }
         cut->active[g] = cut->holes[g];
@@ -240,9 +240,9 @@ static void see_next(struct glint_cut_out *cut, glint_tile *tile, const glint_ti
     }
     cast(cut, tile, frame, &frame->geometry, cut->active, true);
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = cut->active[g]; left; left &= left - 1) {
-            const uint16_t bit = (uint16_t)(left & -left);
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = cut->active[g]; bits; bits &= bits - 1) {
+            const uint16_t bit = (uint16_t)(bits & -bits);
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             const double t = glint_real_at(cut->t, precision, i);
             const double before = cut->begun[g] & bit ? 0 : glint_real_at(cut->total_t, precision, i);
             glint_real_put(cut->total_t, precision, i, before + t);
@@ -315,9 +315,9 @@ static void see_all_from_origin(struct glint_cut_out *cut, glint_tile *tile, con
         const uint32_t prim = tile->at.prim[i];
         for (uint32_t g = 0; g < tile->group_count; g++) {
             cut->active[g] = 0;
-            for (unsigned left = cut->passed[g]; left; left &= left - 1)
-                if (tile->at.prim[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)] == prim)
-                    cut->active[g] |= (uint16_t)(left & -left);
+            for (unsigned bits = cut->passed[g]; bits; bits &= bits - 1)
+                if (tile->at.prim[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)] == prim)
+                    cut->active[g] |= (uint16_t)(bits & -bits);
             cut->passed[g] &= (uint16_t)~cut->active[g];
         }
         see_from_origin(cut, tile, frame, prim, off);
@@ -399,9 +399,9 @@ static bool go_on(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_
     unsigned any = 0;
     cast(cut, tile, frame, &frame->geometry, cut->active, true);
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = cut->active[g]; left; left &= left - 1) {
-            const uint16_t bit = (uint16_t)(left & -left);
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = cut->active[g]; bits; bits &= bits - 1) {
+            const uint16_t bit = (uint16_t)(bits & -bits);
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             const bool beyond = !light->directional && !(glint_real_at(cut->t, precision, i) < 1);
             tile->counts.shadow++;
             if (!(cut->hits[g] & bit) || beyond) {
@@ -416,8 +416,8 @@ static bool go_on(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_
         cut->active[g] = cut->holes[g];
         cut->passed[g] |= cut->holes[g];
         any |= cut->holes[g];
-        for (unsigned left = cut->holes[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = cut->holes[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             double point[3], target[3];
             leave_hole(cut, frame, i, false);
             for (int c = 0; c < 3; c++)

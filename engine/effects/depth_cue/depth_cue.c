@@ -12,7 +12,7 @@
 
 struct glint_depth_cue {
     double total[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES]; ///< over the finished samples
-    double left[3][GLINT_TILE_SAMPLES]; ///< remaining share of the light in each pixel of the current sample
+    double transmittance[3][GLINT_TILE_SAMPLES]; ///< remaining share of the light in each pixel of the current sample
     double share[GLINT_TILE_SAMPLES]; ///< share of the colour there
 };
 
@@ -54,7 +54,8 @@ static void find(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
         const double distance = any ? glint_tile_hit_distance(tile, plan, i) : HUGE_VAL;
         depth_cue->share[i] = share_of(plan, distance);
         for (int c = 0; c < 3; c++)
-            depth_cue->left[c][i] = (1 - depth_cue->share[i]) * glint_plan_left(plan->veil.absorption[c], distance);
+            depth_cue->transmittance[c][i] =
+                (1 - depth_cue->share[i]) * glint_plan_transmittance(plan->veil.absorption[c], distance);
     }
 }
 
@@ -67,15 +68,15 @@ static void fade(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         for (int c = 0; c < 3 && glint_plan_has_term(plan, (glint_term)k); c++) {
             double *sum = tile->film.sum[k][c], *total = own_of(tile)->total[k][c];
-            const double *left = own_of(tile)->left[c];
+            const double *transmittance = own_of(tile)->transmittance[c];
             const double color = k == GLINT_TERM_BACKGROUND ? plan->depth_cue.color[c] : 0;
             for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
                 const double before = tile->sample == 0 ? 0 : total[i];
-                total[i] = before + ((left[i] > 0 ? sum[i] * left[i] : 0) + share[i] * color);
+                total[i] = before + ((transmittance[i] > 0 ? sum[i] * transmittance[i] : 0) + share[i] * color);
                 sum[i] = 0;
             }
         }
-    glint_groups_fade(tile, plan, (const double(*)[GLINT_TILE_SAMPLES])own_of(tile)->left);
+    glint_groups_fade(tile, plan, (const double(*)[GLINT_TILE_SAMPLES])own_of(tile)->transmittance);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_DEPTH_CUE, false);
 }
 

@@ -347,9 +347,9 @@ static void find_places(const glint_tile *tile, const glint_plan *plan, const gl
 /// Copies the given lanes.
 static void put_lanes(unsigned lanes, double (*from)[GLINT_GROUP], double *const to[9])
 {
-    for (unsigned left = lanes; left; left &= left - 1)
+    for (unsigned bits = lanes; bits; bits &= bits - 1)
         for (int k = 0; k < 9; k++)
-            to[k][__builtin_ctz(left)] = from[k][__builtin_ctz(left)];
+            to[k][__builtin_ctz(bits)] = from[k][__builtin_ctz(bits)];
 }
 
 /// Bends the lanes one by one.
@@ -409,8 +409,8 @@ unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame
     bend_buffers buffers;
     unsigned bent = 0;
     bool seen, moves;
-    for (unsigned left = lanes, same; left; left &= ~same) {
-        same = begin(tile, frame, index, g, left, points, &buffers, &seen, &moves);
+    for (unsigned rest = lanes, same; rest; rest &= ~same) {
+        same = begin(tile, frame, index, g, rest, points, &buffers, &seen, &moves);
         if (!moves)
             continue;
         if (!seen) {

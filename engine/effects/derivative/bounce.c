@@ -15,7 +15,7 @@ typedef struct turning {
     glint_dual direction[3], normal[3]; ///< unit
     glint_dual ratio; ///< see glint_batch
     glint_dual cosine; ///< between them
-    glint_dual left[3]; ///< share of the light along the ray on arrival
+    glint_dual throughput[3]; ///< share of the light along the ray on arrival
     double point[3]; ///< slopes
 } turning;
 
@@ -46,8 +46,9 @@ static turning find_turning(const glint_batch *batch, const glint_tile *tile, co
         t.normal[c] = dual(points.normal[c][i % GLINT_GROUP], bend.normal[c]);
         t.cosine = dual_sub(t.cosine, dual_mul(t.direction[c], t.normal[c]));
         t.point[c] = bend.point[c];
-        t.left[c] = later ? dual(batch->rays->weight[c][ray], batch->rays->slopes[ray * plan->derivatives->count + index].weight[c])
-                          : dual(1, 0);
+        t.throughput[c] = later ? dual(batch->rays->weight[c][ray],
+                                       batch->rays->slopes[ray * plan->derivatives->count + index].weight[c])
+                                : dual(1, 0);
     }
     if (!(t.cosine.value > 0)) // as in the stage bounce
         t.cosine = dual(0, 0);
@@ -76,7 +77,7 @@ static glint_ray_slope slope_of(const turning *t, glint_dual ratio, glint_dual b
     for (int c = 0; c < 3; c++) {
         out.origin[c] = t->point[c];
         out.direction[c] = dual_add(dual_mul(ratio, t->direction[c]), dual_mul(bend, t->normal[c])).slope;
-        out.weight[c] = dual_mul(t->left[c], dual_mul(share[c], factor)).slope;
+        out.weight[c] = dual_mul(t->throughput[c], dual_mul(share[c], factor)).slope;
     }
     return out;
 }
@@ -153,8 +154,9 @@ void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *f
                     longer -= (bend.point[c] - slope->origin[c]) * points.eye[c][i % GLINT_GROUP];
             for (int c = 0; c < 3; c++) {
                 const double a = plan->bouncing[medium].absorption[c], more = d->bounces[medium].absorption[c];
-                const double left = rays->weight[c][ray], off = distance < HUGE_VAL ? a * longer + more * distance : 0;
-                slope->weight[c] = slope->weight[c] * glint_plan_left(a, distance) - left * off;
+                const double weight = rays->weight[c][ray],
+                             off = distance < HUGE_VAL ? a * longer + more * distance : 0;
+                slope->weight[c] = slope->weight[c] * glint_plan_transmittance(a, distance) - weight * off;
             }
         }
     }
@@ -178,8 +180,8 @@ void glint_derive_collect(const glint_batch *batch, const glint_plan *plan, glin
     const glint_rays *rays = batch->rays;
     const glint_derivative_work *work = glint_derivative_of(&batch->tile);
     for (uint32_t g = 0; g < rays->group_count; g++)
-        for (unsigned left = rays->active[g]; left; left &= left - 1) {
-            const uint32_t ray = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), pixel = rays->pixel[ray];
+        for (unsigned bits = rays->active[g]; bits; bits &= bits - 1) {
+            const uint32_t ray = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits), pixel = rays->pixel[ray];
             const bool sampled = glint_batch_has_sample(batch, ray);
             const uint32_t i = batch->sample[ray];
             const bool own = sampled && glint_derivatives_weigh(all) && glint_has_lane(batch->tile.at.hits, i);

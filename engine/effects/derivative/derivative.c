@@ -44,12 +44,12 @@ static void find_eyes(const glint_tile *tile, const glint_tile_frame *frame, uin
     frame->stages->eyes(&args);
 }
 
-/// Returns those lanes of `left` in group g that have the same material as the first one.
-static unsigned lanes_of_material(const glint_tile *tile, uint32_t g, unsigned left, uint32_t *material)
+/// Returns those lanes of `rest` in group g that have the same material as the first one.
+static unsigned lanes_of_material(const glint_tile *tile, uint32_t g, unsigned rest, uint32_t *material)
 {
     const uint32_t *of = tile->surface.material + (size_t)g * GLINT_GROUP;
-    *material = of[__builtin_ctz(left)];
-    return glint_lanes_alike(of, left);
+    *material = of[__builtin_ctz(rest)];
+    return glint_lanes_alike(of, rest);
 }
 
 /// Returns whether the derivatives of a group read the viewer's direction: for highlights, moving views and secondary
@@ -58,9 +58,9 @@ static bool reads_eyes(const glint_tile *tile, const glint_plan *plan, uint32_t 
 {
     const glint_plan_derivatives *all = plan->derivatives;
     bool reads = all->bends || plan->runs[GLINT_STAGE_BOUNCE];
-    for (unsigned left = tile->at.hits[g], lanes; left && !reads; left &= ~lanes) {
+    for (unsigned rest = tile->at.hits[g], lanes; rest && !reads; rest &= ~lanes) {
         uint32_t material;
-        lanes = lanes_of_material(tile, g, left, &material);
+        lanes = lanes_of_material(tile, g, rest, &material);
         for (size_t k = 0; k < all->count; k++)
             reads = reads || all->of[k].materials[material].highlight != GLINT_HIGHLIGHT_NONE;
         reads = reads || plan->materials[material].planes & GLINT_PLANE_SHADED;
@@ -193,8 +193,8 @@ static void add_ambient(const glint_tile *tile, const glint_plan *plan, size_t i
     const glint_plan_derivative *d = &plan->derivatives->of[index];
     const double *diffuse = d->repaints ? glint_derivative_painted(tile, plan, index, GLINT_FIELD_DIFFUSE, c) : NULL;
     const double *ambient = d->repaints ? glint_derivative_painted(tile, plan, index, GLINT_FIELD_AMBIENT, c) : NULL;
-    for (unsigned left = hits; left; left &= left - 1) {
-        const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), material = tile->surface.material[i];
+    for (unsigned bits = hits; bits; bits &= bits - 1) {
+        const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits), material = tile->surface.material[i];
         const uint32_t planes = plan->materials[material].planes;
         const glint_dual own = d->materials[material].ambient[c];
         const double *painted = planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE ? diffuse : planes & GLINT_PLANE_AMBIENT ? ambient : NULL;
@@ -230,9 +230,9 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
         work->weight[i] = (double)tile->at.light[slot].visible[at + (size_t)i];
         source.weight = work->weight;
     }
-    for (unsigned left = reached, lanes; left; left &= ~lanes) {
+    for (unsigned pending = reached, lanes; pending; pending &= ~lanes) {
         uint32_t material;
-        lanes = lanes_of_material(tile, g, left, &material);
+        lanes = lanes_of_material(tile, g, pending, &material);
         for (size_t k = 0; k < all->count && !(frame->plan->materials[material].planes & GLINT_PLANE_SHADED); k++) {
             glint_slope_args args = { .light = &all->of[k].lights[light->source],
                                       .material = &all->of[k].materials[material],
@@ -262,9 +262,9 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
 static bool are_shaded(const glint_tile *tile, const glint_plan *plan, uint32_t g, unsigned lanes)
 {
     bool all = plan->patterns && plan->patterns->shaders;
-    for (unsigned left = lanes, alike; left && all; left &= ~alike) {
+    for (unsigned rest = lanes, alike; rest && all; rest &= ~alike) {
         uint32_t material;
-        alike = lanes_of_material(tile, g, left, &material);
+        alike = lanes_of_material(tile, g, rest, &material);
         all = plan->materials[material].planes & GLINT_PLANE_SHADED;
     }
     return all;
@@ -328,12 +328,12 @@ void glint_tile_begin_tints(const glint_tile *tile, const glint_plan *plan)
 }
 
 void glint_tile_derive_tint(const glint_tile *tile, const glint_plan *plan, uint32_t material, uint32_t ray, int c,
-                            double color, double share, double left)
+                            double color, double share, double transmitted)
 {
     for (size_t k = 0; k < plan->derivatives->count; k++) {
         double *slope = &glint_derivative_of(tile)->ray_tint[k][c][ray];
         const glint_derivative_bounce *bounce = &plan->derivatives->of[k].bounces[material];
-        *slope = (*slope * share + color * (bounce->transmission[c] + bounce->clear)) * left;
+        *slope = (*slope * share + color * (bounce->transmission[c] + bounce->clear)) * transmitted;
     }
 }
 
@@ -371,14 +371,14 @@ static void begin_group(glint_tile *tile, const glint_tile_frame *frame, uint32_
     glint_derivative_work *work = glint_derivative_of(tile);
     const glint_plan_derivatives *all = frame->plan->derivatives;
     unsigned sky = tile->transparent ? 0 : tile->active[g] & ~(unsigned)tile->at.hits[g];
-    for (unsigned left = frame->plan->visible_light_count ? sky : 0; left; left &= left - 1)
-        if (glint_tile_sees_light(tile, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)))
-            sky &= ~(left & -left);
+    for (unsigned bits = frame->plan->visible_light_count ? sky : 0; bits; bits &= bits - 1)
+        if (glint_tile_sees_light(tile, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)))
+            sky &= ~(bits & -bits);
     for (size_t k = 0; k < all->count; k++)
         for (int c = 0; c < 3; c++) {
             add_ambient(tile, frame->plan, k, g, tile->at.hits[g], c);
-            for (unsigned left = all->of[k].background[c] != 0 ? sky : 0; left; left &= left - 1)
-                work->sum[k][c][g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)] += all->of[k].background[c];
+            for (unsigned bits = all->of[k].background[c] != 0 ? sky : 0; bits; bits &= bits - 1)
+                work->sum[k][c][g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)] += all->of[k].background[c];
         }
 }
 
@@ -420,10 +420,10 @@ static void begin_shadows(const glint_tile *tile, const glint_tile_frame *frame,
     uint32_t *shadows = glint_derivative_of(tile)->shadows + (size_t)g * GLINT_GROUP;
     const uint32_t *prims = tile->at.prim + (size_t)g * GLINT_GROUP;
     fill_group(shadows, NO_SHADOWS);
-    for (unsigned left = frame->plan->derivatives->bends ? tile->at.hits[g] : 0, same; left; left &= ~same) {
-        const uint32_t prim = prims[__builtin_ctz(left)];
+    for (unsigned pending = frame->plan->derivatives->bends ? tile->at.hits[g] : 0, same; pending; pending &= ~same) {
+        const uint32_t prim = prims[__builtin_ctz(pending)];
         const uint32_t hash = (NO_SHADOWS ^ (frame->geometry.prims[prim].id + 1)) * GLINT_SHADOW_MIXER;
-        same = glint_lanes_alike(prims, left);
+        same = glint_lanes_alike(prims, pending);
         if (same == 0xffff) // the common case
             fill_group(shadows, hash);
         for (unsigned rest = same == 0xffff ? 0 : same; rest; rest &= rest - 1)

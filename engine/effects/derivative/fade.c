@@ -7,7 +7,7 @@
 
 /// The share of a pixel's light that remains, and the share of the colour that it fades towards.
 typedef struct fade {
-    glint_dual left[3], share;
+    glint_dual transmittance[3], share;
 } fade;
 
 bool glint_derive_fade_fits(glint_derivative_work *work, const glint_plan *plan)
@@ -47,12 +47,13 @@ static fade find_fade(const glint_plan *plan, const glint_plan_derivative *d, gl
     const glint_dual rest = dual_sub(dual(1, 0), out.share);
     for (int c = 0; c < 3; c++) {
         const double a = plan->veil.absorption[c], more = plan->veil.on ? d->bounces[plan->veil.material].absorption[c] : 0;
-        const double left = glint_plan_left(a, distance.value);
-        out.left[c] = rest;
+        const double transmittance = glint_plan_transmittance(a, distance.value);
+        out.transmittance[c] = rest;
         if (distance.value < HUGE_VAL)
-            out.left[c] = dual_mul(rest, dual(left, -left * (a * distance.slope + more * distance.value)));
+            out.transmittance[c] =
+                dual_mul(rest, dual(transmittance, -transmittance * (a * distance.slope + more * distance.value)));
         else
-            out.left[c] = dual_scale(rest, left);
+            out.transmittance[c] = dual_scale(rest, transmittance);
     }
     return out;
 }
@@ -71,8 +72,8 @@ void glint_derive_fade(glint_tile *tile, const glint_tile_frame *frame)
             for (int c = 0; c < 3; c++) {
                 const double before = tile->sample == 0 ? 0 : work->faded[k][c][i], light = weighs ? work->light[c][i] : 0;
                 const double color = f.share.slope * plan->depth_cue.color[c] + f.share.value * d->fade.color[c];
-                const double own = f.left[c].value > 0 ? work->sum[k][c][i] * f.left[c].value : 0;
-                work->faded[k][c][i] = before + ((own + light * f.left[c].slope) + color);
+                const double own = f.transmittance[c].value > 0 ? work->sum[k][c][i] * f.transmittance[c].value : 0;
+                work->faded[k][c][i] = before + ((own + light * f.transmittance[c].slope) + color);
                 work->sum[k][c][i] = 0;
             }
         }

@@ -75,8 +75,8 @@ static void finish(const glint_tile *tile, const glint_plan *plan, size_t index,
     const glint_plan_pattern *own = &plan->patterns->of[entry->material];
     const glint_derivative_programs *programs = &plan->derivatives->of[index].programs[entry->material];
     const uint32_t planes = plan->materials[entry->material].planes;
-    for (unsigned left = entry->lanes; left; left &= left - 1) {
-        const uint32_t i = entry->group * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+    for (unsigned bits = entry->lanes; bits; bits &= bits - 1) {
+        const uint32_t i = entry->group * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
         if (planes & GLINT_PLANE_SHININESS && (programs->of[GLINT_FIELD_SHININESS] || programs->of[GLINT_FIELD_SPECULAR]))
             finish_exponent(tile, plan, own, index, i);
         if (programs->of[GLINT_FIELD_ROUGHNESS])
@@ -116,8 +116,8 @@ static void put_slopes(const glint_tile *tile, const glint_plan *plan, size_t in
         const double *value = tile->pattern->slopes[one ? 0 : c] + e * GLINT_GROUP;
         const double *slope = tile->pattern->slopes[one ? 3 : 3 + c] + e * GLINT_GROUP;
         double *to = painted_at(tile, plan, index, field, c) + (size_t)entry->group * GLINT_GROUP;
-        for (unsigned left = entry->lanes; left; left &= left - 1) {
-            const int i = __builtin_ctz(left);
+        for (unsigned bits = entry->lanes; bits; bits &= bits - 1) {
+            const int i = __builtin_ctz(bits);
             const bool inside = !bounded || (value[i] >= 0 && value[i] <= GLINT_REFLECTANCE_MAX);
             to[i] = inside && isfinite(slope[i]) ? slope[i] : 0;
         }

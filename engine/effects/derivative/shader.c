@@ -97,8 +97,8 @@ static void find_arrival(const shading *s, size_t index, uint32_t e, const glint
 /// Clears all other lanes.
 static void keep_lanes(unsigned lanes, double slope[GLINT_GROUP])
 {
-    for (unsigned left = 0xffff & ~lanes; left; left &= left - 1)
-        slope[__builtin_ctz(left)] = 0;
+    for (unsigned bits = 0xffff & ~lanes; bits; bits &= bits - 1)
+        slope[__builtin_ctz(bits)] = 0;
 }
 
 /// Returns whether the shader reads points in the shapes' own space.
@@ -113,8 +113,8 @@ static void turn_points(const shading *s, size_t index, uint32_t e)
 {
     double (*input)[GLINT_PROGRAM_LANES] = s->slopes->of[index].input;
     const glint_plan *plan = s->frame->plan;
-    for (unsigned left = s->slopes->wanted[e]; left; left &= left - 1) {
-        const uint32_t lane = (uint32_t)__builtin_ctz(left), i = e * GLINT_GROUP + lane;
+    for (unsigned bits = s->slopes->wanted[e]; bits; bits &= bits - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctz(bits), i = e * GLINT_GROUP + lane;
         const glint_prim *prim = &s->frame->geometry.prims[s->tile->at.prim[s->entries[e].group * GLINT_GROUP + lane]];
         const glint_pattern_place *place = &plan->patterns->places[plan->geometry->prim_part[prim->id]];
         const double world[3] = { input[GLINT_INPUT_WORLD_X][i], input[GLINT_INPUT_WORLD_Y][i], input[GLINT_INPUT_WORLD_Z][i] };
@@ -198,8 +198,8 @@ static void add_light(const shading *s, uint32_t terms)
     glint_derivative_work *work = glint_derivative_of(s->tile);
     for (uint32_t k = 0; k < terms; k++)
         for (uint32_t e = 0; e < s->count; e++)
-            for (unsigned left = s->slopes->wanted[e]; left; left &= left - 1) {
-                const uint32_t lane = (uint32_t)__builtin_ctz(left), i = e * GLINT_GROUP + lane;
+            for (unsigned bits = s->slopes->wanted[e]; bits; bits &= bits - 1) {
+                const uint32_t lane = (uint32_t)__builtin_ctz(bits), i = e * GLINT_GROUP + lane;
                 const double value = s->slopes->value[k][i];
                 work->light[k % 3][s->entries[e].group * GLINT_GROUP + lane] +=
                     value > 0 ? fmin(value, GLINT_REFLECTANCE_MAX) * (double)s->slopes->share[i] : 0;
@@ -314,8 +314,8 @@ static bool sweep(const shading *s, size_t index, const glint_program *forward)
     glint_program_args args = { .group_count = s->count, .wanted = s->slopes->wanted, .groups = groups, .sums_alone = true };
     for (uint32_t e = 0; e < s->count; e++)
         groups[e] = s->entries[e].group;
-    for (uint32_t left = forward->slopes; left; left &= left - 1) {
-        const int input = __builtin_ctz(left);
+    for (uint32_t bits = forward->slopes; bits; bits &= bits - 1) {
+        const int input = __builtin_ctz(bits);
         if (!(own->found >> input & 1))
             memset(own->input[input], 0, s->count * GLINT_GROUP * sizeof(double));
         args.input[GLINT_INPUT_COUNT + input] = own->input[input];

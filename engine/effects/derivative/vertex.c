@@ -78,6 +78,6 @@ static void derive_sample(const glint_tile *tile, const glint_tile_frame *frame,
 void glint_derive_vertex(const glint_tile *tile, const glint_tile_frame *frame, const uint16_t *wanted)
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = wanted[g] & tile->active[g]; left; left &= left - 1)
-            derive_sample(tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+        for (unsigned bits = wanted[g] & tile->active[g]; bits; bits &= bits - 1)
+            derive_sample(tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits));
 }

@@ -44,9 +44,9 @@ static void destroy(void *memory)
 static uint16_t leaving(const glint_tile *tile, const glint_plan *plan, uint32_t g)
 {
     uint16_t lanes = (uint16_t)(tile->active[g] & ~tile->at.hits[g]);
-    for (unsigned left = plan->runs[GLINT_STAGE_VISIBLE_LIGHT] ? lanes : 0; left; left &= left - 1)
-        if (glint_tile_sees_light(tile, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)))
-            lanes &= (uint16_t) ~(left & -left);
+    for (unsigned bits = plan->runs[GLINT_STAGE_VISIBLE_LIGHT] ? lanes : 0; bits; bits &= bits - 1)
+        if (glint_tile_sees_light(tile, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)))
+            lanes &= (uint16_t) ~(bits & -bits);
     return lanes;
 }
 
@@ -272,8 +272,8 @@ void glint_tile_environment_of(glint_tile *tile, const glint_tile_frame *frame, 
     uint32_t count = 0;
     for (uint32_t g = 0; g < rays->group_count; g++) {
         tile->counts.work.environment += (uint64_t)__builtin_popcount(missed[g]);
-        for (unsigned left = missed[g]; left; left &= left - 1) {
-            ray[count++] = (uint16_t)(g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+        for (unsigned bits = missed[g]; bits; bits &= bits - 1) {
+            ray[count++] = (uint16_t)(g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits));
             if (count < GLINT_PROGRAM_LANES)
                 continue;
             run_rays(tile, frame, rays, ray, count, light);

@@ -94,8 +94,8 @@ uint32_t glint_indirect_find_points(struct glint_indirect *indirect, const glint
     indirect->fewest = UINT32_MAX;
     glint_rays_clear(&indirect->first, seen->group_count);
     for (uint32_t g = 0; g < seen->group_count; g++) {
-        for (unsigned left = seen->at.hits[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = seen->at.hits[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             const double *found = first_weight(seen, frame->plan, i, buffer);
             if (glint_largest(found) == 0)
                 continue;
@@ -146,9 +146,9 @@ static bool choose_points(struct glint_indirect *indirect, uint32_t path)
     unsigned any = 0;
     memcpy(first->active, indirect->matt, first->group_count * sizeof *first->active);
     for (uint32_t g = 0; g < first->group_count; g++) {
-        for (unsigned left = path < indirect->fewest ? 0 : first->active[g]; left; left &= left - 1)
-            if (path >= indirect->paths[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)])
-                first->active[g] &= (uint16_t) ~(left & -left);
+        for (unsigned bits = path < indirect->fewest ? 0 : first->active[g]; bits; bits &= bits - 1)
+            if (path >= indirect->paths[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)])
+                first->active[g] &= (uint16_t) ~(bits & -bits);
         any |= first->active[g];
     }
     return any;
@@ -165,8 +165,8 @@ static void draw_first(struct glint_indirect *indirect, const glint_plan *plan, 
     uint64_t last = 0; // the block of the last seed
     bool known = false;
     for (uint32_t g = 0; g < indirect->first.group_count; g++)
-        for (unsigned left = indirect->first.active[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = indirect->first.active[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             const uint64_t k = glint_indirect_point_of(indirect, i, number);
             if (path != 0 && (uint32_t)k != 0)
                 continue;

@@ -99,10 +99,10 @@ void glint_indirect_find_directions(struct glint_indirect *indirect, const glint
     unsigned any = 0;
     for (uint32_t g = 0; g < batch->tile.group_count; g++) {
         batch->wanted[g] = 0;
-        for (unsigned left = plan->bouncing ? batch->tile.at.hits[g] : 0; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = plan->bouncing ? batch->tile.at.hits[g] : 0; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             if (goes_on(batch, plan, i))
-                batch->wanted[g] |= (uint16_t)(left & -left);
+                batch->wanted[g] |= (uint16_t)(bits & -bits);
         }
         any |= batch->wanted[g];
     }
@@ -197,8 +197,8 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
     glint_rays_clear(rays, tile->group_count);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         indirect->scattered[g] = 0;
-        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = tile->at.hits[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             glint_ray next;
             const turn chosen = choose(indirect, frame, number, i, &next);
             if (chosen == TURN_NONE)
@@ -208,7 +208,7 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
                 const glint_sequence_seed seed = glint_sequence_seed_of(
                     glint_indirect_seed_of(indirect, next.point, k, 2 * (next.scatters + next.depth + next.passes)));
                 glint_indirect_note(&indirect->next_draws, i, k, &seed, 0);
-                indirect->scattered[g] |= (uint16_t)(left & -left);
+                indirect->scattered[g] |= (uint16_t)(bits & -bits);
                 next.inward = glint_has_lane(tile->hit.back, i);
             }
             glint_rays_put(rays, frame->plan, i, &next);
@@ -219,8 +219,8 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
         return false;
     glint_indirect_scatter(tile, frame, indirect->scattered, &indirect->next_draws, 0, indirect->direction);
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = indirect->scattered[g]; left; left &= left - 1)
-            leave(indirect, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), rays);
+        for (unsigned bits = indirect->scattered[g]; bits; bits &= bits - 1)
+            leave(indirect, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits), rays);
     batch->rays = rays;
     return true;
 }
@@ -246,8 +246,8 @@ static void collect_group(const glint_batch *batch, const glint_plan *plan, uint
     const glint_rays *rays = batch->rays;
     double found[3][GLINT_GROUP];
     found_in(batch, g, found);
-    for (unsigned left = lanes; left; left &= left - 1) {
-        const uint32_t lane = (uint32_t)__builtin_ctz(left), at = g * GLINT_GROUP + lane, i = batch->ray_of[at];
+    for (unsigned bits = lanes; bits; bits &= bits - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctz(bits), at = g * GLINT_GROUP + lane, i = batch->ray_of[at];
         const bool last = rays->scatters[i] == plan->indirect.bounces && batch->tile.at.hits[g] >> lane & 1;
         double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]], weight[3];
         for (int c = 0; c < 3; c++) {
@@ -287,8 +287,8 @@ static void collect_shown(const glint_batch *batch, const uint16_t *missed, glin
 {
     const glint_rays *rays = batch->rays;
     for (uint32_t g = 0; g < rays->group_count; g++)
-        for (unsigned left = missed[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = missed[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             for (int c = 0; c < 3; c++)
                 to->film.sum[rays->term[i]][c][rays->pixel[i]] += rays->weight[c][i] * batch->shown[c][i];
         }

@@ -13,11 +13,11 @@ static void open_far(glint_batch *batch, const glint_plan *plan)
 {
     glint_tile *tile = &batch->tile;
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), ray = batch->ray_of[i];
+        for (unsigned bits = tile->at.hits[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits), ray = batch->ray_of[i];
             if (glint_real_at(tile->at.t, plan->desc.precision, i) <= plan->indirect.distance) // directions are unit
                 continue;
-            tile->at.hits[g] &= (uint16_t) ~(left & -left);
+            tile->at.hits[g] &= (uint16_t) ~(bits & -bits);
             if (!batch->whole)
                 batch->met[ray / GLINT_GROUP] &= (uint16_t) ~(1u << ray % GLINT_GROUP);
         }
@@ -58,8 +58,8 @@ static bool go_through(struct glint_indirect *indirect, const glint_tile_frame *
     glint_indirect_find_directions(indirect, frame);
     glint_rays_clear(rays, tile->group_count);
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        for (unsigned left = batch->wanted[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = batch->wanted[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             const glint_bounce_material *m = &frame->plan->bouncing[tile->surface.material[i]];
             if (!m->transmits && !m->clears)
                 continue;

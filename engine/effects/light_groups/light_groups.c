@@ -205,14 +205,16 @@ void glint_groups_add_ambient(const glint_tile *to, const glint_plan *plan, uint
         to->group_sums->sum[g][OTHER][c][pixel] += groups->ambient[g][c] * light;
 }
 
-void glint_groups_fade(const glint_tile *tile, const glint_plan *plan, const double (*left)[GLINT_TILE_SAMPLES])
+void glint_groups_fade(const glint_tile *tile, const glint_plan *plan,
+                       const double (*transmittance)[GLINT_TILE_SAMPLES])
 {
     struct glint_group_sums *sums = tile->group_sums;
     for (uint32_t g = 0; plan->light_groups && g < sums->count; g++)
         for (int c = 0; c < 3; c++)
             for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
                 const double before = tile->sample == 0 ? 0 : sums->faded[g][c][i];
-                sums->faded[g][c][i] = before + (left[c][i] > 0 ? sum_of(sums, g, c, i) * left[c][i] : 0);
+                sums->faded[g][c][i] =
+                    before + (transmittance[c][i] > 0 ? sum_of(sums, g, c, i) * transmittance[c][i] : 0);
                 for (int k = 0; k < SUMS; k++)
                     sums->sum[g][k][c][i] = 0;
             }

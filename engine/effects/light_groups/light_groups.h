@@ -36,7 +36,8 @@ void glint_groups_collect(const glint_batch *batch, const glint_plan *plan, glin
 /// Likewise: adds the lights' share of ambient light to a pixel.
 void glint_groups_add_ambient(const glint_tile *to, const glint_plan *plan, uint32_t pixel, int c, double light);
 /// Fades the sums of the current sample, in each pixel and channel; see effects/depth_cue/.
-void glint_groups_fade(const glint_tile *tile, const glint_plan *plan, const double (*left)[GLINT_TILE_SAMPLES]);
+void glint_groups_fade(const glint_tile *tile, const glint_plan *plan,
+                       const double (*transmittance)[GLINT_TILE_SAMPLES]);
 
 /// Caches the light of a block of faces or vertices, and adds it to the samples that show them; see
 /// effects/vertex_shading/.

@@ -115,17 +115,17 @@ static void find_view(glint_tile *tile, const glint_tile_frame *frame, glint_sam
 /// Computes the angles of microfacets for the rows of a light.
 static void find_facets(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
-    uint32_t unknown[GLINT_LIGHT_CHUNK], left = 0;
+    uint32_t unknown[GLINT_LIGHT_CHUNK], unknown_count = 0;
     for (uint32_t i = walk->slot; i < walk->slot + walk->count; i++) {
         if (facet_memory(tile, frame, walk->sample, walk->from + i, i))
             glint_tile_count_stage(tile, frame, GLINT_STAGE_FACET, true);
         else
-            unknown[left++] = i;
+            unknown[unknown_count++] = i;
     }
-    if (!left)
+    if (!unknown_count)
         return;
     glint_tile_need_points(tile, frame, walk);
-    glint_tile_facet(tile, frame, walk->from, unknown, left);
+    glint_tile_facet(tile, frame, walk->from, unknown, unknown_count);
 }
 
 static void *create(const glint_plan *plan)

@@ -69,15 +69,15 @@ static void gather_normals(const gathering *g, unsigned lanes)
 // ---- The point in the shape's own space ----
 
 /// Finds the lanes whose primitives belong to the same part as the first lane's. Returns the place of the part.
-static const glint_pattern_place *next_place(const gathering *g, unsigned left, unsigned *lanes)
+static const glint_pattern_place *next_place(const gathering *g, unsigned pending, unsigned *lanes)
 {
     const glint_geometry *geometry = g->frame->plan->geometry;
     const glint_prim *prims = g->frame->geometry.prims;
     const uint32_t *prim = g->points->prim + g->at;
-    const uint32_t first = prim[__builtin_ctz(left)], part = geometry->prim_part[prims[first].id];
+    const uint32_t first = prim[__builtin_ctz(pending)], part = geometry->prim_part[prims[first].id];
     const bool one = glint_all_are(prim, first); // the common case
-    *lanes = one ? left : 0;
-    for (unsigned rest = one ? 0 : left; rest; rest &= rest - 1) {
+    *lanes = one ? pending : 0;
+    for (unsigned rest = one ? 0 : pending; rest; rest &= rest - 1) {
         const uint32_t id = prim[__builtin_ctz(rest)];
         if (id == first || geometry->prim_part[prims[id].id] == part)
             *lanes |= rest & -rest;
@@ -144,8 +144,8 @@ static void gather_points(const gathering *g, unsigned lanes)
 {
     for (int c = 0; c < 3; c++)
         load_group(g, g->points->point[c], row(g, GLINT_INPUT_P_X + c));
-    for (unsigned left = lanes, here; left; left &= ~here) {
-        const glint_pattern_place *place = next_place(g, left, &here);
+    for (unsigned rest = lanes, here; rest; rest &= ~here) {
+        const glint_pattern_place *place = next_place(g, rest, &here);
         if (place->mapped)
             map_points(g, place, here);
         put_exact(g, place, here);
@@ -354,11 +354,11 @@ void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *
     inputs->used &= inputs->same; // constant inputs stay
     for (uint32_t rest = reads; rest; rest &= rest - 1)
         glint_pattern_row(inputs, (glint_input)__builtin_ctz(rest));
-    uint32_t left = read_in_place(inputs, frame, points, reads, entries, count);
-    left &= camera_of(frame, points) ? READS_GATHERED & ~READS_V : READS_GATHERED;
-    for (uint32_t k = 0; left && k < count; k++) {
+    uint32_t unread = read_in_place(inputs, frame, points, reads, entries, count);
+    unread &= camera_of(frame, points) ? READS_GATHERED & ~READS_V : READS_GATHERED;
+    for (uint32_t k = 0; unread && k < count; k++) {
         const gathering g = { inputs, frame, points, (size_t)entries[k].group * GLINT_GROUP, (size_t)k * GLINT_GROUP };
-        gather_group(&g, left, entries[k].lanes);
+        gather_group(&g, unread, entries[k].lanes);
     }
     if (reads & READS_V)
         make_views(inputs, frame, points, entries, count);

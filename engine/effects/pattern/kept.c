@@ -59,8 +59,8 @@ static void unpack(unsigned bits, double to[GLINT_GROUP])
 static bool pack(const double from[GLINT_GROUP], unsigned lanes, uint16_t *bits)
 {
     unsigned set = 0;
-    for (unsigned left = lanes; left; left &= left - 1) {
-        const int i = __builtin_ctz(left);
+    for (unsigned rest = lanes; rest; rest &= rest - 1) {
+        const int i = __builtin_ctz(rest);
         if (!(from[i] == 0 || from[i] == 1))
             return false;
         set |= (unsigned)(from[i] == 1) << i;
@@ -80,8 +80,8 @@ static bool keep_value(const glint_pattern_batch *batch, const double *value, bo
         double *numbers = to->numbers + (size_t)place * GLINT_TILE_SAMPLES + (size_t)group * GLINT_GROUP;
         if (truth && !pack(value, batch->entries[k].lanes, &to->truths[place * GLINT_TILE_GROUPS + group]))
             return false;
-        for (unsigned left = truth ? 0 : batch->entries[k].lanes; left; left &= left - 1)
-            numbers[__builtin_ctz(left)] = value[__builtin_ctz(left)];
+        for (unsigned bits = truth ? 0 : batch->entries[k].lanes; bits; bits &= bits - 1)
+            numbers[__builtin_ctz(bits)] = value[__builtin_ctz(bits)];
     }
     return true;
 }

@@ -132,9 +132,9 @@ void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_pa
         return;
     }
     for (uint32_t g = 0; g < group_count; g++, material += GLINT_GROUP)
-        for (unsigned left = hits[g], lanes; left; left &= ~lanes) {
-            const uint32_t m = material[__builtin_ctz(left)];
-            lanes = glint_all_are(material, m) ? left : lanes_of(material, m, left);
+        for (unsigned rest = hits[g], lanes; rest; rest &= ~lanes) {
+            const uint32_t m = material[__builtin_ctz(rest)];
+            lanes = glint_all_are(material, m) ? rest : lanes_of(material, m, rest);
             if (m != last) {
                 wanted = wants(&patterns->of[m], points->fields);
                 several = several || (wanted && count > 0 && entries[0].material != m);
@@ -166,13 +166,13 @@ static uint32_t pick(struct glint_pattern *pattern)
 
 uint32_t glint_pattern_take(struct glint_pattern *pattern, const glint_pattern_lanes **entries)
 {
-    const uint32_t left = pattern->count - pattern->first;
+    const uint32_t remaining = pattern->count - pattern->first;
     if (pattern->several) {
         *entries = pattern->taken;
         return pick(pattern);
     }
     *entries = &pattern->lanes[pattern->first];
-    const uint32_t taken = left < GLINT_PROGRAM_GROUPS ? left : GLINT_PROGRAM_GROUPS;
+    const uint32_t taken = remaining < GLINT_PROGRAM_GROUPS ? remaining : GLINT_PROGRAM_GROUPS;
     pattern->first += taken;
     return taken;
 }
@@ -247,9 +247,9 @@ void glint_pattern_finish(const glint_pattern_batch *batch, const glint_pattern_
     };
     const glint_pattern_lanes *entries = batch->entries;
     for (uint32_t k = 0; k < batch->count && finishers[field]; k++)
-        for (unsigned left = entries[k].lanes; left; left &= left - 1)
+        for (unsigned bits = entries[k].lanes; bits; bits &= bits - 1)
             finishers[field](batch->own, points, plan,
-                             entries[k].group * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+                             entries[k].group * GLINT_GROUP + (uint32_t)__builtin_ctz(bits));
 }
 
 // ---- The programs ----
@@ -261,8 +261,8 @@ void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *f
     args->code = code;
     args->rows = pattern->rows;
     args->same = inputs->same;
-    for (uint32_t left = inputs->used; left; left &= left - 1) {
-        const int input = __builtin_ctz(left);
+    for (uint32_t bits = inputs->used; bits; bits &= bits - 1) {
+        const int input = __builtin_ctz(bits);
         args->input[input] = inputs->from[input] + (inputs->same >> input & 1 ? 0 : first * GLINT_GROUP);
     }
     frame->stages->program(args);
@@ -336,8 +336,8 @@ static void note_odd(struct glint_pattern *pattern, const glint_pattern_batch *b
         args.result[k] = output[k];
     glint_pattern_call(pattern, frame, code, 0, &args);
     for (uint32_t k = 0; k < batch->count; k++)
-        for (unsigned left = batch->called.odd[k]; left; left &= left - 1) {
-            const uint32_t lane = (uint32_t)__builtin_ctz(left), i = batch->entries[k].group * GLINT_GROUP + lane;
+        for (unsigned bits = batch->called.odd[k]; bits; bits &= bits - 1) {
+            const uint32_t lane = (uint32_t)__builtin_ctz(bits), i = batch->entries[k].group * GLINT_GROUP + lane;
             glint_odd_pattern one = { .count = 1, .material = batch->entries[k].material, .field = field };
             for (int c = 0; c < 3; c++)
                 one.point[c] = glint_real_at(points->point[c], frame->plan->desc.precision, i);
@@ -446,8 +446,8 @@ uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan)
         const uint32_t *material = tile->surface.material + (size_t)g * GLINT_GROUP;
         if (glint_all_are(material, last)) // the common case
             continue;
-        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
-            const uint32_t m = material[__builtin_ctz(left)];
+        for (unsigned bits = tile->at.hits[g]; bits; bits &= bits - 1) {
+            const uint32_t m = material[__builtin_ctz(bits)];
             if (m == last)
                 continue;
             last = m;

@@ -213,8 +213,8 @@ static void clear_missing(struct glint_pattern *pattern, const batch *b)
 {
     for (uint32_t term = b->program->code.output_count; term < GLINT_SHADER_TERMS; term++)
         for (uint32_t k = 0; k < b->count; k++)
-            for (unsigned left = b->entries[k].lanes; left; left &= left - 1)
-                pattern->shaded[term][b->groups[k] * GLINT_GROUP + (unsigned)__builtin_ctz(left)] = 0;
+            for (unsigned bits = b->entries[k].lanes; bits; bits &= bits - 1)
+                pattern->shaded[term][b->groups[k] * GLINT_GROUP + (unsigned)__builtin_ctz(bits)] = 0;
 }
 
 /// Runs the shader of one material for a batch of groups and all lights.

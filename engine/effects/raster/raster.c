@@ -29,14 +29,14 @@ static void merge(glint_tile *tile, const glint_tile_frame *frame)
     const glint_precision precision = frame->plan->desc.precision;
     const glint_prim *prims = frame->geometry.prims;
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = rest->hits[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), prim = tile->at.prim[i];
+        for (unsigned bits = rest->hits[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits), prim = tile->at.prim[i];
             const double mine = glint_real_at(tile->at.t, precision, i), other = glint_real_at(rest->t, precision, i);
             if (prim != GLINT_MISS && !(other < mine || (other == mine && prims[rest->prim[i]].id < prims[prim].id)))
                 continue;
             glint_real_put(tile->at.t, precision, i, other);
             tile->at.prim[i] = rest->prim[i];
-            tile->at.hits[g] |= (uint16_t)(left & -left);
+            tile->at.hits[g] |= (uint16_t)(bits & -bits);
         }
 }
 

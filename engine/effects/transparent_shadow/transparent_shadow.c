@@ -89,9 +89,9 @@ bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame)
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         own_of(tile)->dim[g] = 0;
-        for (unsigned left = lanes_within(tile, frame->plan, g); left; left &= left - 1) {
-            const glint_media media = media_at(tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
-            own_of(tile)->dim[g] |= (uint16_t)(absorbs(frame->plan, &media) ? left & -left : 0);
+        for (unsigned bits = lanes_within(tile, frame->plan, g); bits; bits &= bits - 1) {
+            const glint_media media = media_at(tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits));
+            own_of(tile)->dim[g] |= (uint16_t)(absorbs(frame->plan, &media) ? bits & -bits : 0);
         }
         any |= own_of(tile)->dim[g];
     }
@@ -190,9 +190,9 @@ static bool choose_points(glint_tile *tile, const glint_tile_frame *frame, uint3
         for (uint32_t g = 0; g < tile->group_count; g++)
             lanes[g] |= (uint16_t)(tile->at.light[i].lit[g] & ~tile->at.light[i].open[g]);
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = lanes[g]; left; left &= left - 1)
-            if (is_black(frame->plan, tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)]))
-                lanes[g] &= (uint16_t)~(left & -left);
+        for (unsigned bits = lanes[g]; bits; bits &= bits - 1)
+            if (is_black(frame->plan, tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)]))
+                lanes[g] &= (uint16_t)~(bits & -bits);
     return find_tinted(tile, frame, &frame->plan->lights[index], lanes, own_of(tile)->tinted);
 }
 
@@ -229,9 +229,9 @@ static void aim(struct glint_transparent_shadow *transparent_shadow, glint_preci
 }
 
 /// Returns the share of channel c that a medium transmits over a distance.
-static double left_of(const glint_plan *plan, uint32_t medium, int c, double distance)
+static double transmittance_of(const glint_plan *plan, uint32_t medium, int c, double distance)
 {
-    return glint_plan_left(medium == GLINT_NO_MEDIUM ? 0 : plan->bouncing[medium].absorption[c], distance);
+    return glint_plan_transmittance(medium == GLINT_NO_MEDIUM ? 0 : plan->bouncing[medium].absorption[c], distance);
 }
 
 static double direction_length(const struct glint_transparent_shadow *transparent_shadow, glint_precision precision,
@@ -256,7 +256,7 @@ static void arrive(struct glint_transparent_shadow *transparent_shadow, const gl
     const double distance =
         light->directional ? HUGE_VAL : direction_length(transparent_shadow, plan->desc.precision, i);
     for (int c = 0; c < 3; c++)
-        transparent_shadow->color[c][ray] *= left_of(plan, medium, c, distance);
+        transparent_shadow->color[c][ray] *= transmittance_of(plan, medium, c, distance);
 }
 
 /// Returns the share of light that goes straight on through the surface in slot i.
@@ -279,7 +279,7 @@ static bool cross(struct glint_transparent_shadow *transparent_shadow, const gli
     const bool back = glint_has_lane(transparent_shadow->back, i), fills = plan->bouncing[material].transmits;
     const double clear = clear_at(transparent_shadow, plan, material, i);
     bool any = false;
-    double buffer[3], left[3] = { 1, 1, 1 };
+    double buffer[3], transmittance[3] = { 1, 1, 1 };
     const double *transmission = glint_color_at(transparent_shadow->planes, plan, GLINT_FIELD_TRANSMISSION, material, i,
                                                 plan->bouncing[material].transmission, buffer);
     if (plan->absorbs) {
@@ -288,15 +288,16 @@ static bool cross(struct glint_transparent_shadow *transparent_shadow, const gli
         const double length = glint_real_at(transparent_shadow->t, plan->desc.precision, i) *
                               direction_length(transparent_shadow, plan->desc.precision, i);
         for (int c = 0; c < 3; c++)
-            left[c] = left_of(plan, medium, c, length);
+            transmittance[c] = transmittance_of(plan, medium, c, length);
         if (fills)
             glint_media_cross(&transparent_shadow->media[ray], inside, back);
     }
     for (int c = 0; c < 3; c++) {
         const double share = transmission[c] + clear;
         if (plan->derivatives)
-            glint_tile_derive_tint(tile, plan, material, ray, c, transparent_shadow->color[c][ray], share, left[c]);
-        transparent_shadow->color[c][ray] *= share * left[c];
+            glint_tile_derive_tint(tile, plan, material, ray, c, transparent_shadow->color[c][ray], share,
+                                   transmittance[c]);
+        transparent_shadow->color[c][ray] *= share * transmittance[c];
         any = any || transparent_shadow->color[c][ray] > 0;
     }
     transparent_shadow->crossed[ray] = true;
@@ -353,9 +354,9 @@ static void begin(struct glint_transparent_shadow *transparent_shadow, const gli
         transparent_shadow->first[row] = transparent_shadow->count;
         for (uint32_t g = from; g < end; g++) {
             const unsigned dim = dimmed(tile, frame->plan, slot + row, g);
-            for (unsigned left = followed(tile, slot + row, g) | dim; left; left &= left - 1) {
-                const unsigned bit = left & -left;
-                begin_ray(transparent_shadow, tile, frame, light, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left),
+            for (unsigned bits = followed(tile, slot + row, g) | dim; bits; bits &= bits - 1) {
+                const unsigned bit = bits & -bits;
+                begin_ray(transparent_shadow, tile, frame, light, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits),
                           !(dim & bit) && (tile->hit.back[g] & bit), places);
                 if (dim & bit)
                     arrive(transparent_shadow, frame->plan, light, places);
@@ -442,9 +443,9 @@ static void step(struct glint_transparent_shadow *transparent_shadow, glint_tile
         find_transmission(transparent_shadow, tile, frame);
     for (uint32_t g = 0; g < transparent_shadow->group_count; g++) {
         tile->counts.shadow += (uint64_t)__builtin_popcount(transparent_shadow->active[g]);
-        for (unsigned left = transparent_shadow->active[g]; left; left &= left - 1) {
-            const unsigned bit = left & -left;
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), ray = transparent_shadow->ray_of[i];
+        for (unsigned bits = transparent_shadow->active[g]; bits; bits &= bits - 1) {
+            const unsigned bit = bits & -bits;
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits), ray = transparent_shadow->ray_of[i];
             if (!(transparent_shadow->hits[g] & bit) ||
                 (!light->directional && !(glint_real_at(transparent_shadow->t, precision, i) < 1))) {
                 if (transparent_shadow->crossed[ray])

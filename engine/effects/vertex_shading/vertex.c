@@ -230,15 +230,15 @@ static void load_block(struct glint_vertex *vertex, const glint_tile_frame *fram
     const uint32_t blocks = frame->shading_points->blocks;
     const bool back = block >= blocks;
     const uint32_t first = (back ? block - blocks : block) * GLINT_SHADING_POINT_BLOCK;
-    const uint32_t left = frame->geometry.shading_point_count - first;
+    const uint32_t remaining = frame->geometry.shading_point_count - first;
     tile->group_count = GLINT_SHADING_POINT_BLOCK / GLINT_GROUP;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         tile->hit.mask[g] = tile->hit.dark[g] = 0;
         tile->hit.back[g] = back ? 0xffff : 0;
     }
     for (uint32_t i = 0; i < GLINT_SHADING_POINT_BLOCK; i++) {
-        const bool there = i < left && frame->plan->geometry->shading_point_prims[first + i] != GLINT_MISS;
-        if (i + PREFETCHED < left)
+        const bool there = i < remaining && frame->plan->geometry->shading_point_prims[first + i] != GLINT_MISS;
+        if (i + PREFETCHED < remaining)
             prefetch_prim(frame->plan->geometry, first + i + PREFETCHED);
         shading_point s = { .point = { 0 }, .normal = { 0, 0, 1 }, .prim = 0 };
         if (there)
@@ -315,8 +315,8 @@ static inline bool each_block(glint_tile *tile, const glint_tile_frame *frame,
     for (uint32_t g = 0; g < tile->group_count; g++) {
         if (glint_all_are(tile->at.prim + (size_t)g * GLINT_GROUP, last) && tile->hit.back[g] == (last_side ? 0xffff : 0))
             continue;
-        for (unsigned left = own_of(tile)->wanted[g]; left; left &= left - 1) {
-            const uint32_t lane = (uint32_t)__builtin_ctz(left), prim = tile->at.prim[g * GLINT_GROUP + lane];
+        for (unsigned bits = own_of(tile)->wanted[g]; bits; bits &= bits - 1) {
+            const uint32_t lane = (uint32_t)__builtin_ctz(bits), prim = tile->at.prim[g * GLINT_GROUP + lane];
             const uint32_t side = tile->hit.back[g] >> lane & 1;
             if (prim == last && side == last_side)
                 continue;
@@ -344,12 +344,12 @@ bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame)
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const bool same = last != GLINT_MISS && glint_all_are(tile->at.prim + (size_t)g * GLINT_GROUP, last);
         tile->own_light[g] = same && !shading_points ? tile->at.hits[g] : 0;
-        for (unsigned left = same ? 0 : tile->at.hits[g]; left; left &= left - 1) {
-            const uint32_t prim = tile->at.prim[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)];
+        for (unsigned bits = same ? 0 : tile->at.hits[g]; bits; bits &= bits - 1) {
+            const uint32_t prim = tile->at.prim[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)];
             if (prim != last)
                 shading_points = has_shading_points(&frame->geometry.prims[prim]);
             last = prim;
-            tile->own_light[g] |= shading_points ? 0 : (uint16_t)(left & -left);
+            tile->own_light[g] |= shading_points ? 0 : (uint16_t)(bits & -bits);
         }
         any |= tile->own_light[g];
     }

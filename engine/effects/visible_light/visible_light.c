@@ -233,8 +233,8 @@ void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, cons
 {
     own_hits(tile, frame->plan->desc.precision);
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = lanes[g]; left; left &= left - 1)
-            see_lane(tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+        for (unsigned bits = lanes[g]; bits; bits &= bits - 1)
+            see_lane(tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits));
 }
 
 // ---- Their brightness ----
@@ -266,8 +266,8 @@ const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GL
 void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *frame)
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = own_of(tile)->seen[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+        for (unsigned bits = own_of(tile)->seen[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             const glint_plan_visible_light *light = &frame->plan->visible_lights[own_of(tile)->which[i]];
             for (int c = 0; c < 3; c++)
                 tile->film.sum[GLINT_TERM_BACKGROUND][c][i] += light->shown[c];

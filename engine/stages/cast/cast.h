@@ -172,10 +172,10 @@ static void R(cast_first)(R(tile_cast) * tile, const R(candidate) *const *candid
     R(clear_groups)(tile, all & ~any);
     if (!tile->scaled && any & ~filled)
         R(scale_tile)(tile);
-    for (uint64_t left = any & ~filled; left; left &= left - 1)
-        R(cast_mixed)(tile, candidates, count, may, sure, __builtin_ctzll(left));
-    for (uint64_t left = tile->deep ? filled : 0; left; left &= left - 1) {
-        const int slot = __builtin_ctzll(left);
+    for (uint64_t bits = any & ~filled; bits; bits &= bits - 1)
+        R(cast_mixed)(tile, candidates, count, may, sure, __builtin_ctzll(bits));
+    for (uint64_t bits = tile->deep ? filled : 0; bits; bits &= bits - 1) {
+        const int slot = __builtin_ctzll(bits);
         R(note_depth)(tile, slot % COVER_ACROSS, slot / COVER_ACROSS);
     }
 }

@@ -332,9 +332,9 @@ static inline rm R(is_of_second)(const R(stretches) * s, vr t)
 static vr R(first_of_many)(const R(stretches) * s, vr from)
 {
     vr best = r_set(HUGE_VAL);
-    for (uint64_t left = s->live; left; left &= left - 1)
+    for (uint64_t bits = s->live; bits; bits &= bits - 1)
         for (int end = 0; end < 2; end++) {
-            const vr t = s->t[end][__builtin_ctzll(left)];
+            const vr t = s->t[end][__builtin_ctzll(bits)];
             const rm ahead = rm_and(r_lt(from, t), r_lt(t, best));
             if (!rm_bits(ahead))
                 continue;
@@ -387,9 +387,9 @@ static void R(keep_part)(const glint_cast_args *args, const glint_combined *whol
         return;
     }
     const unsigned in = rm_bits(r_eq(t, s->t[0][j]));
-    for (unsigned left = rm_bits(mine); left; left &= left - 1) {
-        const int i = __builtin_ctz(left);
-        R(keep_nearest)(args, at, s->triangle[in >> i & 1 ? 0 : 1][j][i], rm_from_bits(left & -left), t);
+    for (unsigned bits = rm_bits(mine); bits; bits &= bits - 1) {
+        const int i = __builtin_ctz(bits);
+        R(keep_nearest)(args, at, s->triangle[in >> i & 1 ? 0 : 1][j][i], rm_from_bits(bits & -bits), t);
     }
 }
 
@@ -399,9 +399,9 @@ static __attribute__((noinline)) bool R(cast_combined)(const glint_cast_args *ar
 {
     R(stretches) s;
     vr from = r_set(0), t;
-    unsigned any = 0, hit, left = w->lanes;
-    while (left) {
-        left = R(next_change)(args->geometry, whole, w, left, &from, &s, &t, &hit);
+    unsigned any = 0, hit, rest = w->lanes;
+    while (rest) {
+        rest = R(next_change)(args->geometry, whole, w, rest, &from, &s, &t, &hit);
         any |= hit;
         if (!hit)
             continue;

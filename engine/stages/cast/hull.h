@@ -117,8 +117,8 @@ static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out,
     const real near = R(near_shared_edge)(rays->table);
     _Alignas(64) real t[VR];
     r_store(t, crossing_t);
-    for (unsigned left = out | in; left; left &= left - 1) {
-        const int i = __builtin_ctz(left), turns = out >> i & 1 ? 1 : -1;
+    for (unsigned bits = out | in; bits; bits &= bits - 1) {
+        const int i = __builtin_ctz(bits), turns = out >> i & 1 ? 1 : -1;
         const bool on_surface = rays->on && rays->on[i] != GLINT_MISS, on_hull = R(starts_on_hull)(rays, i);
         bool begun = t[i] == 0; // only exact for shared planes; at an edge, where rays may start, rounding decides
         if (rays->on && rays->on[i] == index)
@@ -191,10 +191,11 @@ static void R(walk_hull)(R(hull_rays) * rays, const glint_hull *hull, unsigned l
     while (height > 0) {
         const glint_node *node = &hull->nodes[stack[--height].node];
         unsigned near[GLINT_NODE_WIDTH] = { 0 };
-        for (unsigned left = stack[height].lanes; left; left &= left - 1) {
+        for (unsigned bits = stack[height].lanes; bits; bits &= bits - 1) {
             _Alignas(64) float depth[GLINT_NODE_WIDTH];
-            for (unsigned slots = boxes_on_ray(node, &rays->view[__builtin_ctz(left)], HUGE_VALF, depth); slots; slots &= slots - 1)
-                near[__builtin_ctz(slots)] |= left & -left;
+            for (unsigned slots = boxes_on_ray(node, &rays->view[__builtin_ctz(bits)], HUGE_VALF, depth); slots;
+                 slots &= slots - 1)
+                near[__builtin_ctz(slots)] |= bits & -bits;
         }
         for (int i = 0; i < GLINT_NODE_WIDTH; i++) {
             const uint32_t child = node->child[i];
@@ -228,14 +229,14 @@ static int R(agree_at_start)(R(crossings) * of, uint32_t on, bool inside)
     return inside;
 }
 
-/// Computes the intervals. left: remaining exits minus entries.
-static void R(find_within)(const R(crossings) * of, int left, R(ray_within) * in)
+/// Computes the intervals. remaining: remaining exits minus entries.
+static void R(find_within)(const R(crossings) * of, int remaining, R(ray_within) * in)
 {
     in->count = 0;
     in->known = of->lost;
     in->t[0][0] = (real)-HUGE_VAL;
     for (int i = 0; i < of->count; i++) {
-        const int after = left - of->winding[i], side = left > 0;
+        const int after = remaining - of->winding[i], side = remaining > 0;
         if (side != (after > 0)) {
             if (!side && in->count == GLINT_HULL_PARTS) {
                 in->known = of->t[i];
@@ -245,9 +246,9 @@ static void R(find_within)(const R(crossings) * of, int left, R(ray_within) * in
             in->triangle[side][in->count] = of->triangle[i][side];
             in->count += side;
         }
-        left = after;
+        remaining = after;
     }
-    if (left > 0)
+    if (remaining > 0)
         in->t[1][in->count++] = (real)HUGE_VAL;
 }
 

@@ -62,8 +62,9 @@ static inline void R(load_leaf)(const glint_cast_args *args, unsigned mask, R(ca
     _Alignas(64) real seen[GLINT_NODE_WIDTH];
     R(load_node_corners)(geometry, leaf->node, mask, leaf->corner);
     leaf->faced = 0;
-    for (unsigned left = geometry->faces ? mask : 0; left; left &= left - 1)
-        leaf->faced |= geometry->prims[leaf->node->child[__builtin_ctz(left)] & ~GLINT_NODE_PRIM].face ? left & -left : 0;
+    for (unsigned bits = geometry->faces ? mask : 0; bits; bits &= bits - 1)
+        leaf->faced |=
+            geometry->prims[leaf->node->child[__builtin_ctz(bits)] & ~GLINT_NODE_PRIM].face ? bits & -bits : 0;
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++) {
             const vr eye = r_set(args->camera->eye[k]), scale = r_set(geometry->scale);
@@ -97,8 +98,8 @@ static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_scree
         i_store(leaf->pixels + i, pixels);
         mask &= ~(fm_bits(none) << i);
     }
-    for (unsigned left = edge_on; left; left &= left - 1) {
-        const int slot = __builtin_ctz(left);
+    for (unsigned bits = edge_on; bits; bits &= bits - 1) {
+        const int slot = __builtin_ctz(bits);
         leaf->pixels[slot] = 4 * seen->cells[slot] + 0x03000300; // from the first of four pixels to the last of them
     }
     return mask | edge_on;
@@ -290,13 +291,14 @@ static inline void R(add_own_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, in
         R(decide_own_pairs)(tile, leaf);
 }
 
-/// Finds the groups of `left` with rays that may hit the triangle in a slot, and these rays.
-INNER void R(find_groups_of_triangle)(const R(tile_cast) * tile, const bool gathered, R(cast_leaf) * leaf, int slot, uint64_t left)
+/// Finds the groups of `bits` with rays that may hit the triangle in a slot, and these rays.
+INNER void R(find_groups_of_triangle)(const R(tile_cast) * tile, const bool gathered, R(cast_leaf) * leaf, int slot,
+                                      uint64_t bits)
 {
     const float near = leaf->shown.near[slot];
     int n = leaf->groups;
-    for (; left; left &= left - 1) {
-        const R(tile_group) at = R(lowest_group)(tile, gathered, left);
+    for (; bits; bits &= bits - 1) {
+        const R(tile_group) at = R(lowest_group)(tile, gathered, bits);
         unsigned lanes = 0;
         for (int i = 0; i < GLINT_GROUP; i += VF)
             lanes |= (R(open_lanes)(tile, &at, i, near) &
@@ -363,9 +365,9 @@ static void R(cast_lens_triangle)(R(tile_cast) * tile, R(cast_leaf) * leaf, cons
     const float near = seen->near[slot];
     const unsigned columns = bit_range(first_column(cells), last_column(cells));
     for (int y = first_row(cells); y <= last_row(cells); y++)
-        for (unsigned left = behind_in_row((const float(*)[SCREEN_ACROSS])tile->far, y, near, columns); left;
-             left &= left - 1) {
-            const int x = __builtin_ctz(left);
+        for (unsigned bits = behind_in_row((const float(*)[SCREEN_ACROSS])tile->far, y, near, columns); bits;
+             bits &= bits - 1) {
+            const int x = __builtin_ctz(bits);
             const uint32_t g = (uint32_t)(y * tile->across + x);
             unsigned lanes = 0;
             for (int i = 0; i < GLINT_GROUP; i += VF) {

@@ -183,8 +183,8 @@ static inline void R(cast_spheres)(const glint_cast_args *args, uint32_t g, cons
     R(first_met) met;
     R(find_first)(args, rays, at, list, count, &met);
     pairs->undecided[g] |= (uint16_t)(args->active[g] & ~met.usual);
-    for (unsigned left = args->active[g] & met.usual & ~lanes_equal(met.prim, GLINT_MISS); left; left &= left - 1) {
-        const int lane = __builtin_ctz(left);
+    for (unsigned bits = args->active[g] & met.usual & ~lanes_equal(met.prim, GLINT_MISS); bits; bits &= bits - 1) {
+        const int lane = __builtin_ctz(bits);
         const uint32_t ray = (uint32_t)at + (uint32_t)lane;
         if (met.entry[lane] <= R(reach_in_index)(args, ((const real *)args->t)[ray]))
             R(add_pair)(args, pairs, ray, met.prim[lane], met.next[lane]);

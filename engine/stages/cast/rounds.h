@@ -19,7 +19,7 @@
 
 #define GLINT_ROUND_PAIRS 96 ///< per round, a multiple of any VR
 #define GLINT_ROUND_SOLIDS 64 ///< per round
-#define GLINT_LEFT_NODES 48 ///< maximum number of nodes that a group leaves to each of its rays, see together.h
+#define GLINT_STACKED_NODES_MAX 48 ///< maximum number of nodes that a group leaves to each of its rays, see together.h
 
 /// The rays of a group in triangle space: components in the cyclic order that puts the direction's largest component
 /// last, see edges_along. Every lane then has the same order of operations, and the bits are those of the lane's own
@@ -32,8 +32,9 @@ typedef struct R(turned_rays) {
 /// The nodes that a ray has yet to visit, and where it enters them.
 typedef struct R(node_stack) {
     int height;
-    uint32_t node[WALK_STACK + GLINT_NODE_WIDTH + GLINT_LEFT_NODES]; ///< with space for the entries behind the packed
-    float depth[WALK_STACK + GLINT_NODE_WIDTH + GLINT_LEFT_NODES];
+    uint32_t
+        node[WALK_STACK + GLINT_NODE_WIDTH + GLINT_STACKED_NODES_MAX]; ///< with space for the entries behind the packed
+    float depth[WALK_STACK + GLINT_NODE_WIDTH + GLINT_STACKED_NODES_MAX];
 } R(node_stack);
 
 typedef struct R(rounds) {
@@ -167,8 +168,8 @@ static __attribute__((noinline)) void R(decide_triangles)(const glint_cast_args 
     for (int i = 0; i < rounds->count; i += VR) {
         const unsigned there = rounds->count - i < VR ? (1u << (rounds->count - i)) - 1 : (1u << VR) - 1;
         R(meet_round)(table, rounds, i, &lanes);
-        for (unsigned left = lanes.at & there; left; left &= left - 1) {
-            const int j = __builtin_ctz(left);
+        for (unsigned bits = lanes.at & there; bits; bits &= bits - 1) {
+            const int j = __builtin_ctz(bits);
             const uint32_t lane = rounds->lane[i + j], id = rounds->prim[i + j], ray = g * GLINT_GROUP + lane;
             const glint_face *face = table->faces ? R(face_of)(table, &table->prims[id]) : NULL;
             const real t = face ? R(t_of_face)(args, face, ray) : lanes.t[j];
@@ -222,10 +223,10 @@ static inline void R(meet_others)(const glint_geometry_table *geometry, const gl
                                   R(rounds) * rounds)
 {
     unsigned spheres = 0;
-    for (unsigned left = mask; left; left &= left - 1) {
-        const uint32_t id = node->child[__builtin_ctz(left)] & ~GLINT_NODE_PRIM;
+    for (unsigned bits = mask; bits; bits &= bits - 1) {
+        const uint32_t id = node->child[__builtin_ctz(bits)] & ~GLINT_NODE_PRIM;
         if (geometry->prims[id].kind == GLINT_PRIM_SPHERE)
-            spheres |= left & -left;
+            spheres |= bits & -bits;
         else
             R(add_solid)(rounds, id, lane);
     }
@@ -318,9 +319,9 @@ static __attribute__((noinline)) void R(walk_in_rounds)(const glint_cast_args *a
                                                         const R(ray_group) * rays, unsigned lanes, R(rounds) * rounds)
 {
     for (unsigned going = lanes; going;) {
-        for (unsigned left = going; left; left &= left - 1) {
-            if (!R(step)(args, __builtin_ctz(left), rounds))
-                going &= ~(left & -left);
+        for (unsigned bits = going; bits; bits &= bits - 1) {
+            if (!R(step)(args, __builtin_ctz(bits), rounds))
+                going &= ~(bits & -bits);
             if (rounds->count > GLINT_ROUND_PAIRS - GLINT_NODE_WIDTH)
                 R(decide_triangles)(args, g, rounds);
             if (rounds->solids > GLINT_ROUND_SOLIDS - GLINT_NODE_WIDTH)

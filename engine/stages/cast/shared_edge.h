@@ -205,13 +205,13 @@ static inline rm R(meet_shared_edge)(const glint_cast_args *args, size_t at, uns
     _Alignas(64) real each_t[VR];
     unsigned begins = 0, anew = 0, through = 0;
     const unsigned by_edge = R(may_be_near)(table, edges, *t) & ~rm_bits(hit);
-    unsigned left = (~rm_bits(r_lt(r_set(most), R(abs)(h))) | rm_bits(soon) | by_edge) & ~own & ((1u << VR) - 1);
-    left &= (unsigned)args->active[at / GLINT_GROUP] >> at % GLINT_GROUP; // `leaving` is undefined in other lanes
-    if (left)
+    unsigned rest = (~rm_bits(r_lt(r_set(most), R(abs)(h))) | rm_bits(soon) | by_edge) & ~own & ((1u << VR) - 1);
+    rest &= (unsigned)args->active[at / GLINT_GROUP] >> at % GLINT_GROUP; // `leaving` is undefined in other lanes
+    if (rest)
         r_store(each_t, *t);
-    for (; left; left &= left - 1) {
-        const unsigned lane = left & -left;
-        const int j = __builtin_ctz(left);
+    for (; rest; rest &= rest - 1) {
+        const unsigned lane = rest & -rest;
+        const int j = __builtin_ctz(rest);
         const size_t i = at + (size_t)j;
         const uint32_t from_id = args->leaving[i];
         if (from_id == GLINT_MISS || table->prims[from_id].kind != GLINT_PRIM_TRIANGLE)

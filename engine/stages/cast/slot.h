@@ -17,16 +17,16 @@ INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, co
 {
     const float depth = seen->near[slot];
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
-    uint64_t left = R(groups_behind)(tile, gathered, seen->cells[slot], depth);
+    uint64_t groups = R(groups_behind)(tile, gathered, seen->cells[slot], depth);
     int count = 0;
-    if (!left)
+    if (!groups)
         return 0;
     const shape_on_screen shape = shape_of(node, seen, slot, &tile->args->geometry->prims[id], &tile->view);
     rod_on_screen rod = { .is = false };
     if (rods)
         see_rod(tile->args->geometry, &tile->args->geometry->prims[id], &tile->view, &rod);
-    for (; left; left &= left - 1) {
-        const R(tile_group) at = R(lowest_group)(tile, gathered, left);
+    for (; groups; groups &= groups - 1) {
+        const R(tile_group) at = R(lowest_group)(tile, gathered, groups);
         unsigned lanes = 0;
         if (!gathered && GLINT_WITH_LENS && tile->lens)
             lanes = R(lanes_through_lens)(tile, &shape, seen->middle[2][slot], depth, at.x, at.y);

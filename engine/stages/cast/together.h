@@ -210,8 +210,8 @@ static inline void R(meet_slot)(const glint_cast_args *args, uint32_t g, const g
         R(note_ball_of_group)(node, slot, walk, lanes, &rounds->first);
     } else {
         const unsigned near = lanes & R(rays_in_slot)(node, slot, walk, &rounds->first, depth);
-        for (unsigned left = near; left; left &= left - 1)
-            R(add_solid)(rounds, id, __builtin_ctz(left));
+        for (unsigned bits = near; bits; bits &= bits - 1)
+            R(add_solid)(rounds, id, __builtin_ctz(bits));
         if (rounds->solids == GLINT_ROUND_SOLIDS)
             R(decide_solids)(args, g, walk->rays, rounds);
     }
@@ -220,11 +220,11 @@ static inline void R(meet_slot)(const glint_cast_args *args, uint32_t g, const g
 /// Pushes a node on the stacks of the rays that reach it. Returns false if some stack is full.
 static inline bool R(leave_to_each)(const R(common_node) * entry, unsigned lanes, R(rounds) * rounds)
 {
-    for (unsigned left = lanes; left; left &= left - 1)
-        if (rounds->stack[__builtin_ctz(left)].height == GLINT_LEFT_NODES)
+    for (unsigned bits = lanes; bits; bits &= bits - 1)
+        if (rounds->stack[__builtin_ctz(bits)].height == GLINT_STACKED_NODES_MAX)
             return false;
-    for (unsigned left = lanes; left; left &= left - 1) {
-        const int lane = __builtin_ctz(left);
+    for (unsigned bits = lanes; bits; bits &= bits - 1) {
+        const int lane = __builtin_ctz(bits);
         R(node_stack) *stack = &rounds->stack[lane];
         stack->node[stack->height] = entry->node;
         stack->depth[stack->height++] = entry->depth[lane];
@@ -256,8 +256,8 @@ static inline bool R(step_together)(const glint_cast_args *args, uint32_t g, R(c
     const unsigned mask = R(boxes_in_slabs)(node, &walk->slabs, far, depth), prims = mask & prims_of_node(node);
     if (__builtin_popcount(mask) > __builtin_popcount(lanes) && R(leave_to_each)(entry, lanes, rounds))
         return true;
-    for (unsigned left = prims; left; left &= left - 1)
-        R(meet_slot)(args, g, node, __builtin_ctz(left), walk, lanes, rounds);
+    for (unsigned bits = prims; bits; bits &= bits - 1)
+        R(meet_slot)(args, g, node, __builtin_ctz(bits), walk, lanes, rounds);
     if (rounds->count >= VR)
         R(decide_triangles)(args, g, rounds);
     if (rounds->solids)
@@ -321,20 +321,20 @@ static __attribute__((noinline)) void R(walk_rays)(const glint_cast_args *args, 
     if (mixed)
         R(turn_rays)(args, at, lanes, &rounds->turned);
     rounds->count = rounds->solids = 0;
-    for (unsigned left = lanes; left; left &= left - 1)
-        rounds->stack[__builtin_ctz(left)].height = 0;
+    for (unsigned bits = lanes; bits; bits &= bits - 1)
+        rounds->stack[__builtin_ctz(bits)].height = 0;
     R(begin_together)(args, at, rays, lone, lanes, &walk);
     while (R(step_together)(args, g, &walk, rounds))
         ;
     if (rounds->count)
         R(decide_triangles)(args, g, rounds);
-    for (unsigned left = lanes; left; left &= left - 1) {
-        const int lane = __builtin_ctz(left);
+    for (unsigned bits = lanes; bits; bits &= bits - 1) {
+        const int lane = __builtin_ctz(bits);
         if (!rounds->stack[lane].height)
             continue;
         R(turn_stack)(&rounds->stack[lane]);
         R(load_lone_ray)(args, at + (size_t)lane, rays, lone, &rounds->ray[lane]);
-        alone |= left & -left;
+        alone |= bits & -bits;
     }
     if (mixed && alone)
         R(walk_in_rounds)(args, g, rays, alone, rounds);

@@ -138,8 +138,8 @@ static inline void R(aim_at_torus)(const glint_solid *solid, const vr f[3], cons
     const vr again = -DOT(q, e) / ee, around = r_set(1.0001) * (one + tube);
     for (int c = 0; c < 3; c++)
         l->p[c] = q[c] + e[c] * again;
-    const vr away2 = DOT(l->p, l->p), left = around * around - away2;
-    l->near = r_lt(zero, left);
+    const vr away2 = DOT(l->p, l->p), half2 = around * around - away2;
+    l->near = r_lt(zero, half2);
     if (!rm_bits(l->near))
         return;
     l->from = first + again;
@@ -148,7 +148,7 @@ static inline void R(aim_at_torus)(const glint_solid *solid, const vr f[3], cons
     l->begin = -l->from * l->length;
     for (int c = 0; c < 3; c++)
         l->u[c] = e[c] * l->per;
-    l->reach = r_sqrt(r_max(left, zero));
+    l->reach = r_sqrt(r_max(half2, zero));
     l->near = rm_and(l->near, rm_or(start.leaves, R(passes_tube)(l, r_set(2 * GLINT_ON_FACE) * r_set(solid->places))));
     l->bend = ((away2 + one) - l->tube2) - two * (l->u[0] * l->u[0] + l->u[1] * l->u[1]);
     l->lean = -two * (l->p[2] * l->u[2]);

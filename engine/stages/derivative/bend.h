@@ -78,9 +78,9 @@ INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const 
     const vd curved = side * d_set(round ? 1 / prim->radius : 1);
     for (int c = 0; c < 3; c++) {
         const vd moved = carried[c] + further * rays->direction[c];
-        const vd left = (moved - d_set(part->place[c])) - off[c] * d_set(part->growth);
+        const vd offset = (moved - d_set(part->place[c])) - off[c] * d_set(part->growth);
         out[0][c] = moved;
-        out[1][c] = d_either(round, left * curved, side * d_set(part->normal[c]));
+        out[1][c] = d_either(round, offset * curved, side * d_set(part->normal[c]));
         out[2][c] = (away * eye[c] - rays->turned[c]) * shorter;
     }
 }

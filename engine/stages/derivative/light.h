@@ -219,27 +219,27 @@ INNER shared_colors share_colors(const glint_slope_args *args, const unsigned sl
 }
 
 /// Returns the light that VD lanes reflect, in channel c.
-INNER vs left_of(const glint_slope_args *args, const shared_colors *k, const shine_lanes *s, vs specular, vs grazing,
-                 const unsigned slopes, int c, int i)
+INNER vs reflected_light(const glint_slope_args *args, const shared_colors *k, const shine_lanes *s, vs specular,
+                         vs grazing, const unsigned slopes, int c, int i)
 {
     const glint_derivative_source *source = args->source;
     const vs one = s_set(1);
-    vs left = s_keep(true, s_mul(k->diffuse[c], s->cosine));
+    vs light_out = s_keep(true, s_mul(k->diffuse[c], s->cosine));
     if (args->planes)
-        left = s_keep(true, s_mul(left, take_plane(args->planes, GLINT_DERIVED_DIFFUSE + c, slopes, i, one)));
+        light_out = s_keep(true, s_mul(light_out, take_plane(args->planes, GLINT_DERIVED_DIFFUSE + c, slopes, i, one)));
     if (args->material->highlight != GLINT_HIGHLIGHT_NONE) {
         vs shiny = s_keep(true, s_mul(k->specular[c], specular));
         if (args->material->highlight == GLINT_HIGHLIGHT_FACETS)
             shiny = s_keep(true, s_add(shiny, s_mul(k->grazing[c], grazing)));
         if (args->planes)
             shiny = s_keep(true, s_mul(shiny, take_plane(args->planes, GLINT_DERIVED_SPECULAR + c, slopes, i, one)));
-        left = s_keep(true, s_add(left, shiny));
+        light_out = s_keep(true, s_add(light_out, shiny));
     }
     if (s->weighs)
-        left = s_keep(true, s_mul(left, s->weight));
+        light_out = s_keep(true, s_mul(light_out, s->weight));
     if (source->tint[0])
-        left = s_keep(true, s_mul(left, s_load(source->tint[c], source->tint_slope[c], true, i)));
-    return left;
+        light_out = s_keep(true, s_mul(light_out, s_load(source->tint[c], source->tint_slope[c], true, i)));
+    return light_out;
 }
 
 INNER void slope_lanes(const glint_slope_args *args, const shared_colors *k, const unsigned slopes, int i)
@@ -258,10 +258,10 @@ INNER void slope_lanes(const glint_slope_args *args, const shared_colors *k, con
         specular = power_lanes(m, power, &s, seen.normal, seen.eye);
     }
     for (int c = 0; c < 3; c++) {
-        const vs left = left_of(args, k, &s, specular, grazing, slopes, c, i);
-        d_store(args->sum[c] + i, d_load(args->sum[c] + i) + d_select(reached, left.d, d_set(0)));
+        const vs light_out = reflected_light(args, k, &s, specular, grazing, slopes, c, i);
+        d_store(args->sum[c] + i, d_load(args->sum[c] + i) + d_select(reached, light_out.d, d_set(0)));
         if (args->whole[0])
-            d_store(args->whole[c] + i, d_load(args->whole[c] + i) + d_select(reached, left.v, d_set(0)));
+            d_store(args->whole[c] + i, d_load(args->whole[c] + i) + d_select(reached, light_out.v, d_set(0)));
     }
 }
 

@@ -392,8 +392,8 @@ static void R(note_cells)(R(tile_cast) * tile, int g, float far)
     for (unsigned turns = pixels->turns[g]; turns; turns &= turns - 1) {
         const uint32_t cell = pixels->cell[g][__builtin_ctz(turns)];
         float most = -HUGE_VALF;
-        for (uint64_t left = (&pixels->in_cell[0][0])[cell]; left; left &= left - 1)
-            most = larger(most, pixels->far[__builtin_ctzll(left)]);
+        for (uint64_t bits = (&pixels->in_cell[0][0])[cell]; bits; bits &= bits - 1)
+            most = larger(most, pixels->far[__builtin_ctzll(bits)]);
         tile->far[cell / SCREEN_ACROSS][cell % SCREEN_ACROSS] = most;
     }
 }

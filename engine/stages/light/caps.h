@@ -20,7 +20,7 @@ typedef struct R(light_cap) {
     _Alignas(64) real direction[3][GLINT_GROUP]; ///< unit, towards its centre
     _Alignas(64) real sine[GLINT_GROUP], cosine[GLINT_GROUP]; ///< of half the cap's radius
     _Alignas(64) real power[GLINT_GROUP]; ///< squared length of a tangent, in the light's units
-    _Alignas(64) real left[GLINT_GROUP]; ///< visible share so far
+    _Alignas(64) real visible[GLINT_GROUP]; ///< visible share so far
     unsigned around; ///< lanes inside the light
 } R(light_cap);
 
@@ -57,7 +57,7 @@ static void R(make_light_cap)(const glint_occlude_args *args, size_t at, R(light
         r_store(cap->cosine + i, cosine);
         r_store(cap->sine + i, r_min(radius / d, one) / (r_set(2) * cosine));
         r_store(cap->power + i, power);
-        r_store(cap->left + i, one);
+        r_store(cap->visible + i, one);
         cap->around |= (rm_bits(r_lt(radius, d)) ^ ((1u << VR) - 1)) << i;
     }
 }
@@ -141,8 +141,8 @@ static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, siz
             share = r_select(before, one - covered, one);
             share = r_select(rm_or(mine, r_lt(c, zero)), within, share);
         }
-        const vr left = r_load(cap->left + i);
-        r_store(cap->left + i, r_select(lanes, left * share, left));
+        const vr visible = r_load(cap->visible + i);
+        r_store(cap->visible + i, r_select(lanes, visible * share, visible));
     }
 }
 
@@ -206,7 +206,7 @@ static unsigned R(caps_of_group)(const R(shadow_tile) * tile, uint32_t g, unsign
     } while (count == GLINT_CAPS && !is_stopped(args->stop));
     unsigned open = 0;
     for (int i = 0; i < GLINT_GROUP; i += VR)
-        open |= rm_bits(r_lt(r_set(0), r_load(cap->left + i))) << i;
+        open |= rm_bits(r_lt(r_set(0), r_load(cap->visible + i))) << i;
     return open & lit;
 }
 
@@ -223,8 +223,8 @@ static __attribute__((noinline)) void R(occlude_caps)(const glint_occlude_args *
             args->visible[at + (size_t)i] = (float)(lit[g] >> i & 1);
         if (lit[g] && tile.count > 0) {
             open = R(caps_of_group)(&tile, g, lit[g], &cap);
-            for (unsigned left = lit[g]; left; left &= left - 1)
-                args->visible[at + (unsigned)__builtin_ctz(left)] = (float)cap.left[__builtin_ctz(left)];
+            for (unsigned bits = lit[g]; bits; bits &= bits - 1)
+                args->visible[at + (unsigned)__builtin_ctz(bits)] = (float)cap.visible[__builtin_ctz(bits)];
         }
         args->open[0][g] = (uint16_t)open;
     }

@@ -42,10 +42,10 @@ static inline glint_cone_sample glint_cone_at(const glint_light_sample *light_sa
     const double length2 = glint_cone_dot(to, to), d = sqrt(length2), excess = (d - r) * (d + r);
     const double g = excess / length2;
     if (g < (glint_cone_dot(normal, to) > 0 ? slack : -slack)) { // inside, or on the surface: half of all directions
-        const double left = 0 - excess > 0 ? 0 - excess : 0, s = sqrt(u * (2 - u));
+        const double inside = 0 - excess > 0 ? 0 - excess : 0, s = sqrt(u * (2 - u));
         glint_cone_turn(normal, s * turn[0], s * turn[1], 1 - u, out.direction);
-        const double b = 0 - glint_cone_dot(to, out.direction), root = sqrt(b * b + left);
-        t = b > 0 ? left / (b + root) : root - b;
+        const double b = 0 - glint_cone_dot(to, out.direction), root = sqrt(b * b + inside);
+        t = b > 0 ? inside / (b + root) : root - b;
         out.weight = 2;
     } else {
         const double open = g > 0 ? g : 0, q = r / d, q2 = q * q, h = 1 / (1 + sqrt(open));

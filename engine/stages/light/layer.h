@@ -170,8 +170,8 @@ static uint32_t sort_layer(const glint_occlude_args *args, const layer_frame *fr
                     f_store(slope[j] + i, lanes.slope[j]);
                 }
             }
-            for (unsigned left = places->within[s][g]; left; left &= left - 1) {
-                const int lane = __builtin_ctz(left);
+            for (unsigned bits = places->within[s][g]; bits; bits &= bits - 1) {
+                const int lane = __builtin_ctz(bits);
                 const uint32_t to = next[places->cell[from + (size_t)lane]]++;
                 for (int j = 0; j < 2; j++) {
                     rays->base[j][to] = base[j][lane];

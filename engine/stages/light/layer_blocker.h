@@ -192,10 +192,10 @@ INNER void R(block_segments)(R(layers) * l, const R(layer_blocker) * b, uint32_t
             met = R(meet_middle)(&l->rays, b, i);
         else
             met = R(meet_extent)(&l->rays, b, i);
-        for (unsigned left = met.certain & in_run; left; left &= left - 1)
-            R(close_segment)(l, i + (unsigned)__builtin_ctz(left));
-        for (unsigned left = met.near & ~met.certain & in_run; left; left &= left - 1) {
-            const uint32_t n = i + (unsigned)__builtin_ctz(left);
+        for (unsigned bits = met.certain & in_run; bits; bits &= bits - 1)
+            R(close_segment)(l, i + (unsigned)__builtin_ctz(bits));
+        for (unsigned bits = met.near & ~met.certain & in_run; bits; bits &= bits - 1) {
+            const uint32_t n = i + (unsigned)__builtin_ctz(bits);
             R(add_segment)(l, b->prim, n, (l->rays.on[n] & ~BEAM_BACK) == b->at->id);
         }
     }

@@ -198,8 +198,8 @@ static void R(walk_layers)(R(layers) * l)
     while (height > 0 && l->open && !is_stopped(tile->args->stop)) {
         const glint_node *node = &geometry->nodes[stack[--height]];
         const unsigned inside = boxes_in_shaft(node, &shaft), prims = prims_of_node(node);
-        for (unsigned left = inside & ~prims; left; left &= left - 1)
-            stack[height++] = node->child[__builtin_ctz(left)];
+        for (unsigned bits = inside & ~prims; bits; bits &= bits - 1)
+            stack[height++] = node->child[__builtin_ctz(bits)];
         if (!(inside & prims))
             continue;
         if (l->count + GLINT_NODE_WIDTH > LAYER_PRIMS)

@@ -189,14 +189,14 @@ INNER void R(sort_lanes)(const glint_light_args *args, const glint_shade_materia
 }
 
 /// Sorts lanes by the highlight of their material.
-INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned left, R(lit_point) * surface)
+INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned rest, R(lit_point) * surface)
 {
     surface->phong = surface->blinn = 0;
-    while (args->highlights && left) {
-        const uint32_t material = args->material[at + (unsigned)__builtin_ctz(left)];
+    while (args->highlights && rest) {
+        const uint32_t material = args->material[at + (unsigned)__builtin_ctz(rest)];
         const unsigned lanes = lanes_equal(args->material + at, material);
         R(sort_lanes)(args, &args->materials[material], lanes, surface);
-        left &= ~lanes;
+        rest &= ~lanes;
     }
 }
 

@@ -49,10 +49,10 @@ INNER bool R(find_balls)(const glint_surface_args *surface, const glint_light_ar
     point->phong = point->blinn = 0;
     if (hits != 0xffff)
         lanes_put(surface->material + at, 0xffff, 0);
-    for (unsigned left = hits, lanes; left; left &= ~lanes) {
-        const uint32_t id = surface->prim[at + (unsigned)__builtin_ctz(left)];
+    for (unsigned rest = hits, lanes; rest; rest &= ~lanes) {
+        const uint32_t id = surface->prim[at + (unsigned)__builtin_ctz(rest)];
         const glint_prim *prim = &surface->prims[id];
-        lanes = lanes_equal(surface->prim + at, id) & left;
+        lanes = lanes_equal(surface->prim + at, id) & rest;
         if (prim->kind != GLINT_PRIM_SPHERE || !prim->two_sided)
             return false;
         R(put_ball)(prim, lanes, balls);

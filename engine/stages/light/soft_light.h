@@ -155,14 +155,14 @@ INNER unsigned R(add_sample)(const R(soft_call) * call, const int kind, const bo
 }
 
 /// Sorts a group's lanes by their materials.
-static void R(sort_gloss)(const glint_light_args *args, size_t at, unsigned left, R(soft_gloss) * gloss)
+static void R(sort_gloss)(const glint_light_args *args, size_t at, unsigned rest, R(soft_gloss) * gloss)
 {
     gloss->phong = gloss->blinn = gloss->cosine = 0;
-    while (args->highlights && left) {
-        const uint32_t index = args->material[at + (unsigned)__builtin_ctz(left)];
+    while (args->highlights && rest) {
+        const uint32_t index = args->material[at + (unsigned)__builtin_ctz(rest)];
         const glint_shade_material *material = &args->materials[index];
-        const unsigned lanes = lanes_equal(args->material + at, index) & left;
-        left &= ~lanes;
+        const unsigned lanes = lanes_equal(args->material + at, index) & rest;
+        rest &= ~lanes;
         if (material->highlight == GLINT_HIGHLIGHT_PHONG)
             gloss->phong |= lanes;
         else if (GLINT_WITH_BLINN && material->highlight == GLINT_HIGHLIGHT_BLINN)

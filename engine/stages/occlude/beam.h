@@ -54,8 +54,8 @@ static unsigned cells_of_leaf(const screen_view *view, const node_on_screen *see
         i_store(cells + i, in);
         mask &= ~(fm_bits(away) << i);
     }
-    for (unsigned left = edge_on; left; left &= left - 1)
-        cells[__builtin_ctz(left)] = seen->cells[__builtin_ctz(left)];
+    for (unsigned bits = edge_on; bits; bits &= bits - 1)
+        cells[__builtin_ctz(bits)] = seen->cells[__builtin_ctz(bits)];
     return mask | edge_on;
 }
 

@@ -330,8 +330,8 @@ static unsigned R(stay_in_combined)(const glint_occlude_args *args, const glint_
     if (!R(lanes_on_parts)(args, whole, at))
         return wanted; // no lane is on a part, which saves loading them
     const unsigned back = args->back[at / GLINT_GROUP];
-    for (uint64_t left = whole->all & whole->needs; left && wanted; left &= left - 1) {
-        const uint32_t index = first + (uint32_t)__builtin_ctzll(left);
+    for (uint64_t bits = whole->all & whole->needs; bits && wanted; bits &= bits - 1) {
+        const uint32_t index = first + (uint32_t)__builtin_ctzll(bits);
         const unsigned into = args->geometry->prims[index].turned ? ~back : back;
         wanted &= ~lanes_equal(args->prim + at, index) | into;
     }
@@ -356,8 +356,8 @@ static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const gli
         R(load3)(args->point, at + i, p);
         R(directions_to)(args, position, at, i, d);
         const R(whole_rays) rays = { p, d, args->prim + at + i, back >> i, lanes };
-        for (unsigned left = lanes, hit; left;) {
-            left = R(next_change)(args->geometry, whole, &rays, left, &from, &s, &t, &hit);
+        for (unsigned pending = lanes, hit; pending;) {
+            pending = R(next_change)(args->geometry, whole, &rays, pending, &from, &s, &t, &hit);
             if (!args->directional)
                 hit &= rm_bits(r_lt(t * r_set(args->scale), r_set(1)));
             blocked |= hit << i;

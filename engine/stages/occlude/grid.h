@@ -175,12 +175,13 @@ static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_runs
     if (args->open[0][g] & ~places->known)
         return false;
     args->open[0][g] &= (uint16_t)~grid_own(args, at, args->open[0][g] & args->back[g]);
-    const unsigned left = args->open[0][g] & grid_cells(grid, places);
-    if (!left)
+    const unsigned pending = args->open[0][g] & grid_cells(grid, places);
+    if (!pending)
         return true;
-    const unsigned first = (unsigned)__builtin_ctz(left), same = left & lanes_equal(places->cell, places->cell[first]);
+    const unsigned first = (unsigned)__builtin_ctz(pending),
+                   same = pending & lanes_equal(places->cell, places->cell[first]);
     if (__builtin_popcount(same) < GRID_TOGETHER) {
-        grid_add_points(grid, places, g, left, points);
+        grid_add_points(grid, places, g, pending, points);
         return true;
     }
     grid_run run = grid_look_up(grid, places, first);
@@ -188,7 +189,7 @@ static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_runs
     run.group = (uint16_t)g;
     if (run.next < run.end)
         runs->run[runs->count++] = run;
-    grid_add_points(grid, places, g, left & ~same, points);
+    grid_add_points(grid, places, g, pending & ~same, points);
     return true;
 }
 

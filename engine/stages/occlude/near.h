@@ -89,17 +89,17 @@ static unsigned R(near_occluders)(const R(shadow_tile) * tile, const R(near_list
 {
     const unsigned middle = lanes & NEAR_MIDDLE;
     const uint32_t *prim = tile->args->prim + group->at;
-    unsigned own = 0, left = lanes;
+    unsigned own = 0, rest = lanes;
     float from[3];
     R(place_group)(tile, group);
     for (int k = 0; k < 3; k++)
         from[k] = group->local[k][__builtin_ctz(middle ? middle : lanes)];
     const unsigned near = R(balls_near)(tile, list, from, R(reach_of_group)(group, from, lanes));
-    for (int count = 0; left; count++) {
-        const uint32_t id = prim[__builtin_ctz(left)];
+    for (int count = 0; rest; count++) {
+        const uint32_t id = prim[__builtin_ctz(rest)];
         own |= R(places_of)(tile, list, id);
-        left &= ~lanes_equal(prim, id);
-        if (!left && !count && !(lanes & tile->args->back[group->at / GLINT_GROUP]))
+        rest &= ~lanes_equal(prim, id);
+        if (!rest && !count && !(lanes & tile->args->back[group->at / GLINT_GROUP]))
             return near & ~(own & list->spheres);
     }
     return near | own;

@@ -231,8 +231,8 @@ static unsigned R(walk_group)(const R(shadow_tile) * tile, const double (*place)
         open = R(walk_shaft)(tile, place, group, open, &done);
         group->shafts_failed = done ? 0 : group->shafts_failed + 1;
     }
-    for (unsigned left = open; left && !done && !is_stopped(tile->args->stop); left &= (left - 1) & open)
-        open = R(walk_lane)(tile, place, group, __builtin_ctz(left), open);
+    for (unsigned bits = open; bits && !done && !is_stopped(tile->args->stop); bits &= (bits - 1) & open)
+        open = R(walk_lane)(tile, place, group, __builtin_ctz(bits), open);
     return open;
 }
 

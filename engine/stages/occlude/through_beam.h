@@ -130,8 +130,8 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
 static void R(block_prims)(R(beam) * beam, const glint_node *node, const node_on_screen *seen, unsigned mask)
 {
     const unsigned triangles = triangles_in(beam->tile->args->geometry, node, mask);
-    for (unsigned left = mask & ~triangles; left; left &= left - 1)
-        R(block_cells)(beam, node, seen, __builtin_ctz(left));
+    for (unsigned bits = mask & ~triangles; bits; bits &= bits - 1)
+        R(block_cells)(beam, node, seen, __builtin_ctz(bits));
     if (triangles)
         R(block_triangles)(beam, node, seen, triangles);
 }
@@ -158,8 +158,8 @@ static void R(walk_beam)(R(beam) * beam)
             const unsigned mask = boxes_on_screen(node, &beam->view, &seen[turn]), all = prims_of_node(node);
             prims = slots_before(&behind, &seen[turn], mask & all);
             prefetch_prims(geometry, node, prims);
-            for (unsigned left = mask & ~all; left; left &= left - 1)
-                stack[height++] = entry_of(node, &seen[turn], __builtin_ctz(left));
+            for (unsigned bits = mask & ~all; bits; bits &= bits - 1)
+                stack[height++] = entry_of(node, &seen[turn], __builtin_ctz(bits));
         }
         prefetch_nodes(geometry, stack, height);
         if (waiting_prims)
@@ -253,8 +253,8 @@ static void R(occlude_point)(const glint_occlude_args *args)
         if (!near[g])
             continue;
         R(begin_group)(g, &group);
-        for (unsigned left = near[g]; left && open; left &= left - 1)
-            open &= ~R(blocked_by)(&tile, tile.occluders[__builtin_ctz(left)], &group, open);
+        for (unsigned bits = near[g]; bits && open; bits &= bits - 1)
+            open &= ~R(blocked_by)(&tile, tile.occluders[__builtin_ctz(bits)], &group, open);
         out[g] = (uint16_t)open;
     }
 }

@@ -98,14 +98,14 @@ static void texel_add(const op_call *call, vd u, vd v, const double level[VD], u
 {
     _Alignas(64) double width[VD] = { 0 }, height[VD] = { 0 };
     texel_place at;
-    for (unsigned left = lanes; left; left &= left - 1) {
-        const int lane = __builtin_ctz(left);
+    for (unsigned bits = lanes; bits; bits &= bits - 1) {
+        const int lane = __builtin_ctz(bits);
         width[lane] = call->texture->levels[(int)level[lane] + next].width;
         height[lane] = call->texture->levels[(int)level[lane] + next].height;
     }
     texel_locate(u, v, d_load(width), d_load(height), &at);
-    for (unsigned left = lanes; left; left &= left - 1) {
-        const int lane = __builtin_ctz(left);
+    for (unsigned bits = lanes; bits; bits &= bits - 1) {
+        const int lane = __builtin_ctz(bits);
         const glint_texture_level *from = &call->texture->levels[(int)level[lane] + next];
         const float *corner[4];
         double made[GLINT_RESULTS_MAX];

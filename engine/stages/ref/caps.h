@@ -54,8 +54,8 @@ static REAL NAME(covered_part)(NAME(cap) s, NAME(cap) a)
 }
 
 /// Returns the visible share of the light from a point past a primitive.
-static REAL NAME(share_left)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) point, NAME(vec3) l,
-                             bool own)
+static REAL NAME(visible_share)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) point, NAME(vec3) l,
+                                bool own)
 {
     const double radius = args->light_sample[0]->radius;
     double away[3], depth;
@@ -83,7 +83,7 @@ static REAL NAME(share_seen)(const glint_occlude_args *args, uint32_t i)
 {
     NAME(vec3) point = NAME(load)(args->point, i);
     NAME(vec3) l = NAME(times)(NAME(sub)(NAME(rounded)(args->position), point), (REAL)args->scale);
-    REAL left = 1;
+    REAL visible = 1;
     bool back = args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
     if (!((REAL)(args->light_sample[0]->radius * args->scale) < NAME(square_root)(NAME(length2)(l))))
         return 1; // inside the light
@@ -93,9 +93,9 @@ static REAL NAME(share_seen)(const glint_occlude_args *args, uint32_t i)
         if (own && (prim->kind == GLINT_PRIM_PLANE || !back))
             continue;
         ++*args->overlaps;
-        left = left * NAME(share_left)(args, prim, point, l, own);
+        visible = visible * NAME(visible_share)(args, prim, point, l, own);
     }
-    return left;
+    return visible;
 }
 
 static void NAME(occlude_caps)(const glint_occlude_args *args)

@@ -169,24 +169,24 @@ static glint_dual dual_plane(const glint_derivative_planes *planes, int which, i
 }
 
 /// Returns the light of channel c that a material reflects to the eye.
-static glint_dual dual_left(const glint_slope_args *args, const dual_shine *s, glint_dual specular, glint_dual grazing, int c,
-                            int i)
+static glint_dual dual_reflected_light(const glint_slope_args *args, const dual_shine *s, glint_dual specular,
+                                       glint_dual grazing, int c, int i)
 {
     const glint_derivative_light *light = args->light;
     const glint_derivative_material *m = args->material;
     const glint_dual one = dual(1, 0), ks = dual_plane(args->planes, GLINT_DERIVED_SPECULAR + c, i, one);
-    glint_dual left = dual_mul(dual_mul(m->diffuse[c], light->diffuse[c]), s->cosine);
-    left = dual_mul(left, dual_plane(args->planes, GLINT_DERIVED_DIFFUSE + c, i, one));
+    glint_dual light_out = dual_mul(dual_mul(m->diffuse[c], light->diffuse[c]), s->cosine);
+    light_out = dual_mul(light_out, dual_plane(args->planes, GLINT_DERIVED_DIFFUSE + c, i, one));
     glint_dual shiny = dual_mul(dual_mul(m->specular[c], light->specular[c]), specular);
     if (m->highlight == GLINT_HIGHLIGHT_FACETS)
         shiny = dual_add(shiny, dual_mul(dual_mul(m->grazing[c], light->specular[c]), grazing));
     if (m->highlight != GLINT_HIGHLIGHT_NONE)
-        left = dual_add(left, dual_mul(shiny, ks));
+        light_out = dual_add(light_out, dual_mul(shiny, ks));
     if (s->weighs)
-        left = dual_mul(left, s->weight);
+        light_out = dual_mul(light_out, s->weight);
     if (args->source->tint[0])
-        left = dual_mul(left, dual_at(args->source->tint[c], args->source->tint_slope[c], i));
-    return left;
+        light_out = dual_mul(light_out, dual_at(args->source->tint[c], args->source->tint_slope[c], i));
+    return light_out;
 }
 
 static void slope_lane(const glint_slope_args *args, int i)
@@ -206,10 +206,10 @@ static void slope_lane(const glint_slope_args *args, int i)
     else if (m->highlight != GLINT_HIGHLIGHT_NONE)
         specular = dual_strength(m, dual_plane(args->planes, GLINT_DERIVED_SHININESS, i, m->shininess), &s, &w);
     for (int c = 0; c < 3; c++) {
-        const glint_dual left = dual_left(args, &s, specular, grazing, c, i);
-        args->sum[c][i] += left.slope;
+        const glint_dual light_out = dual_reflected_light(args, &s, specular, grazing, c, i);
+        args->sum[c][i] += light_out.slope;
         if (args->whole[0])
-            args->whole[c][i] += left.value;
+            args->whole[c][i] += light_out.value;
     }
 }
 

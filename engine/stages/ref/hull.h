@@ -112,10 +112,11 @@ typedef struct NAME(hull_change) {
     uint32_t triangle; ///< the first of the triangles that are crossed there in the direction of the change
 } NAME(hull_change);
 
-static void NAME(note_crossing)(int winding, bool here, bool later, uint32_t triangle, int left[2], uint32_t found[2])
+static void NAME(note_crossing)(int winding, bool here, bool later, uint32_t triangle, int remaining[2],
+                                uint32_t found[2])
 {
-    left[0] += here || later ? winding : 0;
-    left[1] += later ? winding : 0;
+    remaining[0] += here || later ? winding : 0;
+    remaining[1] += later ? winding : 0;
     if (here && winding && found[winding > 0] == GLINT_MISS)
         found[winding > 0] = triangle;
 }
@@ -125,15 +126,15 @@ static NAME(hull_change) NAME(hull_change_at)(const glint_geometry_table *table,
 {
     const glint_hull *hull = &table->hulls[part->item];
     const REAL least = (REAL)GLINT_LEAST_T;
-    int left[2] = { 0, 0 };
+    int remaining[2] = { 0, 0 };
     uint32_t found[2] = { GLINT_MISS, GLINT_MISS }, triangle = GLINT_MISS;
     int winding = NAME(hull_crossing_at_start)(table, part, origin, direction, start, &triangle);
-    NAME(note_crossing)(winding, t == least, t < least, triangle, left, found);
+    NAME(note_crossing)(winding, t == least, t < least, triangle, remaining, found);
     for (uint32_t k = 0; k < hull->count; k++) {
         REAL at;
         winding = NAME(hull_crossing)(table, part, k, origin, direction, start, &at);
         if (winding)
-            NAME(note_crossing)(winding, at == t, at > t, table->prim_count + hull->first + k, left, found);
+            NAME(note_crossing)(winding, at == t, at > t, table->prim_count + hull->first + k, remaining, found);
     }
-    return (NAME(hull_change)) { left[0] > 0, left[1] > 0, found[left[0] > 0] };
+    return (NAME(hull_change)) { remaining[0] > 0, remaining[1] > 0, found[remaining[0] > 0] };
 }

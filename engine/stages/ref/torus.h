@@ -97,9 +97,9 @@ static NAME(torus_line)
     l.per = 1 / l.length;
     l.begin = -l.from * l.length;
     l.u = NAME(times)(e, l.per);
-    REAL away2 = NAME(length2)(l.p), left = around * around - away2;
-    l.near = left > 0;
-    l.reach = NAME(square_root)(NAME(max)(left, 0));
+    REAL away2 = NAME(length2)(l.p), half2 = around * around - away2;
+    l.near = half2 > 0;
+    l.reach = NAME(square_root)(NAME(max)(half2, 0));
     l.bend = ((away2 + 1) - l.tube * l.tube) - 2 * (l.u.x * l.u.x + l.u.y * l.u.y);
     l.lean = -2 * (l.p.z * l.u.z);
     if (!l.near)

@@ -62,8 +62,8 @@ INNER bool find_mixed(const glint_shade_args *args, uint32_t g, mixed_table *tab
                       float lanes_of[MIXED_COUNT][GLINT_GROUP], bool *specular)
 {
     memset(lanes_of, 0, sizeof(float[MIXED_COUNT][GLINT_GROUP]));
-    for (unsigned left = args->hits[g], lanes; left; left &= ~lanes) {
-        lanes = left;
+    for (unsigned rest = args->hits[g], lanes; rest; rest &= ~lanes) {
+        lanes = rest;
         const glint_shade_material *material = material_of(args, (size_t)g * GLINT_GROUP, &lanes);
         if (!is_plain_material(material))
             return false;

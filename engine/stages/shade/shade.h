@@ -21,8 +21,8 @@ static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, u
     for (int c = 0; args->first && empty && c < 3; c++)
         for (int i = 0; i < GLINT_GROUP; i += VD)
             add_where(to->sum[GLINT_TERM_BACKGROUND][c] + to->at, i, false, empty, d_set(args->background[c]));
-    for (unsigned left = hits, lanes; left; left &= ~lanes) {
-        lanes = left;
+    for (unsigned rest = hits, lanes; rest; rest &= ~lanes) {
+        lanes = rest;
         const glint_shade_material *material = material_of(args, (size_t)g * GLINT_GROUP, &lanes);
         const bool specular = args->highlights && material->highlight;
         if (GLINT_WITH_PROGRAM && material->planes) {
@@ -127,18 +127,18 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
                        mixed_table *mixed)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
-    unsigned left = args->hits[g];
+    unsigned rest = args->hits[g];
     light_factors factors;
     group_terms terms;
-    if (simple && !left && args->active[g] == 0xffff) {
+    if (simple && !rest && args->active[g] == 0xffff) {
         const float background[3] = { (float)args->background[0], (float)args->background[1],
                                       (float)args->background[2] };
         store_even(args, background, at);
         return;
     }
     bool begun = false;
-    for (unsigned lanes; left; left &= ~lanes) {
-        lanes = left;
+    for (unsigned lanes; rest; rest &= ~lanes) {
+        lanes = rest;
         const glint_shade_material *material = material_of(args, at, &lanes);
         if (simple && lanes != 0xffff && !begun && shade_mixed(args, g, mixed))
             return;

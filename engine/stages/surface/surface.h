@@ -415,23 +415,23 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
     const uint32_t g = place.g;
     const size_t at = (size_t)g * GLINT_GROUP;
     const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
-    unsigned left = args->hits[g], back = 0, dark = 0;
-    if (left != 0xffff)
+    unsigned rest = args->hits[g], back = 0, dark = 0;
+    if (rest != 0xffff)
         R(clear_surface)(args, at);
     const bool meshes = outputs == R(MIXED) && args->slack; // only triangles need slack
-    const unsigned mesh = meshes ? R(mesh_lanes)(args, at, left) : 0;
+    const unsigned mesh = meshes ? R(mesh_lanes)(args, at, rest) : 0;
     if (mesh) {
         back = R(surface_mesh)(args, walk, box, directions, at, mesh);
         dark = back & R(put_materials)(args, at, mesh);
-        left &= ~mesh;
+        rest &= ~mesh;
     }
-    while (left) {
+    while (rest) {
         R(seen_slot) *slot = R(last_seen)(walk, outputs == R(MIXED));
         uint32_t id = slot->prim.id; // the last primitive of the previous group is not looked up again
-        unsigned lanes = lanes_equal(args->prim + at, id) & left, behind = 0;
+        unsigned lanes = lanes_equal(args->prim + at, id) & rest, behind = 0;
         if (!lanes) {
-            id = args->prim[at + (unsigned)__builtin_ctz(left)];
-            lanes = lanes_equal(args->prim + at, id) & left;
+            id = args->prim[at + (unsigned)__builtin_ctz(rest)];
+            lanes = lanes_equal(args->prim + at, id) & rest;
             R(look_at)(args, walk, outputs == R(MIXED), id);
             slot = R(last_seen)(walk, outputs == R(MIXED));
         }
@@ -452,7 +452,7 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
         back |= behind;
         if (!slot->prim.prim->two_sided)
             dark |= behind;
-        left &= ~lanes;
+        rest &= ~lanes;
     }
     if (outputs == R(POINTS_ONLY))
         return;

@@ -55,12 +55,12 @@ static void R(vertex)(const glint_vertex_args *args)
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
         const size_t at = (size_t)place.g * GLINT_GROUP;
         const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
-        unsigned left = args->wanted[place.g];
-        while (left) {
-            const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(left)];
-            const unsigned lanes = lanes_equal(args->prim + at, id) & left;
+        unsigned rest = args->wanted[place.g];
+        while (rest) {
+            const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(rest)];
+            const unsigned lanes = lanes_equal(args->prim + at, id) & rest;
             R(vertex_lanes)(args, &args->prims[id], directions, at, lanes);
-            left &= ~lanes;
+            rest &= ~lanes;
         }
     }
 }
