@@ -179,7 +179,7 @@ static void exchange_tiles(glint_reuse *reuse, glint_earlier_tiles *slot)
     memcpy(reuse->light_recurs, other.light_recurs, sizeof reuse->light_recurs);
 }
 
-bool glint_earlier_tiles_found(glint_reuse *reuse, glint_key key)
+bool glint_earlier_find_tiles(glint_reuse *reuse, glint_key key)
 {
     if (!reuse->earlier && reuse->tile_count &&
         sizeof *reuse->earlier <= (reuse->budget - reuse->pictures - reuse->used) / 16) {

@@ -81,7 +81,7 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
         glint_reuse_clear(reuse);
         make_slots(reuse, plan, tile_count, lights);
     }
-    reuse->keep_cast = glint_earlier_tiles_found(reuse, plan->keys[GLINT_STAGE_CAST]);
+    reuse->keep_cast = glint_earlier_find_tiles(reuse, plan->keys[GLINT_STAGE_CAST]);
     reuse->cast = plan->keys[GLINT_STAGE_CAST];
     reuse->keep_pattern = plan->patterns && glint_key_equal(reuse->pattern, plan->keys[GLINT_STAGE_PATTERN]);
     reuse->pattern = plan->keys[GLINT_STAGE_PATTERN];

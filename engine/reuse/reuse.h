@@ -154,7 +154,7 @@ bool glint_recent_has(glint_recent *recent, size_t size, glint_key key);
 
 /// reuse/earlier.c, for glint_reuse_begin: finds tiles with the frame's hits among earlier frames, with their lights'
 /// keys. Returns whether hits are cached.
-bool glint_earlier_tiles_found(glint_reuse *reuse, glint_key key);
+bool glint_earlier_find_tiles(glint_reuse *reuse, glint_key key);
 /// Does the same for each light: fills in its key and whether it is cached.
 void glint_earlier_lights(glint_reuse *reuse, const glint_plan *plan);
 void glint_earlier_clear(glint_reuse *reuse);

@@ -131,7 +131,7 @@ static double volume_of(const glint_mesh *mesh)
 
 glint_status glint_mesh_find_closure(glint_mesh *mesh, glint_error *error)
 {
-    if (mesh->closure.found)
+    if (mesh->closure.computed)
         return GLINT_OK;
     seams s = { .mesh = mesh, .slots = power_above(4 * mesh->triangle_count) };
     s.place = malloc(mesh->vertex_count * sizeof *s.place);
@@ -141,7 +141,7 @@ glint_status glint_mesh_find_closure(glint_mesh *mesh, glint_error *error)
         count_edges(&s);
         find_open_edge(&s, &mesh->closure);
         mesh->closure.inverted = volume_of(mesh) < 0;
-        mesh->closure.found = true;
+        mesh->closure.computed = true;
     }
     free(s.place);
     free(s.edges);

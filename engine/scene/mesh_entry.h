@@ -44,7 +44,7 @@ struct glint_mesh_library {
     glint_mesh_entry current; ///< key and name of the material for the next faces
     uint32_t current_number; ///< among `used`; GLINT_MESH_NO_FACE: no face has it yet
     char *file; ///< the first file named; NULL: none
-    bool found; ///< a face uses a material from a file
+    bool is_used; ///< a face uses a material from a file
     size_t missing; ///< materials that faces use and no file defines
     char first_missing[GLINT_NAME_SIZE];
     size_t flat; ///< materials whose bump map has no height

@@ -279,7 +279,7 @@ static glint_status look_up(glint_mesh_library *library, const glint_mesh_reader
     if (library->known.count == before) {
         const bool lacks_uv = used->lacks_uv;
         *used = *glint_mesh_known_at(library, number);
-        library->found = true;
+        library->is_used = true;
         used->lacks_uv = lacks_uv;
     } else if (library->missing++ == 0) {
         memcpy(library->first_missing, used->desc.name, sizeof library->first_missing);
@@ -352,7 +352,7 @@ glint_status glint_mesh_library_make(glint_mesh_library *library, const glint_me
     return status;
 }
 
-bool glint_mesh_library_found(const glint_mesh_library *library) { return library->found; }
+bool glint_mesh_library_is_used(const glint_mesh_library *library) { return library->is_used; }
 
 void glint_mesh_library_give(const glint_mesh_library *library, const glint_mesh_reader *reader, glint_mesh_desc *desc)
 {

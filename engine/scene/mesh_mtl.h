@@ -30,7 +30,7 @@ glint_status glint_mesh_library_face(glint_mesh_library *library, uint32_t *numb
 /// Makes the materials of the file; missing pictures cause warnings.
 glint_status glint_mesh_library_make(glint_mesh_library *library, const glint_mesh_reader *reader);
 /// Returns whether a face has a material that a file describes; after glint_mesh_library_make.
-bool glint_mesh_library_found(const glint_mesh_library *library);
+bool glint_mesh_library_is_used(const glint_mesh_library *library);
 /// Puts the materials into a description; the library owns them until it is freed.
 void glint_mesh_library_give(const glint_mesh_library *library, const glint_mesh_reader *reader, glint_mesh_desc *desc);
 

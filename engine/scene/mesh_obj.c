@@ -318,7 +318,7 @@ static glint_status color(reader *r)
     if (!r->numbers_of_colors.count || r->notes[GLINT_MESH_NOTE_COLOR].count || r->desc->material ||
         r->desc->material_count)
         return GLINT_OK;
-    if (r->library && glint_mesh_library_found(r->library)) {
+    if (r->library && glint_mesh_library_is_used(r->library)) {
         glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0,
                              "the colours of its vertices are ignored: its faces have materials");
         return GLINT_OK;

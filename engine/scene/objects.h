@@ -24,7 +24,7 @@ struct glint_camera {
 
 /// Whether a mesh has an inside.
 typedef struct glint_closure {
-    bool found; ///< the other fields are valid
+    bool computed; ///< the other fields are valid
     bool inverted; ///< triangles run clockwise as seen from outside
     uint32_t triangles; ///< number of triangles at the open edge, where they do not balance; 0: the mesh is closed
     double edge[2][3]; ///< the open edge, in the direction of the first of these triangles

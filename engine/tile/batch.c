@@ -161,7 +161,7 @@ static void pack_lanes(glint_batch *batch, glint_precision precision)
         next[lane] = lane;
     memset(batch->ray_of, 0, batch->rays->group_count * GLINT_GROUP * sizeof *batch->ray_of); // for samples without a ray
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
-        for (unsigned bits = batch->met[g]; bits; bits &= bits - 1) {
+        for (unsigned bits = batch->with_sample[g]; bits; bits &= bits - 1) {
             const uint32_t lane = (uint32_t)__builtin_ctz(bits);
             give_sample(batch, g * GLINT_GROUP + lane, next[lane]);
             end = next[lane] >= end ? next[lane] + 1 : end;
@@ -179,7 +179,7 @@ static void pack(glint_batch *batch, const glint_tile_frame *frame)
     uint32_t first[SORTED_PRIMS + 1] = { 0 }, next[GLINT_GROUP], count = 0;
     uint16_t from[GLINT_TILE_SAMPLES];
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
-        for (unsigned bits = batch->met[g]; bits; bits &= bits - 1) {
+        for (unsigned bits = batch->with_sample[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             from[count++] = (uint16_t)i;
             first[(batch->prim[i] & last) + 1]++;
@@ -197,7 +197,7 @@ static void pack(glint_batch *batch, const glint_tile_frame *frame)
 /// Turns the rays' hits into samples.
 static void take_hits(glint_batch *batch, const glint_tile_frame *frame)
 {
-    memcpy(batch->met, batch->tile.at.hits, batch->rays->group_count * sizeof *batch->met);
+    memcpy(batch->with_sample, batch->tile.at.hits, batch->rays->group_count * sizeof *batch->with_sample);
     if (batch->by_lane)
         pack_lanes(batch, frame->plan->desc.precision);
     else
@@ -241,7 +241,8 @@ static void absorb(glint_batch *batch, const glint_tile_frame *frame)
 void glint_batch_find_missed(const glint_batch *batch, uint16_t missed[GLINT_TILE_GROUPS])
 {
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
-        missed[g] = batch->rays->active[g] & (uint16_t) ~(batch->whole ? batch->tile.at.hits[g] : batch->met[g]);
+        missed[g] =
+            batch->rays->active[g] & (uint16_t) ~(batch->whole ? batch->tile.at.hits[g] : batch->with_sample[g]);
 }
 
 /// Computes the background for rays without a sample, if a program gives it.

@@ -22,7 +22,7 @@ typedef struct glint_batch {
     bool whole; ///< every ray has the sample of its own number, even if it hits nothing
     _Alignas(64) double t[GLINT_TILE_SAMPLES]; ///< for each ray, before packing; real. `prim` likewise
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
-    uint16_t met[GLINT_TILE_GROUPS]; ///< not whole: the rays that have a sample
+    uint16_t with_sample[GLINT_TILE_GROUPS]; ///< not whole: the rays that have a sample
     uint16_t sample[GLINT_TILE_SAMPLES]; ///< the sample of each ray that has one
     uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< the ray of each sample
     double shown[3][GLINT_TILE_SAMPLES]; ///< the background seen by rays without a sample, if a program computes it
@@ -52,7 +52,7 @@ typedef struct glint_sent {
 
 static inline bool glint_batch_has_sample(const glint_batch *batch, uint32_t ray)
 {
-    return batch->whole || glint_has_lane(batch->met, ray);
+    return batch->whole || glint_has_lane(batch->with_sample, ray);
 }
 
 /// Returns the media of the ray that hit a sample; only in frames with transparent materials.
@@ -73,7 +73,7 @@ void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, bool a
 /// Does the same for hits that are shaded per sample.
 void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool any);
 /// Returns the light of all local terms of sample `i`, in channel `c`.
-static inline double glint_batch_found(const glint_batch *batch, int c, uint32_t i)
+static inline double glint_batch_local_light(const glint_batch *batch, int c, uint32_t i)
 {
     const double(*sum)[3][GLINT_TILE_SAMPLES] = batch->tile.film.sum;
     double light = sum[0][c][i];
@@ -85,7 +85,7 @@ static inline double glint_batch_found(const glint_batch *batch, int c, uint32_t
 static inline double glint_batch_light_of(const glint_batch *batch, const glint_plan *plan, int c, uint32_t ray)
 {
     if (glint_batch_has_sample(batch, ray))
-        return glint_batch_found(batch, c, batch->sample[ray]);
+        return glint_batch_local_light(batch, c, batch->sample[ray]);
     return plan->environment ? batch->shown[c][ray] : plan->background[c];
 }
 /// Returns whether ray `ray` shows the eye the background through surfaces, which lowers the coverage of its pixel.

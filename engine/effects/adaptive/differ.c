@@ -43,18 +43,18 @@ void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *
                           uint32_t differ[GLINT_DIFFER_DIRECTIONS])
 {
     glint_differ_args args = lines->args;
-    glint_differences found;
+    glint_differences differences;
     args.alpha = refine->coded && refine->base->channels > 3;
     args.low = refine->low;
     args.high = refine->high;
     args.cosine = GLINT_REFINE_NORMAL;
-    refine->stages->differ(&args, &found);
+    refine->stages->differ(&args, &differences);
     for (int direction = 0; direction < GLINT_DIFFER_DIRECTIONS; direction++) {
         const int line[2] = { 0, direction != GLINT_DIFFER_ALONG };
         const size_t p = direction == GLINT_DIFFER_RISING,
                      q = direction == GLINT_DIFFER_ALONG || direction == GLINT_DIFFER_FALLING;
-        differ[direction] = found.sure[direction];
-        for (uint32_t bits = found.open[direction] & ~found.sure[direction]; bits; bits &= bits - 1) {
+        differ[direction] = differences.sure[direction];
+        for (uint32_t bits = differences.open[direction] & ~differences.sure[direction]; bits; bits &= bits - 1) {
             const size_t i = (size_t)__builtin_ctz(bits);
             if (exceeds(refine, lines, line, p + i, q + i))
                 differ[direction] |= bits & -bits;

@@ -17,7 +17,7 @@
 /// The slopes for one derivative.
 typedef struct input_slopes {
     _Alignas(64) double input[GLINT_INPUT_COUNT][GLINT_PROGRAM_LANES]; ///< slopes of the shader's inputs
-    uint32_t found; ///< the inputs that have slopes, one bit each
+    uint32_t slope_inputs; ///< the inputs that have slopes, one bit each
     _Alignas(64) double sum[3][GLINT_PROGRAM_LANES]; ///< slopes of the light
 } input_slopes;
 
@@ -168,18 +168,19 @@ static uint32_t find_inputs(const shading *s, size_t index)
     const glint_derivative_material *m = &d->materials[s->entries->material];
     double (*input)[GLINT_PROGRAM_LANES] = s->slopes->of[index].input;
     const bool arrives = d->bends || d->lights[s->reach->light->source].varies || s->reach->tinted;
-    uint32_t found = (arrives ? BITS(GLINT_INPUT_L_X, GLINT_ARRIVAL_COUNT) : 0) | (d->bends ? BITS(GLINT_INPUT_P_X, 12) : 0);
-    for (uint32_t e = 0; e < s->count && (found || index == 0); e++)
+    uint32_t slope_inputs =
+        (arrives ? BITS(GLINT_INPUT_L_X, GLINT_ARRIVAL_COUNT) : 0) | (d->bends ? BITS(GLINT_INPUT_P_X, 12) : 0);
+    for (uint32_t e = 0; e < s->count && (slope_inputs || index == 0); e++)
         find_entry(s, index, e, arrives);
     for (int c = 0; c < 3; c++) {
         if (find_number(s, index, GLINT_FIELD_DIFFUSE, c, m->diffuse[c].slope, input[GLINT_INPUT_KD_R + c]))
-            found |= 1u << (GLINT_INPUT_KD_R + c);
+            slope_inputs |= 1u << (GLINT_INPUT_KD_R + c);
         if (find_number(s, index, GLINT_FIELD_SPECULAR, c, m->specular[c].slope, input[GLINT_INPUT_KS_R + c]))
-            found |= 1u << (GLINT_INPUT_KS_R + c);
+            slope_inputs |= 1u << (GLINT_INPUT_KS_R + c);
     }
     if (find_number(s, index, GLINT_FIELD_SHININESS, 0, m->shininess.slope, input[GLINT_INPUT_SHININESS]))
-        found |= 1u << GLINT_INPUT_SHININESS;
-    return found;
+        slope_inputs |= 1u << GLINT_INPUT_SHININESS;
+    return slope_inputs;
 }
 
 // ---- Results --------------------------------------------------------------------------------------------------
@@ -217,10 +218,10 @@ static uint32_t list_sums(const shading *s, const glint_gradient *gradient, uint
         bool any = false;
         for (uint32_t n = from; n < gradient->count && n < from + gradient->each; n++) {
             const glint_gradient_place at = gradient->of[n];
-            const bool found = own->found >> at.input & 1;
-            sums->by[n - from] = found ? own->input[at.input] : NULL;
+            const bool slope_inputs = own->slope_inputs >> at.input & 1;
+            sums->by[n - from] = slope_inputs ? own->input[at.input] : NULL;
             sums->sum_of[n - from] = (uint8_t)at.channel;
-            any = any || found;
+            any = any || slope_inputs;
         }
         for (int c = 0; c < 3; c++)
             sums->sum[c] = own->sum[c];
@@ -316,7 +317,7 @@ static bool sweep(const shading *s, size_t index, const glint_program *forward)
         groups[e] = s->entries[e].group;
     for (uint32_t bits = forward->slopes; bits; bits &= bits - 1) {
         const int input = __builtin_ctz(bits);
-        if (!(own->found >> input & 1))
+        if (!(own->slope_inputs >> input & 1))
             memset(own->input[input], 0, s->count * GLINT_GROUP * sizeof(double));
         args.input[GLINT_INPUT_COUNT + input] = own->input[input];
     }
@@ -356,7 +357,7 @@ static void derive_one(const shading *s, size_t index)
     const bool tangent = all->of[index].programs[material].of[GLINT_FIELD_SHADER];
     const glint_program *forward = index < GLINT_FORWARD_MAX && !tangent ? gradient->forward[index] : NULL;
     uint16_t wanted[GLINT_PROGRAM_GROUPS];
-    if (forward && !(forward->slopes & s->slopes->of[index].found))
+    if (forward && !(forward->slopes & s->slopes->of[index].slope_inputs))
         return;
     if (forward && sweep(s, index, forward))
         return;
@@ -381,7 +382,7 @@ static void derive(const shading *s, const glint_pattern_points *points)
     if (!varies || !begin(s, points))
         return;
     for (size_t k = 0; k < all->count; k++)
-        s->slopes->of[k].found = find_inputs(s, k);
+        s->slopes->of[k].slope_inputs = find_inputs(s, k);
     if (weighs || tangents)
         run(s, plan->patterns->of[material].program[GLINT_FIELD_SHADER], s->slopes->value);
     if (weighs)

@@ -58,10 +58,10 @@ static uint32_t paths_of(const glint_plan *plan, const glint_batch *from, uint32
     return from ? (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples) : (uint32_t)plan->indirect.samples;
 }
 
-/// Begins the paths of point i, with the factor `found`. Their first rays differ only in the direction. Returns the
+/// Begins the paths of point i, with the factor `factor`. Their first rays differ only in the direction. Returns the
 /// number of paths.
 static uint32_t begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
-                            const glint_tile *seen, const glint_batch *from, uint32_t i, const double *found,
+                            const glint_tile *seen, const glint_batch *from, uint32_t i, const double *factor,
                             pixel_block *block)
 {
     const glint_plan *plan = frame->plan;
@@ -77,7 +77,7 @@ static uint32_t begin_point(struct glint_indirect *indirect, const glint_tile *t
     ray.scatters++;
     for (int c = 0; c < 3; c++) {
         ray.direction[c] = 0;
-        ray.weight[c] = indirect->weight[c][i] = glint_weight(ray.weight[c] * (found[c] * part));
+        ray.weight[c] = indirect->weight[c][i] = glint_weight(ray.weight[c] * (factor[c] * part));
     }
     glint_rays_put(&indirect->first, plan, i, &ray);
     indirect->paths[i] = paths;
@@ -96,10 +96,10 @@ uint32_t glint_indirect_find_points(struct glint_indirect *indirect, const glint
     for (uint32_t g = 0; g < seen->group_count; g++) {
         for (unsigned bits = seen->at.hits[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
-            const double *found = first_weight(seen, frame->plan, i, buffer);
-            if (glint_largest(found) == 0)
+            const double *factor = first_weight(seen, frame->plan, i, buffer);
+            if (glint_largest(factor) == 0)
                 continue;
-            const uint32_t paths = begin_point(indirect, to, frame, seen, from, i, found, &block);
+            const uint32_t paths = begin_point(indirect, to, frame, seen, from, i, factor, &block);
             most = paths > most ? paths : most;
             indirect->fewest = paths < indirect->fewest ? paths : indirect->fewest;
         }

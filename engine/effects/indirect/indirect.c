@@ -228,14 +228,14 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
 // ---- Light of the paths ----
 
 /// Sums the light that the samples of a group send back along their rays, in each channel.
-static void found_in(const glint_batch *batch, uint32_t g, double found[3][GLINT_GROUP])
+static void local_light(const glint_batch *batch, uint32_t g, double light[3][GLINT_GROUP])
 {
     const double(*sum)[3][GLINT_TILE_SAMPLES] = batch->tile.film.sum;
-    _Static_assert(GLINT_TERM_LOCAL == 4, "in the order of glint_batch_found");
+    _Static_assert(GLINT_TERM_LOCAL == 4, "in the order of glint_batch_local_light");
     for (int c = 0; c < 3; c++)
         for (uint32_t i = 0; i < GLINT_GROUP; i++) {
             const uint32_t at = g * GLINT_GROUP + i;
-            found[c][i] = ((sum[0][c][at] + sum[1][c][at]) + sum[2][c][at]) + sum[3][c][at];
+            light[c][i] = ((sum[0][c][at] + sum[1][c][at]) + sum[2][c][at]) + sum[3][c][at];
         }
 }
 
@@ -244,8 +244,8 @@ static void found_in(const glint_batch *batch, uint32_t g, double found[3][GLINT
 static void collect_group(const glint_batch *batch, const glint_plan *plan, uint32_t g, unsigned lanes, glint_tile *to)
 {
     const glint_rays *rays = batch->rays;
-    double found[3][GLINT_GROUP];
-    found_in(batch, g, found);
+    double light[3][GLINT_GROUP];
+    local_light(batch, g, light);
     for (unsigned bits = lanes; bits; bits &= bits - 1) {
         const uint32_t lane = (uint32_t)__builtin_ctz(bits), at = g * GLINT_GROUP + lane, i = batch->ray_of[at];
         const bool last = rays->scatters[i] == plan->indirect.bounces && batch->tile.at.hits[g] >> lane & 1;
@@ -253,7 +253,7 @@ static void collect_group(const glint_batch *batch, const glint_plan *plan, uint
         for (int c = 0; c < 3; c++) {
             const double rest = last ? glint_tile_ambient_rest(&batch->tile, plan, at, c) : 0;
             weight[c] = rays->weight[c][i];
-            sum[c][rays->pixel[i]] += weight[c] * (found[c][lane] + rest);
+            sum[c][rays->pixel[i]] += weight[c] * (light[c][lane] + rest);
             if (plan->light_groups)
                 glint_groups_add_ambient(to, plan, rays->pixel[i], c, weight[c] * rest);
         }

@@ -19,7 +19,7 @@ static void open_far(glint_batch *batch, const glint_plan *plan)
                 continue;
             tile->at.hits[g] &= (uint16_t) ~(bits & -bits);
             if (!batch->whole)
-                batch->met[ray / GLINT_GROUP] &= (uint16_t) ~(1u << ray % GLINT_GROUP);
+                batch->with_sample[ray / GLINT_GROUP] &= (uint16_t) ~(1u << ray % GLINT_GROUP);
         }
 }
 

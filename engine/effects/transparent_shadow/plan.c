@@ -122,18 +122,18 @@ uint32_t glint_tints_choose(const glint_tints *tints, const glint_ball *points, 
 uint16_t glint_tints_lanes(const glint_tints *tints, const uint16_t *chosen, uint32_t count,
                            const double point[3][GLINT_GROUP], uint16_t lanes, const glint_tint_light *light)
 {
-    unsigned met = 0;
+    unsigned opaque = 0;
     double most = 0;
     for (int i = 0; i < GLINT_GROUP; i++)
         most = fmax(most, fabs(point[0][i]) + fabs(point[1][i]) + fabs(point[2][i]));
     const double slack = slack_of(tints, most, light);
-    for (uint32_t k = 0; k < count && (met & lanes) != lanes; k++) {
+    for (uint32_t k = 0; k < count && (opaque & lanes) != lanes; k++) {
         int clear[GLINT_GROUP];
         for (int i = 0; i < GLINT_GROUP; i++)
             clear[i] = is_clear((const double[3]) { point[0][i], point[1][i], point[2][i] }, 0, &tints->of[chosen[k]],
                                 slack, light);
         for (int i = 0; i < GLINT_GROUP; i++)
-            met |= (unsigned)!clear[i] << i;
+            opaque |= (unsigned)!clear[i] << i;
     }
-    return (uint16_t)(met & lanes);
+    return (uint16_t)(opaque & lanes);
 }

@@ -55,7 +55,7 @@ typedef struct visible_light_ray {
 
 /// Returns the first hit of a ray with a sphere, or its exit if the ray begins inside; 0: none. The formula is that
 /// of cast.
-static double meet_ball(const glint_plan_visible_light *visible_light, const visible_light_ray *ray)
+static double intersect_ball(const glint_plan_visible_light *visible_light, const visible_light_ray *ray)
 {
     double f[3], x[3];
     const double scale = power_of_two_scale(visible_light->radius), r = visible_light->radius * scale, r2 = r * r;
@@ -94,7 +94,7 @@ static bool within(const glint_plan_visible_light *visible_light, const double p
 }
 
 /// Returns the hit of a ray with a shining side of a disk or polygon; 0: none. A ray in the light's plane has no hit.
-static double meet_flat(const glint_plan_visible_light *visible_light, const visible_light_ray *ray)
+static double intersect_flat(const glint_plan_visible_light *visible_light, const visible_light_ray *ray)
 {
     double p[3];
     const double along = vec_dot(visible_light->normal, ray->direction);
@@ -128,7 +128,7 @@ static uint32_t see(const struct glint_visible_light *visible_light, const glint
     uint32_t best = GLINT_MISS;
     for (uint32_t i = 0; i < visible_light->near_count; i++) {
         const glint_plan_visible_light *light = &plan->visible_lights[visible_light->near[i]];
-        const double at = light->ball ? meet_ball(light, ray) : meet_flat(light, ray);
+        const double at = light->ball ? intersect_ball(light, ray) : intersect_flat(light, ray);
         const double bound = best == GLINT_MISS && at >= surface && lies_in(light, ray, surface) ? HUGE_VAL : *t;
         if (!(at > 0 && at < bound))
             continue;

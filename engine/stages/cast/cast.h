@@ -33,9 +33,10 @@ INNER void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candida
         if (lanes) {
             R(load_direction)(directions, args->direction, 0, i, d);
             if (sphere)
-                hit = R(meet_ball)(f, d, DOT(d, d), r_set(candidate->c), r_set(candidate->r2), r_set(candidate->scale), &t);
+                hit = R(intersect_ball)(f, d, DOT(d, d), r_set(candidate->c), r_set(candidate->r2),
+                                        r_set(candidate->scale), &t);
             else
-                hit = R(meet_candidate)(args, candidate, f, d, &t);
+                hit = R(intersect_candidate)(args, candidate, f, d, &t);
             hit = rm_and(rm_from_bits(lanes), hit);
             hit = rm_and(hit, r_lt(t, r_set(HUGE_VAL)));
         }

@@ -219,7 +219,7 @@ INNER void R(decide_pairs_of)(R(tile_cast) * tile, R(cast_leaf) * leaf, bool own
             d[k] = r_load(leaf->direction[k] + i);
         const unsigned there = leaf->count - i < VR ? (1u << (leaf->count - i)) - 1 : (1u << VR) - 1;
         const R(seen_edges) edges = R(see_edges)(p, d, false);
-        unsigned hits = rm_bits(R(meet_seen)(&edges, p, d, d, r_set(scale), NULL, &t)) & there;
+        unsigned hits = rm_bits(R(intersect_seen)(&edges, p, d, d, r_set(scale), NULL, &t)) & there;
         r_store(leaf->t + i, t);
         if (leaf->faced)
             hits = R(decide_faced)(tile, leaf, own, i, rm_bits(R(passes)(&edges, p, d)) & there, hits);
@@ -373,8 +373,8 @@ static void R(cast_lens_triangle)(R(tile_cast) * tile, R(cast_leaf) * leaf, cons
             for (int i = 0; i < GLINT_GROUP; i += VF) {
                 const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[g] + i)));
                 if (open)
-                    lanes |= (open & meets_through_lens(shown, slot, f_load(tile->s[x] + i), -f_load(tile->t[y] + i),
-                                                        f_load(lens->across[0] + i), f_load(lens->across[1] + i)))
+                    lanes |= (open & hits_through_lens(shown, slot, f_load(tile->s[x] + i), -f_load(tile->t[y] + i),
+                                                       f_load(lens->across[0] + i), f_load(lens->across[1] + i)))
                              << i;
             }
             if (lanes)

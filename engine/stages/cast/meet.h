@@ -67,7 +67,7 @@ INNER vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
 }
 
 /// Intersects one sphere, or a different one in each lane.
-INNER rm R(meet_ball)(const vr f[3], const vr d[3], vr a, vr c, vr r2, vr scale, vr *t)
+INNER rm R(intersect_ball)(const vr f[3], const vr d[3], vr a, vr c, vr r2, vr scale, vr *t)
 {
     const vr zero = r_set(0);
     vr b = -DOT(f, d);
@@ -80,7 +80,7 @@ INNER rm R(meet_ball)(const vr f[3], const vr d[3], vr a, vr c, vr r2, vr scale,
     return rm_and(r_le(zero, disc), r_lt(zero, *t));
 }
 
-INNER rm R(meet_plane)(const vr d[3], vr a, vr h, const glint_prim *prim, vr *t)
+INNER rm R(intersect_plane)(const vr d[3], vr a, vr h, const glint_prim *prim, vr *t)
 {
     const vr n[3] = { r_set(prim->normal[0]), r_set(prim->normal[1]), r_set(prim->normal[2]) };
     vr nd = DOT(n, d);
@@ -250,12 +250,12 @@ static inline vr R(point_constant)(const vr f[3], const glint_prim *prim)
     return R(unless_within)(c, r_set(GLINT_ON_FACE) * (sizes + r_set(prim->normal[3])));
 }
 
-INNER rm R(meet)(const vr f[3], vr c, const vr d[3], const glint_prim *prim, vr *t)
+INNER rm R(intersect)(const vr f[3], vr c, const vr d[3], const glint_prim *prim, vr *t)
 {
     const vr a = DOT(d, d);
     if (prim->kind == GLINT_PRIM_SPHERE)
-        return R(meet_ball)(f, d, a, c, r_set(glint_sphere_r2(prim)), r_set(glint_sphere_scale(prim)), t);
-    return R(meet_plane)(d, a, c, prim, t);
+        return R(intersect_ball)(f, d, a, c, r_set(glint_sphere_r2(prim)), r_set(glint_sphere_scale(prim)), t);
+    return R(intersect_plane)(d, a, c, prim, t);
 }
 
 /// Starts a group: t is +inf in active lanes, and -inf in the others, where nothing is nearer.

@@ -48,7 +48,7 @@ static inline void R(keep_ray)(const glint_cast_args *args, uint32_t ray, uint32
 }
 
 /// Decides VR pairs from number i on.
-INNER unsigned R(meet_pairs)(const R(ray_pairs) * pairs, int i, real t[VR])
+INNER unsigned R(intersect_pairs)(const R(ray_pairs) * pairs, int i, real t[VR])
 {
     vr f[3], d[3], hit_t;
     const vr scale = r_load(pairs->scale + i), r2 = r_load(pairs->r2 + i);
@@ -57,7 +57,7 @@ INNER unsigned R(meet_pairs)(const R(ray_pairs) * pairs, int i, real t[VR])
         d[k] = r_load(pairs->direction[k] + i);
     }
     const vr c = R(exact_power)(f, r2, r_load(pairs->r2_low + i));
-    const unsigned hits = rm_bits(R(meet_ball)(f, d, DOT(d, d), c, r2, scale, &hit_t));
+    const unsigned hits = rm_bits(R(intersect_ball)(f, d, DOT(d, d), c, r2, scale, &hit_t));
     r_store(t, hit_t);
     return hits;
 }
@@ -68,7 +68,7 @@ static __attribute__((noinline)) void R(decide_ray_pairs)(const glint_cast_args 
     if (args->tests)
         *args->tests += (unsigned)pairs->count;
     for (int i = 0; i < pairs->count; i += VR) {
-        const unsigned hits = R(meet_pairs)(pairs, i, t);
+        const unsigned hits = R(intersect_pairs)(pairs, i, t);
         for (int j = i; j < i + VR && j < pairs->count; j++) {
             const uint32_t ray = pairs->ray[j];
             if (hits >> (j - i) & 1)
@@ -140,15 +140,15 @@ INNER fm R(enter_ball)(const R(float_rays) * rays, const glint_prim *prim, vf *e
 }
 
 /// The possible first hits of a group.
-typedef struct R(first_met) {
+typedef struct R(first_hits) {
     _Alignas(64) float entry[GLINT_GROUP], next[GLINT_GROUP];
     _Alignas(64) uint32_t prim[GLINT_GROUP];
     unsigned usual;
-} R(first_met);
+} R(first_hits);
 
 /// Finds the first sphere of `list` that each ray may enter, and the distance to the second.
 static inline void R(find_first)(const glint_cast_args *args, const R(ray_group) * rays, size_t at,
-                                 const uint32_t *list, int count, R(first_met) * out)
+                                 const uint32_t *list, int count, R(first_hits) * out)
 {
     const uint32_t common = args->leaving && lanes_equal(args->leaving + at, args->leaving[at]) == 0xffff
                                 ? args->leaving[at]
@@ -180,14 +180,14 @@ static inline void R(cast_spheres)(const glint_cast_args *args, uint32_t g, cons
                                    const uint32_t *list, int count, R(ray_pairs) * pairs)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
-    R(first_met) met;
-    R(find_first)(args, rays, at, list, count, &met);
-    pairs->undecided[g] |= (uint16_t)(args->active[g] & ~met.usual);
-    for (unsigned bits = args->active[g] & met.usual & ~lanes_equal(met.prim, GLINT_MISS); bits; bits &= bits - 1) {
+    R(first_hits) first;
+    R(find_first)(args, rays, at, list, count, &first);
+    pairs->undecided[g] |= (uint16_t)(args->active[g] & ~first.usual);
+    for (unsigned bits = args->active[g] & first.usual & ~lanes_equal(first.prim, GLINT_MISS); bits; bits &= bits - 1) {
         const int lane = __builtin_ctz(bits);
         const uint32_t ray = (uint32_t)at + (uint32_t)lane;
-        if (met.entry[lane] <= R(reach_in_index)(args, ((const real *)args->t)[ray]))
-            R(add_pair)(args, pairs, ray, met.prim[lane], met.next[lane]);
+        if (first.entry[lane] <= R(reach_in_index)(args, ((const real *)args->t)[ray]))
+            R(add_pair)(args, pairs, ray, first.prim[lane], first.next[lane]);
     }
 }
 
@@ -320,7 +320,8 @@ INNER R(boxed_balls) R(balls_in_boxes)(const glint_node *node, const R(lone_ray)
 }
 
 /// Returns the slots whose spheres the ray may enter before `far`, or starts inside of.
-static inline unsigned R(meet_balls)(const glint_node *node, const R(lone_ray) * ray, float far, R(balls_on_ray) * out)
+static inline unsigned R(intersect_balls)(const glint_node *node, const R(lone_ray) * ray, float far,
+                                          R(balls_on_ray) * out)
 {
     const vf d[3] = { f_set(ray->direction[0]), f_set(ray->direction[1]), f_set(ray->direction[2]) };
     const vf length = f_set(ray->length), per_a = f_set(ray->per_a), zero = f_set(0);
@@ -374,7 +375,7 @@ static inline void R(note_balls)(const glint_node *node, unsigned mask, const R(
                                  R(first_balls) * first)
 {
     R(balls_on_ray) balls;
-    for (mask &= R(meet_balls)(node, ray, first->far[lane], &balls); mask; mask &= mask - 1) {
+    for (mask &= R(intersect_balls)(node, ray, first->far[lane], &balls); mask; mask &= mask - 1) {
         const int slot = __builtin_ctz(mask);
         const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
         if (id != ray->leaving)

@@ -26,7 +26,7 @@ INNER void R(decide_ball)(const glint_cast_args *args, const R(candidate) * ball
         const vr a = DOT(d, d), b = -DOT(f, d);
         if (!rm_bits(r_le(r_set(0), R(discriminant)(f, d, a, b, r_set(ball->c), r_set(ball->r2)))))
             continue;
-        const rm hit = R(meet_ball)(f, d, a, r_set(ball->c), r_set(ball->r2), r_set(ball->scale), &t);
+        const rm hit = R(intersect_ball)(f, d, a, r_set(ball->c), r_set(ball->r2), r_set(ball->scale), &t);
         if (rm_bits(hit))
             R(keep_nearest)(args, at + (size_t)i, ball->id, hit, t);
     }

@@ -146,7 +146,7 @@ static inline bool R(decide_raster)(const R(raster_tile) * tile, const R(raster_
             R(load3)(args->origin, at + (size_t)i, from);
             R(corners_from)(from, triangle->prim, table->scale, p);
         }
-        rm hit = R(meet_triangle)(p, from, d, r_set(table->scale), R(face_of)(table, triangle->prim), &t);
+        rm hit = R(intersect_triangle)(p, from, d, r_set(table->scale), R(face_of)(table, triangle->prim), &t);
         hit = R(unless_begun_on)(table, triangle->prim, NULL, from, hit, t);
         if (!rm_bits(hit))
             continue;

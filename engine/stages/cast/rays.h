@@ -48,7 +48,7 @@ static inline rm R(reentry_t)(const glint_solid *solid, const glint_prim *prim, 
     R(unit_offset)(solid, prim, o, f);
     R(to_unit)(solid, d, e);
     const R(torus_start) start = { rm_from_bits((1u << VR) - 1), rm_from_bits(inward) };
-    return R(meet_torus)(solid, f, e, start, t);
+    return R(intersect_torus)(solid, f, e, start, t);
 }
 
 /// Returns whether a ray that passes through the surface may hit it again. A part of a combined solid is hit only
@@ -120,21 +120,22 @@ static inline bool R(decide_rays)(const glint_cast_args *args, uint32_t g, uint3
         if (prim->kind == GLINT_PRIM_TRIANGLE) {
             R(corners_from)(o, prim, args->geometry->scale, p);
             const R(seen_edges) edges = R(see_edges)(p, d, shared_edge);
-            hit = R(meet_seen)(&edges, p, o, d, r_set(args->geometry->scale), R(face_of)(args->geometry, prim), &t);
+            hit =
+                R(intersect_seen)(&edges, p, o, d, r_set(args->geometry->scale), R(face_of)(args->geometry, prim), &t);
             hit = R(unless_begun_on)(args->geometry, prim, shared_edge ? args->leaving + at + i : NULL, o, hit, t);
             if (shared_edge)
-                hit = R(meet_shared_edge)(args, at + (size_t)i, own, o, &flat, &edges, hit, &t);
+                hit = R(intersect_shared_edge)(args, at + (size_t)i, own, o, &flat, &edges, hit, &t);
         } else if (prim->kind == GLINT_PRIM_SOLID) {
             const glint_solid *solid = &args->geometry->solids[prim->item];
             R(solid_start) start;
             R(start_at)(solid, prim, o, &start);
-            hit = R(meet_solid)(solid, &start, d, &t);
+            hit = R(intersect_solid)(solid, &start, d, &t);
         } else {
             R(offset)(o, prim, f);
             vr c = R(offset_constant)(f, prim);
             if (rounded)
                 c = r_select(rm_from_bits(on_surfaces >> i & ((1u << VR) - 1)), R(point_constant)(f, prim), c);
-            hit = R(meet)(f, c, d, prim, &t);
+            hit = R(intersect)(f, c, d, prim, &t);
         }
         hit = rm_andnot(hit, rm_from_bits(own)); // see cast_on_own
         if (!rm_bits(hit))

@@ -89,8 +89,8 @@ static inline void R(load_round)(const glint_geometry_table *geometry, R(rounds)
     }
 }
 
-/// Returns the lanes whose rays certainly start off the triangle's plane. The bound of meet_shared_edge applies: it
-/// is twice the rounding error of a height, which covers the different order of terms here.
+/// Returns the lanes whose rays certainly start off the triangle's plane. The bound of intersect_shared_edge applies:
+/// it is twice the rounding error of a height, which covers the different order of terms here.
 static inline unsigned R(begins_off_plane)(const glint_geometry_table *table, vr corner[3][3], const vr o[3])
 {
     const vr scale = r_set(table->scale), far = r_set((real)(2 * GLINT_POINT_SLACK * table->extent));
@@ -118,7 +118,7 @@ typedef struct R(round_lanes) {
 } R(round_lanes);
 
 /// Tests the pairs from number i on.
-INNER void R(meet_round)(const glint_geometry_table *table, const R(rounds) * rounds, int i, R(round_lanes) * out)
+INNER void R(intersect_round)(const glint_geometry_table *table, const R(rounds) * rounds, int i, R(round_lanes) * out)
 {
     const R(turned_rays) *turned = &rounds->turned;
     const vr scale = r_set(table->scale), zero = r_set(0);
@@ -167,7 +167,7 @@ static __attribute__((noinline)) void R(decide_triangles)(const glint_cast_args 
         *args->tests += (unsigned)rounds->count;
     for (int i = 0; i < rounds->count; i += VR) {
         const unsigned there = rounds->count - i < VR ? (1u << (rounds->count - i)) - 1 : (1u << VR) - 1;
-        R(meet_round)(table, rounds, i, &lanes);
+        R(intersect_round)(table, rounds, i, &lanes);
         for (unsigned bits = lanes.at & there; bits; bits &= bits - 1) {
             const int j = __builtin_ctz(bits);
             const uint32_t lane = rounds->lane[i + j], id = rounds->prim[i + j], ray = g * GLINT_GROUP + lane;
@@ -219,8 +219,8 @@ static inline void R(add_solid)(R(rounds) * rounds, uint32_t id, int lane)
 }
 
 /// Tests the primitives other than triangles in the slots of `mask`. Spheres are recorded, see pair_first.
-static inline void R(meet_others)(const glint_geometry_table *geometry, const glint_node *node, unsigned mask, int lane,
-                                  R(rounds) * rounds)
+static inline void R(intersect_others)(const glint_geometry_table *geometry, const glint_node *node, unsigned mask,
+                                       int lane, R(rounds) * rounds)
 {
     unsigned spheres = 0;
     for (unsigned bits = mask; bits; bits &= bits - 1) {
@@ -244,10 +244,10 @@ static inline unsigned R(add_to_round)(const glint_geometry_table *geometry, con
 #ifdef GLINT_PACKS
     const vi id = i_and(i_load(node->child), i_set(~GLINT_NODE_PRIM));
     const unsigned triangles = mask & fm_bits(i_lt(id, i_set(geometry->triangles)));
-    const unsigned met = triangles & ~fm_bits(i_eq(id, i_set(leaving)));
-    i_pack(rounds->prim + n, id, met);
+    const unsigned hits = triangles & ~fm_bits(i_eq(id, i_set(leaving)));
+    i_pack(rounds->prim + n, id, hits);
     i_store_any(rounds->lane + n, i_set((uint32_t)lane));
-    n += __builtin_popcount(met);
+    n += __builtin_popcount(hits);
     others = mask & ~triangles;
 #else
     for (; mask; mask &= mask - 1) {
@@ -307,7 +307,7 @@ static inline bool R(step)(const glint_cast_args *args, int lane, R(rounds) * ro
     if (prims) {
         const unsigned others = R(add_to_round)(args->geometry, node, prims, lane, rounds);
         if (others)
-            R(meet_others)(args->geometry, node, others, lane, rounds);
+            R(intersect_others)(args->geometry, node, others, lane, rounds);
     }
     if (mask & ~prims)
         R(push_nodes)(node, depth, mask & ~prims, stack);

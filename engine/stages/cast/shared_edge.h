@@ -187,8 +187,8 @@ static inline unsigned R(may_be_near)(const glint_geometry_table *table, const R
 /// Decides again the lanes that are in the plane of the triangle which they leave and in the plane of this one, and
 /// the lanes that pass near this one's edge. `at`: the first lane of the vector; `own`: lanes that leave this
 /// triangle; `edges`: with reach.
-static inline rm R(meet_shared_edge)(const glint_cast_args *args, size_t at, unsigned own, const vr o[3],
-                                     const R(flat) * flat, const R(seen_edges) * edges, rm hit, vr *t)
+static inline rm R(intersect_shared_edge)(const glint_cast_args *args, size_t at, unsigned own, const vr o[3],
+                                          const R(flat) * flat, const R(seen_edges) * edges, rm hit, vr *t)
 {
     const glint_geometry_table *table = args->geometry;
     const real *const m = flat->m;

@@ -268,12 +268,12 @@ INNER R(span) R(span_along)(const glint_solid *solid, const R(solid_start) * sta
     return R(span_of)(solid, start, d, e, false, whole);
 }
 
-static rm R(meet_solid)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], vr *t)
+static rm R(intersect_solid)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], vr *t)
 {
     if (solid->form == GLINT_FORM_TORUS) {
         vr e[3];
         R(to_unit)(solid, d, e);
-        return R(meet_torus)(solid, start->f, e, R(torus_afresh)(), t);
+        return R(intersect_torus)(solid, start->f, e, R(torus_afresh)(), t);
     }
     const R(span) span = R(span_along)(solid, start, d, false);
     *t = r_select(r_lt(r_set(0), span.t[0]), span.t[0], span.t[1]);

@@ -128,7 +128,7 @@ static inline unsigned R(rays_in_slot)(const glint_node *node, int slot, const R
 }
 
 /// Records the sphere in a slot of a node for the rays of `lanes` that may enter it or start inside of it, like
-/// meet_balls and note_ball.
+/// intersect_balls and note_ball.
 static inline void R(note_ball_of_group)(const glint_node *node, int slot, const R(common_walk) * walk, unsigned lanes,
                                          R(first_balls) * first)
 {
@@ -196,8 +196,8 @@ static inline void R(add_lanes_to_round)(const R(common_walk) * walk, uint32_t i
 // ---- Traversal ----
 
 /// Tests the rays in `lanes` against the primitive in a slot of a node.
-static inline void R(meet_slot)(const glint_cast_args *args, uint32_t g, const glint_node *node, int slot,
-                                const R(common_walk) * walk, unsigned lanes, R(rounds) * rounds)
+static inline void R(intersect_slot)(const glint_cast_args *args, uint32_t g, const glint_node *node, int slot,
+                                     const R(common_walk) * walk, unsigned lanes, R(rounds) * rounds)
 {
     const glint_geometry_table *geometry = args->geometry;
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
@@ -257,7 +257,7 @@ static inline bool R(step_together)(const glint_cast_args *args, uint32_t g, R(c
     if (__builtin_popcount(mask) > __builtin_popcount(lanes) && R(leave_to_each)(entry, lanes, rounds))
         return true;
     for (unsigned bits = prims; bits; bits &= bits - 1)
-        R(meet_slot)(args, g, node, __builtin_ctz(bits), walk, lanes, rounds);
+        R(intersect_slot)(args, g, node, __builtin_ctz(bits), walk, lanes, rounds);
     if (rounds->count >= VR)
         R(decide_triangles)(args, g, rounds);
     if (rounds->solids)

@@ -257,8 +257,8 @@ static vr R(torus_root)(const R(torus_line) * l, R(torus_stretch) * at, rm hit)
     unsigned wanted = rm_bits(hit);
     for (int n = 0; n < GLINT_ROOT_STEPS && wanted; n++)
         R(step_to_root)(l, at, &s, &wanted);
-    const vr found = l->from + s * l->per;
-    return r_select(rm_and(hit, r_lt(zero, found)), found, r_set(GLINT_LEAST_T));
+    const vr t = l->from + s * l->per;
+    return r_select(rm_and(hit, r_lt(zero, t)), t, r_set(GLINT_LEAST_T));
 }
 
 /// Finds the stretch of each line with the first root ahead. Returns the lanes that have one.
@@ -283,7 +283,7 @@ static rm R(first_ahead)(const R(torus_line) * l, R(torus_stretch) * at)
 
 /// Computes the first hits of rays with the torus. Returns the rays that hit it. Rays that leave it and go inside
 /// always hit it.
-static rm R(meet_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr *t)
+static rm R(intersect_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr *t)
 {
     R(torus_line) l;
     R(torus_stretch) at;

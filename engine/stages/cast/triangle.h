@@ -126,8 +126,8 @@ static inline const glint_face *R(face_of)(const glint_geometry_table *table, co
 
 /// Intersects a triangle in the space of the ray; p: the corners relative to the ray's origin, in units of the table.
 /// face: of its shared plane, or NULL.
-static inline rm R(meet_seen)(const R(seen_edges) * edges, vr p[3][3], const vr o[3], const vr d[3], vr scale,
-                              const glint_face *face, vr *t)
+static inline rm R(intersect_seen)(const R(seen_edges) * edges, vr p[3][3], const vr o[3], const vr d[3], vr scale,
+                                   const glint_face *face, vr *t)
 {
     if (face)
         *t = R(face_t)(face, o, d);
@@ -137,10 +137,11 @@ static inline rm R(meet_seen)(const R(seen_edges) * edges, vr p[3][3], const vr 
 }
 
 /// Does the same from the corners only.
-static inline rm R(meet_triangle)(vr p[3][3], const vr o[3], const vr d[3], vr scale, const glint_face *face, vr *t)
+static inline rm R(intersect_triangle)(vr p[3][3], const vr o[3], const vr d[3], vr scale, const glint_face *face,
+                                       vr *t)
 {
     const R(seen_edges) edges = R(see_edges)(p, d, false);
-    return R(meet_seen)(&edges, p, o, d, scale, face, t);
+    return R(intersect_seen)(&edges, p, o, d, scale, face, t);
 }
 
 /// Copies a triangle's corners into every lane.

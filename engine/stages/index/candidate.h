@@ -317,8 +317,8 @@ INNER unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * ca
 }
 
 /// Returns the lanes that hit the candidate. f: the candidate's, in every lane.
-INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * candidate, const vr f[3], const vr d[3],
-                           vr *t)
+INNER rm R(intersect_candidate)(const glint_cast_args *args, const R(candidate) * candidate, const vr f[3],
+                                const vr d[3], vr *t)
 {
     const glint_geometry_table *table = args->geometry;
     const double *eye = args->camera->eye;
@@ -326,16 +326,17 @@ INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * can
     if (candidate->prim->kind == GLINT_PRIM_SOLID) {
         const glint_solid *solid = &table->solids[candidate->prim->item];
         const R(solid_start) start = { .f = { f[0], f[1], f[2] }, .height = candidate->height };
-        return R(meet_solid)(solid, &start, d, t);
+        return R(intersect_solid)(solid, &start, d, t);
     }
     if (candidate->prim->kind == GLINT_PRIM_SPHERE)
-        return R(meet_ball)(f, d, DOT(d, d), r_set(candidate->c), r_set(candidate->r2), r_set(candidate->scale), t);
+        return R(intersect_ball)(f, d, DOT(d, d), r_set(candidate->c), r_set(candidate->r2), r_set(candidate->scale),
+                                 t);
     if (candidate->prim->kind != GLINT_PRIM_TRIANGLE)
-        return R(meet)(f, r_set(candidate->c), d, candidate->prim, t);
+        return R(intersect)(f, r_set(candidate->c), d, candidate->prim, t);
     for (int j = 0; j < 9; j++)
         corner[j / 3][j % 3] = r_set(candidate->corner[j / 3][j % 3]);
     const vr o[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
-    const rm hit = R(meet_triangle)(corner, o, d, r_set(table->scale), R(face_of)(table, candidate->prim), t);
+    const rm hit = R(intersect_triangle)(corner, o, d, r_set(table->scale), R(face_of)(table, candidate->prim), t);
     return R(unless_begun_on)(table, candidate->prim, NULL, o, hit, *t);
 }
 
@@ -356,7 +357,7 @@ INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * cand
             continue;
         vr d[3], t;
         R(load_direction)(directions, args->direction, 0, i, d);
-        const rm hit = R(meet_candidate)(args, candidate, f, d, &t);
+        const rm hit = R(intersect_candidate)(args, candidate, f, d, &t);
         if (!rm_bits(hit))
             continue;
         R(keep_nearest)(args, at + i, candidate->id, hit, t);

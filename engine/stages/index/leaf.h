@@ -211,7 +211,7 @@ static void show_through_lens(const leaf_on_screen *corners, const screen_view *
 
 /// Returns the lanes whose rays, at positions u, v, start at (across, down) on the lens and may hit the triangle in a
 /// slot.
-INNER unsigned meets_through_lens(const leaf_through_lens *leaf, int slot, vf u, vf v, vf across, vf down)
+INNER unsigned hits_through_lens(const leaf_through_lens *leaf, int slot, vf u, vf v, vf across, vf down)
 {
     vf x[3], y[3], e[3];
     for (int j = 0; j < 3; j++) {

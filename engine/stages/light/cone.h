@@ -90,8 +90,8 @@ static __attribute__((noinline)) void R(place_in_cone)(const glint_light_sample 
             const vd far = t * d_set(1 / scale);
             R(store_exact)(set->far[s] + i, far);
             for (int k = 0; k < 3; k++) {
-                const vd met = cone.point[k] + direction[k] * far;
-                const vd place = d_min(d_max(met, d_set(light_sample[0]->lower[k])), d_set(light_sample[0]->upper[k]));
+                const vd hit = cone.point[k] + direction[k] * far;
+                const vd place = d_min(d_max(hit, d_set(light_sample[0]->lower[k])), d_set(light_sample[0]->upper[k]));
                 d_store(set->place[s][k] + i, place);
                 R(store_exact)(set->direction[s][k] + i, direction[k]);
 #if GLINT_REAL == 32

@@ -57,8 +57,8 @@ static inline glint_cone_sample glint_cone_at(const glint_light_sample *light_sa
     }
     out.far = t * (1 / scale);
     for (int k = 0; k < 3; k++) {
-        const double met = point[k] + out.direction[k] * out.far,
-                     above = met > light_sample->lower[k] ? met : light_sample->lower[k];
+        const double hit = point[k] + out.direction[k] * out.far,
+                     above = hit > light_sample->lower[k] ? hit : light_sample->lower[k];
         out.place[k] = above < light_sample->upper[k] ? above : light_sample->upper[k];
     }
     return out;

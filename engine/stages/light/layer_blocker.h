@@ -71,9 +71,9 @@ static inline void R(add_segment)(R(layers) * l, const glint_prim *prim, uint32_
 // ---- The filter ----
 
 /// Segments of a run: those that may be blocked, and those that certainly are.
-typedef struct layer_lanes_met {
+typedef struct layer_lanes_hit {
     unsigned near, certain;
-} layer_lanes_met;
+} layer_lanes_hit;
 
 /// The primitive that the segments of a run are tested against.
 typedef struct R(layer_blocker) {
@@ -90,7 +90,7 @@ typedef struct R(layer_blocker) {
 } R(layer_blocker);
 
 /// Tests a triangle: a segment crosses it if all corners, as seen along it, are on one side.
-INNER layer_lanes_met R(meet_corners)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
+INNER layer_lanes_hit R(test_corners)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
 {
     const vf base[2] = { f_load_any(rays->base[0] + i), f_load_any(rays->base[1] + i) };
     const vf slope[2] = { f_load_any(rays->slope[0] + i), f_load_any(rays->slope[1] + i) };
@@ -112,14 +112,14 @@ INNER layer_lanes_met R(meet_corners)(const layer_rays *rays, const R(layer_bloc
     // a triangle's own points are dark if light and viewer are on different sides
     const fm lit = fm_or(fm_andnot(front_side, seen_behind), fm_and(back_side, seen_behind));
     const fm there = f_le(from, f_set(b->at->high[2]));
-    layer_lanes_met out;
+    layer_lanes_hit out;
     out.near = fm_bits(fm_and(there, fm_or(fm_andnot(fm_from_bits((1u << VF) - 1), fm_or(apart, own)), fm_andnot(own, lit))));
     out.certain = b->clear ? fm_bits(fm_andnot(fm_and(fm_or(front, back), f_lt(from, f_set(b->above))), own)) : 0;
     return out;
 }
 
 /// Tests a sphere: a segment certainly hits it if it is inside of it at the height of its centre.
-INNER layer_lanes_met R(meet_middle)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
+INNER layer_lanes_hit R(test_middle)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
 {
     const vf slope[2] = { f_load_any(rays->slope[0] + i), f_load_any(rays->slope[1] + i) };
     const vf x = (f_load_any(rays->base[0] + i) + slope[0] * f_set(b->center[2])) - f_set(b->center[0]);
@@ -130,7 +130,7 @@ INNER layer_lanes_met R(meet_middle)(const layer_rays *rays, const R(layer_block
     const fm front = i_eq(owner, i_set(b->at->id)), own = i_eq(i_and(owner, i_set(~BEAM_BACK)), i_set(b->at->id));
     const fm there = f_le(from, f_set(b->at->high[2]));
     const fm away = f_lt(f_set(b->reach2) * stretch, beside2 + turn * turn);
-    layer_lanes_met out;
+    layer_lanes_hit out;
     out.near = fm_bits(fm_andnot(there, fm_or(away, front)));
     out.certain = b->clear ? fm_bits(fm_andnot(fm_and(f_lt(beside2, f_set(b->inner2)), f_lt(from, f_set(b->above))), own)) : 0;
     return out;
@@ -159,7 +159,7 @@ INNER fm R(off_unit_shape)(const R(layer_blocker) * b, const vf x[2], const vf s
 }
 
 /// Tests other primitives by their bounding boxes.
-INNER layer_lanes_met R(meet_extent)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
+INNER layer_lanes_hit R(test_extent)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
 {
     const float *low = b->at->low, *high = b->at->high;
     const vf from = f_load_any(rays->from + i), start = f_max(f_set(low[2]), f_min(from, f_set(high[2])));
@@ -177,7 +177,7 @@ INNER layer_lanes_met R(meet_extent)(const layer_rays *rays, const R(layer_block
     const vi owner = f_bits(f_load_any((const float *)(rays->on + i)));
     if (!b->torus)
         in = fm_andnot(in, i_eq(owner, i_set(b->at->id)));
-    return (layer_lanes_met) { fm_bits(in), 0 };
+    return (layer_lanes_hit) { fm_bits(in), 0 };
 }
 
 /// Tests the segments from `i` on and before `end`.
@@ -185,16 +185,16 @@ INNER void R(block_segments)(R(layers) * l, const R(layer_blocker) * b, uint32_t
 {
     for (; i < end; i += VF) {
         const unsigned in_run = end - i < VF ? (1u << (end - i)) - 1 : (1u << VF) - 1;
-        layer_lanes_met met;
+        layer_lanes_hit hit;
         if (b->prim->kind == GLINT_PRIM_TRIANGLE)
-            met = R(meet_corners)(&l->rays, b, i);
+            hit = R(test_corners)(&l->rays, b, i);
         else if (b->prim->kind == GLINT_PRIM_SPHERE)
-            met = R(meet_middle)(&l->rays, b, i);
+            hit = R(test_middle)(&l->rays, b, i);
         else
-            met = R(meet_extent)(&l->rays, b, i);
-        for (unsigned bits = met.certain & in_run; bits; bits &= bits - 1)
+            hit = R(test_extent)(&l->rays, b, i);
+        for (unsigned bits = hit.certain & in_run; bits; bits &= bits - 1)
             R(close_segment)(l, i + (unsigned)__builtin_ctz(bits));
-        for (unsigned bits = met.near & ~met.certain & in_run; bits; bits &= bits - 1) {
+        for (unsigned bits = hit.near & ~hit.certain & in_run; bits; bits &= bits - 1) {
             const uint32_t n = i + (unsigned)__builtin_ctz(bits);
             R(add_segment)(l, b->prim, n, (l->rays.on[n] & ~BEAM_BACK) == b->at->id);
         }

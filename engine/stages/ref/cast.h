@@ -86,18 +86,18 @@ static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3)
     return true;
 }
 
-/// Returns t where ray i hits a primitive; 0: a miss. *met: the primitive. eye: no ray starts on a surface.
-static REAL NAME(meets)(const glint_cast_args *args, bool eye, uint32_t index, NAME(vec3) origin, NAME(vec3) direction,
-                        uint32_t i, uint32_t *met)
+/// Returns t where ray i hits a primitive; 0: a miss. *hit_prim: the primitive. eye: no ray starts on a surface.
+static REAL NAME(hit_t)(const glint_cast_args *args, bool eye, uint32_t index, NAME(vec3) origin, NAME(vec3) direction,
+                        uint32_t i, uint32_t *hit_prim)
 {
     const glint_prim *prim = &args->geometry->prims[index];
     const bool starts_on = !eye && args->leaving && args->leaving[i] != GLINT_MISS;
     REAL t;
-    *met = index;
+    *hit_prim = index;
     if (prim->kind == GLINT_PRIM_COMBINED) {
         NAME(start) start = { starts_on ? args->leaving[i] : GLINT_MISS, false };
         start.inward = starts_on && args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
-        return NAME(combined_t)(args->geometry, prim, origin, direction, start, met);
+        return NAME(combined_t)(args->geometry, prim, origin, direction, start, hit_prim);
     }
     if (eye || !NAME(leaves)(args, index, origin, direction, i, &t))
         t = NAME(prim_t)(args->geometry, prim, origin, direction, starts_on);
@@ -113,14 +113,14 @@ static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, ui
         NAME(vec3) direction = NAME(direction_of)(eye ? args->camera : NULL, args->direction, i);
         NAME(vec3) origin = eye ? NAME(rounded)(eye) : NAME(load)(args->origin, i);
         for (uint32_t index = 0; index < args->geometry->prim_count; index++) {
-            uint32_t met;
+            uint32_t hit_prim;
             note_test(args->tests);
-            REAL t = NAME(meets)(args, eye != NULL, index, origin, direction, i, &met);
+            REAL t = NAME(hit_t)(args, eye != NULL, index, origin, direction, i, &hit_prim);
             bool first = t == best && best_prim != GLINT_MISS &&
-                         args->geometry->prims[met].id < args->geometry->prims[best_prim].id;
+                         args->geometry->prims[hit_prim].id < args->geometry->prims[best_prim].id;
             if (t > 0 && t < INFINITY && (t < best || first)) {
                 best = t;
-                best_prim = met;
+                best_prim = hit_prim;
             }
         }
     }

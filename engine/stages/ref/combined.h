@@ -133,7 +133,7 @@ static NAME(change) NAME(change_at)(const NAME(passing) * ray, REAL t)
 }
 
 /// Takes the change at t if it is nearer than the best one so far.
-static void NAME(consider)(const NAME(passing) * ray, REAL t, REAL *best, uint32_t *met)
+static void NAME(consider)(const NAME(passing) * ray, REAL t, REAL *best, uint32_t *hit_prim)
 {
     if (!(t > 0 && t < *best))
         return;
@@ -141,13 +141,13 @@ static void NAME(consider)(const NAME(passing) * ray, REAL t, REAL *best, uint32
     if (change.before == change.after)
         return;
     *best = t;
-    *met = change.part;
+    *hit_prim = change.part;
 }
 
-/// Returns the distance at which a ray hits a combined solid; 0: a miss. *met: the part, or its triangle; an index in
-/// prims.
+/// Returns the distance at which a ray hits a combined solid; 0: a miss. *hit_prim: the part, or its triangle; an index
+/// in prims.
 static REAL NAME(combined_t)(const glint_geometry_table *geometry, const glint_prim *prim, NAME(vec3) origin,
-                             NAME(vec3) direction, NAME(start) start, uint32_t *met)
+                             NAME(vec3) direction, NAME(start) start, uint32_t *hit_prim)
 {
     NAME(passing) ray = { geometry, &geometry->combined[prim->item], origin, direction, start, { { 0, 0 } } };
     const uint32_t first = geometry->prim_count + ray.whole->first;
@@ -156,14 +156,14 @@ static REAL NAME(combined_t)(const glint_geometry_table *geometry, const glint_p
         ray.part[j] = NAME(stretch_of)(geometry, first + j, origin, direction, start);
     for (uint32_t j = 0; j < ray.whole->count; j++) {
         const glint_prim *part = &geometry->prims[first + j];
-        NAME(consider)(&ray, ray.part[j].in, &best, met);
-        NAME(consider)(&ray, ray.part[j].out, &best, met);
+        NAME(consider)(&ray, ray.part[j].in, &best, hit_prim);
+        NAME(consider)(&ray, ray.part[j].out, &best, hit_prim);
         if (part->kind != GLINT_PRIM_HULL || part->face != 1)
             continue;
         for (uint32_t k = 0; k < geometry->hulls[part->item].count; k++)
             if (NAME(hull_crossing)(geometry, part, k, origin, direction, start, &t))
-                NAME(consider)(&ray, t, &best, met);
-        NAME(consider)(&ray, (REAL)GLINT_LEAST_T, &best, met); // for rays that start on it
+                NAME(consider)(&ray, t, &best, hit_prim);
+        NAME(consider)(&ray, (REAL)GLINT_LEAST_T, &best, hit_prim); // for rays that start on it
     }
     return best < INFINITY ? best : 0;
 }
@@ -175,7 +175,7 @@ static bool NAME(combined_blocks)(const glint_occlude_args *args, const glint_pr
     NAME(vec3) point = NAME(load)(args->point, i);
     NAME(vec3) d = args->directional ? position : NAME(times)(NAME(sub)(position, point), (REAL)args->scale);
     NAME(start) start = { args->prim[i], args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1 };
-    uint32_t met;
-    REAL t = NAME(combined_t)(args->geometry, prim, point, d, start, &met);
+    uint32_t hit_prim;
+    REAL t = NAME(combined_t)(args->geometry, prim, point, d, start, &hit_prim);
     return t > 0 && (args->directional || t * (REAL)args->scale < 1);
 }

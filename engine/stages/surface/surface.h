@@ -97,19 +97,19 @@ typedef struct R(surface_walk) {
 INNER R(seen_slot) *R(last_seen)(R(surface_walk) * walk, const bool mixed) { return mixed ? walk->last : walk->slots; }
 
 /// One vector of lanes of one primitive.
-typedef struct R(found) {
+typedef struct R(surface_lanes) {
     vr direction[3], point[3], normal[3], slack;
     vr away; ///< dot(outward normal, direction)
     rm back;
-} R(found);
+} R(surface_lanes);
 
 /// Turns the normal towards the viewer. n: the outward normal.
-INNER void R(face_viewer)(const vr n[3], R(found) * found)
+INNER void R(face_viewer)(const vr n[3], R(surface_lanes) * surface)
 {
-    found->away = DOT(n, found->direction);
-    found->back = r_lt(r_set(0), found->away);
+    surface->away = DOT(n, surface->direction);
+    surface->back = r_lt(r_set(0), surface->away);
     for (int k = 0; k < 3; k++)
-        found->normal[k] = r_select(found->back, -n[k], n[k]);
+        surface->normal[k] = r_select(surface->back, -n[k], n[k]);
 }
 
 INNER void R(find_on_solid)(const glint_surface_args *args, R(seen_slot) * slot, const vr from[3], const vr d[3], vr t, vr n[3],
@@ -129,12 +129,12 @@ INNER void R(find_on_solid)(const glint_surface_args *args, R(seen_slot) * slot,
 
 /// Computes a vector of lanes from i on.
 INNER void R(find_lanes)(const glint_surface_args *args, R(seen_slot) * slot, R(group_directions) directions, size_t at,
-                         int i, bool mixed, R(found) * found)
+                         int i, bool mixed, R(surface_lanes) * surface)
 {
     const R(seen_prim) *seen = &slot->prim;
     const glint_prim *prim = seen->prim;
     const bool smooth = mixed && prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS;
-    vr *d = found->direction, *p = found->point, n[3], from[3], f[3], w[3] = { r_set(0), r_set(0), r_set(0) };
+    vr *d = surface->direction, *p = surface->point, n[3], from[3], f[3], w[3] = { r_set(0), r_set(0), r_set(0) };
     vr corner[3][3];
     R(load_direction)(directions, args->direction, at, i, d);
     const vr t = r_load((const real *)args->t + at + i);
@@ -156,44 +156,44 @@ INNER void R(find_lanes)(const glint_surface_args *args, R(seen_slot) * slot, R(
         }
         if (mixed && prim->kind == GLINT_PRIM_TRIANGLE) {
             R(corners_of)(prim, corner);
-            R(triangle_point)(corner, args->scale, from, d, w, p, &found->slack);
+            R(triangle_point)(corner, args->scale, from, d, w, p, &surface->slack);
         } else if (mixed && prim->kind == GLINT_PRIM_SOLID)
             R(find_on_solid)(args, slot, from, d, t, n, p);
     }
     if (prim->kind == GLINT_PRIM_PLANE && seen->level == 3)
         R(onto_plane_of)(prim, n, p);
     if (mixed && prim->kind != GLINT_PRIM_TRIANGLE)
-        found->slack = r_set(-GLINT_POINT_SLACK) * R(largest)(p);
-    R(face_viewer)(n, found);
+        surface->slack = r_set(-GLINT_POINT_SLACK) * R(largest)(p);
+    R(face_viewer)(n, surface);
     if (smooth) {
-        const vr facing[3] = { found->normal[0], found->normal[1], found->normal[2] };
+        const vr facing[3] = { surface->normal[0], surface->normal[1], surface->normal[2] };
         for (int j = 0; j < 9; j++)
             corner[j / 3][j % 3] = r_set(args->corner_normals[prim->item].normal[j / 3][j % 3]);
-        R(smooth_normal)(corner, w, n, facing, found->normal);
+        R(smooth_normal)(corner, w, n, facing, surface->normal);
     }
 }
 
 /// Computes one vector of a group that shows several triangles.
 INNER void R(find_mesh_lanes)(const glint_surface_args *args, R(mesh_group) * mesh, R(group_directions) directions,
-                              size_t at, int i, R(found) * found)
+                              size_t at, int i, R(surface_lanes) * surface)
 {
     vr corner[3][3], from[3], n[3], w[3];
-    R(load_direction)(directions, args->direction, at, i, found->direction);
+    R(load_direction)(directions, args->direction, at, i, surface->direction);
     R(load_corners)(mesh->corner, i, corner);
     for (int k = 0; k < 3; k++) {
         from[k] = args->camera ? r_set(args->camera->eye[k]) : r_load((const real *)args->origin[k] + at + i);
         n[k] = R(load_rounded)(mesh->normal[k] + i);
     }
-    R(triangle_point)(corner, args->scale, from, found->direction, w, found->point, &found->slack);
-    R(face_viewer)(n, found);
+    R(triangle_point)(corner, args->scale, from, surface->direction, w, surface->point, &surface->slack);
+    R(face_viewer)(n, surface);
     const unsigned smooth = mesh->smooth >> i & ((1u << VR) - 1);
     if (!smooth)
         return;
     vr curved[3];
     R(load_corners)(mesh->corner_normal, i, corner);
-    R(smooth_normal)(corner, w, n, found->normal, curved);
+    R(smooth_normal)(corner, w, n, surface->normal, curved);
     for (int k = 0; k < 3; k++)
-        found->normal[k] = r_select(rm_from_bits(smooth), curved[k], found->normal[k]);
+        surface->normal[k] = r_select(rm_from_bits(smooth), curved[k], surface->normal[k]);
 }
 
 /// A bounding box of points. NaN is ignored.
@@ -241,22 +241,22 @@ typedef enum R(surface_outputs) {
 } R(surface_outputs);
 
 /// Stores some lanes of a vector, and leaves the others unchanged. Returns the lanes that are seen from behind.
-INNER unsigned R(put_found)(const glint_surface_args *args, const R(found) * found, size_t at, unsigned lanes,
-                            R(surface_outputs) outputs, R(point_box) * box)
+INNER unsigned R(store_lanes)(const glint_surface_args *args, const R(surface_lanes) * surface, size_t at,
+                              unsigned lanes, R(surface_outputs) outputs, R(point_box) * box)
 {
     const bool whole = lanes == (1u << VR) - 1;
     const rm mask = rm_from_bits(lanes);
     for (int k = 0; k < 3; k++)
-        R(put)(args->point[k], at, whole, mask, found->point[k]);
+        R(put)(args->point[k], at, whole, mask, surface->point[k]);
     if (outputs == R(POINTS_ONLY))
         return 0;
     for (int k = 0; k < 3; k++)
-        R(put)(args->normal[k], at, whole, mask, found->normal[k]);
+        R(put)(args->normal[k], at, whole, mask, surface->normal[k]);
     if (args->box)
-        R(enclose)(box, found->point, whole, mask);
+        R(enclose)(box, surface->point, whole, mask);
     if (outputs == R(MIXED) && args->slack)
-        R(put)(args->slack, at, whole, mask, found->slack);
-    return rm_bits(found->back) & lanes;
+        R(put)(args->slack, at, whole, mask, surface->slack);
+    return rm_bits(surface->back) & lanes;
 }
 
 /// Zeroes the lanes of a group of which only some hit.
@@ -321,9 +321,9 @@ INNER unsigned R(surface_mesh)(const glint_surface_args *args, R(surface_walk) *
         const unsigned here = lanes >> i & ((1u << VR) - 1);
         if (!here)
             continue;
-        R(found) found;
-        R(find_mesh_lanes)(args, &mesh, directions, at, i, &found);
-        back |= R(put_found)(args, &found, at + (size_t)i, here, R(MIXED), box) << i;
+        R(surface_lanes) surface;
+        R(find_mesh_lanes)(args, &mesh, directions, at, i, &surface);
+        back |= R(store_lanes)(args, &surface, at + (size_t)i, here, R(MIXED), box) << i;
     }
     return back;
 }
@@ -443,9 +443,9 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
             const unsigned here = lanes >> i & ((1u << VR) - 1);
             if (!here)
                 continue;
-            R(found) found;
-            R(find_lanes)(args, slot, directions, at, i, outputs == R(MIXED), &found);
-            behind |= R(put_found)(args, &found, at + (size_t)i, here, outputs, box) << i;
+            R(surface_lanes) surface;
+            R(find_lanes)(args, slot, directions, at, i, outputs == R(MIXED), &surface);
+            behind |= R(store_lanes)(args, &surface, at + (size_t)i, here, outputs, box) << i;
         }
         if (outputs != R(POINTS_ONLY))
             lanes_put(args->material + at, lanes, slot->prim.prim->material);
