@@ -12,7 +12,7 @@ static glint_key picture_key(const glint_plan *plan)
 }
 
 /// Fills in the statistics of a frame for which no stage ran.
-static void tell_given(const glint_frame_stats *of, glint_frame_stats *stats)
+static void fill_stats(const glint_frame_stats *of, glint_frame_stats *stats)
 {
     *stats = (glint_frame_stats) { .stage_count = of->stage_count };
     stats->clipped = of->clipped;
@@ -36,7 +36,7 @@ bool glint_picture_give(glint_renderer *renderer, const glint_plan *plan, glint_
         picture->worth = renderer->picture_floor + picture->cost;
         *out = glint_image_retain(picture->image);
         if (stats)
-            tell_given(&picture->stats, stats);
+            fill_stats(&picture->stats, stats);
         return true;
     }
     return false;

@@ -72,10 +72,10 @@ static void read_hit(const glint_geometry *geometry, uint32_t id, const lane_gro
         out->element = part_number(geometry, whole, id);
         break;
     }
-    const double turn = g->back & 1 ? -1 : 1;
+    const double sign = g->back & 1 ? -1 : 1;
     for (int c = 0; c < 3; c++) {
         out->point[c] = g->point[c][0];
-        out->normal[c] = g->normal[c][0] * turn;
+        out->normal[c] = g->normal[c][0] * sign;
     }
 }
 
@@ -218,13 +218,13 @@ glint_status glint_material_evaluate(const glint_material *material, const doubl
     vec_normalize(n, normal);
     vec_normalize(l, to_light);
     vec_normalize(v, to_eye);
-    const double turn = vec_dot(n, v) < 0 ? -1 : 1;
+    const double sign = vec_dot(n, v) < 0 ? -1 : 1;
     lane_group *g = glint_alloc(1, sizeof *g);
     if (!g)
         return glint_fail_nomem(error);
     g->active = g->hits = 1;
     for (int c = 0; c < 3; c++) {
-        g->normal[c][0] = n[c] * turn;
+        g->normal[c][0] = n[c] * sign;
         g->direction[c][0] = -v[c];
     }
     evaluate_lane(stages, &desc, l, g);

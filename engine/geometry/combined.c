@@ -130,7 +130,7 @@ static bool hull_holds(const glint_geometry *geometry, const glint_prim *part, c
     int exits = 0;
     for (uint32_t i = 0; i < hull->count; i++)
         exits += glint_prim_crossing(&geometry->members[hull->first + i], place, direction);
-    return part->turned ? exits < 0 : exits > 0;
+    return part->inverted ? exits < 0 : exits > 0;
 }
 
 static bool part_holds(const glint_geometry *geometry, const glint_prim *part, const double place[3])

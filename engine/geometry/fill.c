@@ -90,7 +90,8 @@ static void share_face(glint_filler *f, glint_prim *prim, const glint_mesh *mesh
     glint_face_bound(&f->geometry->faces[prim->face - 1], place, lower, upper, own);
 }
 
-void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *shape, size_t i, const glint_placing *place, bool turned)
+void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *shape, size_t i,
+                         const glint_placing *place, bool reversed)
 {
     const glint_mesh *mesh = shape->mesh;
     const uint32_t *at = mesh->triangles[i], *normal = mesh->triangle_normals ? mesh->triangle_normals[i] : at;
@@ -100,7 +101,7 @@ void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *s
     prim->item = is_smooth(shape) ? f->normal_count++ : GLINT_MISS;
     prim->shading_points = is_shared(shape) ? f->shared_count++ : GLINT_MISS;
     for (int j = 0; j < 3; j++) {
-        const int from = turned ? (3 - j) % 3 : j;
+        const int from = reversed ? (3 - j) % 3 : j;
         glint_place_point(place, mesh->vertices[at[from]], prim->corner[j]);
         if (prim->item != GLINT_MISS)
             place_corner_normal(place, mesh->normals[normal[from]], f->geometry->normals[prim->item].normal[j]);

@@ -28,9 +28,10 @@ void glint_fill_part(glint_filler *f, uint32_t part, glint_shape *shape, const g
 /// Fills in the fields of a primitive that do not depend on its position.
 void glint_fill_dress(glint_filler *f, glint_prim *prim, uint32_t part, uint32_t material, uint32_t medium, bool two_sided);
 void glint_fill_solid(glint_filler *f, glint_prim *prim, const glint_shape_desc *desc, const glint_placing *place);
-/// Fills in a triangle. turned: its corners are taken in reverse order, so that the front stays the front under a
+/// Fills in a triangle. reversed: its corners are taken in reverse order, so that the front stays the front under a
 /// mirroring map.
-void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *shape, size_t i, const glint_placing *place, bool turned);
+void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *shape, size_t i,
+                         const glint_placing *place, bool reversed);
 /// Computes a shape's placement. around: the map of the groups that contain it; NULL: the identity. map: memory for
 /// the product.
 glint_status glint_fill_placing(const glint_filler *f, const glint_shape *shape, const glint_transform *around, glint_transform *map,

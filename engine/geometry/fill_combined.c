@@ -34,7 +34,7 @@ static glint_status too_many_parts(const glint_filler *f, const maker *m)
 
 /// Adds a part without its position. order: see glint_prim.face.
 static glint_status start_member(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *place, const glint_shape *dress,
-                                 bool turned, uint32_t order, glint_prim **out)
+                                 bool inverted, uint32_t order, glint_prim **out)
 {
     glint_geometry *geometry = f->geometry;
     uint32_t material;
@@ -47,7 +47,7 @@ static glint_status start_member(glint_filler *f, maker *m, glint_shape *shape, 
     geometry->parts[part].dress = dress;
     geometry->parts[part].whole = m->shape;
     glint_fill_dress(f, prim, part, material, m->medium, m->shape->desc.two_sided);
-    prim->turned = turned;
+    prim->inverted = inverted;
     prim->face = order;
     m->combined->program[m->combined->length++] = (uint8_t)m->combined->count++;
     if (order > 1)
@@ -57,10 +57,10 @@ static glint_status start_member(glint_filler *f, maker *m, glint_shape *shape, 
 
 /// Adds a part that is a solid, ball or plane; half: 0, or 1 and 2 for a torus.
 static glint_status add_member(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *place, const glint_shape *dress,
-                               bool turned, uint32_t half)
+                               bool inverted, uint32_t half)
 {
     glint_prim *prim;
-    glint_status status = start_member(f, m, shape, place, dress, turned, half, &prim);
+    glint_status status = start_member(f, m, shape, place, dress, inverted, half, &prim);
     if (status)
         return status;
     if (shape->desc.kind == GLINT_SHAPE_PLANE) {
@@ -74,7 +74,7 @@ static glint_status add_member(glint_filler *f, maker *m, glint_shape *shape, co
 
 /// Adds the triangles of a part that is a mesh; the indices of their materials are in f->numbers.
 static void add_hull_triangles(glint_filler *f, const maker *m, glint_shape *shape, const glint_placing *place,
-                               const glint_shape *dress, bool turned, glint_prim *box)
+                               const glint_shape *dress, bool inverted, glint_prim *box)
 {
     glint_geometry *geometry = f->geometry;
     const uint32_t part = (uint32_t)(f->parts + f->members) + f->hull_count;
@@ -89,7 +89,8 @@ static void add_hull_triangles(glint_filler *f, const maker *m, glint_shape *sha
         double lower[3], upper[3];
         glint_fill_dress(f, prim, part, f->numbers[dress == shape && shape->index ? shape->index[i] : 0], m->medium,
                    m->shape->desc.two_sided);
-        glint_fill_triangle(f, prim, shape, i, place, (glint_is_mirroring(place) != shape->mesh->closure.inverted) != turned);
+        glint_fill_triangle(f, prim, shape, i, place,
+                            (glint_is_mirroring(place) != shape->mesh->closure.inverted) != inverted);
         glint_prim_bounds(NULL, prim, lower, upper);
         for (int c = 0; c < 3; c++) {
             box->corner[1][c] = i ? fmin(box->corner[1][c], lower[c]) : lower[c];
@@ -101,7 +102,7 @@ static void add_hull_triangles(glint_filler *f, const maker *m, glint_shape *sha
 
 /// Adds a closed mesh: several parts for one mesh, and its triangles.
 static glint_status add_hull(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *place, const glint_shape *dress,
-                             bool turned)
+                             bool inverted)
 {
     glint_status status = GLINT_OK;
     glint_prim *prim[GLINT_HULL_PARTS];
@@ -109,12 +110,12 @@ static glint_status add_hull(glint_filler *f, maker *m, glint_shape *shape, cons
     for (size_t i = 0; i < dress->material_count && !status; i++)
         status = glint_fill_material(&f->geometry->materials, dress->materials[i], &f->numbers[i], f->error);
     for (uint32_t k = 0; k < GLINT_HULL_PARTS && !status; k++)
-        status = start_member(f, m, shape, place, dress, turned, k + 1, &prim[k]);
+        status = start_member(f, m, shape, place, dress, inverted, k + 1, &prim[k]);
     if (status)
         return status;
     for (uint32_t k = 0; k < GLINT_HULL_PARTS; k++)
         prim[k]->corner = f->geometry->corners[f->corner_count++];
-    add_hull_triangles(f, m, shape, place, dress, turned, prim[0]);
+    add_hull_triangles(f, m, shape, place, dress, inverted, prim[0]);
     for (uint32_t k = 0; k < GLINT_HULL_PARTS; k++) {
         prim[k]->kind = GLINT_PRIM_HULL;
         prim[k]->item = hull;
@@ -136,7 +137,7 @@ static uint8_t operation_of(const glint_shape *shape)
 
 /// Adds a shape to a combined solid. dress: the material for shapes without one.
 static glint_status add_to_whole(glint_filler *f, maker *m, glint_shape *shape, const glint_transform *around,
-                                 const glint_shape *dress, bool turned)
+                                 const glint_shape *dress, bool inverted)
 {
     glint_combined *combined = m->combined;
     glint_transform map;
@@ -150,18 +151,18 @@ static glint_status add_to_whole(glint_filler *f, maker *m, glint_shape *shape, 
     if (combined->count + m->nothings + glint_member_parts(shape) > GLINT_PARTS_MAX)
         return too_many_parts(f, m);
     if (shape->mesh)
-        return add_hull(f, m, shape, &place, dress, turned);
+        return add_hull(f, m, shape, &place, dress, inverted);
     if (torus)
-        status = add_member(f, m, shape, &place, dress, turned, 1);
+        status = add_member(f, m, shape, &place, dress, inverted, 1);
     if (!glint_shape_has_children(shape))
-        return status ? status : add_member(f, m, shape, &place, dress, turned, torus ? 2 : 0);
+        return status ? status : add_member(f, m, shape, &place, dress, inverted, torus ? 2 : 0);
     if (shape->children.count == 0) {
         combined->program[combined->length++] = GLINT_COMBINE_NOTHING;
         m->nothings++;
     }
     for (size_t i = 0; i < shape->children.count && !status; i++) {
         const bool away = i > 0 && shape->desc.kind == GLINT_SHAPE_DIFFERENCE;
-        status = add_to_whole(f, m, shape->children.items[i], place.map, dress, turned != away);
+        status = add_to_whole(f, m, shape->children.items[i], place.map, dress, inverted != away);
         if (i > 0)
             combined->program[combined->length++] = operation_of(shape);
     }

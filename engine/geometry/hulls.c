@@ -126,7 +126,7 @@ int glint_prim_crossing(const glint_prim *triangle, const double from[3], const 
     z = fabs(d[2]) > fabs(d[z]) ? 2 : z;
     const int x = (z + 1) % 3, y = (z + 2) % 3;
     double seen[3][2], depth[3], weight[3], sum = 0, weighted_depth = 0;
-    int turns = 0;
+    int orientation = 0;
     for (int j = 0; j < 3; j++) {
         double p[3];
         vec_sub(p, triangle->corner[j], from);
@@ -137,11 +137,11 @@ int glint_prim_crossing(const glint_prim *triangle, const double from[3], const 
     for (int j = 0; j < 3; j++) {
         const double *a = seen[j], *b = seen[(j + 1) % 3];
         const double side = a[0] * b[1] - a[1] * b[0];
-        turns += a[1] <= 0 && b[1] > 0 && side > 0;
-        turns -= b[1] <= 0 && a[1] > 0 && side < 0;
+        orientation += a[1] <= 0 && b[1] > 0 && side > 0;
+        orientation -= b[1] <= 0 && a[1] > 0 && side < 0;
         weight[(j + 2) % 3] = side;
     }
-    if (turns == 0)
+    if (orientation == 0)
         return 0;
     for (int j = 0; j < 3; j++) {
         sum += weight[j];
@@ -149,5 +149,5 @@ int glint_prim_crossing(const glint_prim *triangle, const double from[3], const 
     }
     if (!(weighted_depth / (sum * d[z]) > 0))
         return 0;
-    return d[z] > 0 ? turns : -turns;
+    return d[z] > 0 ? orientation : -orientation;
 }

@@ -125,7 +125,7 @@ static bool any(const double c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
 static bool is_mirror(const glint_material_desc *d) { return glint_material_mirrors(d); }
 static bool is_transparent(const glint_material_desc *d) { return glint_material_transmits(d); }
 static bool is_translucent(const glint_material_desc *d) { return glint_material_blends(d); }
-static bool lets_through(const glint_material_desc *d) { return is_transparent(d) || is_translucent(d); }
+static bool transmits_light(const glint_material_desc *d) { return is_transparent(d) || is_translucent(d); }
 static bool is_cut_out(const glint_material_desc *d) { return glint_material_is_cut(d); }
 static bool is_absorbing(const glint_material_desc *d) { return is_transparent(d) && any(d->absorption); }
 
@@ -327,7 +327,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
         materials(e, "translucent surface", is_translucent);
     }
     if (plan->tints)
-        materials(e, "tinted shadow", lets_through);
+        materials(e, "tinted shadow", transmits_light);
     one(e, plan->depth_cue.on, "depth cue", "scene.depth_cue");
     veil(e);
     static const char *const inks[] = { "none", "black", "white" };

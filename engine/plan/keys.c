@@ -33,7 +33,7 @@ static glint_key light_place_key(const glint_plan_light *l, glint_key key)
 {
     const double numbers[] = { l->directional,     l->position[0],     l->position[1],
                                l->position[2],     l->coefficients[0], l->coefficients[1],
-                               l->coefficients[2], l->is_spot,         l->turn_count };
+                               l->coefficients[2], l->is_spot,         l->sample_set_count };
     GLINT_KEY_ADD(key, numbers);
     if (l->is_spot) {
         const double cone[] = { l->spot.axis[0], l->spot.axis[1], l->spot.axis[2],
@@ -44,7 +44,8 @@ static glint_key light_place_key(const glint_plan_light *l, glint_key key)
         const double shadow[] = { l->cap ? l->cap->radius : 0, l->radiant_cap, l->hard };
         GLINT_KEY_ADD(key, shadow);
     }
-    return l->light_samples ? glint_key_add(key, l->light_samples, l->turn_count * sizeof *l->light_samples) : key;
+    return l->light_samples ? glint_key_add(key, l->light_samples, l->sample_set_count * sizeof *l->light_samples)
+                            : key;
 }
 
 static glint_key light_color_key(const glint_plan_light *l, glint_key key)

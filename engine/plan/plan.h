@@ -44,17 +44,17 @@ typedef struct glint_plan_light {
     bool directional, shadows, attenuated;
     bool joined; ///< another sample of the same area light as the light before it
     /// For the stage `light`, differs from the light before it only in position; both without samples or a cone
-    bool alike;
+    bool same_but_position;
     bool is_spot;
     glint_spot spot;
     uint32_t source; ///< index of the light in the scene
     uint32_t group; ///< its group among the frame's light passes; GLINT_NO_GROUP: none
-    /// Area light: the sample pattern of each turn, one after another; otherwise NULL
+    /// Area light: its sample sets, one after another; otherwise NULL
     const glint_light_sample *light_samples;
     const glint_light_sample *cap; ///< shadows by caps: describes the whole light; otherwise NULL
     bool hard; ///< area light: one shadow ray to `position`, its centre, for all samples
     bool radiant_cap; ///< inside its radius, the light is as strong as on its surface
-    uint32_t turn_count; ///< the samples of a pixel use the turns one after the other
+    uint32_t sample_set_count; ///< the samples of a pixel use the sets one after the other
     double position[3]; ///< directional: the unit vector towards the light; area: read where `hard`
     double scale; ///< see glint_light_args
     double coefficients[3];

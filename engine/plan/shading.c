@@ -8,7 +8,7 @@
 #include <float.h>
 
 #define PI 0x1.921fb54442d18p+1
-#define SAMPLES_MAX 0x1p27 ///< most samples of all lights, over all turns
+#define SAMPLES_MAX 0x1p27 ///< most samples of all lights, over all sets
 
 /// Larger strengths are white in any picture. Products of two strengths below this limit stay finite.
 #define STRENGTH_MAX 1e150
@@ -253,7 +253,7 @@ static glint_status ensure_capacity(glint_plan *plan, const glint_scene *scene, 
         const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
         rows += sample_count(plan, desc);
         if (is_area(plan, desc))
-            light_samples += (double)sample_count(plan, desc) * glint_light_sample_turns(desc, plan->desc.samples);
+            light_samples += (double)sample_count(plan, desc) * glint_light_sample_sets(desc, plan->desc.samples);
         else if (is_cap(plan, desc))
             light_samples++;
     }
@@ -267,7 +267,7 @@ static glint_status ensure_capacity(glint_plan *plan, const glint_scene *scene, 
 
 /// Returns whether two lights have no samples or cone, and differ only in position, as far as the stage `light` reads
 /// them.
-static bool is_alike(const glint_plan_light *a, const glint_plan_light *b)
+static bool is_same_but_position(const glint_plan_light *a, const glint_plan_light *b)
 {
     const bool plain = !a->light_samples && !b->light_samples && !a->is_spot && !b->is_spot;
     return plain && a->directional == b->directional && a->attenuated == b->attenuated && a->scale == b->scale &&
@@ -278,12 +278,12 @@ static bool is_alike(const glint_plan_light *a, const glint_plan_light *b)
 static size_t add_light(glint_plan *plan, const glint_plan_light *common, const glint_light_desc *desc,
                         glint_light_sample *light_samples)
 {
-    const uint32_t samples = sample_count(plan, desc), turns = glint_light_sample_turns(desc, plan->desc.samples);
+    const uint32_t samples = sample_count(plan, desc), sets = glint_light_sample_sets(desc, plan->desc.samples);
     const bool area = is_area(plan, desc);
     if (area) {
         glint_light_desc taken = *desc;
         taken.samples = samples;
-        glint_light_sample_fill(&taken, turns, plan->desc.seed, light_samples);
+        glint_light_sample_fill(&taken, sets, plan->desc.seed, light_samples);
     }
     if (is_cap(plan, desc))
         glint_light_sample_whole(desc, light_samples);
@@ -291,11 +291,11 @@ static size_t add_light(glint_plan *plan, const glint_plan_light *common, const 
         glint_plan_light *light = &plan->lights[plan->light_count++];
         *light = *common;
         light->joined = i > 0;
-        light->light_samples = area ? light_samples + (size_t)i * turns : NULL;
-        light->turn_count = area ? turns : 0;
+        light->light_samples = area ? light_samples + (size_t)i * sets : NULL;
+        light->sample_set_count = area ? sets : 0;
         light->cap = is_cap(plan, desc) ? light_samples : NULL;
     }
-    return area ? (size_t)samples * turns : is_cap(plan, desc);
+    return area ? (size_t)samples * sets : is_cap(plan, desc);
 }
 
 void glint_plan_count_lights(glint_plan *plan)
@@ -305,7 +305,7 @@ void glint_plan_count_lights(glint_plan *plan)
     for (uint32_t i = 0; i < plan->light_count; i++) {
         glint_plan_light *light = &plan->lights[i];
         row = light->joined ? row + 1 : 0;
-        light->alike = i > 0 && is_alike(light, light - 1);
+        light->same_but_position = i > 0 && is_same_but_position(light, light - 1);
         plan->shadow_count += light->shadows;
         plan->spared_count += light->cap || (light->shadows && light->hard && row % GLINT_LIGHT_CHUNK > 0);
     }

@@ -73,15 +73,15 @@ static bool is_only_of_this(const maker *m, glint_value value, glint_op op)
     return m->nodes[value].op == op && m->uses[value] == 1;
 }
 
-static void become(maker *m, uint32_t i, glint_op op, glint_value a, glint_value b, glint_value c, glint_value gone)
+static void become(maker *m, uint32_t i, glint_op op, glint_value a, glint_value b, glint_value c, glint_value unused)
 {
     glint_ssa_node *node = &m->nodes[i];
     node->op = (uint16_t)op;
     node->operand[0] = a;
     node->operand[1] = b;
     node->operand[2] = c;
-    m->uses[gone] = 0;
-    m->needed[gone] = false;
+    m->uses[unused] = 0;
+    m->needed[unused] = false;
 }
 
 /// Turns x y + a with x = b - a into mix(a, b, y).

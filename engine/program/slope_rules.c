@@ -112,10 +112,10 @@ static void pass_pairs(glint_slope_maker *s, const rule_case *x)
         glint_slope_give(s, c, x->op == GLINT_OP_MULADD ? g : one(s, GLINT_OP_NEG, g));
         break;
     case GLINT_OP_SUBMUL: {
-        const glint_value turned = one(s, GLINT_OP_NEG, g);
+        const glint_value negated = one(s, GLINT_OP_NEG, g);
         glint_slope_give(s, a, g);
-        glint_slope_give(s, b, times(s, turned, c));
-        glint_slope_give(s, c, times(s, turned, b));
+        glint_slope_give(s, b, times(s, negated, c));
+        glint_slope_give(s, c, times(s, negated, b));
         break;
     }
     case GLINT_OP_MULMUL:

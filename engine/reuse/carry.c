@@ -233,10 +233,10 @@ void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *
         return;
     carry c = { .reuse = reuse, .plan = plan, .images = images, .image_count = image_count };
     glint_cached_place *places = is_worth_finding(reuse, count) ? find_places(geometry, count) : NULL;
-    const bool alike = plain && reuse->places && places && reuse->place_count == count && reuse->tile_count > 0 &&
-                       reuse->scale == geometry->table.scale && // with another scale, other numbers underflow
-                       reuse->light_count == (lights < GLINT_CACHED_LIGHTS ? lights : GLINT_CACHED_LIGHTS);
-    if (alike && plan->desc.precision == GLINT_DOUBLE && !glint_plan_cuts(plan)) {
+    const bool comparable = plain && reuse->places && places && reuse->place_count == count && reuse->tile_count > 0 &&
+                            reuse->scale == geometry->table.scale && // with another scale, other numbers underflow
+                            reuse->light_count == (lights < GLINT_CACHED_LIGHTS ? lights : GLINT_CACHED_LIGHTS);
+    if (comparable && plan->desc.precision == GLINT_DOUBLE && !glint_plan_cuts(plan)) {
         if (carry_changes(&c, places, count))
             reuse->carry_pause = 0;
         else

@@ -9,7 +9,7 @@
 #define PI 0x1.921fb54442d18p+1
 #define GOLDEN 0x1.3c6ef372fe95p-1 // (sqrt(5) - 1) / 2
 #define PLANAR 1e-6 // tolerance for corners outside the plane or inside an edge, as a fraction of the polygon's size
-#define TURNS_SAMPLES 4096 // most light samples over all turns; beyond it, samples of a pixel share patterns
+#define SET_SAMPLES_MAX 4096 // most light samples over all sets; beyond it, samples of a pixel share patterns
 
 typedef const double (*corners)[3];
 
@@ -233,12 +233,12 @@ static void surface_point(const surface *s, const double square[2], double posit
 
 // ---- The samples ----
 
-uint32_t glint_light_sample_turns(const glint_light_desc *desc, double pixel_samples)
+uint32_t glint_light_sample_sets(const glint_light_desc *desc, double pixel_samples)
 {
-    uint32_t turns = 1;
-    while (turns < pixel_samples && 2 * turns * desc->samples <= TURNS_SAMPLES)
-        turns *= 2;
-    return turns;
+    uint32_t sets = 1;
+    while (sets < pixel_samples && 2 * sets * desc->samples <= SET_SAMPLES_MAX)
+        sets *= 2;
+    return sets;
 }
 
 /// Returns a pixel's position in the sequence: each 2 x 2 pixels are consecutive, so that they also have an even set
@@ -322,17 +322,17 @@ static void cone_point(const double square[2], double place[3])
     place[2] = glint_sin(2 * PI * square[1]);
 }
 
-void glint_light_sample_fill(const glint_light_desc *desc, uint32_t turns, double seed, glint_light_sample *out)
+void glint_light_sample_fill(const glint_light_desc *desc, uint32_t sets, double seed, glint_light_sample *out)
 {
     const uint32_t samples = (uint32_t)desc->samples;
-    const int bits = glint_sequence_bits(GLINT_GROUP * turns);
+    const int bits = glint_sequence_bits(GLINT_GROUP * sets);
     const bool cone = emission_of(desc) == GLINT_EMIT_CONE;
     surface s;
     surface_init(&s, desc);
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
-        for (uint32_t turn = 0; turn < turns; turn++) {
+        for (uint32_t set = 0; set < sets; set++) {
             double shift[2];
-            glint_sequence_point(lane_order(lane) * turns + turn, bits, seed, shift);
+            glint_sequence_point(lane_order(lane) * sets + set, bits, seed, shift);
             for (uint32_t i = 0; i < samples; i++) {
                 double position[3], normal[3] = { 0 }, square[2];
                 square_point(i, samples, cone, shift, square);
@@ -340,12 +340,12 @@ void glint_light_sample_fill(const glint_light_desc *desc, uint32_t turns, doubl
                     cone_point(square, position);
                 else
                     surface_point(&s, square, position, normal);
-                glint_light_sample *light_sample = &out[(size_t)i * turns + turn];
+                glint_light_sample *light_sample = &out[(size_t)i * sets + set];
                 for (int k = 0; k < 3; k++) {
                     light_sample->position[k][lane] = position[k];
                     light_sample->normal[k][lane] = normal[k];
                 }
             }
         }
-    enclose(desc, out, (size_t)samples * turns);
+    enclose(desc, out, (size_t)samples * sets);
 }

@@ -51,7 +51,7 @@ struct glint_mesh_library {
     glint_mesh_entry first_flat; ///< the first of them; it does not own its pictures
     size_t invisible; ///< materials that transmit all light
     char first_invisible[GLINT_NAME_SIZE];
-    bool told; ///< a warning reported that a file could not be read
+    bool reported; ///< a warning reported that a file could not be read
 };
 
 static inline glint_mesh_entry *glint_mesh_known_at(const glint_mesh_library *library, size_t i)

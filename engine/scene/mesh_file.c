@@ -11,7 +11,7 @@
 #include <string.h>
 #include <strings.h>
 
-static void tell_notes(const glint_mesh_reader *r)
+static void report_notes(const glint_mesh_reader *r)
 {
     for (int kind = 0; kind < GLINT_MESH_NOTE_COUNT; kind++) {
         const glint_mesh_note *note = &r->notes[kind];
@@ -273,7 +273,7 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
     if (!status)
         status = make_mesh(&r, out);
     if (!status)
-        tell_notes(&r);
+        report_notes(&r);
     release(&r);
     return status;
 }

@@ -297,7 +297,7 @@ static const char *spell_more(size_t count, char out[32])
 }
 
 /// Warns once about bump maps without a height.
-static void tell_flat(const glint_mesh_library *library, const glint_mesh_reader *reader)
+static void warn_flat(const glint_mesh_library *library, const glint_mesh_reader *reader)
 {
     char more[32];
     const glint_mesh_entry *e = &library->first_flat;
@@ -315,7 +315,7 @@ static void tell_flat(const glint_mesh_library *library, const glint_mesh_reader
                         e->desc.name, more);
 }
 
-static void tell_invisible(const glint_mesh_library *library, const glint_mesh_reader *reader)
+static void warn_invisible(const glint_mesh_library *library, const glint_mesh_reader *reader)
 {
     char more[32];
     if (library->invisible)
@@ -325,10 +325,10 @@ static void tell_invisible(const glint_mesh_library *library, const glint_mesh_r
 }
 
 /// Warns once about undefined materials, unless a file that could not be read explains them.
-static void tell_missing(const glint_mesh_library *library, const glint_mesh_reader *reader)
+static void warn_missing(const glint_mesh_library *library, const glint_mesh_reader *reader)
 {
     char more[32];
-    if (library->missing && !library->told)
+    if (library->missing && !library->reported)
         glint_mesh_warn(reader->desc, reader->text.path, "material '%s'%s: %s%.200s", library->first_missing,
                         spell_more(library->missing, more),
                         library->file ? "not in " : "the mesh names no material file (mtllib)",
@@ -345,9 +345,9 @@ glint_status glint_mesh_library_make(glint_mesh_library *library, const glint_me
             status = make_material(library, reader, i);
     }
     if (!status) {
-        tell_missing(library, reader);
-        tell_flat(library, reader);
-        tell_invisible(library, reader);
+        warn_missing(library, reader);
+        warn_flat(library, reader);
+        warn_invisible(library, reader);
     }
     return status;
 }

@@ -326,7 +326,7 @@ static glint_status read_file(glint_mesh_library *library, const glint_mesh_read
     warn_of_ignored(reader, path, &ignored);
     if (status == GLINT_ERR_NOMEM)
         return glint_fail_nomem(reader->error);
-    library->told = library->told || (status && (*there || last));
+    library->reported = library->reported || (status && (*there || last));
     if (status && (*there || last))
         glint_mesh_warn(reader->desc, reader->text.path, "some of its materials are missing: %.300s", inner.message);
     return GLINT_OK;

@@ -30,7 +30,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     batch->ordered = batch->distances = false;
     batch->by_lane = has_area_light(frame->plan);
     tile->batch = batch;
-    tile->group_sums = glint_group_sums_of(to, walk == GLINT_WALK_SITES);
+    tile->group_sums = glint_group_sums_of(to, walk == GLINT_WALK_SHADING_POINTS);
     tile->shadow_scratch = to->shadow_scratch;
     tile->sample = to->sample;
     tile->counts = (glint_tile_counts) { 0 };
@@ -284,7 +284,7 @@ static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         if (lights[slot + count].shadows)
             shadowed[shadows++] = slot + count;
         count++;
-    } while (slot + count < end && (lights[slot + count].joined || lights[slot + count].alike));
+    } while (slot + count < end && (lights[slot + count].joined || lights[slot + count].same_but_position));
     if (glint_tile_sum_light(tile, frame, first, slot, count))
         return count;
     glint_tile_shine(tile, frame, first, slots, count);

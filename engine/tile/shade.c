@@ -250,18 +250,19 @@ static void resolve_stacked(const glint_tile *tile, const glint_tile_frame *fram
 }
 
 /// Adds the light of faces and vertices in sample k of each pixel.
-static void add_sites(glint_tile *tile, const glint_tile_frame *frame, const double (*sites)[3][GLINT_TILE_SAMPLES], uint32_t count,
-                      uint32_t k, uint32_t samples)
+static void add_point_light(glint_tile *tile, const glint_tile_frame *frame,
+                            const double (*point_light)[3][GLINT_TILE_SAMPLES], uint32_t count, uint32_t k,
+                            uint32_t samples)
 {
     for (int term = 0; term < (frame->plan->highlights ? 2 : 1); term++)
         for (int c = 0; c < 3; c++)
             for (uint32_t p = 0; p < count; p++)
-                tile->film.sum[GLINT_TERM_DIFFUSE + term][c][p] += sites[term][c][p * samples + k];
+                tile->film.sum[GLINT_TERM_DIFFUSE + term][c][p] += point_light[term][c][p * samples + k];
 }
 
 /// Adds the samples to the sums.
 static void add_stacked(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *all, uint32_t samples, bool begins,
-                        const double (*sites)[3][GLINT_TILE_SAMPLES], uint32_t count)
+                        const double (*point_light)[3][GLINT_TILE_SAMPLES], uint32_t count)
 {
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
     const size_t size = all->group_count * GLINT_GROUP * sizeof(double);
@@ -274,8 +275,8 @@ static void add_stacked(glint_tile *tile, const glint_tile_frame *frame, const g
             for (int c = 0; c < 3; c++)
                 args.sum[term][c] = tile->film.sum[term][c];
         frame->stages->shade(&args);
-        if (sites)
-            add_sites(tile, frame, sites, count, k, samples);
+        if (point_light)
+            add_point_light(tile, frame, point_light, count, k, samples);
     }
 }
 
@@ -290,8 +291,9 @@ static void resolve_sums(glint_tile *tile, const glint_tile_frame *frame, uint32
     frame->stages->resolve(&args);
 }
 
-void glint_tile_shade_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, uint32_t first, uint32_t samples,
-                              const double (*sites)[3][GLINT_TILE_SAMPLES], uint32_t count, float *const beauty[3])
+void glint_tile_shade_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, uint32_t first,
+                              uint32_t samples, const double (*point_light)[3][GLINT_TILE_SAMPLES], uint32_t count,
+                              float *const beauty[3])
 {
     const glint_plan *plan = frame->plan;
     const bool last = first + samples == (uint32_t)plan->desc.samples;
@@ -302,7 +304,7 @@ void glint_tile_shade_stacked(glint_tile *tile, const glint_tile_frame *frame, u
     if (plan->together)
         resolve_stacked(tile, frame, &all, samples);
     else
-        add_stacked(tile, frame, &all, samples, first == 0, sites, count);
+        add_stacked(tile, frame, &all, samples, first == 0, point_light, count);
     glint_tile_count_powers(tile, frame, 0, light_count);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_SHADE, false);
     if (!last)

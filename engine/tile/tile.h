@@ -349,10 +349,11 @@ void glint_samples_destroy(struct glint_samples *samples);
 void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count);
 void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame);
 /// Shades `samples` consecutive samples in the tile's groups; the first one is number `first` of its pixel: together,
-/// or into the tile's sums; after the last sample resolves them. sites: diffuse and specular light of faces and
+/// or into the tile's sums; after the last sample resolves them. point_light: diffuse and specular light of faces and
 /// vertices, one pixel's samples after another's, `count` pixels; NULL: none. beauty: of the pixels.
-void glint_tile_shade_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, uint32_t first, uint32_t samples,
-                              const double (*sites)[3][GLINT_TILE_SAMPLES], uint32_t count, float *const beauty[3]);
+void glint_tile_shade_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, uint32_t first,
+                              uint32_t samples, const double (*point_light)[3][GLINT_TILE_SAMPLES], uint32_t count,
+                              float *const beauty[3]);
 /// Counts a stage's call and, when stages are timed, its time; `reused`: its result was in the cache.
 void glint_tile_count_stage(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused);
 uint64_t glint_tile_now_ns(void);
@@ -501,7 +502,7 @@ static inline const glint_camera_args *glint_tile_rays_of(const glint_tile *tile
 static inline const glint_light_sample *glint_tile_light_sample_of(const glint_tile *tile,
                                                                    const glint_plan_light *light)
 {
-    return light->light_samples ? &light->light_samples[tile->sample % light->turn_count] : NULL;
+    return light->light_samples ? &light->light_samples[tile->sample % light->sample_set_count] : NULL;
 }
 
 /// Returns the index of pixel (x, y) in the tile's arrays.

@@ -172,7 +172,7 @@ static void find_lights(glint_tile *tile, const glint_tile_frame *frame, glint_s
 {
     for (uint32_t slot = 0, next; slot < count; slot = next) {
         const glint_plan_light *lights = &frame->plan->lights[first];
-        for (next = slot + 1; next < count && (lights[next].joined || lights[next].alike); next++)
+        for (next = slot + 1; next < count && (lights[next].joined || lights[next].same_but_position); next++)
             continue;
         find_light(tile, frame, w, first, slot, next - slot);
     }

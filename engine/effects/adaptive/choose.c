@@ -93,9 +93,9 @@ static void compare_border(const glint_refine *refine, border *b, uint32_t count
 }
 
 /// Returns whether the ranges show that no pixels of two tiles can differ.
-static bool are_alike(const glint_refine *refine, const glint_refine_tile *a, const glint_refine_tile *b)
+static bool are_similar(const glint_refine *refine, const glint_refine_tile *a, const glint_refine_tile *b)
 {
-    return a->ranged && b->ranged && glint_refine_alike(refine, &a->range, &b->range);
+    return a->ranged && b->ranged && glint_refine_similar(refine, &a->range, &b->range);
 }
 
 /// Compares the last column of a tile with the first of the tile to its right.
@@ -104,7 +104,7 @@ static void join_columns(const glint_refine *refine, glint_refine_tile *left, gl
 {
     border b;
     uint32_t differ[GLINT_DIFFER_DIRECTIONS];
-    if (are_alike(refine, left, right))
+    if (are_similar(refine, left, right))
         return;
     for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
         b.line[0][v] = left->side[1][v];
@@ -129,7 +129,8 @@ static void join_rows(const joiner *j, uint32_t column, uint32_t row)
     uint32_t differ[GLINT_DIFFER_DIRECTIONS];
     const glint_refine_tile *own = tile_at(refine, column, row), *below = tile_at(refine, column, row + 1);
     const bool ahead = x + count < end; // a tile on the right
-    if (are_alike(refine, own, below) && (!ahead || (are_alike(refine, own, below + 1) && are_alike(refine, own + 1, below))))
+    if (are_similar(refine, own, below) &&
+        (!ahead || (are_similar(refine, own, below + 1) && are_similar(refine, own + 1, below))))
         return;
     for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
         b.line[0][v] = glint_refine_edge(refine, row, 1, v) + x;

@@ -190,7 +190,7 @@ static inline float spread_of(const float a[2], const float b[2])
     return (a[1] > b[1] ? a[1] : b[1]) - (a[0] < b[0] ? a[0] : b[0]);
 }
 
-bool glint_refine_alike(const glint_refine *refine, const glint_refine_range *a, const glint_refine_range *b)
+bool glint_refine_similar(const glint_refine *refine, const glint_refine_range *a, const glint_refine_range *b)
 {
     float bend = 0, sum = 0;
     if (spread_of(a->id, b->id) > 0)
@@ -214,14 +214,14 @@ static uint32_t find_open_rows(const glint_tile *tile, const glint_tile_frame *f
     glint_refine_range range[GLINT_TILE_HEIGHT / 4];
     uint32_t open = 0;
     find_range(tile, refine, values, 0, groups_down, none, all);
-    if (glint_refine_alike(refine, all, all))
+    if (glint_refine_similar(refine, all, all))
         return 0;
     for (uint32_t y = 0; y < groups_down; y++)
         find_range(tile, refine, values, y, 1, none, &range[y]);
     for (uint32_t y = 0; y < groups_down; y++) {
-        if (!glint_refine_alike(refine, &range[y], &range[y]))
+        if (!glint_refine_similar(refine, &range[y], &range[y]))
             open |= 15u << 4 * y;
-        if (y + 1 < groups_down && !glint_refine_alike(refine, &range[y], &range[y + 1]))
+        if (y + 1 < groups_down && !glint_refine_similar(refine, &range[y], &range[y + 1]))
             open |= 8u << 4 * y;
     }
     return open;

@@ -17,9 +17,10 @@ struct glint_gathered {
     _Alignas(64) double pixel[2][GLINT_TILE_SAMPLES]; ///< columns and rows in the picture
     _Alignas(64) float beauty[3][GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t numbers[GLINT_TILE_SAMPLES]; ///< a result while it is reordered
-    _Alignas(64) double sites[2][3][GLINT_TILE_SAMPLES]; ///< diffuse and specular light of faces and vertices, for each
+    _Alignas(64) double point_light[2][3]
+                                   [GLINT_TILE_SAMPLES]; ///< diffuse and specular light of faces and vertices, for each
         ///< sample
-    bool has_sites;
+    bool has_point_light;
     uint16_t active[GLINT_TILE_GROUPS]; ///< these and the following: saved from the tile
     uint32_t group_count, groups_across;
 };
@@ -141,7 +142,7 @@ void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const ui
     const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP, lanes = by_pixel ? count * samples : count;
     const uint32_t every = (lanes + GLINT_GROUP - 1) / GLINT_GROUP;
     memcpy(gathered->active, tile->active, sizeof gathered->active);
-    gathered->has_sites = false;
+    gathered->has_point_light = false;
     gathered->group_count = tile->group_count;
     gathered->groups_across = tile->groups_across;
     glint_tile_aim(tile, frame, 0);
@@ -181,7 +182,7 @@ static void stack_numbers(struct glint_gathered *gathered, void *numbers, uint32
 }
 
 /// Transposes the bits of 16 groups: those of one lane become a group.
-static void turn_lanes(uint16_t lanes[GLINT_GROUP])
+static void transpose_lanes(uint16_t lanes[GLINT_GROUP])
 {
     unsigned low = 0x00ff;
     for (unsigned j = GLINT_GROUP / 2; j; j /= 2, low ^= low << j)
@@ -199,7 +200,7 @@ static void stack_lanes(uint16_t *lanes, uint32_t groups, uint32_t count, uint32
     uint16_t from[GLINT_TILE_GROUPS + GLINT_GROUP] = { 0 }, to[GLINT_TILE_GROUPS] = { 0 };
     memcpy(from, lanes, groups * sizeof *from);
     for (uint32_t b = 0; samples == GLINT_GROUP && b < blocks; b++) {
-        turn_lanes(from + b * GLINT_GROUP);
+        transpose_lanes(from + b * GLINT_GROUP);
         for (uint32_t k = 0; k < samples; k++)
             to[k * blocks + b] = from[b * GLINT_GROUP + k];
     }
@@ -240,9 +241,9 @@ static void stack_samples(glint_tile *tile, const glint_tile_frame *frame, uint3
 void glint_tile_vertex_gathered(glint_tile *tile, const glint_tile_frame *frame)
 {
     struct glint_gathered *gathered = tile->gathered;
-    double(*const sum[2])[GLINT_TILE_SAMPLES] = { gathered->sites[0], gathered->sites[1] };
-    gathered->has_sites = true;
-    memset(gathered->sites, 0, sizeof gathered->sites);
+    double(*const sum[2])[GLINT_TILE_SAMPLES] = { gathered->point_light[0], gathered->point_light[1] };
+    gathered->has_point_light = true;
+    memset(gathered->point_light, 0, sizeof gathered->point_light);
     glint_tile_vertex_to(tile, frame, sum);
 }
 
@@ -255,7 +256,9 @@ void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, 
     if (groups_samples(frame) && samples > 1)
         stack_samples(tile, frame, light_count, count, samples);
     glint_tile_shade_stacked(tile, frame, light_count, first, samples,
-                             gathered->has_sites ? (const double(*)[3][GLINT_TILE_SAMPLES])gathered->sites : NULL, count, beauty);
+                             gathered->has_point_light ? (const double(*)[3][GLINT_TILE_SAMPLES])gathered->point_light
+                                                       : NULL,
+                             count, beauty);
     memcpy(tile->active, gathered->active, sizeof tile->active);
     tile->group_count = gathered->group_count;
     tile->groups_across = gathered->groups_across;

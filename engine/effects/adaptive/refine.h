@@ -71,7 +71,7 @@ typedef struct glint_refine_lines {
 } glint_refine_lines;
 
 /// Returns whether no two pixels in these ranges can differ.
-bool glint_refine_alike(const glint_refine *refine, const glint_refine_range *a, const glint_refine_range *b);
+bool glint_refine_similar(const glint_refine *refine, const glint_refine_range *a, const glint_refine_range *b);
 
 /// Computes which of their pixels differ, as in glint_differences.
 void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *lines,

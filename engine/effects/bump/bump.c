@@ -26,19 +26,19 @@ static void gradient_of(const struct glint_pattern *pattern, const glint_pattern
 }
 
 /// n' = unit(n - (g - (g.n) n)); seen from behind, the height is a depth. Returns false if there is no such normal.
-static bool turn(double n[3], const double gradient[3], bool back)
+static bool perturb(double n[3], const double gradient[3], bool back)
 {
     const double along = vec_dot(gradient, n);
-    double turned[3];
+    double perturbed[3];
     for (int c = 0; c < 3; c++) {
         const double across = gradient[c] - along * n[c];
-        turned[c] = back ? n[c] + across : n[c] - across;
+        perturbed[c] = back ? n[c] + across : n[c] - across;
     }
-    const double length = sqrt(vec_dot(turned, turned));
+    const double length = sqrt(vec_dot(perturbed, perturbed));
     if (!(length > 0 && length < HUGE_VAL))
         return false;
     for (int c = 0; c < 3; c++)
-        n[c] = turned[c] / length;
+        n[c] = perturbed[c] / length;
     return true;
 }
 
@@ -48,8 +48,8 @@ static const glint_pattern_place *place_of(const glint_tile_frame *frame, uint32
     return &frame->plan->patterns->places[geometry->prim_part[frame->geometry.prims[prim].id]];
 }
 
-static void turn_lanes(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_lanes *entry, uint32_t k,
-                       bool on_surface)
+static void perturb_lanes(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_lanes *entry, uint32_t k,
+                          bool on_surface)
 {
     const glint_precision precision = frame->plan->desc.precision;
     for (unsigned bits = entry->lanes; bits; bits &= bits - 1) {
@@ -58,7 +58,7 @@ static void turn_lanes(glint_tile *tile, const glint_tile_frame *frame, const gl
         for (int c = 0; c < 3; c++)
             n[c] = glint_real_at(tile->surface.normal[c], precision, i);
         gradient_of(tile->pattern, place_of(frame, tile->at.prim[i]), on_surface, k * GLINT_GROUP + lane, gradient);
-        if (!turn(n, gradient, glint_has_lane(tile->hit.back, i)))
+        if (!perturb(n, gradient, glint_has_lane(tile->hit.back, i)))
             continue;
         for (int c = 0; c < 3; c++)
             glint_real_put(tile->surface.normal[c], precision, i, n[c]);
@@ -80,7 +80,7 @@ static void bump_material(glint_tile *tile, const glint_tile_frame *frame, const
         args.result[k] = pattern->slopes[k];
     glint_pattern_call(pattern, frame, &own->slope->code, 0, &args);
     for (uint32_t k = 0; k < count; k++)
-        turn_lanes(tile, frame, &entries[k], k, uv);
+        perturb_lanes(tile, frame, &entries[k], k, uv);
 }
 
 static bool is_bumped(const glint_plan_pattern *own, uint32_t fields)
@@ -160,23 +160,23 @@ void glint_tile_bounce_normals(const glint_tile *tile, const glint_plan *plan, c
                                const void *ratio, const void *normal[3])
 {
     const glint_precision precision = plan->desc.precision;
-    void *own[3], *turned[3];
+    void *own[3], *perturbed[3];
     for (int c = 0; c < 3; c++) {
         own[c] = tile->unbumped[c];
-        turned[c] = tile->pattern->bounced[c];
+        perturbed[c] = tile->pattern->bounced[c];
         normal[c] = tile->pattern->bounced[c];
-        memcpy(turned[c], tile->surface.normal[c], tile->group_count * GLINT_GROUP * sizeof(double));
+        memcpy(perturbed[c], tile->surface.normal[c], tile->group_count * GLINT_GROUP * sizeof(double));
     }
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         double d[3], n[3], surface[3];
         if (!glint_has_lane(wanted, i) || !plan->patterns->of[tile->surface.material[i]].slope)
             continue;
-        load(turned, precision, i, n);
+        load(perturbed, precision, i, n);
         load(own, precision, i, surface);
         for (int c = 0; c < 3; c++)
             d[c] = glint_tile_direction(tile, precision, c, i);
         for (int c = 0; c < 3 && !goes_on(d, n, surface, glint_real_at(ratio, precision, i)); c++)
-            glint_real_put(turned[c], precision, i, surface[c]);
+            glint_real_put(perturbed[c], precision, i, surface[c]);
     }
 }
 
@@ -190,7 +190,7 @@ bool glint_tile_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t 
     return vec_dot(n, direction) > 0;
 }
 
-static void turn_normals(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+static void perturb_normals(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     (void)walk;
     glint_tile_bump(tile, frame);
@@ -199,6 +199,6 @@ static void turn_normals(glint_tile *tile, const glint_tile_frame *frame, glint_
 /// Part of the stages surface and light.
 const glint_stage glint_stage_bump = {
     .called = glint_plan_bumps,
-    .step[GLINT_AT_SURFACE] = turn_normals,
+    .step[GLINT_AT_SURFACE] = perturb_normals,
     .limit = cut_horizon,
 };

@@ -258,8 +258,8 @@ static bool bend_ray(const glint_batch *batch, const glint_plan *plan, size_t in
 }
 
 /// Computes the slopes of a face or vertex, which does not move, for a moving eye.
-static bool bend_site(const glint_plan *plan, const glint_derivative_view *view, const double point[3], const double eye[3],
-                      glint_bend *out)
+static bool bend_shading_point(const glint_plan *plan, const glint_derivative_view *view, const double point[3],
+                               const double eye[3], glint_bend *out)
 {
     double direction[3];
     vec_sub(direction, plan->camera.eye, point);
@@ -286,8 +286,8 @@ bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, si
         hit.normal[c] = points->normal[c][i % GLINT_GROUP];
         eye[c] = points->eye[c][i % GLINT_GROUP];
     }
-    if (glint_derives_sites(tile))
-        return bend_site(plan, &d->view, hit.point, eye, out);
+    if (glint_derives_shading_points(tile))
+        return bend_shading_point(plan, &d->view, hit.point, eye, out);
     if (!tile->batch)
         bend_view(tile, plan, &d->view, i, eye, &hit, out);
     else if (!bend_ray(tile->batch, plan, index, i, eye, &hit, out) && !part->moves)
@@ -381,7 +381,7 @@ static unsigned begin(const glint_tile *tile, const glint_tile_frame *frame, siz
     const glint_plan_derivative *d = &plan->derivatives->of[index];
     const uint32_t *prims = tile->at.prim + (size_t)g * GLINT_GROUP;
     *seen = *moves = false;
-    if (tile->batch || glint_derives_sites(tile)) {
+    if (tile->batch || glint_derives_shading_points(tile)) {
         *moves = true;
         return lanes;
     }
@@ -399,7 +399,7 @@ static unsigned begin(const glint_tile *tile, const glint_tile_frame *frame, siz
         if (d->view.moves && (plan->lens || plan->camera.orthographic))
             find_places(tile, plan, &d->view, g, out);
     }
-    return glint_lanes_alike(prims, lanes);
+    return glint_lanes_equal(prims, lanes);
 }
 
 unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g,

@@ -49,7 +49,7 @@ static unsigned lanes_of_material(const glint_tile *tile, uint32_t g, unsigned r
 {
     const uint32_t *of = tile->surface.material + (size_t)g * GLINT_GROUP;
     *material = of[__builtin_ctz(rest)];
-    return glint_lanes_alike(of, rest);
+    return glint_lanes_equal(of, rest);
 }
 
 /// Returns whether the derivatives of a group read the viewer's direction: for highlights, moving views and secondary
@@ -262,9 +262,9 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
 static bool are_shaded(const glint_tile *tile, const glint_plan *plan, uint32_t g, unsigned lanes)
 {
     bool all = plan->patterns && plan->patterns->shaders;
-    for (unsigned rest = lanes, alike; rest && all; rest &= ~alike) {
+    for (unsigned rest = lanes, same; rest && all; rest &= ~same) {
         uint32_t material;
-        alike = lanes_of_material(tile, g, rest, &material);
+        same = lanes_of_material(tile, g, rest, &material);
         all = plan->materials[material].planes & GLINT_PLANE_SHADED;
     }
     return all;
@@ -388,7 +388,7 @@ static void begin_light(glint_tile *tile, const glint_tile_frame *frame, uint32_
     for (uint32_t i = g * GLINT_GROUP; i < (g + 1) * GLINT_GROUP; i++)
         for (int c = 0; c < 3; c++)
             glint_derivative_of(tile)->light[c][i] =
-                glint_has_lane(tile->at.hits, i) && !glint_derives_sites(tile)
+                glint_has_lane(tile->at.hits, i) && !glint_derives_shading_points(tile)
                     ? frame->plan->derivatives->of[0].materials[tile->surface.material[i]].ambient[c].value *
                           ambient_plane(tile, frame->plan, i, c)
                     : 0;
@@ -423,7 +423,7 @@ static void begin_shadows(const glint_tile *tile, const glint_tile_frame *frame,
     for (unsigned pending = frame->plan->derivatives->bends ? tile->at.hits[g] : 0, same; pending; pending &= ~same) {
         const uint32_t prim = prims[__builtin_ctz(pending)];
         const uint32_t hash = (NO_SHADOWS ^ (frame->geometry.prims[prim].id + 1)) * GLINT_SHADOW_MIXER;
-        same = glint_lanes_alike(prims, pending);
+        same = glint_lanes_equal(prims, pending);
         if (same == 0xffff) // the common case
             fill_group(shadows, hash);
         for (unsigned rest = same == 0xffff ? 0 : same; rest; rest &= rest - 1)
@@ -449,9 +449,9 @@ static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
     if (all->bends)
         glint_bend_aim(tile, frame->plan);
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        if (tile->sample == 0 && !tile->batch && !glint_derives_sites(tile))
+        if (tile->sample == 0 && !tile->batch && !glint_derives_shading_points(tile))
             glint_tile_prefetch_derivatives(tile, frame, g);
-        if (all->everywhere && !glint_derives_sites(tile))
+        if (all->everywhere && !glint_derives_shading_points(tile))
             begin_group(tile, frame, g);
         if (tile->at.hits[g])
             gather_points(tile, frame, g);

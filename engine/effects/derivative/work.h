@@ -53,7 +53,7 @@ static inline bool glint_derivatives_weigh(const glint_plan_derivatives *all)
 }
 
 /// Returns whether the samples of a tile are faces and vertices.
-static inline bool glint_derives_sites(const glint_tile *tile) { return tile->owner; }
+static inline bool glint_derives_shading_points(const glint_tile *tile) { return tile->owner; }
 
 /// Returns whether the slopes of a tile depend on the amount of light: for rays that left surfaces, and with a depth
 /// cue.
@@ -63,7 +63,7 @@ static inline bool glint_derivatives_read_light(const glint_tile *tile, const gl
 }
 
 /// Returns those of `lanes` whose number in `of` equals that of the first one.
-static inline unsigned glint_lanes_alike(const uint32_t of[GLINT_GROUP], unsigned lanes)
+static inline unsigned glint_lanes_equal(const uint32_t of[GLINT_GROUP], unsigned lanes)
 {
     const uint32_t first = of[__builtin_ctz(lanes)];
     unsigned same = 0;

@@ -26,9 +26,9 @@
     ///< on
 #define STRENGTH_MAX 1e150
 
-typedef enum turn { TURN_NONE, TURN_SCATTERED, TURN_MIRRORED, TURN_REFRACTED, TURN_STRAIGHT, TURNS } turn;
+typedef enum event { EVENT_NONE, EVENT_SCATTERED, EVENT_MIRRORED, EVENT_REFRACTED, EVENT_STRAIGHT, EVENT_COUNT } event;
 
-#define CHOICES (TURNS - TURN_SCATTERED)
+#define CHOICES (EVENT_COUNT - EVENT_SCATTERED)
 
 static void *create(const glint_plan *plan)
 {
@@ -132,8 +132,8 @@ static int choose_branch(const struct glint_indirect *indirect, uint64_t number,
 }
 
 /// Chooses the continuation of the path of sample i, and starts the ray unless it is scattered.
-static turn choose(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t i,
-                   glint_ray *next)
+static event choose(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t i,
+                    glint_ray *next)
 {
     glint_batch *batch = &indirect->batch;
     const glint_rays *rays = batch->rays;
@@ -153,7 +153,7 @@ static turn choose(struct glint_indirect *indirect, const glint_tile_frame *fram
     }
     const double all = ((share[0] + share[1]) + share[2]) + share[3];
     if (!(all > 0))
-        return TURN_NONE;
+        return EVENT_NONE;
     const int chosen = choose_branch(indirect, number, rays, ray, share, all);
     const double chance = share[chosen] / all;
     if (chosen)
@@ -165,8 +165,8 @@ static turn choose(struct glint_indirect *indirect, const glint_tile_frame *fram
         least = glint_larger(least, next->weight[c] * (chosen ? 1 : diffuse[c]));
     }
     if (least <= rays->least[ray])
-        return TURN_NONE;
-    return (turn)(TURN_SCATTERED + chosen);
+        return EVENT_NONE;
+    return (event)(EVENT_SCATTERED + chosen);
 }
 
 /// Starts the scattered ray of the path of sample i.
@@ -200,10 +200,10 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
         for (unsigned bits = tile->at.hits[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             glint_ray next;
-            const turn chosen = choose(indirect, frame, number, i, &next);
-            if (chosen == TURN_NONE)
+            const event chosen = choose(indirect, frame, number, i, &next);
+            if (chosen == EVENT_NONE)
                 continue;
-            if (chosen == TURN_SCATTERED) {
+            if (chosen == EVENT_SCATTERED) {
                 const uint64_t k = glint_indirect_point_of(indirect, next.point, number);
                 const glint_sequence_seed seed = glint_sequence_seed_of(
                     glint_indirect_seed_of(indirect, next.point, k, 2 * (next.scatters + next.depth + next.passes)));

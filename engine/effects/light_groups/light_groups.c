@@ -8,7 +8,7 @@
 
 /// A rest below this share of a pixel's light is rounding, and counts as 0.
 #define ROUNDING 0x1p-40
-#define ROUNDING_OF_SITES 0x1p-22
+#define ROUNDING_OF_POINTS 0x1p-22
 
 enum { DIFFUSE, SPECULAR, OTHER, SUMS }; ///< OTHER: everything except light of lamps on the tile's own hits
 
@@ -21,7 +21,7 @@ struct glint_group_sums {
     double (*faded)[3][GLINT_TILE_SAMPLES]; ///< for each group, over the finished samples; NULL: nothing fades
     float (*mean)[3][GLINT_TILE_SAMPLES]; ///< of each pass
     struct glint_group_sums *batch,
-        *sites; ///< sums of rays that left surfaces, and of faces and vertices; owned by the tile's sums
+        *points; ///< sums of rays that left surfaces, and of faces and vertices; owned by the tile's sums
 };
 
 // ---- Memory ----
@@ -45,9 +45,9 @@ void glint_group_sums_destroy(struct glint_group_sums *sums)
     if (!sums)
         return;
     if (sums->batch)
-        sums->batch->sites = NULL; // the tile's
+        sums->batch->points = NULL; // the tile's
     glint_group_sums_destroy(sums->batch);
-    glint_group_sums_destroy(sums->sites);
+    glint_group_sums_destroy(sums->points);
     free(sums->sum);
     free(sums->faded);
     free(sums->mean);
@@ -67,9 +67,9 @@ struct glint_group_sums *glint_group_sums_create(const glint_plan *plan)
     if (plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT])
         good = (sums->batch = create(groups->count)) && good;
     if (plan->runs[GLINT_STAGE_VERTEX])
-        good = (sums->sites = create(groups->count)) && good;
+        good = (sums->points = create(groups->count)) && good;
     if (sums->batch)
-        sums->batch->sites = sums->sites; // used by batches, too
+        sums->batch->points = sums->points; // used by batches, too
     if (good)
         return sums;
     glint_group_sums_destroy(sums);
@@ -83,13 +83,13 @@ bool glint_group_sums_fit(const struct glint_group_sums *sums, const glint_plan 
     if (!sums || !groups)
         return !sums && !groups;
     return sums->count == groups->count && sums->pass_count == groups->pass_count && !sums->batch == !rays &&
-           !sums->sites == !plan->runs[GLINT_STAGE_VERTEX] && !sums->faded == !plan->runs[GLINT_STAGE_DEPTH_CUE];
+           !sums->points == !plan->runs[GLINT_STAGE_VERTEX] && !sums->faded == !plan->runs[GLINT_STAGE_DEPTH_CUE];
 }
 
-struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool sites)
+struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool points)
 {
     const struct glint_group_sums *own = to->group_sums;
-    return !own ? NULL : sites ? own->sites : own->batch;
+    return !own ? NULL : points ? own->points : own->batch;
 }
 
 // ---- A sample ----
@@ -281,7 +281,7 @@ static void add_light(const double *restrict light, uint32_t count, double sampl
 /// Computes the mean of the light without a lamp, in one channel. lamps: the sums of all groups.
 static void find_rest(const glint_tile *tile, const glint_plan *plan, int c, const double *lamps, float *mean)
 {
-    const double rounding = plan->runs[GLINT_STAGE_VERTEX] ? ROUNDING_OF_SITES : ROUNDING;
+    const double rounding = plan->runs[GLINT_STAGE_VERTEX] ? ROUNDING_OF_POINTS : ROUNDING;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         double all = 0;
         for (int k = 0; k < GLINT_TERM_COUNT; k++)

@@ -93,7 +93,7 @@ static bool same_rows(glint_plan *const *times, size_t count)
 /// Returns the number of light samples of a row.
 static size_t samples_of(const glint_plan_light *light)
 {
-    return light->cap ? 1 : light->light_samples ? light->turn_count : 0;
+    return light->cap ? 1 : light->light_samples ? light->sample_set_count : 0;
 }
 
 /// The lights to be filled in.
@@ -123,12 +123,12 @@ static void add_row(lights *to, const glint_plan_light *from, double share)
 /// Adds the lights of all times one after the other, and steady lights once.
 static void add_all(lights *to, glint_plan *const *times, size_t count)
 {
-    const bool alike = same_rows(times, count);
+    const bool comparable = same_rows(times, count);
     for (size_t k = 0; k < count; k++) {
         const glint_plan *time = times[k];
         for (uint32_t first = 0, rows; first < time->light_count; first += rows) {
             rows = rows_of(time, first);
-            const bool steady = alike && is_steady(times, count, first, rows);
+            const bool steady = comparable && is_steady(times, count, first, rows);
             for (uint32_t i = 0; i < rows && (k == 0 || !steady); i++)
                 add_row(to, &time->lights[first + i], steady ? 1 : 1 / (double)count);
         }

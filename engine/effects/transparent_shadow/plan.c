@@ -9,15 +9,15 @@
 
 // ---- Balls ----
 
-static bool lets_through(const glint_bounce_material *m) { return m->transmits || m->clears; }
+static bool transmits_light(const glint_bounce_material *m) { return m->transmits || m->clears; }
 
 static bool transmits(const glint_plan *plan, const glint_geometry_table *table, const glint_prim *prim)
 {
     if (prim->kind != GLINT_PRIM_COMBINED)
-        return lets_through(&plan->bouncing[prim->material]);
+        return transmits_light(&plan->bouncing[prim->material]);
     const glint_combined *combined = &table->combined[prim->item];
     for (uint32_t i = 0; i < combined->count; i++)
-        if (lets_through(&plan->bouncing[table->prims[table->prim_count + combined->first + i].material]))
+        if (transmits_light(&plan->bouncing[table->prims[table->prim_count + combined->first + i].material]))
             return true;
     return false;
 }

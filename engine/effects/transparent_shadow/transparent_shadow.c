@@ -427,7 +427,7 @@ static void find_transmission(struct glint_transparent_shadow *transparent_shado
         glint_tile_find_holes(tile, frame, &points, transparent_shadow->holes);
 }
 
-static bool lets_through(const glint_plan *plan, uint32_t material)
+static bool transmits_light(const glint_plan *plan, uint32_t material)
 {
     return plan->bouncing[material].transmits || plan->bouncing[material].clears;
 }
@@ -451,7 +451,7 @@ static void step(struct glint_transparent_shadow *transparent_shadow, glint_tile
                 if (transparent_shadow->crossed[ray])
                     arrive(transparent_shadow, frame->plan, light, i);
             } else if ((transparent_shadow->holes[g] & bit) ||
-                       (lets_through(frame->plan, transparent_shadow->material[i]) &&
+                       (transmits_light(frame->plan, transparent_shadow->material[i]) &&
                         cross(transparent_shadow, tile, frame, i))) {
                 aim(transparent_shadow, precision, light->directional,
                     (const double(*)[GLINT_TILE_SAMPLES])transparent_shadow->point, i, transparent_shadow->prim[i],

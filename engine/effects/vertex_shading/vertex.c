@@ -265,7 +265,7 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
 {
     struct glint_vertex *vertex = own_of(to);
     glint_tile *tile = &vertex->batch.tile;
-    glint_batch_begin(&vertex->batch, to, frame, GLINT_WALK_SITES);
+    glint_batch_begin(&vertex->batch, to, frame, GLINT_WALK_SHADING_POINTS);
     tile->sample = 0;
     tile->owner = vertex->no_owner;
     for (int c = 0; c < 3; c++)

@@ -168,7 +168,7 @@ static uint64_t R(stretches_of_hull)(const glint_geometry_table *table, const gl
     R(begin_hull_rays)(&rays, from);
     vr *const t[2] = { s->t[0] + j, s->t[1] + j };
     uint32_t(*const triangle[2])[VR] = { s->triangle[0] + j, s->triangle[1] + j };
-    const unsigned into = part->turned ? ~w->inward : w->inward;
+    const unsigned into = part->inverted ? ~w->inward : w->inward;
     const bool first = rm_bits(r_lt(r_set(0), from)) == 0;
     return (uint64_t)R(hull_stretches)(&rays, lanes, into, first, t, triangle, &s->known) << j;
 }
@@ -188,7 +188,7 @@ static __attribute__((noinline)) bool R(stretch_of_part)(const glint_geometry_ta
                                                          const R(whole_rays) * w, unsigned lanes, bool starts, vr t[2])
 {
     const unsigned all = (1u << VR) - 1;
-    const unsigned into = part->turned ? ~w->inward : w->inward;
+    const unsigned into = part->inverted ? ~w->inward : w->inward;
     unsigned own = starts ? R(vector_lanes)(w->on, index) : 0;
     if (part->kind == GLINT_PRIM_SOLID && part->face) {
         own |= starts ? R(vector_lanes)(w->on, part->face == 1 ? index + 1 : index - 1) : 0;
@@ -369,10 +369,10 @@ static unsigned R(next_change)(const glint_geometry_table *table, const glint_co
 {
     R(find_stretches)(table, whole, w, lanes, *from, s);
     *t = R(first_change)(s, *from);
-    const unsigned told = rm_bits(rm_or(r_lt(*t, s->known), r_eq(s->known, r_set(HUGE_VAL))));
-    *hit = rm_bits(r_lt(*t, r_set(HUGE_VAL))) & lanes & told;
+    const unsigned decided = rm_bits(rm_or(r_lt(*t, s->known), r_eq(s->known, r_set(HUGE_VAL))));
+    *hit = rm_bits(r_lt(*t, r_set(HUGE_VAL))) & lanes & decided;
     *from = s->known * r_set(GLINT_REAL == 64 ? 1 - 0x1p-53 : 1 - 0x1p-24); // the next smaller number, as it is normal
-    return lanes & ~told;
+    return lanes & ~decided;
 }
 
 /// Stores hits of part j; for a mesh, hits of its triangles.

@@ -32,7 +32,7 @@ typedef struct R(hull_rays) {
     const glint_prim *part;
     const vr *o, *d;
     const uint32_t *on; ///< the primitive that each ray starts on; NULL: none
-    vr turned[3]; ///< the direction, its largest component last
+    vr permuted[3]; ///< the direction, its largest component last
     rm y, z; ///< lanes whose largest component is y, z; x in the other lanes
     _Alignas(64) real origin[3][VR];
     _Alignas(64) real from[VR]; ///< crossings up to here are done
@@ -40,7 +40,7 @@ typedef struct R(hull_rays) {
     R(crossings) of[VR];
 } R(hull_rays);
 
-static inline void R(turn_axes)(const R(hull_rays) * rays, const vr v[3], vr out[3])
+static inline void R(permute_axes)(const R(hull_rays) * rays, const vr v[3], vr out[3])
 {
     for (int k = 0; k < 3; k++)
         out[k] = r_select(rays->z, v[k], r_select(rays->y, v[(k + 2) % 3], v[(k + 1) % 3]));
@@ -53,7 +53,7 @@ static void R(begin_hull_rays)(R(hull_rays) * rays, vr from)
     _Alignas(64) real local[3][VR], dir[3][VR];
     rays->y = r_lt(ax, ay);
     rays->z = r_lt(r_select(rays->y, ay, ax), az);
-    R(turn_axes)(rays, rays->d, rays->turned);
+    R(permute_axes)(rays, rays->d, rays->permuted);
     r_store(rays->from, from);
     for (int k = 0; k < 3; k++) {
         r_store(rays->origin[k], rays->o[k]);
@@ -118,7 +118,7 @@ static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out,
     _Alignas(64) real t[VR];
     r_store(t, crossing_t);
     for (unsigned bits = out | in; bits; bits &= bits - 1) {
-        const int i = __builtin_ctz(bits), turns = out >> i & 1 ? 1 : -1;
+        const int i = __builtin_ctz(bits), orientation = out >> i & 1 ? 1 : -1;
         const bool on_surface = rays->on && rays->on[i] != GLINT_MISS, on_hull = R(starts_on_hull)(rays, i);
         bool begun = t[i] == 0; // only exact for shared planes; at an edge, where rays may start, rounding decides
         if (rays->on && rays->on[i] == index)
@@ -129,10 +129,10 @@ static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out,
             begun = R(is_in_plane)(&flat, place, on_surface) || begun;
         }
         if (begun) {
-            R(note_triangle)(rays->of[i].begun, turns, index);
+            R(note_triangle)(rays->of[i].begun, orientation, index);
         } else if (rays->from[i] < t[i]) {
-            rays->of[i].sum += turns;
-            R(keep_crossing)(&rays->of[i], t[i], turns, index);
+            rays->of[i].sum += orientation;
+            R(keep_crossing)(&rays->of[i], t[i], orientation, index);
         }
     }
 }
@@ -142,13 +142,13 @@ static void R(cross_triangle)(R(hull_rays) * rays, uint32_t index, unsigned lane
 {
     const glint_prim *prim = &rays->table->prims[index];
     const vr zero = r_set(0), scale = r_set(rays->table->scale);
-    const vr dx = rays->turned[0], dy = rays->turned[1], dz = rays->turned[2];
+    const vr dx = rays->permuted[0], dy = rays->permuted[1], dz = rays->permuted[2];
     vr p[3][3], x[3], y[3], z[3];
     rm up = r_lt(zero, zero), down = up;
     R(corners_from)(rays->o, prim, rays->table->scale, p);
     for (int j = 0; j < 3; j++) {
         vr c[3];
-        R(turn_axes)(rays, p[j], c);
+        R(permute_axes)(rays, p[j], c);
         x[j] = c[0] * dz - c[2] * dx;
         y[j] = c[1] * dz - c[2] * dy;
         z[j] = c[2];
@@ -175,7 +175,7 @@ static void R(cross_triangle)(R(hull_rays) * rays, uint32_t index, unsigned lane
         t = edges.depth / ((R(det)(&edges) * edges.dz) * scale);
         t = r_min(r_max(t, r_min(r_min(z[0], z[1]), z[2])), r_max(r_max(z[0], z[1]), z[2]));
     }
-    R(note_crossings)(rays, index, rays->part->turned ? against : with, rays->part->turned ? with : against, t);
+    R(note_crossings)(rays, index, rays->part->inverted ? against : with, rays->part->inverted ? with : against, t);
 }
 
 /// Finds all triangles that the rays of `lanes` cross.
@@ -259,7 +259,7 @@ static unsigned R(hull_stretches)(R(hull_rays) * rays, unsigned lanes, unsigned 
                                   uint32_t (*const triangle[2])[VR], vr *known)
 {
     const glint_hull *hull = &rays->table->hulls[rays->part->item];
-    _Alignas(64) real ends[2][GLINT_HULL_PARTS][VR], told[VR];
+    _Alignas(64) real ends[2][GLINT_HULL_PARTS][VR], known_to[VR];
     int most = 0;
     R(walk_hull)(rays, hull, lanes);
     for (int i = 0; i < VR; i++) {
@@ -269,7 +269,7 @@ static unsigned R(hull_stretches)(R(hull_rays) * rays, unsigned lanes, unsigned 
             const bool own = first && R(starts_on_hull)(rays, i);
             R(find_within)(of, own ? R(agree_at_start)(of, rays->on[i], into >> i & 1) : of->sum, &in);
         }
-        told[i] = in.known;
+        known_to[i] = in.known;
         most = in.count > most ? in.count : most;
         for (int k = 0; k < GLINT_HULL_PARTS; k++)
             for (int end = 0; end < 2; end++) {
@@ -280,7 +280,7 @@ static unsigned R(hull_stretches)(R(hull_rays) * rays, unsigned lanes, unsigned 
     for (int k = 0; k < GLINT_HULL_PARTS; k++)
         for (int end = 0; end < 2; end++)
             t[end][k] = r_load(ends[end][k]);
-    *known = r_min(*known, r_load(told));
+    *known = r_min(*known, r_load(known_to));
     return (1u << most) - 1;
 }
 

@@ -82,11 +82,11 @@ static void R(place_pixels)(const R(tile_cast) * tile, uint32_t g)
         const vi row = cell_of_place(&tile->view, 1, -f_load(pixels->t[g] + i));
         i_store(pixels->cell[g] + i, i_or(i_shl(row, 4), column));
     }
-    pixels->turns[g] = 1;
+    pixels->starts[g] = 1;
     for (int i = 1; i < GLINT_GROUP; i++)
-        pixels->turns[g] |= (uint16_t)((pixels->cell[g][i] != pixels->cell[g][i - 1]) << i);
-    for (unsigned turns = pixels->turns[g]; turns; turns &= turns - 1)
-        (&pixels->in_cell[0][0])[pixels->cell[g][__builtin_ctz(turns)]] |= (uint64_t)1 << g;
+        pixels->starts[g] |= (uint16_t)((pixels->cell[g][i] != pixels->cell[g][i - 1]) << i);
+    for (unsigned starts = pixels->starts[g]; starts; starts &= starts - 1)
+        (&pixels->in_cell[0][0])[pixels->cell[g][__builtin_ctz(starts)]] |= (uint64_t)1 << g;
 }
 
 /// Tests the planes and all other unbounded primitives.

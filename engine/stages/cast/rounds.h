@@ -24,10 +24,10 @@
 /// The rays of a group in triangle space: components in the cyclic order that puts the direction's largest component
 /// last, see edges_along. Every lane then has the same order of operations, and the bits are those of the lane's own
 /// order.
-typedef struct R(turned_rays) {
+typedef struct R(permuted_rays) {
     _Alignas(64) real origin[3][GLINT_GROUP], direction[3][GLINT_GROUP];
     uint8_t axis[GLINT_GROUP]; ///< axis of the world of the last component
-} R(turned_rays);
+} R(permuted_rays);
 
 /// The nodes that a ray has yet to visit, and where it enters them.
 typedef struct R(node_stack) {
@@ -38,9 +38,9 @@ typedef struct R(node_stack) {
 } R(node_stack);
 
 typedef struct R(rounds) {
-    R(turned_rays) turned;
+    R(permuted_rays) permuted;
     _Alignas(64) uint32_t lane[GLINT_ROUND_PAIRS], prim[GLINT_ROUND_PAIRS]; ///< the pairs
-    _Alignas(64) real corner[3][3][GLINT_ROUND_PAIRS]; ///< of the triangle of each pair, turned like its ray
+    _Alignas(64) real corner[3][3][GLINT_ROUND_PAIRS]; ///< of the triangle of each pair, permuted like its ray
     int count;
     uint32_t solid[GLINT_ROUND_SOLIDS]; ///< primitives other than triangles and spheres
     uint32_t rays[GLINT_ROUND_SOLIDS]; ///< rays that reached each solid, one bit per lane
@@ -50,8 +50,8 @@ typedef struct R(rounds) {
     R(node_stack) stack[GLINT_GROUP];
 } R(rounds);
 
-/// Turns the rays of `lanes`; other lanes are unchanged.
-static inline void R(turn_rays)(const glint_cast_args *args, size_t at, unsigned lanes, R(turned_rays) * out)
+/// Permutes the axes of the rays of `lanes`; other lanes are unchanged.
+static inline void R(permute_rays)(const glint_cast_args *args, size_t at, unsigned lanes, R(permuted_rays) * out)
 {
     for (; lanes; lanes &= lanes - 1) {
         const int lane = __builtin_ctz(lanes);
@@ -75,7 +75,7 @@ static inline void R(load_round)(const glint_geometry_table *geometry, R(rounds)
 {
     for (int n = 0; n < rounds->count; n++) {
         const double(*corner)[3] = geometry->corners[rounds->prim[n]];
-        const int z = rounds->turned.axis[rounds->lane[n]], x = z < 2 ? z + 1 : 0, y = 3 - z - x;
+        const int z = rounds->permuted.axis[rounds->lane[n]], x = z < 2 ? z + 1 : 0, y = 3 - z - x;
         for (int j = 0; j < 3; j++) {
             rounds->corner[j][0][n] = (real)corner[j][x];
             rounds->corner[j][1][n] = (real)corner[j][y];
@@ -120,12 +120,12 @@ typedef struct R(round_lanes) {
 /// Tests the pairs from number i on.
 INNER void R(intersect_round)(const glint_geometry_table *table, const R(rounds) * rounds, int i, R(round_lanes) * out)
 {
-    const R(turned_rays) *turned = &rounds->turned;
+    const R(permuted_rays) *permuted = &rounds->permuted;
     const vr scale = r_set(table->scale), zero = r_set(0);
     vr corner[3][3], p[3][3], o[3], d[3];
     for (int k = 0; k < 3; k++) {
-        o[k] = r_pick(turned->origin[k], rounds->lane + i);
-        d[k] = r_pick(turned->direction[k], rounds->lane + i);
+        o[k] = r_pick(permuted->origin[k], rounds->lane + i);
+        d[k] = r_pick(permuted->direction[k], rounds->lane + i);
         for (int j = 0; j < 3; j++) {
             corner[j][k] = r_load(rounds->corner[j][k] + i);
             p[j][k] = (corner[j][k] - o[k]) * scale;

@@ -296,7 +296,7 @@ static inline void R(begin_together)(const glint_cast_args *args, size_t at, con
 }
 
 /// Reverses the stack, so that the nearest remaining node is on top.
-static inline void R(turn_stack)(R(node_stack) * stack)
+static inline void R(reverse_stack)(R(node_stack) * stack)
 {
     for (int i = 0, j = stack->height - 1; i < j; i++, j--) {
         const uint32_t node = stack->node[i];
@@ -319,7 +319,7 @@ static __attribute__((noinline)) void R(walk_rays)(const glint_cast_args *args, 
     unsigned alone = 0;
     R(begin_balls)(args, at, &rounds->first);
     if (mixed)
-        R(turn_rays)(args, at, lanes, &rounds->turned);
+        R(permute_rays)(args, at, lanes, &rounds->permuted);
     rounds->count = rounds->solids = 0;
     for (unsigned bits = lanes; bits; bits &= bits - 1)
         rounds->stack[__builtin_ctz(bits)].height = 0;
@@ -332,7 +332,7 @@ static __attribute__((noinline)) void R(walk_rays)(const glint_cast_args *args, 
         const int lane = __builtin_ctz(bits);
         if (!rounds->stack[lane].height)
             continue;
-        R(turn_stack)(&rounds->stack[lane]);
+        R(reverse_stack)(&rounds->stack[lane]);
         R(load_lone_ray)(args, at + (size_t)lane, rays, lone, &rounds->ray[lane]);
         alone |= bits & -bits;
     }

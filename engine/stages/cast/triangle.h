@@ -89,17 +89,17 @@ static rm R(between_corners)(vr p[3][3], const vr d[3], vr reach)
 {
     const vr ax = R(abs)(d[0]), ay = R(abs)(d[1]), az = R(abs)(d[2]);
     const rm y = r_lt(ax, ay), z = r_lt(r_select(y, ay, ax), az);
-    vr turned[4][3]; // direction and corners, the direction's largest component last
+    vr permuted[4][3]; // direction and corners, the direction's largest component last
     for (int j = 0; j < 4; j++) {
         const vr *v = j == 3 ? d : p[j];
         for (int k = 0; k < 3; k++)
-            turned[j][k] = r_select(z, v[k], r_select(y, v[(k + 2) % 3], v[(k + 1) % 3]));
+            permuted[j][k] = r_select(z, v[k], r_select(y, v[(k + 2) % 3], v[(k + 1) % 3]));
     }
     rm between = rm_from_bits((1u << VR) - 1);
     for (int k = 0; k < 2; k++) {
         vr x[3];
         for (int j = 0; j < 3; j++)
-            x[j] = turned[j][k] * turned[3][2] - turned[j][2] * turned[3][k];
+            x[j] = permuted[j][k] * permuted[3][2] - permuted[j][2] * permuted[3][k];
         between = rm_and(
             between, rm_and(r_le(r_min(r_min(x[0], x[1]), x[2]), reach), r_le(-reach, r_max(r_max(x[0], x[1]), x[2]))));
     }

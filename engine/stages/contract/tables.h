@@ -38,7 +38,7 @@ typedef enum glint_prim_kind {
 typedef struct glint_prim {
     _Alignas(64) uint16_t kind;
     uint8_t two_sided; ///< 0: seen from behind, it only gets ambient light
-    uint8_t turned; ///< 1: a subtracted part: its outside is the inside of the whole
+    uint8_t inverted; ///< 1: a subtracted part: its outside is the inside of the whole
     uint32_t id; ///< number in order of definition, from 0
     uint32_t material; ///< index in the material table
     float filter_center[3]; ///< of a bounding sphere: (center - reference) * scale, in the index's frame

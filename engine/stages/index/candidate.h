@@ -31,7 +31,7 @@ typedef struct R(pixel_groups) {
     uint64_t in_cell[PIXEL_ROWS][SCREEN_ACROSS]; ///< groups with a ray in the cell, one bit each
     _Alignas(64) uint32_t cell[GLINT_TILE_GROUPS][GLINT_GROUP]; ///< of each ray: SCREEN_ACROSS times its row, plus its
         ///< column
-    uint16_t turns[GLINT_TILE_GROUPS]; ///< lanes whose cell differs from the previous lane's, including the first
+    uint16_t starts[GLINT_TILE_GROUPS]; ///< lanes whose cell differs from the previous lane's, including the first
     float far[GLINT_TILE_GROUPS]; ///< as for the groups of a tile
 } R(pixel_groups);
 
@@ -74,7 +74,7 @@ typedef struct R(candidate) {
     // data for cover.h
     float outer, inner; ///< round: maximum length of f x d; length up to which rays certainly hit. < 0: nothing is
         ///< certain
-    float turn[2]; ///< round: lengths of along_s and along_t
+    float axis_length[2]; ///< round: lengths of along_s and along_t
     float around; ///< round: maximum length of the change of f x d from the middle of a group to its corner
     float ahead[3], sway; ///< sphere: of b; how much b changes within a group
     float power; ///< t of a hit is this divided by ... > 0; 0: unknown
@@ -390,8 +390,8 @@ static void R(note_cells)(R(tile_cast) * tile, int g, float far)
 {
     R(pixel_groups) *pixels = tile->pixels;
     pixels->far[g] = far;
-    for (unsigned turns = pixels->turns[g]; turns; turns &= turns - 1) {
-        const uint32_t cell = pixels->cell[g][__builtin_ctz(turns)];
+    for (unsigned starts = pixels->starts[g]; starts; starts &= starts - 1) {
+        const uint32_t cell = pixels->cell[g][__builtin_ctz(starts)];
         float most = -HUGE_VALF;
         for (uint64_t bits = (&pixels->in_cell[0][0])[cell]; bits; bits &= bits - 1)
             most = larger(most, pixels->far[__builtin_ctzll(bits)]);

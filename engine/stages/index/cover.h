@@ -70,8 +70,8 @@ static void R(make_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
         s2 += (double)candidate->along_s[k] * (double)candidate->along_s[k];
         t2 += (double)candidate->along_t[k] * (double)candidate->along_t[k];
     }
-    candidate->turn[0] = (float)sqrt(s2);
-    candidate->turn[1] = (float)sqrt(t2);
+    candidate->axis_length[0] = (float)sqrt(s2);
+    candidate->axis_length[1] = (float)sqrt(t2);
     candidate->around = (float)(4.00001 * sqrt(fmax(diagonal2[0], diagonal2[1])));
     if (candidate->prim->kind == GLINT_PRIM_SPHERE) {
         R(make_sphere_cover)(tile, candidate);

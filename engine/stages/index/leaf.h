@@ -23,7 +23,7 @@ typedef struct leaf_on_screen {
     _Alignas(64) float edge[3][3][GLINT_NODE_WIDTH];
     _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< smallest w
     _Alignas(64) float least[2][GLINT_NODE_WIDTH], most[2][GLINT_NODE_WIDTH]; ///< bounds of the screen positions
-    unsigned certain, turned; ///< slots with finite edge functions; of these, those with a negative determinant
+    unsigned certain, negative; ///< slots with finite edge functions; of these, those with a negative determinant
 } leaf_on_screen;
 
 /// VF triangles in the coordinates of the screen.
@@ -121,22 +121,22 @@ static inline void edges_of_leaf(const leaf_lanes *at, vf slack, const screen_vi
     const vf turn = off * (f_set(9) * most + f_set(3) * off) + f_set(0x1p-19f) * most2;
     const vf unsure = (at->highest * turn + f_set(2 * view->inverse) * (most2 * off)) * per_area + f_set(16 * FLT_MIN);
     const fm certain = fm_and(f_lt(unsure, f_abs(volume)), f_lt(unsure + doubt, f_set(0x1p100f)));
-    const fm turned = fm_and(certain, f_lt(volume, f_set(0)));
+    const fm negative = fm_and(certain, f_lt(volume, f_set(0)));
     for (int j = 0; j < 3; j++)
         for (int c = 0; c < 3; c++) {
-            const vf edge = f_select(turned, -n[j][c], n[j][c]);
+            const vf edge = f_select(negative, -n[j][c], n[j][c]);
             f_store(leaf->edge[j][c] + i,
                     c < 2 ? f_select(certain, edge, f_set(0)) : f_select(certain, edge + doubt, f_set(HUGE_VALF)));
         }
     leaf->certain |= fm_bits(certain) << i;
-    leaf->turned |= fm_bits(turned) << i;
+    leaf->negative |= fm_bits(negative) << i;
 }
 
 /// Computes everything that follows from the corners. `near` is that of the box if rounding may put a hit anywhere on
 /// the ray: if the triangle is seen edge-on, or if float decides.
 static void show_leaf(const screen_view *view, const node_on_screen *seen, bool is_float, leaf_on_screen *leaf)
 {
-    leaf->certain = leaf->turned = 0;
+    leaf->certain = leaf->negative = 0;
     for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
         const leaf_lanes at = place_leaf(leaf, view, i);
         const vf slack = slack_of_leaf(&at, view, is_float);

@@ -89,7 +89,7 @@ static inline bool R(may_show)(const R(candidate) * candidate, const float middl
     if (!R(is_round)(candidate))
         return !(v[0] + sway[0] < -candidate->limit || v[1] + sway[1] < -candidate->limit ||
                  v[2] + sway[2] < -candidate->limit);
-    const float around = half[0] * candidate->turn[0] + half[1] * candidate->turn[1];
+    const float around = half[0] * candidate->axis_length[0] + half[1] * candidate->axis_length[1];
     const float reach = candidate->outer * (length + spread) + around * 1.00001f;
     return !(reach * reach < DOT(v, v));
 }

@@ -148,7 +148,7 @@ static __attribute__((noinline)) bool R(light_balls)(const glint_surface_args *s
     R(store_ball_parts)(surface, parts, at, hits, normals, box);
     surface->back[place.g] = (uint16_t)back;
     surface->dark[place.g] = 0;
-    walk->turned = walk->turned || back;
+    walk->any_back = walk->any_back || back;
     R(plain_light)(light, kind, true, place, point, parts, hits & light->hits[place.g], 0, brightest);
     return true;
 }

@@ -179,7 +179,7 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     surface->back[place.g] = (uint16_t)whole.back;
     surface->dark[place.g] = 0;
     light->lit[0][place.g] = (uint16_t)whole.lit;
-    call->walk.turned = call->walk.turned || whole.back;
+    call->walk.any_back = call->walk.any_back || whole.back;
     if (whole.lit)
         R(finish_whole)(light, &whole, true, 0, at, brightest);
     return true;

@@ -199,8 +199,8 @@ static void R(block_triangle)(R(beam) * beam, int slot)
     if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, leaf->shown.near[slot], cells))
         return;
     // the determinant is negative if the light is in front; seen from behind means the other side
-    const own_side mine = { leaf->node->child[slot] & ~GLINT_NODE_PRIM, leaf->shown.turned >> slot & 1 ? BEAM_BACK : 0,
-                            !(leaf->shown.certain >> slot & 1) };
+    const own_side mine = { leaf->node->child[slot] & ~GLINT_NODE_PRIM,
+                            leaf->shown.negative >> slot & 1 ? BEAM_BACK : 0, !(leaf->shown.certain >> slot & 1) };
     const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
     const int first = first_column(cells), end = last_column(cells) + 1;

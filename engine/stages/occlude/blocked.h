@@ -332,7 +332,7 @@ static unsigned R(stay_in_combined)(const glint_occlude_args *args, const glint_
     const unsigned back = args->back[at / GLINT_GROUP];
     for (uint64_t bits = whole->all & whole->needs; bits && wanted; bits &= bits - 1) {
         const uint32_t index = first + (uint32_t)__builtin_ctzll(bits);
-        const unsigned into = args->geometry->prims[index].turned ? ~back : back;
+        const unsigned into = args->geometry->prims[index].inverted ? ~back : back;
         wanted &= ~lanes_equal(args->prim + at, index) | into;
     }
     return wanted;

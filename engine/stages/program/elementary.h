@@ -13,20 +13,20 @@
 #include "engine/stages/program/exact.h"
 #include "engine/stages/simd/elementary.h"
 
-static double scalar_sine(double x, double turn) { return turn != 0 ? glint_cos(x) : glint_sin(x); }
+static double scalar_sine(double x, double quarter) { return quarter != 0 ? glint_cos(x) : glint_sin(x); }
 
-/// Returns the sine, or with turn 1 the cosine. Angles beyond GLINT_ANGLE_MAX are reduced one by one.
-INNER vd d_sine(vd x, uint64_t turn)
+/// Returns the sine, or with quarter 1 the cosine. Angles beyond GLINT_ANGLE_MAX are reduced one by one.
+INNER vd d_sine(vd x, uint64_t quarter)
 {
     static const double sine[] = GLINT_SINE, cosine[] = GLINT_COSINE;
     const vd shifted = x * d_set(GLINT_2_PI) + d_set(GLINT_ROUNDER_DOUBLE), q = shifted - d_set(GLINT_ROUNDER_DOUBLE);
     const vd r = ((x - q * d_set(GLINT_HALF_PI_HIGH)) - q * d_set(GLINT_HALF_PI_MIDDLE)) - q * d_set(GLINT_HALF_PI_LOW);
     const vd z = r * r, s = r + (r * z) * D_HORNER(sine, z), c = d_set(1) + z * D_HORNER(cosine, z);
-    const vq quadrant = q_add(d_bits(shifted), q_set(turn));
+    const vq quadrant = q_add(d_bits(shifted), q_set(quarter));
     const vd y = d_select(q_test(quadrant, 1), c, s);
-    const vd turned = d_of_bits(q_xor(d_bits(y), q_shl(q_and(quadrant, q_set(2)), 62)));
+    const vd negated = d_of_bits(q_xor(d_bits(y), q_shl(q_and(quadrant, q_set(2)), 62)));
     const unsigned wide = D_ALL & ~dm_bits(d_le(d_abs(x), d_set(GLINT_ANGLE_MAX)));
-    return wide ? d_each(turned, wide, x, d_set((double)turn), scalar_sine) : turned;
+    return wide ? d_each(negated, wide, x, d_set((double)quarter), scalar_sine) : negated;
 }
 
 /// Returns 2^n for an integer n, -1022 .. 1023.
@@ -64,8 +64,8 @@ static inline vd d_pow(vd x, vd y)
     power = d_select(dm_and(d_eq(size, one), known), one, power);
     const dm negative = dm_and(d_lt(d_set(-INFINITY), x), d_lt(x, zero));
     power = d_select(dm_andnot(negative, whole), d_set(NAN), power);
-    const dm turned = dm_and(d_lt(d_copysign(one, x), zero), dm_andnot(whole, even));
-    power = d_select(turned, -power, power);
+    const dm negated = dm_and(d_lt(d_copysign(one, x), zero), dm_andnot(whole, even));
+    power = d_select(negated, -power, power);
     return d_select(dm_or(d_eq(x, one), d_eq(y, zero)), one, power);
 }
 

@@ -93,11 +93,11 @@ INNER vq noise_gradient(const noise_place *at, int c, vq seed)
 }
 
 /// Returns -x where the first, or second, bit of a gradient's hash is set, otherwise x.
-INNER vd d_turned_by_first(vd x, vq h)
+INNER vd d_negated_by_first(vd x, vq h)
 {
     return d_of_bits(q_xor(d_bits(x), q_and(q_shl(h, 35), q_set((uint64_t)1 << 63))));
 }
-INNER vd d_turned_by_second(vd x, vq h)
+INNER vd d_negated_by_second(vd x, vq h)
 {
     return d_of_bits(q_xor(d_bits(x), q_and(q_shl(h, 34), q_set((uint64_t)1 << 63))));
 }
@@ -119,7 +119,7 @@ INNER vd noise_ramp(const noise_place *at, int c, vq h, const noise_axes *axes)
     const vd x = at->from[0][c & 1], y = at->from[1][c >> 1 & 1], z = at->from[2][c >> 2];
     const vd first = d_select(axes->y_first, y, x);
     const vd second = d_select(axes->y_second, y, d_select(axes->x_second, x, z));
-    return d_turned_by_first(first, h) + d_turned_by_second(second, h);
+    return d_negated_by_first(first, h) + d_negated_by_second(second, h);
 }
 
 INNER vd noise_between(const noise_place *at, const vd corner[8])
@@ -177,7 +177,7 @@ INNER vd noise_across(const noise_place *at, const vd corner[8], int axis)
 /// Returns the component of a gradient along an axis: -1, 0 or 1.
 INNER vd noise_along(vq h, const noise_axes *axes, int axis)
 {
-    const vd zero = d_set(0), first = d_turned_by_first(d_set(1), h), second = d_turned_by_second(d_set(1), h);
+    const vd zero = d_set(0), first = d_negated_by_first(d_set(1), h), second = d_negated_by_second(d_set(1), h);
     if (axis == 0)
         return d_select(axes->y_first, d_select(axes->x_second, second, zero), first);
     if (axis == 1)

@@ -35,7 +35,7 @@ static NAME(stretch) NAME(within_part)(const glint_geometry_table *geometry, con
 static NAME(stretch) NAME(from_part)(const glint_geometry_table *geometry, const glint_prim *part, NAME(vec3) origin,
                                      NAME(vec3) direction, bool inward)
 {
-    if (inward == (part->turned != 0))
+    if (inward == (part->inverted != 0))
         return NAME(nowhere)();
     if (part->kind == GLINT_PRIM_PLANE)
         return (NAME(stretch)) { -INFINITY, INFINITY };
@@ -50,7 +50,7 @@ static NAME(stretch) NAME(within_torus)(const glint_geometry_table *geometry, co
     const glint_solid *solid = &geometry->solids[part->item];
     REAL ends[4];
     NAME(torus_ends)(solid, NAME(unit_place)(solid, part, origin), NAME(into_unit)(solid, direction), own,
-                     inward != (part->turned != 0), ends);
+                     inward != (part->inverted != 0), ends);
     return (NAME(stretch)) { ends[2 * (part->face - 1)], ends[2 * (part->face - 1) + 1] };
 }
 

@@ -5,9 +5,9 @@
 /// through an edge or corner is treated as if shifted along the two perpendicular axes, along the second infinitely
 /// more than along the first. So it passes through exactly one of the triangles that share the edge or corner, or
 /// none.
-static int NAME(turns)(const NAME(vec3) corner[3], NAME(vec3) d)
+static int NAME(orientation)(const NAME(vec3) corner[3], NAME(vec3) d)
 {
-    int z = NAME(main_axis)(d), x = (z + 1) % 3, y = (z + 2) % 3, turns = 0;
+    int z = NAME(main_axis)(d), x = (z + 1) % 3, y = (z + 2) % 3, orientation = 0;
     REAL dx = NAME(component)(d, x), dy = NAME(component)(d, y), dz = NAME(component)(d, z), px[3], py[3];
     for (int j = 0; j < 3; j++) {
         REAL pz = NAME(component)(corner[j], z);
@@ -18,11 +18,11 @@ static int NAME(turns)(const NAME(vec3) corner[3], NAME(vec3) d)
         int k = (j + 1) % 3;
         REAL side = px[j] * py[k] - py[j] * px[k];
         if (py[j] <= 0 && py[k] > 0 && side > 0)
-            turns++;
+            orientation++;
         if (py[k] <= 0 && py[j] > 0 && side < 0)
-            turns--;
+            orientation--;
     }
-    return dz > 0 ? turns : -turns;
+    return dz > 0 ? orientation : -orientation;
 }
 
 static bool NAME(starts_on_hull)(const glint_geometry_table *table, const glint_hull *hull, NAME(start) start)
@@ -50,8 +50,8 @@ static int NAME(crossing_sign)(const glint_geometry_table *table, const glint_pr
     const glint_prim *prim = &table->prims[table->prim_count + table->hulls[part->item].first + k];
     NAME(vec3) corner[3];
     NAME(corners_seen)(prim, origin, table->scale, corner);
-    int turns = NAME(turns)(corner, direction), z = NAME(main_axis)(direction);
-    if (!turns)
+    int orientation = NAME(orientation)(corner, direction), z = NAME(main_axis)(direction);
+    if (!orientation)
         return 0;
     NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
     *t = NAME(plane_distance)(table, prim, seen, origin, direction);
@@ -61,7 +61,7 @@ static int NAME(crossing_sign)(const glint_geometry_table *table, const glint_pr
             w[j] = NAME(component)(corner[j], z) / (seen.dz * (REAL)table->scale);
         *t = NAME(min)(NAME(max)(*t, NAME(min)(NAME(min)(w[0], w[1]), w[2])), NAME(max)(NAME(max)(w[0], w[1]), w[2]));
     }
-    return part->turned ? -turns : turns;
+    return part->inverted ? -orientation : orientation;
 }
 
 /// Returns the same for crossings ahead of the ray's origin, without the triangle that it starts on, and without
@@ -92,7 +92,7 @@ static int NAME(hull_crossing_at_start)(const glint_geometry_table *table, const
         return 0;
     for (uint32_t k = 0; k < hull->count; k++)
         ahead += NAME(hull_crossing)(table, part, k, origin, direction, start, &t);
-    const bool inside = start.inward != (part->turned != 0);
+    const bool inside = start.inward != (part->inverted != 0);
     *triangle = start.on;
     if (inside == (ahead > 0))
         return 0;

@@ -60,15 +60,15 @@ static double op_clamp(double x, double a, double b)
 
 // ---- elementary --------------------------------------------------------------------------------------------------
 
-/// Returns sine (turn 0) or cosine (turn 1): x = q pi/2 + r, |r| <= pi/4.
-static double op_sine(double x, unsigned turn)
+/// Returns sine (quarter 0) or cosine (quarter 1): x = q pi/2 + r, |r| <= pi/4.
+static double op_sine(double x, unsigned quarter)
 {
     static const double sine[] = GLINT_SINE, cosine[] = GLINT_COSINE;
     if (!(fabs(x) <= GLINT_ANGLE_MAX))
-        return turn ? glint_cos(x) : glint_sin(x);
+        return quarter ? glint_cos(x) : glint_sin(x);
     double q = (x * GLINT_2_PI + GLINT_ROUNDER_DOUBLE) - GLINT_ROUNDER_DOUBLE;
     double r = ((x - q * GLINT_HALF_PI_HIGH) - q * GLINT_HALF_PI_MIDDLE) - q * GLINT_HALF_PI_LOW, z = r * r;
-    unsigned quadrant = ((unsigned)(int)q + turn) & 3;
+    unsigned quadrant = ((unsigned)(int)q + quarter) & 3;
     double y = quadrant & 1 ? 1 + z * HORNER(cosine, z) : r + (r * z) * HORNER(sine, z);
     return quadrant & 2 ? -y : y;
 }

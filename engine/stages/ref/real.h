@@ -190,7 +190,7 @@ static bool NAME(surface_hit)(const glint_surface_args *args, uint32_t i)
         else
             point = NAME(sub)(point, NAME(times)(n, NAME(dot)(n, NAME(sub)(point, NAME(rounded)(prim->center)))));
     }
-    if (prim->turned)
+    if (prim->inverted)
         n = NAME(negated)(n);
     if (prim->kind != GLINT_PRIM_TRIANGLE)
         slack = -NAME(POINT_SLACK) * NAME(largest)(point);

@@ -57,7 +57,7 @@ static inline void R(see_prim)(const glint_surface_args *args, uint32_t id, R(se
         for (int k = 0; k < 3 && prim->kind == GLINT_PRIM_PLANE; k++)
             n[k] = prim->normal[k];
         for (int k = 0; k < 3; k++)
-            seen->normal[k] = (real)(prim->turned ? -n[k] : n[k]);
+            seen->normal[k] = (real)(prim->inverted ? -n[k] : n[k]);
         seen->level = prim->kind == GLINT_PRIM_PLANE ? glint_axis_along(prim->normal) : 3;
         for (int k = 0; k < 3 && args->camera; k++) {
             seen->from[k] = (real)(k == seen->level ? prim->center[k] : args->camera->eye[k]);
@@ -87,7 +87,7 @@ typedef struct R(seen_slot) {
 /// State while iterating over the groups of a tile.
 typedef struct R(surface_walk) {
     uint32_t only; ///< the only primitive so far, GLINT_MISS: none
-    bool several, turned; ///< there are other primitives; some lane is seen from behind
+    bool several, any_back; ///< there are other primitives; some lane is seen from behind
     R(seen_slot) * last; ///< of the last primitive
     R(seen_slot) slots[SEEN_SLOTS]; ///< indexed by the lowest bits of the primitive's index; only one is used if there
         ///< are only balls and planes, whose constants are computed quickly
@@ -123,7 +123,7 @@ INNER void R(find_on_solid)(const glint_surface_args *args, R(seen_slot) * slot,
     if (!args->camera)
         R(unit_offset)(solid, seen->prim, from, start.f);
     R(solid_surface)(solid, seen->prim, &start, d, t, n, p);
-    for (int k = 0; seen->prim->turned && k < 3; k++)
+    for (int k = 0; seen->prim->inverted && k < 3; k++)
         n[k] = -n[k];
 }
 
@@ -280,7 +280,7 @@ INNER void R(begin_walk)(const glint_surface_args *args, R(surface_walk) * walk)
         walk->slots[i].prim.id = GLINT_MISS;
     walk->last = walk->slots;
     walk->only = GLINT_MISS;
-    walk->several = walk->turned = false;
+    walk->several = walk->any_back = false;
 }
 
 /// Not inlined, so that the result stays in memory, from where it is broadcast to all lanes.
@@ -306,7 +306,7 @@ INNER void R(end_walk)(const glint_surface_args *args, const R(surface_walk) * w
     if (!args->box)
         return;
     R(write_box)(*box, args->box);
-    args->box->only = walk->several || walk->turned ? GLINT_MISS : walk->only;
+    args->box->only = walk->several || walk->any_back ? GLINT_MISS : walk->only;
 }
 
 /// Computes the lanes of a group that show several triangles. Returns the lanes seen from behind.
@@ -458,7 +458,7 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
         return;
     args->back[g] = (uint16_t)back;
     args->dark[g] = (uint16_t)dark;
-    walk->turned = walk->turned || back;
+    walk->any_back = walk->any_back || back;
 }
 
 INNER void R(surface_groups)(const glint_surface_args *args, R(surface_outputs) outputs)
